@@ -1,0 +1,140 @@
+"""The ring of SymEngine expressions: cosine coefficients multiplied by the selection rules, term by term.
+
+It works by definition rather than for speed, keeps integer coefficients integers, and serves small orders: what the fast
+rings are tested against.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import symengine as se
+from numpy.typing import NDArray
+
+from symfpu.algebra.selection import CosineModes
+
+Objects = NDArray[np.object_]
+Monomial = tuple[int, ...]
+Cosines = dict[int, Any]  # wave number 0 .. N-1 -> coefficient of cos(q theta)
+
+
+class SymbolicRing:
+    """Coefficients as expanded SymEngine expressions."""
+
+    name = "symbolic"
+
+    def __init__(self, space: CosineModes) -> None:
+        self.space, self.grading = space, space.grading
+        self._modes: dict[int, Objects] = {}
+        self._bonds: dict[int, dict[Monomial, Cosines]] = {}
+        self._corrections: dict[int, Objects] = {}
+
+    def _monomials(self, degree: int) -> list[Monomial]:
+        return [tuple(map(int, row)) for row in self.grading.exponents(degree)[self.grading.canonical(degree)]]
+
+    def _zeros(self, degree: int) -> Objects:
+        return np.full((len(self.grading.canonical(degree)), self.space.N - 1), se.Integer(0), dtype=object)
+
+    def number(self, value: Fraction) -> Any:
+        return se.Integer(value.numerator) / se.Integer(value.denominator)
+
+    def seed_terms(self) -> Objects:
+        modes = self._zeros(1)
+        for row, power in enumerate(self.grading.powers(1)):
+            modes[row, self.space.seeds[int(np.argmax(power))] - 1] = se.Integer(1)
+        return modes
+
+    def put(self, degree: int, modes: Objects) -> None:
+        self._modes[degree] = modes
+        bonds = {}
+        for monomial, row in zip(self._monomials(degree), modes, strict=True):
+            cosines = {q + 1: value for q, value in enumerate(row) if value != 0}
+            bonds[monomial] = bonds[conjugate(monomial)] = cosines
+        self._bonds[degree] = bonds
+
+    def square(self, degree: int) -> dict[Monomial, Cosines]:
+        return self._sum(self._bonds, self._bonds, degree)
+
+    def cube(self, degree: int) -> dict[Monomial, Cosines]:
+        squares = {d: self.square(d) for d in range(2, degree)}
+        return self._sum(squares, self._bonds, degree)
+
+    def _sum(self, left: dict[int, Any], right: dict[int, Any], degree: int) -> dict[Monomial, Cosines]:
+        result: dict[Monomial, Cosines] = defaultdict(lambda: defaultdict(lambda: se.Integer(0)))
+        for d in left:
+            for a, f in left[d].items() if degree - d in right else ():
+                for b, g in right[degree - d].items():
+                    self._add_product(result[tuple(x + y for x, y in zip(a, b, strict=True))], f, g)
+        return {m: {q: e for q, v in f.items() if (e := se.expand(v)) != 0} for m, f in result.items()}
+
+    def _add_product(self, out: Cosines, f: Cosines, g: Cosines) -> None:
+        """out += f o g by 2 T_l T_m = T_(l+m) + T_(l-m), with T_N = 0 and T_(2N-q) = -T_q."""
+        N = self.space.N
+        for l, x in f.items():
+            for m, y in g.items():
+                term = x * y
+                for q in (l + m, abs(l - m)):
+                    if q < N:
+                        out[q] += term
+                    elif q > N:
+                        out[2 * N - q] -= term
+
+    def project(self, degree: int, parts: Sequence[tuple[Any, dict[Monomial, Cosines]]]) -> Objects:
+        modes = self._zeros(degree)
+        for row, monomial in enumerate(self._monomials(degree)):
+            for coefficient, bonds in parts:
+                for q, value in bonds.get(monomial, {}).items():
+                    if q > 0:
+                        modes[row, q - 1] += coefficient * value
+        return modes
+
+    def secular(self, degree: int, modes: Objects) -> Objects:
+        place = {m: row for row, m in enumerate(self._monomials(degree))}
+        diagonal = self.grading.diagonal(degree - 1)
+        table = np.full((len(diagonal), len(self.space.seeds)), se.Integer(0), dtype=object)
+        for t, e in enumerate(diagonal):
+            for i, q in enumerate(self.space.seeds):
+                table[t, i] = modes[place[raised(e, i)], q - 1]
+        return table
+
+    def correct(self, degree: int, corrections: Objects) -> None:
+        self._corrections[degree] = corrections
+
+    def corrected(self, degree: int) -> Objects:
+        place = {m: row for row, m in enumerate(self._monomials(degree))}
+        table = np.full((len(place), len(self.space.seeds)), se.Integer(0), dtype=object)
+        for n, corrections in self._corrections.items():
+            if degree - n not in self._modes:
+                continue
+            for e, values in zip(self.grading.diagonal(n), corrections, strict=True):
+                for monomial, terms in zip(self._monomials(degree - n), self._modes[degree - n], strict=True):
+                    row = place[tuple(m + int(k) for m, k in zip(monomial, np.repeat(e, 2), strict=True))]
+                    for i, q in enumerate(self.space.seeds):
+                        table[row, i] += values[i] * terms[q - 1]
+        return table
+
+    def solve(self, degree: int, corrected: Objects, force: Objects, multipliers: Objects) -> Objects:
+        _, index = self.grading.harmonics(degree)
+        bracket = -force
+        bracket[:, np.array(self.space.seeds) - 1] += corrected
+        modes = self._zeros(degree)
+        for row, column in np.argwhere(bracket != 0):
+            modes[row, column] = se.expand(multipliers[index[row], column] * se.expand(bracket[row, column]))
+        return modes
+
+    def results(self) -> tuple[list[Objects], list[Objects], int]:
+        return list(self._modes.values()), list(self._corrections.values()), 0
+
+
+def conjugate(monomial: Monomial) -> Monomial:
+    """Exponents with the roles of z and conj z exchanged."""
+    return tuple(monomial[i ^ 1] for i in range(len(monomial)))
+
+
+def raised(diagonal: Any, i: int) -> Monomial:
+    """Exponents of z_i times |z|^(2e)."""
+    return tuple(int(e) + (k == 0 and j == i) for j, e in enumerate(diagonal) for k in (0, 1))

@@ -1,0 +1,151 @@
+"""The small divisors lambda_q - (nu.omega)^2 of a chain and its chosen frequencies, and the multipliers L_q(nu) made of them.
+
+L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2) with lambda_q = omega_q^2 for a seed and Omega_q^2 otherwise: the paper's
+L at leading order, for every order. Everything that depends on N and on the frequencies enters the series through it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import symengine as se
+from numpy.typing import NDArray
+
+from symfpu.algebra.grading import Ints
+from symfpu.chain import Chain
+from symfpu.errors import ResonantDivisor
+
+Floats = NDArray[np.float64]
+KEPT = 10  # how many of the smallest divisors a series remembers
+
+
+@dataclass(frozen=True)
+class SmallDivisor:
+    """|lambda_q - (nu.omega)^2| = size of one mode and harmonic, at the order where the harmonic first meets the mode."""
+
+    size: float
+    mode: int
+    harmonic: tuple[int, ...]
+    order: int
+
+    def __repr__(self) -> str:
+        return f"{self.size:.2g} at mode {self.mode}, harmonic ({','.join(map(str, self.harmonic))}), order {self.order}"
+
+
+class Float64Divisors:
+    """Multipliers as doubles, each correct to a few units in the last place however small its divisor.
+
+    Frequencies are split on a grid of doubles so coarse that nu.omega is summed without rounding; what the grid leaves
+    over is carried separately. So Omega_q - |nu.omega| loses no digits where the two nearly cancel.
+    """
+
+    def __init__(self, chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], degree: int) -> None:
+        self.chain, self.seeds, self.frequencies = chain, tuple(seeds), tuple(frequencies)
+        largest = max(2.0, *(float(w) for w in frequencies)) * (degree + 1)
+        self._grid = 52 - int(np.frexp(largest)[1])
+        with mpmath.workdps(60):
+            linear = [chain.linear_frequency(q) for q in range(1, chain.N)]
+            bases = list(linear)
+            chosen = [mpmath.mpf(w.numerator) / w.denominator for w in frequencies]
+            for q, omega in zip(seeds, chosen, strict=True):
+                bases[q - 1] = omega
+            self._base = self._split(bases)
+            self._chosen = self._split(chosen)
+            self._numerators = np.array([float(omega**2) for omega in linear])
+        self._smallest: dict[tuple[int, tuple[int, ...]], SmallDivisor] = {}
+
+    def _split(self, values: Sequence[Any]) -> tuple[Floats, Floats]:
+        coarse = [mpmath.nint(mpmath.ldexp(v, self._grid)) for v in values]
+        fine = [v - mpmath.ldexp(c, -self._grid) for v, c in zip(values, coarse, strict=True)]
+        return np.array([float(mpmath.ldexp(c, -self._grid)) for c in coarse]), np.array([float(f) for f in fine])
+
+    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Floats:
+        """L_q(nu) where the selection rules let mode q carry nu, zero elsewhere and in the gauge term nu = e_q of a seed.
+
+        harmonics : (H, s). carried : (H, N-1). Raises ResonantDivisor where a divisor is exactly zero, or so small that
+        doubles cannot tell it from zero.
+        """
+        wanted = carried & ~self._gauge(harmonics)
+        coarse, fine = harmonics @ self._chosen[0], harmonics @ self._chosen[1]
+        sign = np.where(coarse < 0, -1.0, 1.0)
+        difference = (self._base[0] - (sign * coarse)[:, None]) + (self._base[1] - (sign * fine)[:, None])
+        divisors = difference * (self._base[0] + (sign * coarse)[:, None])
+        self._refuse_zero(harmonics, wanted, difference, order)
+        self._remember(harmonics, wanted, np.abs(divisors), order)
+        return np.divide(self._numerators, divisors, out=np.zeros_like(divisors), where=wanted)
+
+    def _gauge(self, harmonics: Ints) -> NDArray[np.bool_]:
+        gauge = np.zeros((len(harmonics), self.chain.N - 1), dtype=np.bool_)
+        units = np.eye(len(self.seeds), dtype=np.int64)
+        for unit, q in zip(units, self.seeds, strict=True):
+            gauge[:, q - 1] = (np.abs(harmonics) == unit).all(axis=1)
+        return gauge
+
+    def _refuse_zero(self, harmonics: Ints, wanted: NDArray[np.bool_], difference: Floats, order: int) -> None:
+        resolution = 2.0 ** -(self._grid + 40)
+        for row, column in np.argwhere(wanted & (np.abs(difference) < 2.0 ** (4 - self._grid))):
+            mode, harmonic = int(column) + 1, tuple(map(int, harmonics[row]))
+            exact = self._is_zero(mode, harmonic)
+            if exact or abs(difference[row, column]) < resolution:
+                raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
+
+    def _is_zero(self, mode: int, harmonic: tuple[int, ...]) -> bool:
+        """Whether lambda_mode = (nu.omega)^2 for the exact rational frequencies.
+
+        A linear frequency 2 sin(q pi / 2N) is rational only if it is 1, for q = N/3 (Niven).
+        """
+        drive = sum((n * w for n, w in zip(harmonic, self.frequencies, strict=True)), start=Fraction(0))
+        if mode in self.seeds:
+            return abs(drive) == self.frequencies[self.seeds.index(mode)]
+        return 3 * mode == self.chain.N and abs(drive) == 1
+
+    def _remember(self, harmonics: Ints, wanted: NDArray[np.bool_], sizes: Floats, order: int) -> None:
+        candidates = np.where(wanted, sizes, np.inf).ravel()
+        count = min(len(candidates), KEPT + len(self._smallest))  # some may be there already
+        for at in np.argpartition(candidates, count - 1)[:count] if count else ():
+            if np.isfinite(candidates[at]):
+                row, column = divmod(int(at), self.chain.N - 1)
+                key = (column + 1, tuple(map(int, harmonics[row])))
+                self._smallest.setdefault(key, SmallDivisor(float(candidates[at]), *key, order))
+        kept = sorted(self._smallest.items(), key=lambda item: item[1].size)[:KEPT]
+        self._smallest = dict(kept)
+
+    def smallest(self) -> tuple[SmallDivisor, ...]:
+        """The smallest divisors met so far, smallest first."""
+        return tuple(self._smallest.values())
+
+
+class UniversalDivisors:
+    """Multipliers as symbols L_q(nu): the universal form, for every chain and all generic frequencies at once."""
+
+    def __init__(self, chain: Chain, seeds: Sequence[int]) -> None:
+        self.chain, self.seeds = chain, tuple(seeds)
+
+    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> NDArray[np.object_]:
+        """Symbols L_q(nu), zero where the selection rules or the gauge leave nothing; shape (H, N-1)."""
+        table = np.full(carried.shape, se.Integer(0), dtype=object)
+        for row, column in np.argwhere(carried):
+            harmonic = tuple(map(int, harmonics[row]))
+            if column + 1 in self.seeds and harmonic == unit(self.seeds.index(column + 1), len(self.seeds)):
+                continue
+            table[row, column] = multiplier_symbol(int(column) + 1, harmonic)
+        return table
+
+    def smallest(self) -> tuple[SmallDivisor, ...]:
+        """None: symbols have no size."""
+        return ()
+
+
+def unit(i: int, length: int) -> tuple[int, ...]:
+    """The harmonic e_i of the i-th seed."""
+    return tuple(int(j == i) for j in range(length))
+
+
+def multiplier_symbol(mode: int, harmonic: Sequence[int]) -> Any:
+    """The symbol L_q(nu); its name reads as LaTeX."""
+    return se.Symbol(f"L_{{{mode}}}({','.join(map(str, harmonic))})")

@@ -1,0 +1,68 @@
+"""What can go wrong, as one tree of exceptions.
+
+Every message is one line: what, where, next step. The plain numbers behind it are attributes of the exception.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+
+class SymfpuError(Exception):
+    """Base of every error that this package raises on purpose."""
+
+
+class InputError(SymfpuError, ValueError):
+    """An argument outside its range; the message names it, its value, what is allowed and what to do."""
+
+    def __init__(self, argument: str, value: object, allowed: str, advice: str) -> None:
+        self.argument, self.value, self.allowed, self.advice = argument, value, allowed, advice
+        super().__init__(f"{argument} = {value!r}: allowed is {allowed}; {advice}")
+
+
+class TooLarge(InputError):
+    """A series whose arrays would not fit into the free memory."""
+
+    def __init__(self, order: int, needed: int, free: int, largest: int) -> None:
+        self.order, self.needed, self.free, self.largest = order, needed, free, largest
+        advice = f"take order {largest} or less, or fewer seeds" if largest >= 0 else "take fewer seeds or a shorter chain"
+        InputError.__init__(self, "order", order, f"what fits into the {free:,} bytes of free memory ({needed:,} are needed)", advice)
+
+
+class ResonantDivisor(InputError):
+    """A divisor lambda_q - (nu.omega)^2 that is exactly zero, or too small to tell from zero in the ring at hand."""
+
+    def __init__(self, mode: int, harmonic: Sequence[int], seeds: Sequence[int], order: int, *, exact: bool) -> None:
+        self.mode, self.harmonic, self.order, self.exact = mode, tuple(harmonic), order, exact
+        combination = " ".join(f"{n:+d} omega_{q}" for n, q in zip(harmonic, seeds, strict=True) if n)
+        own = "omega" if mode in seeds else "Omega"
+        size = "= 0" if exact else "is below the resolution of doubles"
+        last = [q for n, q in zip(harmonic, seeds, strict=True) if n]
+        Exception.__init__(
+            self,
+            f"{own}_{mode}^2 - ({combination})^2 {size} at order {order}, mode {mode}, harmonic {self.harmonic}: "
+            f"the frequencies are commensurable; change omega_{last[-1] if last else seeds[-1]}",
+        )
+
+
+class NoRealAmplitude(SymfpuError):
+    """The frequencies ask for a negative squared amplitude."""
+
+    def __init__(self, seed: int, squared: float, frequency_order: int) -> None:
+        self.seed, self.squared, self.frequency_order = seed, squared, frequency_order
+        super().__init__(
+            f"no real amplitude: at frequency order {frequency_order} the frequencies need A_{seed}^2 = {squared:.6g} < 0; "
+            f"move omega_{seed} to the other side of its linear value, or choose frequencies nearer to the linear ones"
+        )
+
+
+class DidNotConverge(SymfpuError):
+    """Root finding ended without a root; carries the last iterate and its residual."""
+
+    def __init__(self, frequency_order: int, iterate: Mapping[int, float], residual: float) -> None:
+        self.frequency_order, self.iterate, self.residual = frequency_order, dict(iterate), residual
+        last = ", ".join(f"A_{q} = {a:.6g}" for q, a in self.iterate.items())
+        super().__init__(
+            f"no root of the frequency series truncated at order {frequency_order}: the last iterate {last} leaves "
+            f"|omega - series| = {residual:.3g}; take a lower frequency_order or pass guess="
+        )

@@ -1,0 +1,67 @@
+"""Numbers are what was typed: "0.33" and Fraction(33, 100) are exact, a float is read by its shortest decimal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from decimal import Decimal, InvalidOperation
+from fractions import Fraction
+from numbers import Integral, Rational, Real
+
+from symfpu.errors import InputError
+
+Number = int | float | str | Fraction | Decimal
+
+
+def exact(value: object, argument: str) -> Fraction:
+    """The rational number that `value` denotes; InputError naming `argument` if it denotes none.
+
+    >>> exact("0.33", "alpha"), exact(0.1, "alpha"), exact("1/3", "alpha")
+    (Fraction(33, 100), Fraction(1, 10), Fraction(1, 3))
+    """
+    try:
+        if isinstance(value, bool):
+            raise TypeError("a truth value is no number")
+        if isinstance(value, str):
+            return Fraction(value.strip())
+        if isinstance(value, Rational):
+            return Fraction(int(value.numerator), int(value.denominator))
+        if isinstance(value, Decimal):
+            return Fraction(value)
+        if isinstance(value, Real):
+            return Fraction(Decimal(repr(float(value))))
+        raise TypeError("not a real number")
+    except (TypeError, ValueError, OverflowError, ZeroDivisionError, InvalidOperation) as error:
+        raise InputError(
+            argument, value, "a finite number such as 0.33, '1/3' or Fraction(1, 3)", "write it as a decimal or a fraction"
+        ) from error
+
+
+def integer(value: object, argument: str, least: int) -> int:
+    """`value` as an int not below `least`; InputError naming `argument` otherwise."""
+    allowed = f"an integer from {least} up"
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise InputError(argument, value, allowed, "pass a whole number")
+    if value < least:
+        raise InputError(argument, int(value), allowed, f"take {least} or more")
+    return int(value)
+
+
+def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
+    """The seeds as ascending integers in 1 .. N-1; InputError if empty, repeated, outside or not integers."""
+    allowed = f"distinct integers in 1..{N - 1} (N = {N})"
+    modes: list[int] = []
+    try:
+        listed = list(seeds)
+    except TypeError as error:
+        raise InputError("seeds", seeds, allowed, "pass a sequence such as (1, 2)") from error
+    for seed in listed:
+        if isinstance(seed, bool) or not isinstance(seed, Integral):
+            raise InputError("seeds", seed, allowed, "pass whole numbers")
+        if not 1 <= seed <= N - 1:
+            raise InputError("seeds", int(seed), allowed, "name a mode of the chain or take a longer one")
+        modes.append(int(seed))
+    if not modes:
+        raise InputError("seeds", (), allowed, "name at least one seed mode")
+    if len(set(modes)) < len(modes):
+        raise InputError("seeds", tuple(modes), allowed, "name every seed once")
+    return tuple(modes)

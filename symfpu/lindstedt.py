@@ -1,0 +1,153 @@
+"""The recursion of the Poincare-Lindstedt series (Eqs. moda, modb), written once for every ring and both models.
+
+With u_q = Omega_q Q_q and multipliers L_q(nu), degree by degree in the seed amplitudes:
+    u_q[nu] = L_q(nu) (sum_n W_q^(n) u_q^(k-n) - a sum B u u - b sum C u u u)[nu],
+and W_q^(k) makes the bracket vanish at the secular harmonic nu = e_q of a seed, where u_q gets no term (the gauge of A_q).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import psutil
+
+from symfpu.algebra.float64 import Float64Ring, predicted_bytes
+from symfpu.algebra.grading import Grading
+from symfpu.algebra.ring import Ring
+from symfpu.algebra.selection import CosineModes
+from symfpu.algebra.symbolic import SymbolicRing
+from symfpu.chain import Chain
+from symfpu.divisors import Float64Divisors, UniversalDivisors
+from symfpu.errors import InputError, TooLarge
+from symfpu.exact import Number, exact, integer, seed_modes
+from symfpu.series import LindstedtSeries
+
+Progress = Callable[[int, int], None]
+SYMBOLIC_TERMS = 20_000  # monomials times modes up to which expressions are reasonable
+
+
+def _float64(chain: Chain, space: CosineModes, frequencies: Sequence[Fraction] | None) -> tuple[Ring, Any]:
+    if frequencies is None:
+        raise InputError("frequencies", None, "one number for each seed in the float64 ring", "give frequencies=, or ring='symbolic'")
+    return Float64Ring(space), Float64Divisors(chain, space.seeds, frequencies, space.grading.degree)
+
+
+def _symbolic(chain: Chain, space: CosineModes, frequencies: Sequence[Fraction] | None) -> tuple[Ring, Any]:
+    return SymbolicRing(space), UniversalDivisors(chain, space.seeds)
+
+
+RINGS: dict[str, Callable[[Chain, CosineModes, Sequence[Fraction] | None], tuple[Ring, Any]]] = {
+    "float64": _float64,
+    "symbolic": _symbolic,
+}
+
+
+def lindstedt(
+    chain: Chain,
+    seeds: Sequence[int],
+    frequencies: Sequence[Number] | None = None,
+    order: int = 0,
+    *,
+    ring: str | None = None,
+    progress: Progress | None = None,
+) -> LindstedtSeries:
+    """The Poincare-Lindstedt series of a q-torus with free seed amplitudes (Eqs. qser, omeser).
+
+    chain : the model. seeds : distinct modes D_0. frequencies : omega_q of each seed, exact numbers; None gives the
+    universal form with symbols L_q(nu). order : K of the coordinates and of the frequency corrections, from 0 up; order
+    k has degree k+1 in the amplitudes (2k+1 if alpha = 0, and with both couplings beta enters two orders up).
+    ring : 'float64' or 'symbolic'; default by whether frequencies are given. progress : called as (order done, orders).
+
+    Raises InputError for arguments out of range, TooLarge before allocating what would not fit into memory,
+    ResonantDivisor at the first divisor that is zero.
+
+    >>> series = lindstedt(Chain(N=8, alpha="0.25"), seeds=(1,), order=1)
+    >>> series.coordinates[1][-1, 1], series.coordinates[1][-1, 0]
+    (-L_{2}(2), 0)
+    """
+    seeds = seed_modes(seeds, chain.N)
+    order = integer(order, "order", 0)
+    exact_frequencies = None if frequencies is None else _frequencies(frequencies, seeds)
+    seeds, exact_frequencies = _ascending(seeds, exact_frequencies)
+    ring = ring or ("symbolic" if frequencies is None else "float64")
+    if ring not in RINGS:
+        raise InputError("ring", ring, f"one of {', '.join(RINGS)}", "name a ring or leave it out")
+    _check_size(chain, seeds, order, ring)
+    grading = Grading(len(seeds), 1 + chain.degree_step * order)
+    space = CosineModes(chain.N, seeds, grading)
+    arithmetic, divisors = RINGS[ring](chain, space, exact_frequencies)
+    _run(arithmetic, divisors, chain, order, progress)
+    modes, corrections, scale = arithmetic.results()
+    return LindstedtSeries(
+        chain=chain,
+        seeds=seeds,
+        frequencies=exact_frequencies,
+        order=order,
+        ring=ring,
+        grading=grading,
+        coordinates=tuple(modes),
+        corrections=(np.zeros((0, len(seeds))), *corrections),
+        scale=scale,
+        smallest_divisors=divisors.smallest(),
+        multiply_adds=getattr(arithmetic, "multiply_adds", 0),
+    )
+
+
+def _run(ring: Ring, divisors: Any, chain: Chain, order: int, progress: Progress | None) -> None:
+    """The recursion itself: fills the ring degree by degree."""
+    quadratic, cubic = chain.relative_couplings
+    ring.put(1, ring.seed_terms())
+    for k in range(1, order + 1):
+        degree = 1 + chain.degree_step * k
+        parts = []
+        if quadratic:
+            parts.append((ring.number(quadratic), ring.square(degree)))
+        if cubic and degree >= 3:
+            parts.append((ring.number(cubic), ring.cube(degree)))
+        force = ring.project(degree, parts)
+        ring.correct(degree - 1, ring.secular(degree, force))
+        harmonics, _ = ring.space.grading.harmonics(degree)
+        multipliers = divisors.multipliers(harmonics, ring.space.mask_by_harmonic(degree), k)
+        ring.put(degree, ring.solve(degree, ring.corrected(degree), force, multipliers))
+        if progress:
+            progress(k, order)
+
+
+def _frequencies(frequencies: Sequence[Number], seeds: tuple[int, ...]) -> tuple[Fraction, ...]:
+    try:
+        values = tuple(exact(w, "frequencies") for w in frequencies)
+    except TypeError as error:
+        raise InputError("frequencies", frequencies, "one positive number for each seed", "pass a sequence") from error
+    if len(values) != len(seeds):
+        raise InputError("frequencies", tuple(map(str, frequencies)), f"{len(seeds)} numbers, one for each of the seeds {seeds}", "add or drop some")
+    for q, w, typed in zip(seeds, values, frequencies, strict=True):
+        if w <= 0 or w > 10**6:
+            raise InputError(f"frequencies, omega_{q}", str(typed), "a positive finite number (up to 1e6)", "take one near the linear frequency")
+    return values
+
+
+def _ascending(
+    seeds: tuple[int, ...], frequencies: tuple[Fraction, ...] | None
+) -> tuple[tuple[int, ...], tuple[Fraction, ...] | None]:
+    """Seeds in ascending order, each with its own frequency."""
+    order = sorted(range(len(seeds)), key=lambda i: seeds[i])
+    return tuple(seeds[i] for i in order), None if frequencies is None else tuple(frequencies[i] for i in order)
+
+
+def _check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str) -> None:
+    """Refuse an order whose arrays would not fit, before anything is allocated."""
+    free = psutil.virtual_memory().available
+    if _needed(chain, len(seeds), order, ring) <= free:
+        return
+    largest = -1
+    while _needed(chain, len(seeds), largest + 1, ring) <= free:
+        largest += 1
+    raise TooLarge(order, _needed(chain, len(seeds), order, ring), free, largest)
+
+
+def _needed(chain: Chain, seeds: int, order: int, ring: str) -> int:
+    degrees = range(1, 2 + chain.degree_step * order, chain.degree_step)
+    return predicted_bytes(chain.N, seeds, degrees, cubic=chain.beta != 0)

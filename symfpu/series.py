@@ -1,0 +1,273 @@
+"""A Poincare-Lindstedt series: coordinates and frequency corrections as arrays and as SymEngine expressions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import symengine as se
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.algebra.grading import Grading, Ints
+from symfpu.chain import Chain, rational
+from symfpu.divisors import SmallDivisor
+from symfpu.errors import InputError, SymfpuError
+from symfpu.exact import integer
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class LindstedtSeries:
+    """The series Q_q = sum mu^k Q_q^(k) and omega_q = Omega_q + sum mu^k omega_q^(k) with free seed amplitudes.
+
+    Made by `lindstedt`. The tables are in the ring's variables w_i = Omega_i z_i, z_i = (A_i/2) exp(i theta_i), and in
+    u_q = Omega_q Q_q, [omega_q^2]^(k) = Omega_q^2 W_q^(k), without mu; degree d carries the factor 2^(-scale (d-1)).
+
+    coordinates : for each order 0 .. order, u_q^(k); shape (canonical monomials, N-1).
+    corrections : for each order 0 .. order, W_q^(k); shape (diagonal monomials, s); no rows where none exist.
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...] | None
+    order: int
+    ring: str
+    grading: Grading = field(repr=False)
+    coordinates: tuple[NDArray[Any], ...] = field(repr=False)
+    corrections: tuple[NDArray[Any], ...] = field(repr=False)
+    scale: int
+    smallest_divisors: tuple[SmallDivisor, ...]
+    multiply_adds: int = 0
+
+    def __repr__(self) -> str:
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        smallest = f", smallest divisor {self.smallest_divisors[0]}" if self.smallest_divisors else ""
+        return (
+            f"LindstedtSeries({chain}, seeds={','.join(map(str, self.seeds))}, order {self.order}, "
+            f"{self.coefficient_count:,} coefficients ({self.ring}){smallest})"
+        )
+
+    @property
+    def coefficient_count(self) -> int:
+        """Coefficients stored: one for each canonical monomial and mode."""
+        return sum(table.size for table in self.coordinates)
+
+    def degree(self, order: int) -> int:
+        """Degree of order k in the amplitudes: k + 1, or 2k + 1 where only beta acts."""
+        return 1 + self.chain.degree_step * self._order(order)
+
+    def _order(self, order: int) -> int:
+        if integer(order, "order", 0) > self.order:
+            raise InputError("order", order, f"0..{self.order}, the series' order", "compute a longer series")
+        return int(order)
+
+    def _mode(self, q: int) -> int:
+        if integer(q, "q", 1) >= self.chain.N:
+            raise InputError("q", q, f"1..{self.chain.N - 1}", "name a mode of the chain")
+        return int(q)
+
+    def _seed(self, q: int) -> int:
+        if q not in self.seeds:
+            raise InputError("q", q, f"a seed, one of {self.seeds}", "only seeds have frequency corrections")
+        return self.seeds.index(q)
+
+    def _linear(self, q: int) -> Any:
+        return self.chain.frequencies()[q - 1] if self.ring != "symbolic" else se.Symbol(f"Omega_{q}")
+
+    def _times(self, values: NDArray[Any], powers: Ints, exponent: int) -> NDArray[Any]:
+        """values times prod Omega_i^powers 2^exponent, in numbers or in symbols."""
+        if self.ring == "symbolic":
+            factors = [se.Mul(*(self._linear(q) ** int(e) for q, e in zip(self.seeds, row, strict=True))) for row in powers]
+            return np.array([v * f for v, f in zip(values, factors, strict=True)], dtype=object)
+        linear = np.array([self._linear(q) for q in self.seeds])
+        logarithm = powers @ np.log2(linear) + exponent
+        whole = np.floor(logarithm).astype(int)
+        with np.errstate(over="ignore", under="ignore"):
+            return np.asarray(np.ldexp(values * np.exp2(logarithm - whole), whole))
+
+    def coefficients(self, q: int, order: int) -> tuple[Ints, NDArray[Any]]:
+        """Q_q^(k), without mu^k, as a polynomial in z_i = (A_i/2) exp(i theta_i) and conj z_i (Eq. qser).
+
+        Returns exponents (count, 2s) = (p_1, n_1, ..., p_s, n_s) and coefficients (count,) of its canonical monomials, zero
+        coefficients left out. The conjugate of a monomial has the same coefficient and is not listed again.
+        Raises InputError for a mode or an order outside the series, SymfpuError where a coefficient exceeds doubles.
+        """
+        degree, column = self.degree(order), self._mode(q) - 1
+        values = self.coordinates[order][:, column]
+        at = np.flatnonzero(values != 0)
+        exponents = self.grading.exponents(degree)[self.grading.canonical(degree)[at]]
+        result = self._times(values[at], self.grading.powers(degree)[at], self.scale * (degree - 1)) / self._linear(q)
+        return exponents, self._finite(result, f"Q_{q}^({order})")
+
+    def frequency_coefficients(self, q: int, order: int, *, squared: bool = False) -> tuple[Ints, NDArray[Any]]:
+        """omega_q^(k), or [omega_q^2]^(k) if squared, without mu^k, as a polynomial in the amplitudes (Eq. omeser).
+
+        Returns exponents (count, s) of A_1 .. A_s and coefficients (count,), zero coefficients left out. Order 0 is Omega_q
+        (its square). omega^(k) = ([omega^2]^(k) - sum_{0<j<k} omega^(j) omega^(k-j)) / (2 Omega).
+        """
+        i, order = self._seed(q), self._order(order)
+        polynomials = [self._squared_correction(i, k) for k in range(order + 1)]
+        linear = self._linear(q)
+        if not squared:
+            roots: list[dict[tuple[int, ...], Any]] = [{(0,) * len(self.seeds): linear}]
+            for k in range(1, order + 1):
+                roots.append(_root_term(polynomials[k], roots, linear))
+            polynomials = roots
+        chosen = {e: c for e, c in polynomials[order].items() if c != 0}
+        exponents = np.array(list(chosen), dtype=np.int64).reshape(len(chosen), len(self.seeds)) * 2
+        values = np.array(list(chosen.values()), dtype=object if self.ring == "symbolic" else float)
+        if self.ring == "symbolic":
+            values = np.array([se.expand(v) for v in values], dtype=object)
+        degree = self.chain.degree_step * order
+        result = self._times(values, exponents, self.scale * degree - degree)
+        if self.ring == "symbolic":
+            result = np.array([v / se.Integer(2) ** degree for v in result], dtype=object)
+        return exponents, self._finite(result, f"omega_{q}^({order})")
+
+    def _squared_correction(self, i: int, order: int) -> dict[tuple[int, ...], Any]:
+        """[omega_q^2]^(k) as {powers of w_i^2: coefficient}, scaled as the tables are."""
+        linear = self._linear(self.seeds[i])
+        if order == 0:
+            return {(0,) * len(self.seeds): linear**2}
+        diagonal = self.grading.diagonal(self.chain.degree_step * order)
+        return {tuple(map(int, e)): linear**2 * c for e, c in zip(diagonal, self.corrections[order][:, i], strict=True)}
+
+    def _finite(self, values: NDArray[Any], what: str) -> NDArray[Any]:
+        if self.ring != "symbolic" and not np.isfinite(values).all():
+            raise SymfpuError(f"{what} has coefficients beyond the range of doubles; evaluate at amplitudes (harmonic_terms) instead")
+        return values
+
+    def term(self, q: int, order: int) -> Any:
+        """Q_q^(k), without mu^k, as a SymEngine expression in A_i and theta_i (Eq. qser); it prints as LaTeX in a notebook.
+
+        Coefficients are doubles, or polynomials in the symbols L_q(nu) and Omega_q for a series in universal form.
+        """
+        exponents, values = self.coefficients(q, order)
+        A, theta = self._amplitude_symbols()
+        terms = []
+        for row, value in zip(exponents, values, strict=True):
+            nu = [int(n) for n in row[0::2] - row[1::2]]
+            powers = [int(n) for n in row[0::2] + row[1::2]]
+            scalar = se.Integer(2 if any(nu) else 1) / se.Integer(2) ** sum(powers)
+            amplitude = se.Mul(*(a**e for a, e in zip(A, powers, strict=True)))
+            angle = se.Add(*(n * angle for n, angle in zip(nu, theta, strict=True)))
+            terms.append(scalar * _number(value) * amplitude * se.cos(angle))
+        return se.Add(*terms)
+
+    def frequency_correction(self, q: int, order: int) -> Any:
+        """omega_q^(k), without mu^k, as a SymEngine expression in the amplitudes (Eq. omeser)."""
+        return self._amplitude_polynomial(*self.frequency_coefficients(q, order))
+
+    def squared_frequency_correction(self, q: int, order: int) -> Any:
+        """[omega_q^2]^(k), without mu^k, as a SymEngine expression in the amplitudes."""
+        return self._amplitude_polynomial(*self.frequency_coefficients(q, order, squared=True))
+
+    def _amplitude_polynomial(self, exponents: Ints, values: NDArray[Any]) -> Any:
+        A, _ = self._amplitude_symbols()
+        return se.Add(
+            *(
+                _number(value) * se.Mul(*(a ** int(e) for a, e in zip(A, row, strict=True)))
+                for row, value in zip(exponents, values, strict=True)
+            )
+        )
+
+    def _amplitude_symbols(self) -> tuple[list[Any], list[Any]]:
+        return [se.Symbol(f"A{q}") for q in self.seeds], [se.Symbol(f"theta{q}") for q in self.seeds]
+
+    def _numeric(self) -> None:
+        if self.frequencies is None:
+            raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
+
+    @cached_property
+    def _kappa(self) -> float:
+        """|mu|^(1/step) 2^scale: what the variables w_i are multiplied by before the scaled tables apply."""
+        return float(abs(self.chain.mu) ** (1 / self.chain.degree_step) * 2.0**self.scale)
+
+    def _sign(self, order: int) -> float:
+        return -1.0 if self.chain.mu < 0 and order % 2 else 1.0
+
+    def scaled_seeds(self, amplitudes: ArrayLike) -> Floats:
+        """The variables of the scaled tables, kappa Omega_i A_i / 2; shapes (s,)."""
+        return np.asarray(self._kappa / 2 * self.chain.frequencies()[np.array(self.seeds) - 1] * np.asarray(amplitudes, dtype=float))
+
+    def harmonic_terms(self, amplitudes: ArrayLike, order: int, *, absolute: bool = False) -> tuple[Ints, Floats]:
+        """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients: sum over rows of value[., q] cos(nu.theta).
+
+        amplitudes : (s,) in the order of the seeds. Returns harmonics (H, s), one of each pair +-nu, and values (H, N-1).
+        absolute : take the modulus of every monomial before they are summed (for S_1 of Eq. serabs2).
+        """
+        self._numeric()
+        degree = self.degree(order)
+        powers, (nu, index) = self.grading.powers(degree), self.grading.harmonics(degree)
+        monomials = np.prod(self.scaled_seeds(amplitudes) ** powers, axis=1) * (self._sign(order) / self._kappa)
+        table = self.coordinates[order] * monomials[:, None]
+        if absolute:
+            np.abs(table, out=table)
+        by_harmonic = np.argsort(index, kind="stable")
+        starts = np.searchsorted(index[by_harmonic], np.arange(len(nu)))
+        values = np.add.reduceat(table[by_harmonic], starts, axis=0) / self.chain.frequencies()
+        values[(nu != 0).any(axis=1)] *= 2
+        return nu, values
+
+    def absolute_sums(self, q: int, amplitudes: ArrayLike, *, with_mu: bool = False) -> tuple[Floats, Floats]:
+        """S_1(k) and S_2(k) of Eqs. serabs2 and serabs3 for Q_q^(k), k = 0 .. order; shapes (order + 1,) each.
+
+        S_1 adds the moduli of all coefficients, S_2 those of the cosines after the monomials of one harmonic are summed.
+        with_mu : sums of mu^k Q_q^(k) instead, which cannot leave the range of doubles.
+        """
+        column = self._mode(q) - 1
+        sums = np.empty((2, self.order + 1))
+        for k in range(self.order + 1):
+            unit = 1.0 if with_mu else abs(self.chain.mu) ** -float(k)
+            for row, absolute in enumerate((True, False)):
+                sums[row, k] = unit * np.abs(self.harmonic_terms(amplitudes, k, absolute=absolute)[1][:, column]).sum()
+        return sums[0], sums[1]
+
+    def frequency_terms(self, squared_amplitudes: ArrayLike) -> tuple[Floats, Floats]:
+        """mu^k omega_q^(k) for all orders at these values of A^2, and the derivatives by A^2.
+
+        squared_amplitudes : (s,). Returns terms (order + 1, s), order 0 being Omega_q, and derivatives (order + 1, s, s)
+        with the last axis for the variable.
+        """
+        self._numeric()
+        linear = self.chain.frequencies()[np.array(self.seeds) - 1]
+        slope = (self._kappa * linear / 2) ** 2
+        y = slope * np.asarray(squared_amplitudes, dtype=float)
+        s = len(self.seeds)
+        terms, jacobian = np.zeros((self.order + 1, s)), np.zeros((self.order + 1, s, s))
+        terms[0] = linear
+        for k in range(1, self.order + 1):
+            e = self.grading.diagonal(self.chain.degree_step * k)
+            table = self._sign(k) * self.corrections[k] * linear**2
+            square = np.prod(y**e, axis=1) @ table
+            lowered = np.stack([e[:, j] * np.prod(y ** np.maximum(e - np.eye(s, dtype=int)[j], 0), axis=1) for j in range(s)])
+            square_slope = (lowered @ table).T * slope
+            for j in range(1, k):
+                square -= terms[j] * terms[k - j]
+                square_slope -= 2 * terms[j][:, None] * jacobian[k - j]
+            terms[k] = square / (2 * linear)
+            jacobian[k] = square_slope / (2 * linear)[:, None]
+        return terms, jacobian
+
+
+def _number(value: Any) -> Any:
+    return value if isinstance(value, se.Basic) else se.RealDouble(float(value))
+
+
+def _root_term(square: dict[tuple[int, ...], Any], roots: list[dict[tuple[int, ...], Any]], linear: Any) -> dict[tuple[int, ...], Any]:
+    """The next term of the square root of a power series, by the terms found so far."""
+    term = dict(square)
+    k = len(roots)
+    for j in range(1, k):
+        for e, a in roots[j].items():
+            for f, b in roots[k - j].items():
+                key = tuple(x + y for x, y in zip(e, f, strict=True))
+                term[key] = term.get(key, 0) - a * b
+    return {e: c / (2 * linear) for e, c in term.items()}
+
+
+__all__ = ["LindstedtSeries", "rational"]
