@@ -66,3 +66,14 @@ class DidNotConverge(SymfpuError):
             f"no root of the frequency series truncated at order {frequency_order}: the last iterate {last} leaves "
             f"|omega - series| = {residual:.3g}; take a lower frequency_order or pass guess="
         )
+
+
+class UndeterminedAmplitudes(SymfpuError):
+    """The lowest frequency correction does not determine the squared amplitudes."""
+
+    def __init__(self, seeds: Sequence[int], frequency_order: int) -> None:
+        self.seeds, self.frequency_order = tuple(seeds), frequency_order
+        super().__init__(
+            f"the frequency corrections of order {frequency_order} do not determine the amplitudes of the seeds {self.seeds}: "
+            f"their matrix is singular, as for modes that stay harmonic at every amplitude; choose other seeds or add a coupling"
+        )

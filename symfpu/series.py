@@ -12,7 +12,7 @@ import symengine as se
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.grading import Grading, Ints
-from symfpu.chain import Chain, rational
+from symfpu.chain import Chain
 from symfpu.divisors import SmallDivisor
 from symfpu.errors import InputError, SymfpuError
 from symfpu.exact import integer
@@ -227,31 +227,42 @@ class LindstedtSeries:
                 sums[row, k] = unit * np.abs(self.harmonic_terms(amplitudes, k, absolute=absolute)[1][:, column]).sum()
         return sums[0], sums[1]
 
-    def frequency_terms(self, squared_amplitudes: ArrayLike) -> tuple[Floats, Floats]:
-        """mu^k omega_q^(k) for all orders at these values of A^2, and the derivatives by A^2.
+    def frequency_terms(self, squared_amplitudes: ArrayLike, order: int | None = None) -> tuple[Floats, Floats]:
+        """mu^k omega_q^(k) for k = 0 .. order (default all) at these values of A^2, and the derivatives by A^2.
 
         squared_amplitudes : (s,). Returns terms (order + 1, s), order 0 being Omega_q, and derivatives (order + 1, s, s)
         with the last axis for the variable.
         """
         self._numeric()
+        top, s = self.order if order is None else self._order(order), len(self.seeds)
         linear = self.chain.frequencies()[np.array(self.seeds) - 1]
         slope = (self._kappa * linear / 2) ** 2
         y = slope * np.asarray(squared_amplitudes, dtype=float)
-        s = len(self.seeds)
-        terms, jacobian = np.zeros((self.order + 1, s)), np.zeros((self.order + 1, s, s))
+        terms, jacobian = np.zeros((top + 1, s)), np.zeros((top + 1, s, s))
         terms[0] = linear
-        for k in range(1, self.order + 1):
+        for k in range(1, top + 1):
             e = self.grading.diagonal(self.chain.degree_step * k)
+            if len(e) == 0:
+                continue
             table = self._sign(k) * self.corrections[k] * linear**2
-            square = np.prod(y**e, axis=1) @ table
-            lowered = np.stack([e[:, j] * np.prod(y ** np.maximum(e - np.eye(s, dtype=int)[j], 0), axis=1) for j in range(s)])
-            square_slope = (lowered @ table).T * slope
-            for j in range(1, k):
-                square -= terms[j] * terms[k - j]
-                square_slope -= 2 * terms[j][:, None] * jacobian[k - j]
+            square, square_slope = _polynomial(y, e, table)
+            square -= np.einsum("jq,jq->q", terms[1:k], terms[k - 1 : 0 : -1])
+            square_slope = square_slope * slope - 2 * np.einsum("jq,jqi->qi", terms[1:k], jacobian[k - 1 : 0 : -1])
             terms[k] = square / (2 * linear)
             jacobian[k] = square_slope / (2 * linear)[:, None]
         return terms, jacobian
+
+
+def _polynomial(y: Floats, exponents: Ints, table: Floats) -> tuple[Floats, Floats]:
+    """Values (s,) and derivatives (s, variables) of the polynomials sum_e table[e] y^e."""
+    powers = y**exponents
+    square = np.prod(powers, axis=1) @ table
+    slopes = []
+    for j in range(len(y)):
+        lowered = powers.copy()
+        lowered[:, j] = exponents[:, j] * y[j] ** np.maximum(exponents[:, j] - 1, 0)
+        slopes.append(np.prod(lowered, axis=1) @ table)
+    return square, np.stack(slopes, axis=1)
 
 
 def _number(value: Any) -> Any:
@@ -269,5 +280,3 @@ def _root_term(square: dict[tuple[int, ...], Any], roots: list[dict[tuple[int, .
                 term[key] = term.get(key, 0) - a * b
     return {e: c / (2 * linear) for e, c in term.items()}
 
-
-__all__ = ["LindstedtSeries", "rational"]

@@ -205,9 +205,12 @@ class Grading:
             layout.append((rows, canonical, self.rows(swapped)))
         return layout
 
+    def harmonic_keys(self, harmonics: Ints) -> NDArray[np.generic]:
+        """A number for each harmonic (count, s), the same for no two, in lexicographic order."""
+        return np.asarray(harmonics @ self._harmonic_weights)
+
     @cached_property
     def _harmonic_weights(self) -> NDArray[np.generic]:
-        """Digits that give every harmonic a number of its own, in lexicographic order."""
         base = 2 * self.degree + 1
         weights = [base**i for i in reversed(range(self.seeds))]
         return np.array(weights, dtype=object if base**self.seeds >= 2**62 else np.int64)
@@ -218,8 +221,7 @@ class Grading:
         for d in range(self.degree + 1):
             rows = self.exponents(d)[self.canonical(d)]
             nu = rows[:, 0::2] - rows[:, 1::2]
-            weights = self._harmonic_weights
-            _, first, index = np.unique(nu @ weights, return_index=True, return_inverse=True)
+            _, first, index = np.unique(self.harmonic_keys(nu), return_index=True, return_inverse=True)
             result.append((nu[first], index.reshape(-1)))
         return result
 

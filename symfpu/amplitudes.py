@@ -1,0 +1,206 @@
+"""Frequencies to amplitudes: the truncated equations omega_q = Omega_q + sum mu^k omega_q^(k)(A) (Eq. omeser)."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mpmath
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
+from symfpu.exact import exact, integer
+from symfpu.series import LindstedtSeries
+from symfpu.torus import QTorus
+
+Floats = NDArray[np.float64]
+
+ROUNDING = 256 * np.finfo(float).eps  # of the sum of moduli of the series: what a root may leave
+AGREEMENT = 1e-3  # relative change from the neighbouring order above which a root is doubtful
+
+
+@dataclass(frozen=True)
+class AmplitudeHistory:
+    """Amplitudes A(K) by frequency order K, and why orders without a root have none.
+
+    orders : all K at which the frequency series gains a term. amplitudes : K -> (A of each seed); failures : K -> error.
+    """
+
+    seeds: tuple[int, ...]
+    orders: tuple[int, ...]
+    amplitudes: Mapping[int, tuple[float, ...]]
+    failures: Mapping[int, SymfpuError]
+
+    def __repr__(self) -> str:
+        last = next((f", A({K}) = {self.amplitudes[K]}" for K in reversed(self.orders) if K in self.amplitudes), "")
+        return f"AmplitudeHistory(seeds={self.seeds}, {len(self.amplitudes)} of {len(self.orders)} orders have a root{last})"
+
+    def differences(self) -> dict[int, tuple[float, ...]]:
+        """Delta A(k) = |A(k + step) - A(k)| for consecutive orders that have a root (the paper's step is 2)."""
+        pairs = ((a, b) for a, b in itertools.pairwise(self.orders) if a in self.amplitudes and b in self.amplitudes)
+        return {a: tuple(np.abs(np.subtract(self.amplitudes[b], self.amplitudes[a])).tolist()) for a, b in pairs}
+
+
+def frequency_orders(series: LindstedtSeries) -> tuple[int, ...]:
+    """Orders k at which omega^(k) need not vanish: even ones with alpha, all with beta alone."""
+    step = 2 // series.chain.degree_step
+    return tuple(range(step, series.order + 1, step))
+
+
+def amplitude_history(series: LindstedtSeries) -> AmplitudeHistory:
+    """The amplitudes for every frequency order up to the series' order, each found from the one before.
+
+    The lowest order is linear in A^2 and needs no guess. Raises UndeterminedAmplitudes if it does not determine A^2.
+    """
+    orders = frequency_orders(series)
+    found: dict[int, tuple[float, ...]] = {}
+    failures: dict[int, SymfpuError] = {}
+    squares = _lowest_order(series) if orders else np.zeros(len(series.seeds))
+    for K in orders:
+        try:
+            root, _ = _root(series, K, squares)
+            found[K] = tuple(np.sqrt(root).tolist())
+            squares = root
+        except (NoRealAmplitude, DidNotConverge) as failure:
+            failures[K] = failure
+    return AmplitudeHistory(series.seeds, orders, found, failures)
+
+
+def solve_amplitudes(
+    series: LindstedtSeries,
+    *,
+    frequency_order: int | None = None,
+    order: int | None = None,
+    phases: Mapping[int, float] | None = None,
+    guess: Mapping[int, float] | None = None,
+) -> QTorus:
+    """Seed amplitudes whose truncated frequency series equals the chosen frequencies (Eq. omeser), as a QTorus.
+
+    frequency_order : K of the frequency series, up to series.order; default the whole series. order : truncation of
+    Q_q(t), up to series.order; default the whole series. The two are independent. phases : by seed, radians; default 0.
+    guess : amplitudes by seed; default none needed: the lowest correction is linear in A^2, and each order starts from the
+    root of the one before. Gauge: A_q multiplies cos(omega_q t + phi_q) in Q_q, not Q_q(0).
+
+    Raises InputError for arguments out of range; NoRealAmplitude if an A^2 comes out negative (names the seed);
+    DidNotConverge with the last iterate and residual; UndeterminedAmplitudes if no correction determines the amplitudes.
+    Where neighbouring frequency orders disagree, the torus says so in its warnings.
+    """
+    if series.frequencies is None:
+        raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
+    K = _order_argument("frequency_order", frequency_order, series)
+    coordinate_order = _order_argument("order", order, series)
+    angles = {q: 0.0 for q in series.seeds} | _by_seed("phases", phases, series)
+    orders = [k for k in frequency_orders(series) if k <= K]
+    if not orders:
+        raise InputError(
+            "frequency_order", K, f"at least {2 // series.chain.degree_step}, the first frequency correction", "compute a longer series"
+        )
+    history = amplitude_history(series)
+    start = _start(series, orders, history, guess)
+    squares, residual = _root(series, orders[-1], start)
+    amplitudes = np.sqrt(squares)
+    return QTorus(
+        series=series,
+        amplitudes=dict(zip(series.seeds, amplitudes.tolist(), strict=True)),
+        phases=angles,
+        frequency_order=K,
+        order=coordinate_order,
+        history=dict(history.amplitudes),
+        root_residual=residual,
+        warnings=_doubts(amplitudes, orders, history),
+    )
+
+
+def _order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
+    if value is None:
+        return series.order
+    if integer(value, name, 0) > series.order:
+        raise InputError(name, value, f"0..{series.order}, the series' order", "compute a longer series or lower it")
+    return int(value)
+
+
+def _by_seed(name: str, values: Mapping[int, float] | None, series: LindstedtSeries) -> dict[int, float]:
+    for q in values or {}:
+        if q not in series.seeds:
+            raise InputError(name, q, f"seeds {series.seeds} as keys", "name seeds only")
+    return {int(q): float(exact(v, name)) for q, v in (values or {}).items()}
+
+
+def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory, guess: Mapping[int, float] | None) -> Floats:
+    if guess is not None:
+        given = _by_seed("guess", guess, series)
+        if set(given) != set(series.seeds):
+            raise InputError("guess", dict(guess), f"an amplitude for each of the seeds {series.seeds}", "complete it or leave it out")
+        return np.array([given[q] ** 2 for q in series.seeds])
+    earlier = [k for k in orders if k in history.amplitudes]
+    return np.array(history.amplitudes[earlier[-1]]) ** 2 if earlier else _lowest_order(series)
+
+
+def shifts(series: LindstedtSeries) -> Floats:
+    """omega_q - Omega_q of the seeds, correctly rounded; shape (s,)."""
+    assert series.frequencies is not None
+    with mpmath.workdps(50):
+        return np.array(
+            [
+                float(mpmath.mpf(w.numerator) / w.denominator - series.chain.linear_frequency(q))
+                for q, w in zip(series.seeds, series.frequencies, strict=True)
+            ]
+        )
+
+
+def _lowest_order(series: LindstedtSeries) -> Floats:
+    """A^2 from the lowest correction, which is linear in A^2; it may be negative."""
+    first = frequency_orders(series)[0]
+    _, jacobian = series.frequency_terms(np.zeros(len(series.seeds)), first)
+    matrix = jacobian[first]
+    if not np.any(matrix) or np.linalg.cond(matrix) > 1 / np.finfo(float).eps:
+        raise UndeterminedAmplitudes(series.seeds, first)
+    return np.asarray(np.linalg.solve(matrix, shifts(series)))
+
+
+def _root(series: LindstedtSeries, K: int, start: Floats) -> tuple[Floats, float]:
+    """A^2 that solves the equations truncated at order K, and the residual it leaves."""
+    from scipy.optimize import root
+
+    target = shifts(series)
+    scale = np.where(start != 0, np.abs(start), 1.0)
+    unit = np.abs(target) + np.finfo(float).tiny
+
+    def equations(y: Floats) -> tuple[Floats, Floats]:
+        terms, jacobian = series.frequency_terms(y * scale, K)
+        return (terms[1:].sum(axis=0) - target) / unit, jacobian[1:].sum(axis=0) * scale / unit[:, None]
+
+    with np.errstate(over="ignore", invalid="ignore"):
+        squares = np.asarray(root(equations, start / scale, jac=True, method="hybr", tol=1e-15).x) * scale
+        terms, _ = series.frequency_terms(squares, K)
+    residual = float(np.max(np.abs(terms[1:].sum(axis=0) - target)))
+    allowed = ROUNDING * np.max(np.abs(terms[1:]).sum(axis=0) + np.abs(target))
+    if not residual <= allowed:  # also when it is not a number
+        iterate = {q: float(np.sign(x) * np.sqrt(abs(x))) for q, x in zip(series.seeds, squares, strict=True)}
+        raise DidNotConverge(K, iterate, residual)
+    for q, x in zip(series.seeds, squares, strict=True):
+        if x <= 0:
+            raise NoRealAmplitude(q, float(x), K)
+    return squares, residual
+
+
+def _doubts(amplitudes: Floats, orders: list[int], history: AmplitudeHistory) -> tuple[str, ...]:
+    """Why the root may be one of the truncated polynomial only."""
+    K = orders[-1]
+    if len(orders) == 1:
+        return (f"order {K} is the only frequency order: nothing to compare the amplitudes with",)
+    before = orders[-2]
+    if before not in history.amplitudes:
+        return (f"frequency order {before} has no root: the root at order {K} may be one of the truncated polynomial only",)
+    change = np.max(np.abs(amplitudes / np.array(history.amplitudes[before]) - 1))
+    doubts = []
+    if change > AGREEMENT:
+        doubts.append(f"the amplitudes of frequency orders {before} and {K} differ by {change:.1%}: not a torus to that accuracy")
+    differences = {k: max(d) for k, d in history.differences().items() if k < K}
+    best = min(differences, key=lambda k: differences[k]) if differences else K
+    if differences and max(orders.index(K) - orders.index(best), 0) > 2 and differences[before] > 2 * differences[best]:
+        after = orders[orders.index(best) + 1]
+        doubts.append(f"the amplitudes agree best between frequency orders {best} and {after} and move apart beyond")
+    return tuple(doubts)

@@ -1,0 +1,236 @@
+"""Command line: parses, calls one public function, prints or writes.
+
+Exit code 0 for success, 1 for an honest failure (no root, no convergence), 2 for bad input; errors are one line on
+standard error, progress goes there too when it is a terminal, and --json leaves standard output machine-readable.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from symfpu.amplitudes import solve_amplitudes
+from symfpu.chain import Chain
+from symfpu.errors import InputError, SymfpuError
+from symfpu.figures import draw_figure1
+from symfpu.lindstedt import lindstedt
+from symfpu.propagation import excitation_sequence
+from symfpu.report import (
+    figure1_markdown,
+    figure1_record,
+    output_folder,
+    row_record,
+    table_markdown,
+    torus_record,
+    write_figure1_csv,
+)
+from symfpu.reproduction import amplitude_table, figure1
+from symfpu.torus import QTorus
+
+app = typer.Typer(
+    name="symfpu",
+    help="Poincare-Lindstedt series of q-tori in Fermi-Pasta-Ulam chains.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+TARGETS = ("table", "fig1")
+
+BondsOption = Annotated[str, typer.Option("-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N")]
+SeedsOption = Annotated[str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")]
+OrderOption = Annotated[str, typer.Option("--order", help="Order k of the series.", metavar="K")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Machine-readable result on standard output.")]
+COMMAND = {"context_settings": {"help_option_names": ["-h", "--help"]}}
+
+
+@app.callback()
+def version_callback(
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+) -> None:
+    if version:
+        from importlib.metadata import version as installed
+
+        print(f"symfpu {installed('symfpu')}")
+        raise typer.Exit
+
+
+@app.command(**COMMAND, epilog="Example: symfpu propagate -N 32 --model alpha --seeds 3,5 --order 4")
+def propagate(
+    bonds: BondsOption,
+    seeds: SeedsOption,
+    order: OrderOption,
+    model: Annotated[str, typer.Option(help="alpha, beta or alpha+beta.")] = "alpha",
+    as_json: JsonOption = False,
+) -> None:
+    """Which modes the propagation rule D_k excites at each order."""
+    chosen = _whole_numbers("seeds", seeds)
+    sequence = excitation_sequence(_whole("N", bonds), chosen, _whole("order", order), model=model)
+    if as_json:
+        record = {"N": _whole("N", bonds), "model": model, "seeds": sorted(chosen), "order": _whole("order", order)}
+        _print_json(record | {"excitation_sequence": [list(modes) for modes in sequence]})
+        return
+    for k, modes in enumerate(sequence):
+        print(f"D_{k} = {{{', '.join(map(str, modes))}}}")
+
+
+@app.command(**COMMAND, epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 24")
+def solve(
+    bonds: BondsOption,
+    seeds: SeedsOption,
+    omega: Annotated[str, typer.Option(help="Frequencies, one for each seed, such as 0.19626,0.39046.", metavar="W,W,...")],
+    order: OrderOption,
+    alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
+    beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
+    frequency_order: Annotated[
+        str | None, typer.Option(help="Order of the frequency series that gives the amplitudes.  [default: --order]", metavar="K")
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Amplitudes and energies of the q-torus with the given frequencies."""
+    chain = Chain(_whole("N", bonds), alpha=alpha, beta=beta)
+    chosen = _whole_numbers("seeds", seeds)
+    highest = None if frequency_order is None else _whole("frequency-order", frequency_order)
+    frequencies = omega.split(",")
+    with _progress() as advance:
+        series = lindstedt(
+            chain, chosen, frequencies, _whole("order", order), progress=lambda done, total: advance("series", done / total)
+        )
+        advance("amplitudes", None)
+        torus = solve_amplitudes(series, frequency_order=highest)
+        record = torus_record(torus)
+    if as_json:
+        _print_json(record)
+    else:
+        _print_torus(torus, record)
+
+
+def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
+    print(torus.series)
+    table = Table("seed", "omega", "amplitude", box=None, pad_edge=False)
+    for q, amplitude in record["amplitudes"].items():
+        table.add_row(q, record["frequencies"][q], amplitude)
+    Console().print(table)
+    print(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
+    print(f"energy H           {record['energy']}   (at t = 0)")
+    print(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {record['average_harmonic_energy']})")
+    print(f"residual           {record['residual']:.3g}   (equations of motion, relative to the largest acceleration)")
+    for warning in torus.warnings:
+        _console().print(f"warning: {warning}", style="yellow", highlight=False)
+
+
+@app.command(**COMMAND, epilog="Example: symfpu reproduce table fig1 -o out")
+def reproduce(
+    targets: Annotated[list[str], typer.Argument(help="table, fig1, or all.", metavar="TARGET...")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the report, pictures and data.")] = Path("out"),
+    as_json: JsonOption = False,
+) -> None:
+    """The paper's numbers from its printed frequencies, beside the printed ones."""
+    for target in targets:
+        if target not in (*TARGETS, "all"):
+            raise InputError("target", target, f"{', '.join(TARGETS)} or all", "name one or more of these")
+    wanted = TARGETS if "all" in targets else tuple(t for t in TARGETS if t in targets)
+    folder = output_folder(output)
+    record: dict[str, Any] = {}
+    parts = ["# The paper's numbers, computed from its printed frequencies"]
+    with _progress() as advance:
+        if "table" in wanted:
+            rows = list(amplitude_table(lambda label: advance(label, None)))
+            record["table"] = [row_record(row) for row in rows]
+            parts.append(table_markdown(rows))
+        if "fig1" in wanted:
+            data = figure1(lambda label: advance(label, None))
+            record["fig1"] = figure1_record(data)
+            parts.append(figure1_markdown(data))
+            write_figure1_csv(data, folder)
+            advance("fig1: pictures", None)
+            draw_figure1(data, folder)
+    text = "\n\n".join(parts)
+    (folder / "report.md").write_text(text)
+    (folder / "report.json").write_text(json.dumps(record, indent=1) + "\n")
+    if as_json:
+        _print_json(record)
+        return
+    if "table" in wanted:
+        _print_rows(record["table"])
+    for key, claim in record.get("fig1", {}).get("claims", {}).items():
+        print(f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}")
+    print(f"written: {folder / 'report.md'}, report.json" + (", fig1a..d as PNG, PDF and CSV" if "fig1" in wanted else ""))
+
+
+def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
+    for row in rows:
+        print(f"{row['label']}  (Appendix F: {row['printed_label']})")
+        for q, printed in row["printed_amplitudes"].items():
+            print(f"  A_{q:<3} printed {printed:<24} computed {row['torus']['amplitudes'][q]}")
+        energies = ", ".join(f"{name} {float(value):.9g}" for name, value in row["energies"].items())
+        print(f"  E    printed {row['printed_energy']:<24} computed {energies}")
+        print(f"  {row['verdict']}\n")
+
+
+def _whole(argument: str, text: str) -> int:
+    try:
+        return int(text)
+    except ValueError as error:
+        raise InputError(argument, text, "a whole number", "write digits only") from error
+
+
+def _whole_numbers(argument: str, text: str) -> list[int]:
+    return [_whole(argument, part) for part in text.split(",")] if text.strip() else []
+
+
+def _print_json(record: dict[str, Any]) -> None:
+    print(json.dumps(record, indent=1))
+
+
+def _console() -> Console:
+    return Console(stderr=True, soft_wrap=True)
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[str, float | None], None]]:
+    """A function (label, fraction done or None) that moves a bar on standard error, if that is a terminal."""
+    console = _console()
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("", total=None)
+        yield lambda label, done: progress.update(task, description=label, total=None if done is None else 1.0, completed=done)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    command = typer.main.get_command(app)
+    try:
+        code = command.main(args=None if arguments is None else list(arguments), prog_name="symfpu", standalone_mode=False)
+    except InputError as error:
+        return _fail(str(error), 2)
+    except SymfpuError as error:
+        return _fail(str(error), 1)
+    except (KeyboardInterrupt, EOFError):
+        return _fail("interrupted", 130)
+    except Exception as error:
+        if hasattr(error, "format_message") and hasattr(error, "exit_code"):  # usage errors of the command-line library
+            return _fail(f"{error.format_message()} (see symfpu --help)", int(error.exit_code))
+        if type(error).__name__ == "Abort":
+            return _fail("interrupted", 130)
+        raise
+    return int(code or 0)
+
+
+def _fail(message: str, code: int) -> int:
+    print("symfpu: " + " ".join(message.split()), file=sys.stderr)
+    return code
+
+
+def run() -> None:
+    """Entry point of the console script."""
+    sys.exit(main())

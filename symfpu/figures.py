@@ -1,0 +1,99 @@
+"""Pictures from results: functions take axes and return them; nothing is computed here. Matplotlib is loaded when needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.reproduction import Figure1
+
+Floats = NDArray[np.float64]
+Axes = Any
+
+
+def plot_spectrum(spectrum: Floats, ax: Axes, *, label: str = "", marker: str = "o") -> Axes:
+    """Normalised average energies of the modes against q, on a logarithmic scale; spectrum (N-1,)."""
+    q = np.arange(1, len(spectrum) + 1)
+    positive = spectrum > 0
+    ax.semilogy(q[positive], spectrum[positive], marker=marker, label=label)
+    ax.set_xlabel(r"$q$")
+    ax.set_ylabel(r"$\overline{E}_q / E$")
+    return ax
+
+
+def plot_amplitude_differences(differences: Mapping[int, tuple[float, ...]], seeds: tuple[int, ...], ax: Axes) -> Axes:
+    """|A(k+2) - A(k)| of every seed against the frequency order k."""
+    orders = list(differences)
+    for i, q in enumerate(seeds):
+        ax.semilogy(orders, [differences[k][i] for k in orders], marker="o", label=rf"$\Delta A_{{{q}}}$")
+    ax.set_xlabel(r"frequency order $k$")
+    ax.set_ylabel(r"$|A_i(k+2) - A_i(k)|$")
+    ax.legend()
+    return ax
+
+
+def plot_absolute_sums(sums: tuple[Floats, Floats], q: int, ax: Axes) -> Axes:
+    """mu^k S_1(k) and mu^k S_2(k) of mode q against the order k."""
+    for values, name, marker in zip(sums, ("S_1", "S_2"), "^o", strict=True):
+        orders = np.flatnonzero(values > 0)
+        ax.semilogy(orders, values[orders], marker=marker, label=rf"$\mu^k {name}(k)$")
+    ax.set_xlabel(r"order $k$")
+    ax.set_ylabel(rf"sums of the terms of $Q_{{{q}}}^{{(k)}}$")
+    ax.legend()
+    return ax
+
+
+def plot_energy_errors(times: Floats, errors: Mapping[int, tuple[Floats, Floats]], ax: Axes) -> Axes:
+    """Moduli of the relative errors of total and harmonic energy in time, by coordinate order."""
+    for k, (total, harmonic) in errors.items():
+        for values, name, width in ((harmonic, "harmonic energy", 0.6), (total, "total energy", 1.2)):
+            moved = values != 0
+            ax.semilogy(times[moved], np.abs(values[moved]), lw=width, label=f"{name}, order {k}")
+    ax.set_xlabel(r"$t$")
+    ax.set_ylabel(r"$|E(t) - E(0)| / E(0)$")
+    ax.legend(loc="lower right", ncols=2)
+    return ax
+
+
+def draw_figure1(data: Figure1, folder: Path) -> list[Path]:
+    """Write panels (a) to (d) of Fig. 1 as PNG and PDF; returns the paths."""
+    seeds = data.torus.series.seeds
+
+    def spectra(ax: Axes) -> Axes:
+        for (k, spectrum), marker in zip(data.spectra.items(), "ox", strict=True):
+            plot_spectrum(spectrum, ax, label=f"order {k}, residual {data.residuals[k]:.1e}", marker=marker)
+        ax.legend()
+        return ax
+
+    panels: dict[str, Callable[[Axes], Axes]] = {
+        "fig1a": spectra,
+        "fig1b": lambda ax: plot_amplitude_differences(data.differences, seeds, ax),
+        "fig1c": lambda ax: plot_absolute_sums(data.sums, 1, ax),
+        "fig1d": lambda ax: plot_energy_errors(data.times, data.errors, ax),
+    }
+    titles = {
+        "fig1a": "Fig. 1(a): average spectrum of the 2-torus",
+        "fig1b": "Fig. 1(b): change of the amplitudes with the order",
+        "fig1c": "Fig. 1(c): cancellations in the series of mode 1",
+        "fig1d": "Fig. 1(d): relative errors in time",
+    }
+    return [path for name, panel in panels.items() for path in save_panel(panel, titles[name], folder / name)]
+
+
+def save_panel(panel: Callable[[Axes], Axes], title: str, stem: Path) -> list[Path]:
+    """Draw one panel with the project's style and write it as PNG and PDF."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    with as_file(files("symfpu") / "symfpu.mplstyle") as style, mpl.rc_context(mpl.rc_params_from_file(style, use_default_template=False)):
+        figure = Figure()
+        panel(figure.add_subplot()).set_title(title)
+        paths = [stem.with_suffix(".png"), stem.with_suffix(".pdf")]
+        for path in paths:
+            figure.savefig(path, metadata={"CreationDate": None} if path.suffix == ".pdf" else None)
+    return paths
