@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mpmath
 import numpy as np
@@ -17,6 +17,8 @@ from symfpu.torus import QTorus
 
 Floats = NDArray[np.float64]
 
+RESIDUAL_FLOOR = 1e-10  # relative residual below which growth with the order is no reason to doubt
+RESIDUAL_POINTS = 128  # angles at which two neighbouring orders are compared, about
 ROUNDING = 256 * np.finfo(float).eps  # of the sum of moduli of the series: what a root may leave
 AGREEMENT = 1e-3  # relative change from the neighbouring order above which a root is doubtful
 
@@ -91,7 +93,7 @@ def solve_amplitudes(
         raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
     K = _order_argument("frequency_order", frequency_order, series)
     coordinate_order = _order_argument("order", order, series)
-    angles = {q: 0.0 for q in series.seeds} | _by_seed("phases", phases, series)
+    angles = dict.fromkeys(series.seeds, 0.0) | _by_seed("phases", phases, series)
     orders = [k for k in frequency_orders(series) if k <= K]
     if not orders:
         raise InputError(
@@ -101,7 +103,7 @@ def solve_amplitudes(
     start = _start(series, orders, history, guess)
     squares, residual = _root(series, orders[-1], start)
     amplitudes = np.sqrt(squares)
-    return QTorus(
+    torus = QTorus(
         series=series,
         amplitudes=dict(zip(series.seeds, amplitudes.tolist(), strict=True)),
         phases=angles,
@@ -109,8 +111,8 @@ def solve_amplitudes(
         order=coordinate_order,
         history=dict(history.amplitudes),
         root_residual=residual,
-        warnings=_doubts(amplitudes, orders, history),
     )
+    return replace(torus, warnings=(*_order_doubts(amplitudes, orders, history), *_residual_doubts(torus)))
 
 
 def _order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
@@ -186,7 +188,7 @@ def _root(series: LindstedtSeries, K: int, start: Floats) -> tuple[Floats, float
     return squares, residual
 
 
-def _doubts(amplitudes: Floats, orders: list[int], history: AmplitudeHistory) -> tuple[str, ...]:
+def _order_doubts(amplitudes: Floats, orders: list[int], history: AmplitudeHistory) -> tuple[str, ...]:
     """Why the root may be one of the truncated polynomial only."""
     K = orders[-1]
     if len(orders) == 1:
@@ -204,3 +206,18 @@ def _doubts(amplitudes: Floats, orders: list[int], history: AmplitudeHistory) ->
         after = orders[orders.index(best) + 1]
         doubts.append(f"the amplitudes agree best between frequency orders {best} and {after} and move apart beyond")
     return tuple(doubts)
+
+
+def _residual_doubts(torus: QTorus) -> tuple[str, ...]:
+    """Whether the last two orders of the coordinates made the residual of the equations of motion larger."""
+    before = torus.order - 2
+    if before < 1:
+        return ()
+    points = max(3, round(RESIDUAL_POINTS ** (1 / len(torus.series.seeds))))
+    residual, earlier = torus.residual(points), replace(torus, order=before).residual(points)
+    if residual < RESIDUAL_FLOOR or residual < 1.05 * earlier:
+        return ()
+    return (
+        f"the residual of the equations of motion grows with the order ({earlier:.1e} at {before}, {residual:.1e} at {torus.order}): "
+        f"the series is best cut earlier, by order=",
+    )

@@ -164,7 +164,9 @@ class Chain:
 
     def _symbols(self) -> tuple[dict[int, Any], dict[int, Any], dict[int, Any]]:
         if self.N > LARGEST_EXPRESSION:
-            raise InputError("N", self.N, f"at most {LARGEST_EXPRESSION} for an expression", "use energy() and accelerations() with numbers")
+            raise InputError(
+                "N", self.N, f"at most {LARGEST_EXPRESSION} for an expression", "use energy() and accelerations() with numbers"
+            )
         modes = range(1, self.N)
         Omega = {q: 2 * se.sin(se.pi * q / (2 * self.N)) for q in modes}
         return {q: se.Symbol(f"Q{q}") for q in modes}, {q: se.Symbol(f"P{q}") for q in modes}, Omega

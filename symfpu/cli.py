@@ -42,6 +42,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 TARGETS = ("table", "fig1")
@@ -50,7 +51,6 @@ BondsOption = Annotated[str, typer.Option("-N", help="Number of bonds; the chain
 SeedsOption = Annotated[str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")]
 OrderOption = Annotated[str, typer.Option("--order", help="Order k of the series.", metavar="K")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Machine-readable result on standard output.")]
-COMMAND = {"context_settings": {"help_option_names": ["-h", "--help"]}}
 
 
 @app.callback()
@@ -64,7 +64,7 @@ def version_callback(
         raise typer.Exit
 
 
-@app.command(**COMMAND, epilog="Example: symfpu propagate -N 32 --model alpha --seeds 3,5 --order 4")
+@app.command(epilog="Example: symfpu propagate -N 32 --model alpha --seeds 3,5 --order 4")
 def propagate(
     bonds: BondsOption,
     seeds: SeedsOption,
@@ -83,7 +83,7 @@ def propagate(
         print(f"D_{k} = {{{', '.join(map(str, modes))}}}")
 
 
-@app.command(**COMMAND, epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 24")
+@app.command(epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 24")
 def solve(
     bonds: BondsOption,
     seeds: SeedsOption,
@@ -102,9 +102,7 @@ def solve(
     highest = None if frequency_order is None else _whole("frequency-order", frequency_order)
     frequencies = omega.split(",")
     with _progress() as advance:
-        series = lindstedt(
-            chain, chosen, frequencies, _whole("order", order), progress=lambda done, total: advance("series", done / total)
-        )
+        series = lindstedt(chain, chosen, frequencies, _whole("order", order), progress=lambda done, total: advance("series", done / total))
         advance("amplitudes", None)
         torus = solve_amplitudes(series, frequency_order=highest)
         record = torus_record(torus)
@@ -128,7 +126,7 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
         _console().print(f"warning: {warning}", style="yellow", highlight=False)
 
 
-@app.command(**COMMAND, epilog="Example: symfpu reproduce table fig1 -o out")
+@app.command(epilog="Example: symfpu reproduce table fig1 -o out")
 def reproduce(
     targets: Annotated[list[str], typer.Argument(help="table, fig1, or all.", metavar="TARGET...")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the report, pictures and data.")] = Path("out"),

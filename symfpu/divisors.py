@@ -77,7 +77,7 @@ class Float64Divisors:
         divisors = difference * (self._base[0] + (sign * coarse)[:, None])
         self._refuse_zero(harmonics, wanted, difference, order)
         self._remember(harmonics, wanted, np.abs(divisors), order)
-        return np.divide(self._numerators, divisors, out=np.zeros_like(divisors), where=wanted)
+        return np.asarray(np.divide(self._numerators, divisors, out=np.zeros_like(divisors), where=wanted))
 
     def _gauge(self, harmonics: Ints) -> NDArray[np.bool_]:
         gauge = np.zeros((len(harmonics), self.chain.N - 1), dtype=np.bool_)

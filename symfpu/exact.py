@@ -41,9 +41,10 @@ def integer(value: object, argument: str, least: int) -> int:
     allowed = f"an integer from {least} up"
     if isinstance(value, bool) or not isinstance(value, Integral):
         raise InputError(argument, value, allowed, "pass a whole number")
-    if value < least:
-        raise InputError(argument, int(value), allowed, f"take {least} or more")
-    return int(value)
+    number = int(value)
+    if number < least:
+        raise InputError(argument, number, allowed, f"take {least} or more")
+    return number
 
 
 def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
@@ -57,9 +58,9 @@ def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
     for seed in listed:
         if isinstance(seed, bool) or not isinstance(seed, Integral):
             raise InputError("seeds", seed, allowed, "pass whole numbers")
-        if not 1 <= seed <= N - 1:
-            raise InputError("seeds", int(seed), allowed, "name a mode of the chain or take a longer one")
         modes.append(int(seed))
+        if not 1 <= modes[-1] <= N - 1:
+            raise InputError("seeds", modes[-1], allowed, "name a mode of the chain or take a longer one")
     if not modes:
         raise InputError("seeds", (), allowed, "name at least one seed mode")
     if len(set(modes)) < len(modes):

@@ -50,10 +50,10 @@ def plot_absolute_sums(sums: tuple[Floats, Floats], q: int, ax: Axes) -> Axes:
 
 def plot_energy_errors(times: Floats, errors: Mapping[int, tuple[Floats, Floats]], ax: Axes) -> Axes:
     """Moduli of the relative errors of total and harmonic energy in time, by coordinate order."""
-    for k, (total, harmonic) in errors.items():
-        for values, name, width in ((harmonic, "harmonic energy", 0.6), (total, "total energy", 1.2)):
-            moved = values != 0
-            ax.semilogy(times[moved], np.abs(values[moved]), lw=width, label=f"{name}, order {k}")
+    for i, (k, (total, harmonic)) in enumerate(errors.items()):
+        for values, name, style in ((harmonic, "harmonic energy", ":"), (total, "total energy", "-")):
+            ax.semilogy(times[1:], np.abs(values[1:]), style, color=f"C{i}", lw=1.2, label=f"{name}, order {k}")
+    ax.set_ylim(bottom=1e-8)
     ax.set_xlabel(r"$t$")
     ax.set_ylabel(r"$|E(t) - E(0)| / E(0)$")
     ax.legend(loc="lower right", ncols=2)

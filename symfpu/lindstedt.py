@@ -26,7 +26,7 @@ from symfpu.exact import Number, exact, integer, seed_modes
 from symfpu.series import LindstedtSeries
 
 Progress = Callable[[int, int], None]
-SYMBOLIC_TERMS = 20_000  # monomials times modes up to which expressions are reasonable
+SYMBOLIC_GROWTH = 4  # factor by which an expanded coefficient grows with the order, about
 
 
 def _float64(chain: Chain, space: CosineModes, frequencies: Sequence[Fraction] | None) -> tuple[Ring, Any]:
@@ -122,16 +122,18 @@ def _frequencies(frequencies: Sequence[Number], seeds: tuple[int, ...]) -> tuple
     except TypeError as error:
         raise InputError("frequencies", frequencies, "one positive number for each seed", "pass a sequence") from error
     if len(values) != len(seeds):
-        raise InputError("frequencies", tuple(map(str, frequencies)), f"{len(seeds)} numbers, one for each of the seeds {seeds}", "add or drop some")
+        raise InputError(
+            "frequencies", tuple(map(str, frequencies)), f"{len(seeds)} numbers, one for each of the seeds {seeds}", "add or drop some"
+        )
     for q, w, typed in zip(seeds, values, frequencies, strict=True):
         if w <= 0 or w > 10**6:
-            raise InputError(f"frequencies, omega_{q}", str(typed), "a positive finite number (up to 1e6)", "take one near the linear frequency")
+            raise InputError(
+                f"frequencies, omega_{q}", str(typed), "a positive finite number (up to 1e6)", "take one near the linear frequency"
+            )
     return values
 
 
-def _ascending(
-    seeds: tuple[int, ...], frequencies: tuple[Fraction, ...] | None
-) -> tuple[tuple[int, ...], tuple[Fraction, ...] | None]:
+def _ascending(seeds: tuple[int, ...], frequencies: tuple[Fraction, ...] | None) -> tuple[tuple[int, ...], tuple[Fraction, ...] | None]:
     """Seeds in ascending order, each with its own frequency."""
     order = sorted(range(len(seeds)), key=lambda i: seeds[i])
     return tuple(seeds[i] for i in order), None if frequencies is None else tuple(frequencies[i] for i in order)
@@ -149,5 +151,5 @@ def _check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str) -> 
 
 
 def _needed(chain: Chain, seeds: int, order: int, ring: str) -> int:
-    degrees = range(1, 2 + chain.degree_step * order, chain.degree_step)
-    return predicted_bytes(chain.N, seeds, degrees, cubic=chain.beta != 0)
+    size = predicted_bytes(chain.N, seeds, 1 + chain.degree_step * order, cubic=chain.beta != 0)
+    return size * SYMBOLIC_GROWTH**order if ring == "symbolic" else size

@@ -27,7 +27,7 @@ def reachable_modes(N: int, seeds: Iterable[int], order: int, *, model: str = "a
         raise InputError("model", model, "'alpha', 'beta' or 'alpha+beta'", "pass one of these")
     sums = {fold(q, N) for q in modes}
     reached = []
-    for k in range(order + 1):
+    for _k in range(order + 1):
         reached.append(tuple(sorted(sums - {0, N})))
         for _ in range(2 if model == "beta" else 1):
             # folding is a map of the sums modulo 2N and sign, so it may be done at every step

@@ -22,7 +22,9 @@ def output_folder(path: Path) -> Path:
         if not os.access(path, os.W_OK):
             raise PermissionError("no permission to write")
     except OSError as error:
-        raise InputError("output", str(path), "a folder that can be written", f"choose another with -o ({error.strerror or error})") from error
+        raise InputError(
+            "output", str(path), "a folder that can be written", f"choose another with -o ({error.strerror or error})"
+        ) from error
     return path
 
 
@@ -64,6 +66,7 @@ def row_record(row: AmplitudeRow) -> dict[str, Any]:
         "digits": round(row.digits[row.best], 2),
         "energies": {name: repr(value) for name, value in row.energies.items()},
         "energy_matches": list(row.energy_matches),
+        "energy_orders": {name: list(orders) for name, orders in row.energy_orders.items()},
         "verdict": row.verdict,
         "torus": torus_record(row.torus),
     }
@@ -150,10 +153,7 @@ def write_figure1_csv(data: Figure1, folder: Path) -> list[Path]:
         ),
         "fig1d": (
             ["t", *(f"{name}_order_{k}" for k in data.errors for name in ("total", "harmonic"))],
-            (
-                [float(t), *(float(e[i]) for pair in data.errors.values() for e in pair)]
-                for i, t in enumerate(data.times)
-            ),
+            ([float(t), *(float(e[i]) for pair in data.errors.values() for e in pair)] for i, t in enumerate(data.times)),
         ),
     }
     paths = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 
 import numpy as np
@@ -29,7 +29,8 @@ class AmplitudeRow:
     met : orders at which the printed amplitudes are met: to every printed digit, or to MET_DIGITS digits.
     torus : ours at the best of those orders (the whole series if none), with the paper's coordinate order.
     energies : name -> value, for H at t = 0, harmonic energy at t = 0 and its time average.
-    energy_matches : the names whose value rounds to the printed energy.
+    energy_matches : the names whose value rounds to the printed energy. energy_orders : if none does, name -> other
+    coordinate orders at which it would.
     """
 
     printed: PrintedTorus
@@ -40,6 +41,7 @@ class AmplitudeRow:
     torus: QTorus
     energies: dict[str, float]
     energy_matches: tuple[str, ...]
+    energy_orders: dict[str, tuple[int, ...]]
     residual: float
 
     @property
@@ -57,8 +59,13 @@ class AmplitudeRow:
         else:
             nearest = f"nearest is {self.best}, {self.digits[self.best]:.1f} digits"
             amplitudes = f"amplitudes met at no frequency order ({nearest}): unexplained"
-        energy = " and ".join(self.energy_matches)
-        energy = f"printed E is {energy}" if energy else f"printed E = {self.printed.energy} is none of ours: unexplained"
+        if self.energy_matches:
+            energy = f"printed E is {' and '.join(self.energy_matches)}"
+        elif self.energy_orders:
+            cuts = [f"{name} of coordinate orders {', '.join(map(str, orders))}" for name, orders in self.energy_orders.items()]
+            energy = f"printed E is not that of the printed order {self.printed.order}, but {' and '.join(cuts)}"
+        else:
+            energy = f"printed E = {self.printed.energy} is none of ours: unexplained"
         doubts = "".join(f"; {warning}" for warning in self.torus.warnings)
         return f"{amplitudes}; {energy}{doubts}"
 
@@ -88,13 +95,28 @@ def amplitude_row(printed: PrintedTorus) -> AmplitudeRow:
     )
     chosen = max(met, key=lambda k: digits[k]) if met else None
     torus = solve_amplitudes(series, frequency_order=chosen)
-    energies = {
+    values = energies(torus)
+    matches = tuple(name for name, value in values.items() if rounds_to(value, printed.energy))
+    other = {} if matches else _energy_orders(torus, printed.energy)
+    return AmplitudeRow(printed, series, history, digits, met, torus, values, matches, other, torus.residual())
+
+
+def energies(torus: QTorus) -> dict[str, float]:
+    """What a paper may mean by "energy", by name."""
+    return {
         "H(0)": float(torus.energy()),
         "harmonic energy at t = 0": float(torus.harmonic_energies().sum()),
         "harmonic energy, time average": float(torus.average_spectrum().sum()),
     }
-    matches = tuple(name for name, value in energies.items() if rounds_to(value, printed.energy))
-    return AmplitudeRow(printed, series, history, digits, met, torus, energies, matches, torus.residual())
+
+
+def _energy_orders(torus: QTorus, printed: str) -> dict[str, tuple[int, ...]]:
+    found: dict[str, tuple[int, ...]] = {}
+    for order in range(1, torus.series.order + 1):
+        for name, value in energies(replace(torus, order=order)).items():
+            if rounds_to(value, printed):
+                found[name] = (*found.get(name, ()), order)
+    return found
 
 
 def amplitude_table(step: Step = lambda label: None) -> Iterator[AmplitudeRow]:

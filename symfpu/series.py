@@ -279,4 +279,3 @@ def _root_term(square: dict[tuple[int, ...], Any], roots: list[dict[tuple[int, .
                 key = tuple(x + y for x, y in zip(e, f, strict=True))
                 term[key] = term.get(key, 0) - a * b
     return {e: c / (2 * linear) for e, c in term.items()}
-

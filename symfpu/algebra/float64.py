@@ -11,6 +11,7 @@ import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,15 +30,14 @@ def lane_width(columns: int) -> int:
     return 8 if columns <= 8 else 16
 
 
-def predicted_bytes(N: int, seeds: int, degrees: Sequence[int], *, cubic: bool) -> int:
-    """Upper bound of the memory of a series with these degrees, temporaries included."""
+def predicted_bytes(N: int, seeds: int, top: int, *, cubic: bool) -> int:
+    """Upper bound of the memory of a series up to degree `top`, temporaries included; closed form, nothing is allocated."""
     lanes = -(-((N + 1) // 2) // lane_width((N + 1) // 2)) * lane_width((N + 1) // 2)
-    top = max(degrees)
-    rows = sum(monomial_count(seeds, d) for d in range(top + 1))
+    rows = comb(top + 2 * seeds, 2 * seeds)
+    canonical = (rows + comb(top // 2 + seeds, seeds)) // 2
     stored = rows * 8 * (lanes * (2 if cubic else 1) + 16 * -(-seeds // 8) + 4 * seeds + 4)
-    modes = sum(canonical_count(seeds, d) for d in degrees) * (N - 1) * 8
     working = monomial_count(seeds, top) * 8 * 3 * lanes + canonical_count(seeds, top) * (N - 1) * 8 * 5
-    return stored + modes + working
+    return stored + canonical * (N - 1) * 8 + working
 
 
 class Float64Ring:

@@ -15,12 +15,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from math import comb
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Ints = NDArray[np.int64]
+Keys = NDArray[Any]  # integers: int64, or Python's own where int64 is too short
 
 
 def monomial_count(seeds: int, degree: int) -> int:
@@ -53,7 +54,7 @@ class Group:
         weights = [base**i for i in reversed(range(2 * seeds))]
         self._weights = np.array(weights, dtype=object if wide else np.int64)
         self.exponents: list[Ints] = []
-        self._keys: list[NDArray[np.generic]] = []
+        self._keys: list[Keys] = []
         for d in range(degree + 1):
             rows = compositions(d, 2 * seeds)
             keys = self.keys(rows)
@@ -63,12 +64,12 @@ class Group:
         self.counts = np.array([len(rows) for rows in self.exponents], dtype=np.int64)
         self.first_canonical = np.array([np.searchsorted(k, 0) for k in self._keys], dtype=np.int64)
 
-    def keys(self, exponents: Ints) -> NDArray[np.generic]:
+    def keys(self, exponents: Ints) -> Keys:
         """Integers that add when monomials multiply, sort by (nu, p + n), and are negative just for nu < 0."""
         p, n = exponents[..., 0::2], exponents[..., 1::2]
         return np.asarray(np.concatenate([p - n, p + n], axis=-1) @ self._weights)
 
-    def ranks(self, degree: int, keys: NDArray[np.generic]) -> Ints:
+    def ranks(self, degree: int, keys: Keys) -> Ints:
         """Places of the monomials with these keys among those of `degree`."""
         return np.searchsorted(self._keys[degree], keys)
 
@@ -205,12 +206,12 @@ class Grading:
             layout.append((rows, canonical, self.rows(swapped)))
         return layout
 
-    def harmonic_keys(self, harmonics: Ints) -> NDArray[np.generic]:
+    def harmonic_keys(self, harmonics: Ints) -> Keys:
         """A number for each harmonic (count, s), the same for no two, in lexicographic order."""
         return np.asarray(harmonics @ self._harmonic_weights)
 
     @cached_property
-    def _harmonic_weights(self) -> NDArray[np.generic]:
+    def _harmonic_weights(self) -> Keys:
         base = 2 * self.degree + 1
         weights = [base**i for i in reversed(range(self.seeds))]
         return np.array(weights, dtype=object if base**self.seeds >= 2**62 else np.int64)

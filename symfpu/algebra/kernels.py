@@ -17,7 +17,7 @@ from numba.extending import intrinsic
 INT64 = ir.IntType(64)
 
 
-@intrinsic  # type: ignore[misc]
+@intrinsic
 def multiply_row(
     typing: Any, lanes: Any, left: Any, i: Any, weight: Any, right: Any, j: Any, out: Any, o: Any, table: Any, t: Any, start: Any, stop: Any
 ) -> Any:
@@ -53,7 +53,7 @@ def multiply_row(
     return signature, generate
 
 
-@njit(nogil=True, cache=True)  # type: ignore[untyped-decorator]
+@njit(nogil=True, cache=True)
 def multiply(lanes, left, right, out, degree, first_row, splits, symmetric, active, blocks, tables):  # type: ignore[no-untyped-def]
     """Add the products of all `splits` of a degree into out, canonical rows only; returns the number of multiply-adds.
 
@@ -95,8 +95,8 @@ def multiply(lanes, left, right, out, degree, first_row, splits, symmetric, acti
                         if sparse and not active[i0 + i]:
                             continue
                         if swap:
-                            multiply_row(lanes, right, i0 + i, weight, left, j0, out, target, table, t, start, length)
+                            multiply_row(lanes, right, i0 + i, weight, left, j0, out, target, table, t, start, length)  # type: ignore[call-arg]
                         else:
-                            multiply_row(lanes, left, i0 + i, weight, right, j0, out, target, table, t, start, length)
+                            multiply_row(lanes, left, i0 + i, weight, right, j0, out, target, table, t, start, length)  # type: ignore[call-arg]
                         count += length - start
     return count * len(lanes)
