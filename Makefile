@@ -23,7 +23,7 @@ test: install  ## lint, types, floors, tests
 	$(BIN)/python -m pytest
 
 bench: install  ## speed and memory, each beside a matrix product
-	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-min-rounds=3 -o addopts="--strict-markers -s"
+	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-columns=median,min,max -o addopts=--strict-markers
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

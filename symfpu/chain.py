@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from itertools import product
 from typing import Any
 
@@ -75,8 +76,7 @@ class Chain:
 
     def frequencies(self) -> Floats:
         """Linear frequencies Omega_q, q = 1 .. N-1, correctly rounded; shape (N-1,)."""
-        with mpmath.workdps(30):
-            return np.array([float(self.linear_frequency(q)) for q in range(1, self.N)])
+        return linear_frequencies(self.N)
 
     def positions(self, Q: ArrayLike) -> Floats:
         """Particle displacements x_1 .. x_(N-1) of mode coordinates (Eq. lintra); shape (..., N-1) to (..., N-1).
@@ -170,6 +170,15 @@ class Chain:
         modes = range(1, self.N)
         Omega = {q: 2 * se.sin(se.pi * q / (2 * self.N)) for q in modes}
         return {q: se.Symbol(f"Q{q}") for q in modes}, {q: se.Symbol(f"P{q}") for q in modes}, Omega
+
+
+@lru_cache(maxsize=64)
+def linear_frequencies(N: int) -> Floats:
+    """Omega_1 .. Omega_(N-1), correctly rounded, as a read-only array."""
+    with mpmath.workdps(30):
+        values = np.array([float(2 * mpmath.sinpi(mpmath.mpf(q) / (2 * N))) for q in range(1, N)])
+    values.flags.writeable = False
+    return values
 
 
 def rational(value: Fraction) -> Any:

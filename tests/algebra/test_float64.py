@@ -1,0 +1,119 @@
+"""The ring of doubles against the symbolic ring and against the slow mode-space series, coefficient by coefficient."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.algebra.float64 import predicted_bytes
+from symfpu.chain import Chain
+from symfpu.lindstedt import lindstedt
+from tests.oracles.cases import CASES, DEEP
+from tests.oracles.mode_space import ModeSpaceSeries
+from tests.oracles.trigonometric import from_amplitudes, from_monomials
+from tests.oracles.universal import DIGITS, Numbers, evaluate
+from tests.tolerances import COEFFICIENT
+
+SHALLOW = [case for case in CASES if case not in DEEP]
+
+
+def fast(case):
+    return lindstedt(Chain(case.N, case.alpha, case.beta), case.seeds, case.frequencies, case.order)
+
+
+def numbers_for(case, series):
+    return Numbers(case, [nu for d in range(series.degree(case.order) + 1) for nu in series.grading.harmonics(d)[0].tolist()])
+
+
+@pytest.mark.parametrize("case", SHALLOW, ids=lambda c: c.name)
+def test_tables_are_those_of_the_symbolic_ring(case):
+    doubles = fast(case)
+    symbols = lindstedt(doubles.chain, case.seeds, order=case.order)
+    assert doubles.grading.degree == symbols.grading.degree
+    with mpmath.workdps(DIGITS):
+        numbers = numbers_for(case, doubles)
+        for kind in ("coordinates", "corrections"):
+            for ours, exact in zip(getattr(doubles, kind), getattr(symbols, kind), strict=True):
+                expected = np.array([float(evaluate(entry, numbers)) for entry in exact.ravel()]).reshape(exact.shape)
+                assert ours.shape == expected.shape
+                assert np.abs(ours - expected).max(initial=0) <= COEFFICIENT * np.abs(expected).max(initial=0)
+
+
+@pytest.mark.parametrize("case", SHALLOW, ids=lambda c: c.name)
+def test_exact_zeros_are_those_of_the_symbolic_ring(case):
+    doubles = fast(case)
+    symbols = lindstedt(doubles.chain, case.seeds, order=case.order)
+    for ours, exact in zip(doubles.coordinates, symbols.coordinates, strict=True):
+        assert ((ours == 0) == (exact == 0)).all()
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)
+def test_series_is_that_of_mode_space(case):
+    series = fast(case)
+    oracle = ModeSpaceSeries(case.N, case.alpha, case.beta, case.seeds, case.frequencies, case.order)
+    for k in range(case.order + 1):
+        compare({q: from_monomials(*series.coefficients(q, k)) for q in range(1, case.N)}, {q: oracle.Q[q][k] for q in oracle.Q})
+        for squared, theirs in ((True, oracle.omega_squared), (False, oracle.omega)):
+            ours = {q: from_amplitudes(*series.frequency_coefficients(q, k, squared=squared)) for q in case.seeds}
+            compare(ours, {q: theirs[q][k] for q in case.seeds})
+
+
+def compare(ours, theirs):
+    """All coefficients of one order, relative to the largest of them."""
+    scale = max((abs(value) for terms in theirs.values() for value in terms.values()), default=0)
+    for q, terms in theirs.items():
+        for key in terms.keys() | ours[q].keys():
+            assert abs(ours[q].get(key, 0.0) - terms.get(key, 0.0)) <= COEFFICIENT * scale
+
+
+def test_multiply_adds_are_counted():
+    """Each order adds products; the count does not depend on the couplings."""
+    counts = [lindstedt(Chain(N=8, alpha=a), (1,), ("0.4",), order).multiply_adds for a in ("0.1", "1") for order in (1, 2, 3)]
+    assert 0 < counts[0] < counts[1] < counts[2]
+    assert counts[:3] == counts[3:]
+
+
+def test_threads_change_nothing_but_the_last_digits():
+    """The same series with 2 and with 1 worker; the sums are cut differently only between blocks, so they are equal."""
+    from symfpu.algebra.float64 import Float64Ring
+    from symfpu.algebra.grading import Grading
+    from symfpu.algebra.selection import CosineModes
+    from symfpu.divisors import Float64Divisors
+    from symfpu.exact import exact
+    from symfpu.lindstedt import _run
+
+    chain, seeds = Chain(N=32, alpha="0.33"), (1, 2, 3)
+    frequencies = [exact(w, "w") for w in ("0.0982", "0.1961", "0.2935")]
+    results = []
+    for workers in (1, 2):
+        space = CosineModes(32, seeds, Grading(3, 7))
+        ring = Float64Ring(space, workers=workers)
+        _run(ring, Float64Divisors(chain, seeds, frequencies, 7), chain, 6, None)
+        results.append(ring.results()[0])
+    assert all((one == two).all() for one, two in zip(*results, strict=True))
+    assert np.abs(results[0][-1]).max() > 0
+
+
+def test_high_orders_neither_overflow_nor_lose_digits():
+    """Order 120 of a breather: the ratio to a series cut at order 40, where nothing had to be rescaled, is exact."""
+    chain, seeds, frequencies = Chain(N=32, alpha="0.33"), (1,), ("0.0984",)
+    long, short = (lindstedt(chain, seeds, frequencies, order) for order in (120, 40))
+    assert long.scale != short.scale
+    for k in range(41):
+        shift = (long.scale - short.scale) * (long.degree(k) - 1)
+        assert (np.ldexp(long.coordinates[k], shift) == short.coordinates[k]).all()
+    amplitudes = np.array([0.2])
+    assert np.isfinite(long.harmonic_terms(amplitudes, 120)[1]).all()
+    assert np.abs(long.harmonic_terms(amplitudes, 120)[1]).max() > 0
+
+
+@pytest.mark.parametrize("cubic", [False, True])
+def test_predicted_bytes_grow_with_the_order(cubic):
+    sizes = [predicted_bytes(32, 3, degree, cubic=cubic) for degree in range(1, 20)]
+    assert all(a < b for a, b in zip(sizes, sizes[1:], strict=False))
+
+
+@pytest.mark.parametrize("case", [CASES[2], CASES[7]], ids=lambda c: c.name)
+def test_predicted_bytes_bound_the_arrays(case):
+    series = fast(case)
+    stored = sum(table.nbytes for table in (*series.coordinates, *series.corrections))
+    assert stored <= predicted_bytes(case.N, len(case.seeds), series.grading.degree, cubic=case.beta != "0")

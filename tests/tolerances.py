@@ -1,0 +1,44 @@
+"""Every tolerance of the suite, each with its reason. EPS is the spacing of doubles at one."""
+
+EPS = 2.0**-52
+
+# Sums of a few dozen products of numbers of order one, each rounded once.
+ROUNDING = 256 * EPS
+
+# Couplings are integers; the sums over bonds that give them are rounded about N times.
+INTEGER = 1e-12
+
+# A coefficient of order k goes through 2k products, sums over at most a few hundred monomials and two transforms, and
+# every multiplier is good to a few EPS. Relative to the largest coefficient of the same order: bonds mix the modes.
+COEFFICIENT = 4096 * EPS
+
+# The reference values were made from decimal frequencies; omega - Omega, some 1e-4, is known to full accuracy, but
+# the sum of the frequency series is rounded and its derivative by A is about 2 (omega - Omega) / A.
+AMPLITUDE = 1e-13
+
+# The periodic orbits are printed with 12 and 11 digits; at orders 50 and 20 the series has converged.
+PERIODIC_ORBIT = 1e-11
+
+# Divisors are products of two factors, each rounded a few times, and the multiplier is one quotient more.
+DIVISOR = 1e-14
+
+# Eighth-order central differences with step h = 0.02 of functions with rates up to about 4: (4 h)^8 and EPS / h.
+DIFFERENCE = 1e-9
+
+# Integration with relative tolerance 1e-12 over some hundred time units: the error grows linearly with the time.
+ORBIT = 1e-9
+
+# A fitted slope against an integer: the next order changes it by about mu.
+SLOPE = 0.1
+
+# Simpson quadrature with a thousand points a period: (2 pi / 1000)^4.
+QUADRATURE = 1e-8
+
+# Averages over an equidistant grid of angles are exact for trigonometric polynomials that it resolves.
+GRID_AVERAGE = 1e-12
+
+# The series of the one-mode reductions at amplitude 0.1 and order 20: the first term left out is below EPS.
+ELLIPTIC = 1e-13
+
+# Both routes at 40 digits; a few of them go into cancellations between the largest terms.
+HIGH_PRECISION = 1e-32
