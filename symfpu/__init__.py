@@ -12,11 +12,14 @@ from symfpu.errors import (
     UndeterminedAmplitudes,
 )
 from symfpu.lindstedt import lindstedt
+from symfpu.notebook import init_printing
 from symfpu.propagation import excitation_sequence, reachable_modes
 from symfpu.series import LindstedtSeries
 from symfpu.torus import QTorus
 
 __version__ = "0.1.0"
+
+init_printing()
 
 __all__ = [
     "AmplitudeHistory",
@@ -32,6 +35,7 @@ __all__ = [
     "UndeterminedAmplitudes",
     "amplitude_history",
     "excitation_sequence",
+    "init_printing",
     "lindstedt",
     "reachable_modes",
     "solve_amplitudes",

@@ -17,8 +17,9 @@ import symengine as se
 from numpy.typing import NDArray
 
 from symfpu.algebra.grading import Ints
+from symfpu.algebra.residue import ResidueRing, cosine_table
 from symfpu.chain import Chain
-from symfpu.errors import ResonantDivisor
+from symfpu.errors import ResonantDivisor, VanishingResidue
 
 Floats = NDArray[np.float64]
 KEPT = 10  # how many of the smallest divisors a series remembers
@@ -70,7 +71,7 @@ class Float64Divisors:
         harmonics : (H, s). carried : (H, N-1). Raises ResonantDivisor where a divisor is exactly zero, or so small that
         doubles cannot tell it from zero.
         """
-        wanted = carried & ~self._gauge(harmonics)
+        wanted = carried & ~gauge_terms(harmonics, self.seeds, self.chain.N)
         coarse, fine = harmonics @ self._chosen[0], harmonics @ self._chosen[1]
         sign = np.where(coarse < 0, -1.0, 1.0)
         difference = (self._base[0] - (sign * coarse)[:, None]) + (self._base[1] - (sign * fine)[:, None])
@@ -78,13 +79,6 @@ class Float64Divisors:
         self._refuse_zero(harmonics, wanted, difference, order)
         self._remember(harmonics, wanted, np.abs(divisors), order)
         return np.asarray(np.divide(self._numerators, divisors, out=np.zeros_like(divisors), where=wanted))
-
-    def _gauge(self, harmonics: Ints) -> NDArray[np.bool_]:
-        gauge = np.zeros((len(harmonics), self.chain.N - 1), dtype=np.bool_)
-        units = np.eye(len(self.seeds), dtype=np.int64)
-        for unit, q in zip(units, self.seeds, strict=True):
-            gauge[:, q - 1] = (np.abs(harmonics) == unit).all(axis=1)
-        return gauge
 
     def _refuse_zero(self, harmonics: Ints, wanted: NDArray[np.bool_], difference: Floats, order: int) -> None:
         resolution = 2.0 ** -(self._grid + 40)
@@ -120,6 +114,35 @@ class Float64Divisors:
         return tuple(self._smallest.values())
 
 
+class ResidueDivisors:
+    """Multipliers modulo a prime, at a point where the chosen frequencies are residues.
+
+    Raises VanishingResidue where a divisor is zero modulo the prime: nothing follows from such a point, take another.
+    """
+
+    def __init__(self, chain: Chain, seeds: Sequence[int], ring: ResidueRing, frequencies: Sequence[int]) -> None:
+        self.chain, self.seeds, self.ring = chain, tuple(seeds), ring
+        cosines = cosine_table(chain.N, ring.prime, ring.root)
+        self._numerators = np.array([ring.element(2 - 2 * cosines[2 * q]) for q in range(1, chain.N)])
+        self._lambda = self._numerators.copy()
+        for q, omega in zip(seeds, frequencies, strict=True):
+            self._lambda[q - 1] = ring.element(omega * omega)
+        self._omega = [int(w) for w in frequencies]
+
+    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Floats:
+        """L_q(nu) modulo the prime where the selection rules let mode q carry nu, zero elsewhere and in the gauge term."""
+        wanted = carried & ~gauge_terms(harmonics, self.seeds, self.chain.N)
+        drives = np.array([self.ring.element(sum(int(n) * w for n, w in zip(nu, self._omega, strict=True))) for nu in harmonics])
+        divisors = self.ring.reduced(self._lambda - self.ring.products(drives, drives)[:, None])
+        if np.any(wanted & (divisors == 0)):
+            raise VanishingResidue(self.ring.prime, order)
+        return np.where(wanted, self.ring.products(self.ring.inverses(divisors), self._numerators), 0.0)
+
+    def smallest(self) -> tuple[SmallDivisor, ...]:
+        """None: residues have no size."""
+        return ()
+
+
 class UniversalDivisors:
     """Multipliers as symbols L_q(nu): the universal form, for every chain and all generic frequencies at once."""
 
@@ -129,11 +152,8 @@ class UniversalDivisors:
     def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> NDArray[np.object_]:
         """Symbols L_q(nu), zero where the selection rules or the gauge leave nothing; shape (H, N-1)."""
         table = np.full(carried.shape, se.Integer(0), dtype=object)
-        for row, column in np.argwhere(carried):
-            harmonic = tuple(map(int, harmonics[row]))
-            if column + 1 in self.seeds and harmonic == unit(self.seeds.index(column + 1), len(self.seeds)):
-                continue
-            table[row, column] = multiplier_symbol(int(column) + 1, harmonic)
+        for row, column in np.argwhere(carried & ~gauge_terms(harmonics, self.seeds, self.chain.N)):
+            table[row, column] = multiplier_symbol(int(column) + 1, [int(n) for n in harmonics[row]])
         return table
 
     def smallest(self) -> tuple[SmallDivisor, ...]:
@@ -141,9 +161,12 @@ class UniversalDivisors:
         return ()
 
 
-def unit(i: int, length: int) -> tuple[int, ...]:
-    """The harmonic e_i of the i-th seed."""
-    return tuple(int(j == i) for j in range(length))
+def gauge_terms(harmonics: Ints, seeds: Sequence[int], N: int) -> NDArray[np.bool_]:
+    """Where a harmonic is +-e_q in the seed mode q itself: the gauge leaves no term there; shape (H, N-1)."""
+    gauge = np.zeros((len(harmonics), N - 1), dtype=np.bool_)
+    for unit, q in zip(np.eye(len(seeds), dtype=np.int64), seeds, strict=True):
+        gauge[:, q - 1] = (np.abs(harmonics) == unit).all(axis=1)
+    return gauge
 
 
 def multiplier_symbol(mode: int, harmonic: Sequence[int]) -> Any:

@@ -77,3 +77,11 @@ class UndeterminedAmplitudes(SymfpuError):
             f"the frequency corrections of order {frequency_order} do not determine the amplitudes of the seeds {self.seeds}: "
             f"their matrix is singular, as for modes that stay harmonic at every amplitude; choose other seeds or add a coupling"
         )
+
+
+class VanishingResidue(SymfpuError):
+    """A divisor is zero modulo the chosen prime: nothing can be concluded at this point."""
+
+    def __init__(self, prime: int, order: int) -> None:
+        self.prime, self.order = prime, order
+        super().__init__(f"a divisor vanishes modulo {prime} at order {order}; take another point")

@@ -8,19 +8,23 @@ and W_q^(k) makes the bracket vanish at the secular harmonic nu = e_q of a seed,
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import psutil
 
-from symfpu.algebra.float64 import Float64Ring, predicted_bytes
+from symfpu.algebra.dense import predicted_bytes
+from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.grading import Grading
+from symfpu.algebra.residue import ResidueRing
 from symfpu.algebra.ring import Ring
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.symbolic import SymbolicRing
 from symfpu.chain import Chain
-from symfpu.divisors import Float64Divisors, UniversalDivisors
+from symfpu.divisors import Float64Divisors, ResidueDivisors, UniversalDivisors
 from symfpu.errors import InputError, TooLarge
 from symfpu.exact import Number, exact, integer, seed_modes
 from symfpu.series import LindstedtSeries
@@ -76,18 +80,54 @@ def lindstedt(
     if ring not in RINGS:
         raise InputError("ring", ring, f"one of {', '.join(RINGS)}", "name a ring or leave it out")
     _check_size(chain, seeds, order, ring)
-    grading = Grading(len(seeds), 1 + chain.degree_step * order)
-    space = CosineModes(chain.N, seeds, grading)
+    space = CosineModes(chain.N, seeds, shared_grading(len(seeds), 1 + chain.degree_step * order))
     arithmetic, divisors = RINGS[ring](chain, space, exact_frequencies)
+    return _series(chain, exact_frequencies, order, arithmetic, divisors, progress)
+
+
+@dataclass(frozen=True)
+class ResiduePoint:
+    """A prime p = 1 mod 4N, an element of order 4N and the chosen frequencies, all modulo p."""
+
+    prime: int
+    root: int
+    frequencies: tuple[int, ...]
+
+
+def residue_series(
+    chain: Chain, seeds: Sequence[int], point: ResiduePoint, order: int, *, progress: Progress | None = None
+) -> LindstedtSeries:
+    """The same series modulo a prime: `coordinates` and `corrections` hold residues in -p/2 .. p/2, as doubles.
+
+    Raises VanishingResidue where a divisor vanishes modulo the prime, TooLarge as `lindstedt` does.
+    """
+    seeds = seed_modes(seeds, chain.N)
+    _check_size(chain, seeds, integer(order, "order", 0), "residue")
+    space = CosineModes(chain.N, seeds, shared_grading(len(seeds), 1 + chain.degree_step * order))
+    ring = ResidueRing(space, point.prime, point.root)
+    return _series(chain, None, order, ring, ResidueDivisors(chain, seeds, ring, point.frequencies), progress)
+
+
+@lru_cache(maxsize=4)
+def shared_grading(seeds: int, degree: int) -> Grading:
+    """The grading of so many seeds; kept, because tables do not depend on the chain."""
+    return Grading(seeds, degree)
+
+
+def _series(
+    chain: Chain, frequencies: tuple[Fraction, ...] | None, order: int, arithmetic: Ring, divisors: Any, progress: Progress | None
+) -> LindstedtSeries:
+    """Run the recursion and collect what the ring holds."""
     _run(arithmetic, divisors, chain, order, progress)
     modes, corrections, scale = arithmetic.results()
+    seeds = arithmetic.space.seeds
     return LindstedtSeries(
         chain=chain,
         seeds=seeds,
-        frequencies=exact_frequencies,
+        frequencies=frequencies,
         order=order,
-        ring=ring,
-        grading=grading,
+        ring=arithmetic.name,
+        grading=arithmetic.space.grading,
         coordinates=tuple(modes),
         corrections=(np.zeros((0, len(seeds))), *corrections),
         scale=scale,

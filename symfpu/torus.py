@@ -105,8 +105,8 @@ class QTorus:
         return np.concatenate(parts) if parts else np.zeros((0, self.series.chain.N - 1))
 
     def energy(self, t: ArrayLike = 0.0) -> Floats:
-        """Total energy H along the solution; constant in time for an exact torus. Shape of t."""
-        return self.series.chain.energy(self.positions(t), self.momenta(t))
+        """Total energy H along the solution; constant in time for an exact torus. A number, or shape (T,)."""
+        return self.series.chain.energy(self.positions(t), self.momenta(t))[()]
 
     def harmonic_energies(self, t: ArrayLike = 0.0) -> Floats:
         """Harmonic energies E_q(t) (Eq. harmonicene); shape of t with an axis N-1 at the end."""

@@ -1,7 +1,10 @@
-"""The compiled loop: products of graded polynomials, plain arrays in, plain arrays out.
+"""The compiled loops: products of graded polynomials, plain arrays in, plain arrays out.
 
 One monomial owns one row of 8 or 16 lanes (bonds, or seeds); a product of two monomials is one fused multiply-add of
 whole rows. The inner loop is written with vectors because a compiler does not find them behind the table of products.
+
+With a modulus p < 2^40 the same loops work on residues, held as doubles in -p/2 .. p/2: a b - p round(a b / p) is exact
+with fused multiply-adds, and at most 2^12 of them are summed before they are reduced.
 Importing this module imports numba.
 """
 
@@ -9,22 +12,66 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
 INT64 = ir.IntType(64)
+Float64 = types.float64
+
+
+def _emit(builder: Any, name: str, *operands: Any) -> Any:
+    """Call an LLVM intrinsic on doubles or vectors of doubles."""
+    kind = operands[0].type
+    suffix = f"v{kind.count}f64" if isinstance(kind, ir.VectorType) else "f64"
+    signature = ir.FunctionType(kind, [kind] * len(operands))
+    declared: Any = cgutils
+    return builder.call(declared.get_or_insert_function(builder.module, signature, f"{name}.{suffix}"), operands)
+
+
+def _modular_product(builder: Any, a: Any, b: Any, modulus: Any, inverse: Any) -> Any:
+    """a b minus the nearest multiple of the modulus, exact up to one multiple: high part, its remainder, and the low part."""
+    high = builder.fmul(a, b)
+    low = _emit(builder, "llvm.fma", a, b, builder.fneg(high))
+    quotient = _emit(builder, "llvm.rint", builder.fmul(high, inverse))
+    return builder.fadd(_emit(builder, "llvm.fma", builder.fneg(quotient), modulus, high), low)
+
+
+@intrinsic
+def modular_product(_context: Any, a: Any, b: Any, modulus: Any, inverse: Any) -> Any:
+    """a b modulo the modulus for doubles below 2^40 in size, up to one multiple of it."""
+
+    def generate(_target: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        return _modular_product(builder, *args)
+
+    return Float64(Float64, Float64, Float64, Float64), generate
 
 
 @intrinsic
 def multiply_row(
-    typing: Any, lanes: Any, left: Any, i: Any, weight: Any, right: Any, j: Any, out: Any, o: Any, table: Any, t: Any, start: Any, stop: Any
+    _context: Any,
+    lanes: Any,
+    left: Any,
+    i: Any,
+    weight: Any,
+    right: Any,
+    j: Any,
+    out: Any,
+    o: Any,
+    table: Any,
+    t: Any,
+    start: Any,
+    stop: Any,
+    modulus: Any,
 ) -> Any:
-    """out[o + table[t + n]] += weight left[i] right[j + n] for start <= n < stop; `lanes` is a tuple whose length is the row's."""
-    signature = types.void(
-        lanes, left, types.intp, types.float64, right, types.intp, out, types.intp, table, types.intp, types.intp, types.intp
-    )
+    """out[o + table[t + n]] += weight left[i] right[j + n] for start <= n < stop; `lanes` is a tuple whose length is the row's.
+
+    modulus : None, or a number: then every product is taken modulo it.
+    """
+    integer = types.intp
+    signature = types.void(lanes, left, integer, Float64, right, integer, out, integer, table, integer, integer, integer, modulus)
     width = lanes.count
 
     def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -36,32 +83,41 @@ def multiply_row(
         def row(base: Any, index: Any) -> Any:
             return builder.bitcast(builder.gep(base, [builder.mul(index, INT64(width))]), vector.as_pointer())
 
-        undefined = ir.Constant(vector, ir.Undefined)
-        lane_zero = ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width)
-        weights = builder.insert_element(undefined, args[3], ir.IntType(32)(0))
-        weights = builder.shuffle_vector(weights, undefined, lane_zero)
-        factor = builder.fmul(builder.load(row(pointer(1), args[2]), align=8), weights)
+        def spread(value: Any) -> Any:
+            undefined = ir.Constant(vector, ir.Undefined)
+            first = builder.insert_element(undefined, value, ir.IntType(32)(0))
+            return builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width))
+
+        factor = builder.fmul(builder.load(row(pointer(1), args[2]), align=8), spread(args[3]))
         right_rows, out_rows = row(pointer(4), args[5]), row(pointer(6), args[7])
         places = builder.gep(pointer(8), [args[9]])
+        modular = sig.args[12] != types.none
+        if modular:
+            prime, inverse = spread(args[12]), spread(builder.fdiv(ir.DoubleType()(1.0), args[12]))
         with cgutils.for_range_slice(builder, args[10], args[11], INT64(1), inc=True) as (n, _):
             place = builder.sext(builder.load(builder.gep(places, [n])), INT64)
             target = builder.gep(out_rows, [place])
-            product = builder.fmul(factor, builder.load(builder.gep(right_rows, [n]), align=8), flags=("contract",))
-            builder.store(builder.fadd(builder.load(target, align=8), product, flags=("contract",)), target, align=8)
+            other = builder.load(builder.gep(right_rows, [n]), align=8)
+            if modular:
+                total = builder.fadd(builder.load(target, align=8), _modular_product(builder, factor, other, prime, inverse))
+            else:
+                product = builder.fmul(factor, other, flags=("contract",))
+                total = builder.fadd(builder.load(target, align=8), product, flags=("contract",))
+            builder.store(total, target, align=8)
         return context.get_dummy_value()
 
     return signature, generate
 
 
 @njit(nogil=True, cache=True)
-def multiply(lanes, left, right, out, degree, first_row, splits, symmetric, active, blocks, tables):  # type: ignore[no-untyped-def]
+def multiply(lanes, left, right, out, degree, first_row, splits, symmetric, active, blocks, tables, modulus):  # type: ignore[no-untyped-def]
     """Add the products of all `splits` of a degree into out, canonical rows only; returns the number of multiply-adds.
 
     lanes : tuple of 8 or 16 zeros; its length is the row length of left, right and out.
     left, right : (rows of all degrees, lanes). out : (rows of this degree, lanes), counted from first_row.
-    splits : (count, 2) degrees of the factors. symmetric : left is right and each unordered pair is added once, with
-    weight one (a square with itself: one half). active : for a sparse left factor, which of its rows are not zero; else empty.
-    blocks : outer monomials to fill. tables : algebra.grading.ProductTables.
+    splits : (count, 2) degrees of the factors. symmetric : left is right, splits have d1 <= d2, and each unordered pair is
+    multiplied once and added with weight two (a square once). active : for a sparse left factor, which of its rows are not
+    zero; else empty. blocks : outer monomials to fill. tables : algebra.grading.ProductTables. modulus : None or a prime.
     """
     (outer_degree, pair_start, pair_left, pair_right, block, inner_count, inner_start, first_canonical, table, offset, stride) = tables
     sparse = len(active) > 0
@@ -83,7 +139,7 @@ def multiply(lanes, left, right, out, degree, first_row, splits, symmetric, acti
                     l, r = pair_left[pair], pair_right[pair]
                     if mirror and l > r:
                         continue
-                    weight = 0.5 if mirror and l == r else 1.0
+                    weight = 2.0 if symmetric and not (mirror and l == r) else 1.0
                     i0, j0 = block[d1, l], block[d2, r]
                     if swap:
                         i0, j0 = j0, i0
@@ -95,8 +151,18 @@ def multiply(lanes, left, right, out, degree, first_row, splits, symmetric, acti
                         if sparse and not active[i0 + i]:
                             continue
                         if swap:
-                            multiply_row(lanes, right, i0 + i, weight, left, j0, out, target, table, t, start, length)  # type: ignore[call-arg]
+                            multiply_row(lanes, right, i0 + i, weight, left, j0, out, target, table, t, start, length, modulus)  # type: ignore[call-arg]
                         else:
-                            multiply_row(lanes, left, i0 + i, weight, right, j0, out, target, table, t, start, length)  # type: ignore[call-arg]
+                            multiply_row(lanes, left, i0 + i, weight, right, j0, out, target, table, t, start, length, modulus)  # type: ignore[call-arg]
                         count += length - start
     return count * len(lanes)
+
+
+@njit(nogil=True, cache=True)
+def multiply_elements(left, right, modulus, out):  # type: ignore[no-untyped-def]
+    """out = left right modulo a prime below 2^40, element by element, in -p/2 .. p/2; arrays of one shape, contiguous."""
+    inverse = 1.0 / modulus
+    a, b, c = left.ravel(), right.ravel(), out.ravel()
+    for n in range(len(a)):
+        value = modular_product(a[n], b[n], modulus, inverse)  # type: ignore[call-arg, var-annotated]
+        c[n] = value - modulus * np.rint(value * inverse)

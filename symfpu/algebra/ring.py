@@ -19,6 +19,7 @@ from symfpu.algebra.selection import CosineModes
 class Ring(Protocol):
     """Coefficients, storage and products of one series. Degrees are put in ascending order, each once."""
 
+    name: str
     space: CosineModes
 
     def number(self, value: Fraction) -> Any:

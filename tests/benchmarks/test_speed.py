@@ -65,9 +65,7 @@ def test_product_kernel(benchmark, record, torus):
 
 def test_breather(benchmark, record):
     torus = APPENDIX_F[-1]
-    series = benchmark.pedantic(
-        lindstedt, (torus.chain, torus.seeds, torus.frequencies, 250), rounds=3, iterations=1, warmup_rounds=1
-    )
+    series = benchmark.pedantic(lindstedt, (torus.chain, torus.seeds, torus.frequencies, 250), rounds=3, iterations=1, warmup_rounds=1)
     record("breather N = 32 to order 250", multiply_adds=series.multiply_adds)
 
 

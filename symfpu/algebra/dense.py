@@ -1,0 +1,247 @@
+"""Rings whose coefficients are doubles: values on half of the bonds, multiplied by the compiled kernels.
+
+What the ring of doubles and the residues modulo a prime share: storage, transforms, products, selection masks. A ring says
+what its cosines are, how it multiplies and reduces arrays, and whether it rescales.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.algebra.grading import Ints, canonical_count, monomial_count
+from symfpu.algebra.selection import CosineModes
+
+Floats = NDArray[np.float64]
+
+PARALLEL_FROM = 500_000  # multiply-adds below which threads cost more than they give
+
+
+def lane_width(columns: int) -> int:
+    """Lanes in a row of the kernel: one vector register of doubles, or two where there are enough columns."""
+    return 8 if columns <= 8 else 16
+
+
+def predicted_bytes(N: int, seeds: int, top: int, *, cubic: bool) -> int:
+    """Upper bound of the memory of a series up to degree `top`, temporaries included; closed form, nothing is allocated."""
+    lanes = -(-((N + 1) // 2) // lane_width((N + 1) // 2)) * lane_width((N + 1) // 2)
+    rows = comb(top + 2 * seeds, 2 * seeds)
+    canonical = (rows + comb(top // 2 + seeds, seeds)) // 2
+    stored = rows * 8 * (lanes * (2 if cubic else 1) + 16 * -(-seeds // 8) + 4 * seeds + 4)
+    working = monomial_count(seeds, top) * 8 * 3 * lanes + canonical_count(seeds, top) * (N - 1) * 8 * 5
+    return stored + canonical * (N - 1) * 8 + working
+
+
+class DenseRing:
+    """Coefficients as doubles; products on bonds by compiled, threaded kernels.
+
+    multiply_adds counts the multiply-adds that the kernels performed on the bonds so far. exponent : degree d of
+    everything stored carries the factor 2^(-exponent (d - 1)).
+    """
+
+    modulus: float | None = None
+
+    def __init__(self, space: CosineModes, *, workers: int | None = None) -> None:
+        from symfpu.algebra import kernels  # lazy: numba takes longer to import than all the rest
+
+        self._kernels = kernels
+        self.space, self.grading = space, space.grading
+        self.exponent = 0
+        self.multiply_adds = 0
+        self._workers = workers or len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count() or 1))
+        self._pool = ThreadPoolExecutor(self._workers)
+        self._lanes = lane_width(space.half)
+        self._slices = -(-space.half // self._lanes)
+        rows, seed_slices = int(self.grading.first_row[-1]), -(-len(space.seeds) // 8)
+        self._bonds = np.zeros((self._slices, rows, self._lanes))
+        self._squares: Floats | None = None
+        self._seed_modes = np.zeros((seed_slices, rows, 8))
+        self._corrections = np.zeros((seed_slices, rows, 8))
+        self._active = np.zeros(rows, dtype=np.bool_)
+        self._degrees: list[int] = []
+        self._square_degrees: list[int] = []
+        self._correction_degrees: list[int] = []
+        self._modes: list[Floats] = []
+        self._diagonal: list[Floats] = []
+        self._to_bonds, self._to_modes = self._transforms()
+
+    def _cosines(self, angles: Ints) -> Floats:
+        """cos(angle pi / 2N) for integers in 0 .. 2N, as elements of the ring."""
+        raise NotImplementedError
+
+    def _reciprocal(self, number: int) -> float:
+        """1 / number as an element of the ring."""
+        raise NotImplementedError
+
+    def _matrix_product(self, left: Floats, right: Floats) -> Floats:
+        """Product of two matrices of ring elements."""
+        raise NotImplementedError
+
+    def _times(self, values: Floats, factor: Floats | float) -> Floats:
+        """Element by element product with an array or a number of the ring; may overwrite values."""
+        raise NotImplementedError
+
+    def _reduced(self, values: Floats) -> Floats:
+        """The values in their normal form, after sums; may overwrite them."""
+        raise NotImplementedError
+
+    def _keep_in_range(self, degree: int, modes: Floats) -> None:
+        """Called after a degree is stored; a ring that can overflow rescales here."""
+
+    def _transforms(self) -> tuple[Floats, Floats]:
+        """The cosines cos(q (j + 1/2) pi / N), q = 1 .. N-1, on the first half of the bonds, padded with zeros to whole rows,
+        and the same with the weights (4/N; half of it for a bond that is its own mirror image) of the way back."""
+        N, half = self.space.N, self.space.half
+        angles = np.outer(np.arange(1, N), 2 * np.arange(half) + 1) % (4 * N)
+        there = np.zeros((N - 1, self._slices * self._lanes))
+        there[:, :half] = self._cosines(np.minimum(angles, 4 * N - angles))
+        weights = np.full(half, self._times(np.full(1, self._reciprocal(N)), 4.0)[0])
+        if N % 2:
+            weights[-1] = self._times(np.full(1, self._reciprocal(N)), 2.0)[0]
+        back = there.copy()
+        back[:, :half] = self._times(back[:, :half].copy(), np.broadcast_to(weights, (N - 1, half)).copy())
+        return there, back
+
+    def _parts(self, degree: int) -> list[tuple[Ints, slice]]:
+        """Canonical monomials of each parity with the modes of that parity."""
+        parity = self.space.parity(degree)
+        return [(np.flatnonzero(parity == p), slice(1 - p, None, 2)) for p in (0, 1)]
+
+    def _rows(self, degree: int) -> slice:
+        return slice(int(self.grading.first_row[degree]), int(self.grading.first_row[degree + 1]))
+
+    def seed_terms(self) -> Floats:
+        modes = np.zeros((len(self.space.seeds), self.space.N - 1))
+        powers = self.grading.powers(1)
+        for row, power in enumerate(powers):
+            modes[row, self.space.seeds[int(np.argmax(power))] - 1] = 1.0
+        return modes
+
+    def put(self, degree: int, modes: Floats) -> None:
+        self._degrees.append(degree)
+        self._modes.append(modes)
+        base = int(self.grading.first_row[degree])
+        canonical, conjugate = base + self.grading.canonical(degree), base + self.grading.conjugate(degree)
+        for rows, columns in self._parts(degree):
+            values = self._matrix_product(modes[rows, columns], self._to_bonds[columns])
+            values = np.moveaxis(values.reshape(len(rows), self._slices, self._lanes), 1, 0)
+            self._bonds[:, canonical[rows]] = values
+            self._bonds[:, conjugate[rows]] = values
+        for i, q in enumerate(self.space.seeds):
+            for rows in (canonical, conjugate):
+                self._seed_modes[i // 8, rows, i % 8] = modes[:, q - 1]
+        self._keep_in_range(degree, modes)
+
+    def _product(
+        self, left: Floats, right: Floats, degree: int, splits: list[tuple[int, int]], *, symmetric: bool = False, sparse: bool = False
+    ) -> Floats:
+        """Sum of the products of all splits, canonical rows only; shape (slices, rows of the degree, lanes)."""
+        rows = self._rows(degree)
+        out = np.zeros((left.shape[0], rows.stop - rows.start, left.shape[2]))
+        if not splits:
+            return out
+        blocks = self.grading.wanted_blocks(degree)
+        lanes = (0.0,) * left.shape[2]
+        active = self._active if sparse else self._active[:0]
+        table = np.array(splits, dtype=np.int64)
+
+        def task(part: tuple[int, int]) -> int:
+            slice_, first = part
+            return int(
+                self._kernels.multiply(
+                    lanes,
+                    left[slice_],
+                    right[slice_],
+                    out[slice_],
+                    degree,
+                    rows.start,
+                    table,
+                    symmetric,
+                    active,
+                    blocks[first::chunks],
+                    self.grading.tables,
+                    self.modulus,
+                )
+            )
+
+        size = sum(monomial_count(len(self.space.seeds), d) * monomial_count(len(self.space.seeds), e) for d, e in splits)
+        parallel = size * left.shape[0] * left.shape[2] >= PARALLEL_FROM and not sparse
+        chunks = min(4 * self._workers, len(blocks)) if parallel else 1
+        parts = [(s, c) for s in range(left.shape[0]) for c in range(chunks)]
+        count = sum(self._pool.map(task, parts) if parallel else map(task, parts))
+        if not sparse:
+            self.multiply_adds += count
+        return self._reduced(out)
+
+    def square(self, degree: int) -> Floats:
+        splits = [(d, degree - d) for d in self._degrees if d <= degree - d and degree - d in self._degrees]
+        out = self._product(self._bonds, self._bonds, degree, splits, symmetric=True)
+        return self._times(out, float(np.ldexp(2.0, -self.exponent)))
+
+    def cube(self, degree: int) -> Floats:
+        if self._squares is None:
+            self._squares = np.zeros_like(self._bonds)
+        for d in range(2, degree):
+            if d not in self._square_degrees and (d - 2 * self._degrees[0]) >= 0:
+                self._put_square(d)
+        splits = [(d, degree - d) for d in self._square_degrees if degree - d in self._degrees]
+        out = self._product(self._squares, self._bonds, degree, splits)
+        return self._times(out, float(np.ldexp(2.0, -self.exponent)))
+
+    def _put_square(self, degree: int) -> None:
+        assert self._squares is not None
+        values = self.square(degree)
+        self._square_degrees.append(degree)
+        base = int(self.grading.first_row[degree])
+        canonical, conjugate = self.grading.canonical(degree), self.grading.conjugate(degree)
+        self._squares[:, base + canonical] = values[:, canonical]
+        self._squares[:, base + conjugate] = values[:, canonical]
+
+    def project(self, degree: int, parts: Sequence[tuple[float, Floats]]) -> Floats:
+        canonical = self.grading.canonical(degree)
+        modes = np.zeros((len(canonical), self.space.N - 1))
+        back = self._to_modes.reshape(-1, self._slices, self._lanes)
+        for rows, columns in self._parts(degree):
+            for coefficient, values in parts:
+                term = sum(self._matrix_product(values[i, canonical[rows]], back[columns, i].T.copy()) for i in range(self._slices))
+                modes[rows, columns] += self._times(np.asarray(term), coefficient)
+        return self._reduced(np.multiply(modes, self.space.mask(degree), out=modes))
+
+    def secular(self, degree: int, modes: Floats) -> Floats:
+        canonical = self.grading.canonical(degree)
+        diagonal = self.grading.diagonal(degree - 1)
+        columns = []
+        for i, q in enumerate(self.space.seeds):
+            exponents = np.repeat(diagonal, 2, axis=1)
+            exponents[:, 2 * i] += 1
+            at = np.searchsorted(canonical, self.grading.rows(exponents))
+            columns.append(modes[at, q - 1])
+        return np.stack(columns, axis=1)
+
+    def correct(self, degree: int, corrections: Floats) -> None:
+        self._correction_degrees.append(degree)
+        self._diagonal.append(corrections)
+        rows = self.grading.first_row[degree] + self.grading.rows(np.repeat(self.grading.diagonal(degree), 2, axis=1))
+        for i in range(len(self.space.seeds)):
+            self._corrections[i // 8, rows, i % 8] = corrections[:, i]
+        self._active[rows] = True
+
+    def corrected(self, degree: int) -> Floats:
+        splits = [(n, degree - n) for n in self._correction_degrees if degree - n in self._degrees]
+        lanes = self._product(self._corrections, self._seed_modes, degree, splits, sparse=True)
+        canonical = self.grading.canonical(degree)
+        return np.stack([lanes[i // 8, canonical, i % 8] for i in range(len(self.space.seeds))], axis=1)
+
+    def solve(self, degree: int, corrected: Floats, force: Floats, multipliers: Floats) -> Floats:
+        _, index = self.grading.harmonics(degree)
+        bracket = np.negative(force, out=force)
+        bracket[:, np.array(self.space.seeds) - 1] += corrected
+        return self._times(self._reduced(bracket), multipliers[index])
+
+    def results(self) -> tuple[list[Floats], list[Floats], int]:
+        return self._modes, self._diagonal, self.exponent
