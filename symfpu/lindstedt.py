@@ -95,16 +95,17 @@ class ResiduePoint:
 
 
 def residue_series(
-    chain: Chain, seeds: Sequence[int], point: ResiduePoint, order: int, *, progress: Progress | None = None
+    chain: Chain, seeds: Sequence[int], point: ResiduePoint, order: int, *, workers: int | None = None, progress: Progress | None = None
 ) -> LindstedtSeries:
     """The same series modulo a prime: `coordinates` and `corrections` hold residues in -p/2 .. p/2, as doubles.
 
-    Raises VanishingResidue where a divisor vanishes modulo the prime, TooLarge as `lindstedt` does.
+    workers : threads; default one for each core. Raises VanishingResidue where a divisor vanishes modulo the prime,
+    TooLarge as `lindstedt` does.
     """
     seeds = seed_modes(seeds, chain.N)
     _check_size(chain, seeds, integer(order, "order", 0), "residue")
     space = CosineModes(chain.N, seeds, shared_grading(len(seeds), 1 + chain.degree_step * order))
-    ring = ResidueRing(space, point.prime, point.root)
+    ring = ResidueRing(space, point.prime, point.root, workers=workers)
     return _series(chain, None, order, ring, ResidueDivisors(chain, seeds, ring, point.frequencies), progress)
 
 
