@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
 
-.PHONY: install reproduce test bench clean
+.PHONY: install reproduce test bench sweeps long clean
 
 install: .venv/installed
 
@@ -12,8 +12,8 @@ install: .venv/installed
 	$(BIN)/python -m pip install --quiet --editable '.[dev]'
 	touch $@
 
-reproduce: install  ## the main job: the paper's table and Fig. 1, into $(OUT)/
-	$(BIN)/symfpu reproduce table fig1 -o $(OUT)
+reproduce: install  ## the main job: the paper's table and figures, into $(OUT)/
+	$(BIN)/symfpu reproduce all -o $(OUT)
 
 test: install  ## lint, types, floors, tests
 	$(BIN)/ruff check .
@@ -21,6 +21,14 @@ test: install  ## lint, types, floors, tests
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python -m pytest
+
+sweeps: install  ## decide the propagation rule for all seed sets: N <= 12, up to 3 seeds, both models
+	mkdir -p $(OUT)
+	$(BIN)/symfpu sweep --model alpha --longest 12 --largest 3 --order 5 --file $(OUT)/alpha.jsonl -o $(OUT)/sweep-alpha.md
+	$(BIN)/symfpu sweep --model beta --longest 12 --largest 3 --order 3 --file $(OUT)/beta.jsonl -o $(OUT)/sweep-beta.md
+
+long: install  ## exact checks that take minutes
+	$(BIN)/python -m pytest -m long
 
 bench: install  ## speed and memory, each beside a matrix product
 	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-columns=median,min,max -o addopts=--strict-markers

@@ -1,7 +1,9 @@
 """Poincare-Lindstedt series of q-tori and q-breathers in Fermi-Pasta-Ulam chains, symbolic first."""
 
 from symfpu.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
+from symfpu.certificates import PropagationProof, prove_propagation
 from symfpu.chain import Chain
+from symfpu.commensurability import frequency_rank
 from symfpu.errors import (
     DidNotConverge,
     InputError,
@@ -11,10 +13,12 @@ from symfpu.errors import (
     TooLarge,
     UndeterminedAmplitudes,
 )
+from symfpu.frequency_shift import frequency_shift, frequency_shift_formula
 from symfpu.lindstedt import lindstedt
 from symfpu.notebook import init_printing
-from symfpu.propagation import excitation_sequence, reachable_modes
+from symfpu.propagation import coupling_sequence, excitation_sequence, reachable_modes
 from symfpu.series import LindstedtSeries
+from symfpu.sweeps import Sweep, sweep_propagation
 from symfpu.torus import QTorus
 
 __version__ = "0.1.0"
@@ -28,15 +32,23 @@ __all__ = [
     "InputError",
     "LindstedtSeries",
     "NoRealAmplitude",
+    "PropagationProof",
     "QTorus",
     "ResonantDivisor",
+    "Sweep",
     "SymfpuError",
     "TooLarge",
     "UndeterminedAmplitudes",
     "amplitude_history",
+    "coupling_sequence",
     "excitation_sequence",
+    "frequency_rank",
+    "frequency_shift",
+    "frequency_shift_formula",
     "init_printing",
     "lindstedt",
+    "prove_propagation",
     "reachable_modes",
     "solve_amplitudes",
+    "sweep_propagation",
 ]

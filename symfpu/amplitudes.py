@@ -59,7 +59,7 @@ def amplitude_history(series: LindstedtSeries) -> AmplitudeHistory:
     orders = frequency_orders(series)
     found: dict[int, tuple[float, ...]] = {}
     failures: dict[int, SymfpuError] = {}
-    squares = _lowest_order(series) if orders else np.zeros(len(series.seeds))
+    squares = np.abs(_lowest_order(series)) if orders else np.zeros(len(series.seeds))
     for K in orders:
         try:
             root, _ = _root(series, K, squares)
@@ -85,7 +85,8 @@ def solve_amplitudes(
     guess : amplitudes by seed; default none needed: the lowest correction is linear in A^2, and each order starts from the
     root of the one before. Gauge: A_q multiplies cos(omega_q t + phi_q) in Q_q, not Q_q(0).
 
-    Raises InputError for arguments out of range; NoRealAmplitude if an A^2 comes out negative (names the seed);
+    Raises InputError for arguments out of range; NoRealAmplitude if an A^2 comes out negative (names the seed), also where
+    the lowest order has no real root and no later one up to frequency_order has;
     DidNotConverge with the last iterate and residual; UndeterminedAmplitudes if no correction determines the amplitudes.
     Where neighbouring frequency orders disagree, the torus says so in its warnings.
     """
@@ -137,7 +138,9 @@ def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory
             raise InputError("guess", dict(guess), f"an amplitude for each of the seeds {series.seeds}", "complete it or leave it out")
         return np.array([given[q] ** 2 for q in series.seeds])
     earlier = [k for k in orders if k in history.amplitudes]
-    return np.array(history.amplitudes[earlier[-1]]) ** 2 if earlier else _lowest_order(series)
+    if not earlier:
+        raise history.failures[orders[0]]
+    return np.array(history.amplitudes[earlier[-1]]) ** 2
 
 
 def shifts(series: LindstedtSeries) -> Floats:

@@ -283,7 +283,7 @@ def _is_identity(chain: Chain, seeds: tuple[int, ...], q: int, order: int) -> bo
     degree = 1 + chain.degree_step * order
     if order > IDENTITY_ORDER or monomial_count(len(seeds), degree) * chain.N > IDENTITY_TERMS:
         return False
-    return not lindstedt(chain, seeds, order=order).coordinates[order][:, q - 1].any()
+    return all(value == 0 for value in lindstedt(chain, seeds, order=order).coordinates[order][:, q - 1])
 
 
 def _error_probability(chain: Chain, seeds: int, order: int, points: Sequence[ResiduePoint]) -> float:

@@ -10,6 +10,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -19,22 +20,29 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 from rich.table import Table
 
 from symfpu.amplitudes import solve_amplitudes
+from symfpu.certificates import PropagationProof, prove_propagation, write_text
 from symfpu.chain import Chain
 from symfpu.errors import InputError, SymfpuError
-from symfpu.figures import draw_figure1
+from symfpu.figures import draw_figure1, draw_figure6
 from symfpu.lindstedt import lindstedt
 from symfpu.propagation import excitation_sequence
 from symfpu.report import (
     figure1_markdown,
     figure1_record,
+    figure6_markdown,
     output_folder,
     row_record,
+    sweep_markdown,
     table_markdown,
     torus_record,
     write_figure1_csv,
+    write_figure6_csv,
 )
-from symfpu.reproduction import amplitude_table, figure1
+from symfpu.reproduction import amplitude_table, figure1, figure6
+from symfpu.sweeps import sweep_propagation
 from symfpu.torus import QTorus
+from symfpu.verify import CertificateError
+from symfpu.verify import verify as verify_certificate
 
 app = typer.Typer(
     name="symfpu",
@@ -45,7 +53,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-TARGETS = ("table", "fig1")
+TARGETS = ("table", "fig1", "fig6")
 
 BondsOption = Annotated[str, typer.Option("-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N")]
 SeedsOption = Annotated[str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")]
@@ -53,15 +61,19 @@ OrderOption = Annotated[str, typer.Option("--order", help="Order k of the series
 JsonOption = Annotated[bool, typer.Option("--json", help="Machine-readable result on standard output.")]
 
 
-@app.callback()
-def version_callback(
-    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
-) -> None:
-    if version:
-        from importlib.metadata import version as installed
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
 
-        print(f"symfpu {installed('symfpu')}")
+        print(f"symfpu {version('symfpu')}")
         raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop.")] = False,
+) -> None:
+    """Options that come before the verb."""
 
 
 @app.command(epilog="Example: symfpu propagate -N 32 --model alpha --seeds 3,5 --order 4")
@@ -81,6 +93,100 @@ def propagate(
         return
     for k, modes in enumerate(sequence):
         print(f"D_{k} = {{{', '.join(map(str, modes))}}}")
+
+
+@app.command(epilog="Example: symfpu prove -N 8 --model beta --seeds 1,4 --order 3 -o certificate.json")
+def prove(
+    bonds: BondsOption,
+    seeds: SeedsOption,
+    order: OrderOption,
+    model: Annotated[str, typer.Option(help="alpha or beta.")] = "alpha",
+    points: Annotated[str, typer.Option(help="Independent primes and random frequencies.")] = "1",
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="Write the certificate to this file.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Prove or refute the propagation rule by exact arithmetic; exit code 1 where it stays undecided."""
+    number, chosen, highest = _whole("N", bonds), _whole_numbers("seeds", seeds), _whole("order", order)
+    with _progress() as advance:
+        proof = prove_propagation(
+            number,
+            chosen,
+            highest,
+            model=model,
+            points=_whole("points", points),
+            progress=lambda done, total: advance("recursion modulo a prime", done / max(total, 1)),
+        )
+    if output:
+        proof.write(output)
+    if as_json:
+        _print_json({key: value for key, value in proof.certificate().items() if key not in ("excited", "vanishing", "points", "digest")})
+    else:
+        _print_proof(proof)
+        if output:
+            print(f"certificate: {output}")
+    raise typer.Exit(1 if proof.verdict == "undecided" else 0)
+
+
+def _print_proof(proof: PropagationProof) -> None:
+    open_modes = {u.mode: u for u in proof.undecided}
+    for k, (rule, actual) in enumerate(zip(proof.rule, proof.actual, strict=True)):
+        same = "" if rule == actual else f"   actually {{{', '.join(map(str, actual))}}}"
+        print(f"D_{k} = {{{', '.join(map(str, rule))}}}{same}")
+    for e in proof.exceptions:
+        doubt = f" (undecided, error probability {open_modes[e.mode].error_probability:.1e})" if e.mode in open_modes else ""
+        print(f"mode {e.mode}: predicted at order {e.predicted}, actually {'at no order' if e.actual is None else e.actual}{doubt}")
+    print(f"verdict: {proof.verdict}")
+
+
+@app.command(epilog="Example: symfpu verify certificate.json")
+def verify(
+    file: Annotated[Path, typer.Argument(help="A certificate written by symfpu prove.", metavar="FILE")],
+    as_json: JsonOption = False,
+) -> None:
+    """Check a certificate by another route: mode space, the tensors B and C, Python's integers, nothing of the prover."""
+    try:
+        checked = verify_certificate(file)
+    except CertificateError as error:
+        raise InputError("certificate", str(file), "one written by symfpu prove, unaltered", str(error)) from error
+    if as_json:
+        _print_json({"file": str(file), "valid": True, "checked": checked})
+        return
+    print("\n".join([*checked, "the certificate is valid"]))
+
+
+@app.command(epilog="Example: symfpu sweep --model beta --longest 12 --largest 3 --order 3 --file beta.jsonl")
+def sweep(
+    order: OrderOption,
+    model: Annotated[str, typer.Option(help="alpha or beta.")] = "alpha",
+    longest: Annotated[str, typer.Option(help="All chains with 2 up to this many bonds.", metavar="N")] = "12",
+    largest: Annotated[str, typer.Option(help="All seed sets with up to this many modes.", metavar="S")] = "3",
+    file: Annotated[Path | None, typer.Option(help="Keep every decided case here; an interrupted sweep goes on from it.")] = None,
+    markdown: Annotated[Path | None, typer.Option("-o", "--output", help="Write the summary to this Markdown file.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Decide the propagation rule for all seed sets of a range of chains."""
+    lengths = range(2, _whole("longest", longest) + 1)
+    if not lengths:
+        raise InputError("longest", longest, "2 or more", "take a longer chain")
+    with _progress() as advance:
+        result = sweep_propagation(
+            lengths,
+            _whole("largest", largest),
+            _whole("order", order),
+            model=model,
+            file=file,
+            progress=lambda done, total: advance("seed sets", done / total),
+        )
+    if markdown:
+        write_text(markdown, sweep_markdown(result))
+    if as_json:
+        _print_json(
+            {"model": model, "order": result.order, "cases": len(result.cases), "exceptions": [asdict(c) for c in result.exceptions]}
+        )
+        return
+    print(result)
+    for case in result.exceptions:
+        print(f"N={case.N} seeds {case.seeds}: " + ", ".join(f"mode {q} at {a}, predicted {p}" for q, p, a in case.exceptions))
 
 
 @app.command(epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 24")
@@ -128,7 +234,7 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
 
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
 def reproduce(
-    targets: Annotated[list[str], typer.Argument(help="table, fig1, or all.", metavar="TARGET...")],
+    targets: Annotated[list[str], typer.Argument(help="table, fig1, fig6, or all.", metavar="TARGET...")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the report, pictures and data.")] = Path("out"),
     as_json: JsonOption = False,
 ) -> None:
@@ -152,6 +258,13 @@ def reproduce(
             write_figure1_csv(data, folder)
             advance("fig1: pictures", None)
             draw_figure1(data, folder)
+        if "fig6" in wanted:
+            patterns = figure6()
+            record["fig6"] = {panel: {"seeds": list(seeds), "orders": orders} for panel, (seeds, orders) in patterns.panels.items()}
+            parts.append(figure6_markdown(patterns))
+            write_figure6_csv(patterns, folder)
+            advance("fig6: pictures", None)
+            draw_figure6(patterns, folder)
     text = "\n\n".join(parts)
     (folder / "report.md").write_text(text)
     (folder / "report.json").write_text(json.dumps(record, indent=1) + "\n")
@@ -162,7 +275,8 @@ def reproduce(
         _print_rows(record["table"])
     for key, claim in record.get("fig1", {}).get("claims", {}).items():
         print(f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}")
-    print(f"written: {folder / 'report.md'}, report.json" + (", fig1a..d as PNG, PDF and CSV" if "fig1" in wanted else ""))
+    pictures = [name for target, name in (("fig1", "fig1a..d"), ("fig6", "fig6a..c")) if target in wanted]
+    print(f"written: {folder / 'report.md'}, report.json" + (f", {' and '.join(pictures)} as PNG, PDF and CSV" if pictures else ""))
 
 
 def _print_rows(rows: Sequence[dict[str, Any]]) -> None:

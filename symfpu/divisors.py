@@ -75,7 +75,7 @@ class Float64Divisors:
         coarse, fine = harmonics @ self._chosen[0], harmonics @ self._chosen[1]
         sign = np.where(coarse < 0, -1.0, 1.0)
         difference = (self._base[0] - (sign * coarse)[:, None]) + (self._base[1] - (sign * fine)[:, None])
-        divisors = difference * (self._base[0] + (sign * coarse)[:, None])
+        divisors = difference * ((self._base[0] + (sign * coarse)[:, None]) + (self._base[1] + (sign * fine)[:, None]))
         self._refuse_zero(harmonics, wanted, difference, order)
         self._remember(harmonics, wanted, np.abs(divisors), order)
         return np.asarray(np.divide(self._numerators, divisors, out=np.zeros_like(divisors), where=wanted))

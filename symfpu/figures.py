@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.reproduction import Figure1
+from symfpu.reproduction import Figure1, Figure6
 
 Floats = NDArray[np.float64]
 Axes = Any
@@ -83,6 +84,26 @@ def draw_figure1(data: Figure1, folder: Path) -> list[Path]:
         "fig1d": "Fig. 1(d): relative errors in time",
     }
     return [path for name, panel in panels.items() for path in save_panel(panel, titles[name], folder / name)]
+
+
+def plot_propagation(N: int, orders: Mapping[int, int], ax: Axes) -> Axes:
+    """The order k at which each mode is first excited, against kappa = q/N; small orders on top, as energies would lie."""
+    modes = sorted(orders)
+    ax.plot([q / N for q in modes], [orders[q] for q in modes], marker="o", ls="none", ms=3)
+    ax.invert_yaxis()
+    ax.set_xlim(0, 1)
+    ax.set_xlabel(r"$\kappa = q/N$")
+    ax.set_ylabel(r"order $k$ of first excitation")
+    return ax
+
+
+def draw_figure6(data: Figure6, folder: Path) -> list[Path]:
+    """Write panels (a) to (c) of Fig. 6 as PNG and PDF; returns the paths."""
+    paths = []
+    for (panel, (seeds, orders)), center in zip(data.panels.items(), ("1/4", "1/2", "3/4"), strict=True):
+        title = rf"Fig. 6({panel}): packet {seeds[0]}..{seeds[-1]} around $\kappa_0 = {center}$, N = {data.N}"
+        paths += save_panel(partial(plot_propagation, data.N, orders), title, folder / f"fig6{panel}")
+    return paths
 
 
 def save_panel(panel: Callable[[Axes], Axes], title: str, stem: Path) -> list[Path]:

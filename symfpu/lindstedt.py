@@ -80,7 +80,7 @@ def lindstedt(
     if ring not in RINGS:
         raise InputError("ring", ring, f"one of {', '.join(RINGS)}", "name a ring or leave it out")
     _check_size(chain, seeds, order, ring)
-    space = CosineModes(chain.N, seeds, shared_grading(len(seeds), 1 + chain.degree_step * order))
+    space = _space(chain, seeds, order)
     arithmetic, divisors = RINGS[ring](chain, space, exact_frequencies)
     return _series(chain, exact_frequencies, order, arithmetic, divisors, progress)
 
@@ -104,7 +104,7 @@ def residue_series(
     """
     seeds = seed_modes(seeds, chain.N)
     _check_size(chain, seeds, integer(order, "order", 0), "residue")
-    space = CosineModes(chain.N, seeds, shared_grading(len(seeds), 1 + chain.degree_step * order))
+    space = _space(chain, seeds, order)
     ring = ResidueRing(space, point.prime, point.root, workers=workers)
     return _series(chain, None, order, ring, ResidueDivisors(chain, seeds, ring, point.frequencies), progress)
 
@@ -113,6 +113,11 @@ def residue_series(
 def shared_grading(seeds: int, degree: int) -> Grading:
     """The grading of so many seeds; kept, because tables do not depend on the chain."""
     return Grading(seeds, degree)
+
+
+def _space(chain: Chain, seeds: tuple[int, ...], order: int) -> CosineModes:
+    """Modes and monomials of a series; its first order is a plain product of the seeds."""
+    return CosineModes(chain.N, seeds, shared_grading(len(seeds), 1 + chain.degree_step * order), 1 + chain.degree_step)
 
 
 def _series(

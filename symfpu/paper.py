@@ -151,3 +151,43 @@ FIG1_CLAIMS = {
     "harmonic_error": "about 1e-2",
     "energy_error": "about 1e-4",
 }
+
+
+@dataclass(frozen=True)
+class PrintedExcitation:
+    """A sequence of mode excitations D_1, D_2, ... printed in section 6, alpha model."""
+
+    label: str
+    N: int
+    seeds: tuple[int, ...]
+    sets: tuple[tuple[int, ...], ...]
+
+
+def _modes(*ranges: tuple[int, int]) -> tuple[int, ...]:
+    return tuple(q for first, last in ranges for q in range(first, last + 1))
+
+
+EXCITATIONS = (
+    PrintedExcitation(
+        "Example 1",
+        32,
+        (1, 11, 21, 31),
+        ((2, 10, 12, 20, 22, 30), (3, 9, 13, 19, 23, 29), (4, 8, 14, 18, 24, 28), (5, 7, 15, 17, 25, 27)),
+    ),
+    PrintedExcitation("Example 2", 64, (60, 61, 62, 63), (_modes((1, 8)), _modes((52, 59)), _modes((9, 16)), _modes((44, 51)))),
+    PrintedExcitation("Example 3", 128, (63, 64, 65), ((1, 2, 126, 127), (61, 62, 66, 67), (3, 4, 124, 125), (59, 60, 68, 69))),
+    PrintedExcitation(
+        "Example 4",
+        128,
+        (94, 95, 96, 97, 98),
+        (
+            _modes((1, 4), (60, 68)),
+            _modes((26, 38), (90, 93), (99, 102)),
+            _modes((5, 8), (56, 59), (69, 72), (120, 127)),  # printed 56 .. 72, which repeats modes of D_1
+            _modes((22, 25), (39, 42), (86, 89), (103, 106)),
+        ),
+    ),
+    PrintedExcitation("q = 25", 32, (25,), tuple((q,) for q in (14, 11, 28, 3, 22, 17, 8, 31, 6, 19))),
+)
+
+FIG6_CHAIN, FIG6_WIDTH = 256, 4  # our choice: modes and half-width of the packets around N/4, N/2, 3N/4

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from symfpu.chain import decimal
 from symfpu.errors import InputError
 from symfpu.paper import FIG1_CLAIMS
-from symfpu.reproduction import AmplitudeRow, Figure1
+from symfpu.reproduction import AmplitudeRow, Figure1, Figure6
+from symfpu.sweeps import Sweep, SweepCase
 from symfpu.torus import QTorus
 
 
@@ -156,6 +157,32 @@ def write_figure1_csv(data: Figure1, folder: Path) -> list[Path]:
             ([float(t), *(float(e[i]) for pair in data.errors.values() for e in pair)] for i, t in enumerate(data.times)),
         ),
     }
+    return write_csv(tables, folder)
+
+
+def write_figure6_csv(data: Figure6, folder: Path) -> list[Path]:
+    """The data behind the panels of Fig. 6, one CSV file each."""
+    return write_csv(
+        {
+            f"fig6{panel}": (["q", "kappa", "order"], ([q, q / data.N, orders[q]] for q in sorted(orders)))
+            for panel, (_, orders) in data.panels.items()
+        },
+        folder,
+    )
+
+
+def figure6_markdown(data: Figure6) -> str:
+    """What Fig. 6 shows, and where the pictures are."""
+    lines = [
+        [panel, f"{seeds[0]}..{seeds[-1]}", str(len(orders)), str(max(orders.values()))] for panel, (seeds, orders) in data.panels.items()
+    ]
+    pictures = "\n\n".join(f"![Fig. 6({panel})](fig6{panel}.png)" for panel in data.panels)
+    table = markdown_table(["panel", "seeds", "modes excited", "at order, at the latest"], lines)
+    return f"## Fig. 6: orders of first excitation, N = {data.N}, alpha\n\n{table}\n\n{pictures}\n"
+
+
+def write_csv(tables: Mapping[str, tuple[Sequence[str], Iterable[Sequence[Any]]]], folder: Path) -> list[Path]:
+    """Tables by name, each with its header, as CSV files in a folder."""
     paths = []
     for name, (header, lines) in tables.items():
         path = folder / f"{name}.csv"
@@ -163,3 +190,31 @@ def write_figure1_csv(data: Figure1, folder: Path) -> list[Path]:
             csv.writer(file).writerows([header, *lines])
         paths.append(path)
     return paths
+
+
+def sweep_markdown(sweep: Sweep) -> str:
+    """A sweep of the propagation rule: how often it holds by N and number of seeds, and every exception."""
+    groups: dict[tuple[int, int], list[SweepCase]] = {}
+    for case in sweep.cases:
+        groups.setdefault((case.N, len(case.seeds)), []).append(case)
+    rows = [
+        [str(N), str(s), str(len(cases)), *(str(sum(c.verdict == v for c in cases)) for v in ("proved", "refuted", "undecided"))]
+        for (N, s), cases in groups.items()
+    ]
+    exceptions = [
+        [str(case.N), ", ".join(map(str, case.seeds)), "; ".join(f"{q}: {p} -> {a}" for q, p, a in case.exceptions)]
+        for case in sweep.exceptions
+    ]
+    holds = sum(case.corrected_rule_holds for case in sweep.cases)
+    parts = [
+        f"## {sweep.model} model, order {sweep.order}",
+        f"{len(sweep.cases)} seed sets. The proposition holds in {sum(c.verdict == 'proved' for c in sweep.cases)}; "
+        f"the corrected rule predicts the actual sets in {holds}.",
+        markdown_table(["N", "seeds", "sets", "proved", "refuted", "undecided"], rows),
+    ]
+    if exceptions:
+        parts += [
+            "Exceptions (mode: predicted order -> actual order):",
+            markdown_table(["N", "seeds", "exceptions"], exceptions),
+        ]
+    return "\n\n".join(parts) + "\n"

@@ -11,7 +11,16 @@ from numpy.typing import NDArray
 
 from symfpu.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
 from symfpu.lindstedt import lindstedt
-from symfpu.paper import APPENDIX_F, FIG1_AMPLITUDE_ORDER, FIG1_CANCELLATION_ORDER, TWO_TORUS, PrintedTorus
+from symfpu.paper import (
+    APPENDIX_F,
+    FIG1_AMPLITUDE_ORDER,
+    FIG1_CANCELLATION_ORDER,
+    FIG6_CHAIN,
+    FIG6_WIDTH,
+    TWO_TORUS,
+    PrintedTorus,
+)
+from symfpu.propagation import excitation_sequence
 from symfpu.series import LindstedtSeries
 from symfpu.torus import QTorus
 
@@ -124,6 +133,25 @@ def amplitude_table(step: Step = lambda label: None) -> Iterator[AmplitudeRow]:
     for printed in (TWO_TORUS, *APPENDIX_F):
         step(f"table: {printed.label}")
         yield amplitude_row(printed)
+
+
+@dataclass(frozen=True)
+class Figure6:
+    """Order at which each mode is first excited by packets around N/4, N/2, 3N/4 (alpha); seeds and orders by panel."""
+
+    N: int
+    panels: dict[str, tuple[tuple[int, ...], dict[int, int]]]
+
+
+def figure6() -> Figure6:
+    """Compute the data of Fig. 6: packets of half-width FIG6_WIDTH modes, up to the order that excites every mode."""
+    N, w = FIG6_CHAIN, FIG6_WIDTH
+    panels = {}
+    for panel, quarter in zip("abc", (1, 2, 3), strict=True):
+        seeds = tuple(range(quarter * N // 4 - w, quarter * N // 4 + w + 1))
+        sequence = excitation_sequence(N, seeds, N // w)
+        panels[panel] = (seeds, {q: k for k, modes in enumerate(sequence) for q in modes})
+    return Figure6(N, panels)
 
 
 @dataclass(frozen=True)

@@ -100,7 +100,7 @@ class LindstedtSeries:
         values = self.coordinates[order][:, column]
         at = np.flatnonzero(values != 0)
         exponents = self.grading.exponents(degree)[self.grading.canonical(degree)[at]]
-        result = self._times(values[at], self.grading.powers(degree)[at], self.scale * (degree - 1)) / self._linear(q)
+        result = self._times(values[at] / self._linear(q), self.grading.powers(degree)[at], self.scale * (degree - 1))
         return exponents, self._finite(result, f"Q_{q}^({order})")
 
     def frequency_coefficients(self, q: int, order: int, *, squared: bool = False) -> tuple[Ints, NDArray[Any]]:

@@ -8,9 +8,9 @@ ROUNDING = 256 * EPS
 # Couplings are integers; the sums over bonds that give them are rounded about N times.
 INTEGER = 1e-12
 
-# A coefficient of order k goes through 2k products, sums over at most a few hundred monomials and two transforms, and
-# every multiplier is good to a few EPS. Relative to the largest coefficient of the same order: bonds mix the modes.
-COEFFICIENT = 4096 * EPS
+# A coefficient of order k <= 12 went through 2k transforms over up to nine bonds, sums over tens of monomials, and k
+# multipliers: some hundred EPS, relative to the largest coefficient of the order, since bonds mix the modes.
+COEFFICIENT = 1024 * EPS
 
 # The reference values were made from decimal frequencies; omega - Omega, some 1e-4, is known to full accuracy, but
 # the sum of the frequency series is rounded and its derivative by A is about 2 (omega - Omega) / A.
@@ -19,8 +19,8 @@ AMPLITUDE = 1e-13
 # The periodic orbits are printed with 12 and 11 digits; at orders 50 and 20 the series has converged.
 PERIODIC_ORBIT = 1e-11
 
-# Divisors are products of two factors, each rounded a few times, and the multiplier is one quotient more.
-DIVISOR = 1e-14
+# Both factors of a divisor keep their remainders: a multiplier is rounded a few times, however high the series goes.
+MULTIPLIER = 1e-14
 
 # Eighth-order central differences with step h = 0.02 of functions with rates up to about 4: (4 h)^8 and EPS / h.
 DIFFERENCE = 1e-9
@@ -42,3 +42,7 @@ ELLIPTIC = 1e-13
 
 # Both routes at 40 digits; a few of them go into cancellations between the largest terms.
 HIGH_PRECISION = 1e-32
+
+# Omega - nu.omega of 1e-13 keeps its digits, since both are split on a grid on which the difference is exact; what is
+# left is the rounding of the sum of the two frequencies, of the quotient and of the stored remainders.
+NEAR_RESONANCE = 1e-14

@@ -49,6 +49,24 @@ class PowerTable:
         return np.asarray(self._residues[degree][np.searchsorted(self._keys[degree], powers @ self._weights), 1 : self.N])
 
 
+def product_modes_of_seeds(N: int, seeds: Sequence[int], powers: Ints) -> NDArray[np.bool_]:
+    """Whether the plain product of the seeds' cosines with these powers contains cosine q = 1 .. N-1, exactly.
+
+    Counts the signed sums: q and 2N +- q enter with opposite signs and can cancel, as for l + m = N in a triple product.
+    powers : (count, s), small. Returns (count, N-1).
+    """
+    turn, angles = 4 * N, np.arange(4 * N)
+    result = np.empty((len(powers), N - 1), dtype=np.bool_)
+    q = np.arange(1, N)
+    for row, power in enumerate(powers):
+        counts = (angles == 0).astype(np.int64)
+        for seed, e in zip(seeds, power, strict=True):
+            for _ in range(int(e)):
+                counts = counts[(angles - seed) % turn] + counts[(angles + seed) % turn]
+        result[row] = counts[q] + counts[turn - q] != counts[2 * N - q] + counts[2 * N + q]
+    return result
+
+
 class CosineModes:
     """Modes q = 1 .. N-1 on N bonds with the monomials of a grading: parities, cosines and selection masks.
 
@@ -56,8 +74,9 @@ class CosineModes:
     that on bond j times the parity: half of the bonds are enough.
     """
 
-    def __init__(self, N: int, seeds: Sequence[int], grading: Grading) -> None:
-        self.N, self.seeds, self.grading = N, tuple(seeds), grading
+    def __init__(self, N: int, seeds: Sequence[int], grading: Grading, product_degree: int | None = None) -> None:
+        """product_degree : a degree whose terms are plain products of the seeds: there cancelling couplings are exact zeros."""
+        self.N, self.seeds, self.grading, self.product_degree = N, tuple(seeds), grading, product_degree
         self.half = (N + 1) // 2
         self._table = PowerTable(N, seeds, grading.degree)
 
@@ -67,7 +86,10 @@ class CosineModes:
 
     def mask(self, degree: int) -> NDArray[np.bool_]:
         """Whether a canonical monomial of this degree can carry a mode; shape (canonical, N-1)."""
-        return self._table.carried(degree, self.grading.powers(degree))
+        powers = self.grading.powers(degree)
+        if degree == self.product_degree:
+            return product_modes_of_seeds(self.N, self.seeds, powers)
+        return self._table.carried(degree, powers)
 
     def mask_by_harmonic(self, degree: int) -> NDArray[np.bool_]:
         """Whether a harmonic can appear in a mode at this degree; shape (harmonics, N-1)."""

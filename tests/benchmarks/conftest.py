@@ -29,7 +29,8 @@ def record(benchmark, request):
         line = f"{name:<58} {seconds:9.3f} s"
         if multiply_adds:
             rate, product = multiply_adds / seconds, matrix_rate()
-            line += f"  {multiply_adds:.3e} multiply-adds  {rate / 1e9:6.2f} G/s = {rate / product:5.1%} of a matrix product ({product / 1e9:.1f} G/s)"
+            line += f"  {multiply_adds:.3e} multiply-adds  {rate / 1e9:6.2f} G/s"
+            line += f" = {rate / product:5.1%} of a matrix product ({product / 1e9:.1f} G/s)"
         request.config.stash.setdefault(LINES, []).append(line + (f"  {note}" if note else ""))
 
     return keep

@@ -13,7 +13,7 @@ class Case(NamedTuple):
     order: int
 
 
-CASES = (
+SHALLOW = (
     Case("alpha, one seed", 6, "0.25", "0", (1,), ("0.52",), 6),
     Case("alpha, odd N, wrapped", 5, "1/3", "0", (3,), ("1.63",), 6),
     Case("alpha, two seeds", 5, "0.4", "0", (1, 2), ("0.63", "1.19"), 4),
@@ -31,4 +31,13 @@ CASES = (
 )
 
 # Expanded polynomials in the multipliers grow fast with the order: these are compared as numbers only.
-DEEP = tuple(case for case in CASES if case.order == 6 and case.N > 2)
+DEEP = (
+    Case("alpha, order 12", 9, "0.33", "0", (1,), ("0.36",), 12),
+    Case("beta, order 6", 8, "0", "0.33", (1,), ("0.41",), 6),
+    Case("alpha, two low seeds", 8, "0.33", "0", (1, 2), ("0.4", "0.79"), 6),
+    Case("both, three seeds", 7, "0.33", "0.1", (2, 3, 6), ("0.88", "1.26", "1.96"), 4),
+    Case("beta, three spread seeds", 8, "0", "0.33", (1, 2, 5), ("0.4", "0.79", "1.68"), 2),
+    Case("alpha, four seeds", 9, "0.3", "0", (1, 2, 3, 4), ("0.36", "0.70", "1.02", "1.31"), 3),
+)
+
+CASES = SHALLOW + DEEP

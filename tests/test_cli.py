@@ -1,0 +1,220 @@
+"""The command line: JSON, exit codes, one line for each kind of bad input, help with examples, files written."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from symfpu.cli import main
+from symfpu.paper import APPENDIX_F
+from tests.reference import TWO_TORUS as REFERENCE
+from tests.tolerances import AMPLITUDE
+
+SOLVE = {"-N": "16", "--alpha": "0.33", "--seeds": "1,2", "--omega": "0.19626,0.39046", "--order": "12"}
+PROPAGATE = {"-N": "32", "--seeds": "3,5", "--order": "2"}
+
+
+def arguments(verb, options, **changes):
+    merged = options | {("-N" if name == "N" else "--" + name.replace("_", "-")): value for name, value in changes.items()}
+    return [verb, *(part for name, value in merged.items() if value is not None for part in (name, value))]
+
+
+def run(capsys, *argv):
+    code = main(list(argv))
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_propagate_prints_the_sequence(capsys):
+    code, out, err = run(capsys, *arguments("propagate", PROPAGATE))
+    assert (code, err) == (0, "")
+    assert out.splitlines() == ["D_0 = {3, 5}", "D_1 = {2, 6, 8, 10}", "D_2 = {1, 7, 9, 11, 13, 15}"]
+
+
+def test_propagate_json(capsys):
+    code, out, err = run(capsys, *arguments("propagate", PROPAGATE, model="beta"), "--json")
+    record = json.loads(out)
+    assert (code, err) == (0, "")
+    assert record["excitation_sequence"][0] == [3, 5]
+    assert record["excitation_sequence"][1] == [1, 7, 9, 11, 13, 15]
+    assert (record["N"], record["model"], record["seeds"], record["order"]) == (32, "beta", [3, 5], 2)
+
+
+def test_solve_json_has_the_fixed_keys_and_the_reference_amplitudes(capsys):
+    code, out, err = run(capsys, *arguments("solve", SOLVE), "--json")
+    record = json.loads(out)
+    assert (code, err) == (0, "")
+    assert {"amplitudes", "order", "frequency_order", "residual", "energy", "harmonic_energy", "warnings"} <= set(record)
+    assert (record["order"], record["frequency_order"]) == (12, 12)
+    for q, expected in zip(("1", "2"), REFERENCE.amplitudes[12], strict=True):
+        assert isinstance(record["amplitudes"][q], str)
+        assert float(record["amplitudes"][q]) == pytest.approx(float(expected), rel=AMPLITUDE)
+    assert isinstance(record["energy"], str)
+    assert record["frequencies"] == {"1": "0.19626", "2": "0.39046"}
+
+
+def test_frequency_order_is_its_own_option(capsys):
+    _, out, _ = run(capsys, *arguments("solve", SOLVE, frequency_order="4"), "--json")
+    record = json.loads(out)
+    assert (record["order"], record["frequency_order"]) == (12, 4)
+    assert float(record["amplitudes"]["1"]) == pytest.approx(float(REFERENCE.amplitudes[4][0]), rel=AMPLITUDE)
+
+
+def test_solve_prints_numbers_and_warnings(capsys):
+    code, out, err = run(capsys, *arguments("solve", SOLVE, frequency_order="4"))
+    assert code == 0
+    assert "0.598073740743" in out
+    assert "frequency order 4, coordinate order 12" in out
+    assert "energy H" in out
+    assert "differ by" in err
+    assert "differ by" not in out
+
+
+BAD_INPUT = {
+    "N below 2": (arguments("propagate", PROPAGATE, N="1"), "N"),
+    "N no number": (arguments("propagate", PROPAGATE, N="x"), "N"),
+    "no seeds": (arguments("propagate", PROPAGATE, seeds=""), "seeds"),
+    "repeated seeds": (arguments("propagate", PROPAGATE, seeds="3,3"), "seeds"),
+    "seed outside": (arguments("propagate", PROPAGATE, seeds="3,32"), "seeds"),
+    "seed no integer": (arguments("propagate", PROPAGATE, seeds="3,4.5"), "seeds"),
+    "negative order": (arguments("propagate", PROPAGATE, order="-1"), "order"),
+    "unknown model": (arguments("propagate", PROPAGATE, model="gamma"), "model"),
+    "solve, N below 2": (arguments("solve", SOLVE, N="1"), "N"),
+    "solve, no seeds": (arguments("solve", SOLVE, seeds=""), "seeds"),
+    "solve, repeated seeds": (arguments("solve", SOLVE, seeds="1,1"), "seeds"),
+    "solve, seed outside": (arguments("solve", SOLVE, seeds="1,16"), "seeds"),
+    "solve, seed no integer": (arguments("solve", SOLVE, seeds="1,a"), "seeds"),
+    "too few frequencies": (arguments("solve", SOLVE, omega="0.19626"), "frequencies"),
+    "too many frequencies": (arguments("solve", SOLVE, omega="0.19626,0.39046,0.5"), "frequencies"),
+    "negative frequency": (arguments("solve", SOLVE, omega="-0.19626,0.39046"), "frequencies"),
+    "zero frequency": (arguments("solve", SOLVE, omega="0,0.39046"), "frequencies"),
+    "frequency nan": (arguments("solve", SOLVE, omega="nan,0.39046"), "frequencies"),
+    "frequency inf": (arguments("solve", SOLVE, omega="inf,0.39046"), "frequencies"),
+    "frequency no number": (arguments("solve", SOLVE, omega="a,0.39046"), "frequencies"),
+    "no coupling": (arguments("solve", SOLVE, alpha="0"), "alpha, beta"),
+    "coupling no number": (arguments("solve", SOLVE, alpha="1/0"), "alpha"),
+    "solve, negative order": (arguments("solve", SOLVE, order="-1"), "order"),
+    "order no integer": (arguments("solve", SOLVE, order="2.5"), "order"),
+    "negative frequency order": (arguments("solve", SOLVE, frequency_order="-2"), "frequency_order"),
+    "frequency order above the order": (arguments("solve", SOLVE, frequency_order="13"), "frequency_order"),
+    "more than fits": (arguments("solve", SOLVE, seeds="1,2,3,4", omega="0.196,0.391,0.581,0.766", order="200"), "bytes"),
+    "commensurable frequencies": (arguments("solve", SOLVE, omega="0.2,0.4"), "commensurable"),
+    "unknown option": ([*arguments("solve", SOLVE), "--colour", "red"], "--colour"),
+    "missing option": (arguments("solve", SOLVE, omega=None), "--omega"),
+    "unknown verb": (["conquer"], "conquer"),
+    "unknown target": (["reproduce", "fig99"], "fig99"),
+    "no target": (["reproduce"], "TARGET"),
+}
+
+
+@pytest.mark.parametrize(("argv", "named"), BAD_INPUT.values(), ids=BAD_INPUT)
+def test_bad_input_is_one_line_and_code_2(capsys, argv, named):
+    code, out, err = run(capsys, *argv)
+    assert code == 2
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    assert err.startswith("symfpu: ")
+    assert named in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize("below", ["", "/deeper"])
+def test_an_output_folder_that_cannot_be_written_is_bad_input(capsys, tmp_path, below):
+    file = tmp_path / "a file"
+    file.write_text("not a folder")
+    code, out, err = run(capsys, "reproduce", "table", "-o", f"{file}{below}")
+    assert (code, out) == (2, "")
+    assert len(err.splitlines()) == 1
+    assert "a file" in err
+    assert file.read_text() == "not a folder"
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [
+        arguments("solve", {"-N": "16", "--beta": "0.3", "--seeds": "3", "--omega": "0.57", "--order": "1"}),
+        arguments("solve", {"-N": "16", "--alpha": "0.3", "--seeds": "8", "--omega": "1.42", "--order": "4"}),
+        arguments("solve", {"-N": "16", "--beta": "0.3", "--seeds": "3", "--omega": "0.9", "--order": "2"}),
+    ],
+    ids=["no real amplitude", "undetermined", "no root"],
+)
+def test_honest_failures_are_one_line_and_code_1(capsys, argv):
+    for options in ([], ["--json"]):
+        code, out, err = run(capsys, *argv, *options)
+        assert (code, out) == (1, "")
+        assert len(err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("verb", ["propagate", "solve", "reproduce"])
+def test_help_has_an_example_that_is_parsed(capsys, verb):
+    code, out, err = run(capsys, verb, "--help")
+    assert (code, err) == (0, "")
+    assert f"symfpu {verb}" in out
+    assert "Example:" in out
+    assert "--json" in out
+
+
+def test_examples_of_the_help_run(capsys):
+    assert run(capsys, *["propagate", "-N", "32", "--model", "alpha", "--seeds", "3,5", "--order", "4"])[0] == 0
+    assert run(capsys, *["solve", "-N", "16", "--alpha", "0.33", "--seeds", "1,2", "--omega", "0.19626,0.39046", "--order", "24"])[0] == 0
+
+
+def test_help_names_every_verb(capsys):
+    code, out, _ = run(capsys, "--help")
+    assert code == 0
+    assert all(verb in out for verb in ("propagate", "solve", "reproduce"))
+
+
+def small_rows(monkeypatch):
+    """Two cheap rows in place of the paper's nine: one that is met at order 22, and a breather that is met nowhere."""
+    monkeypatch.setattr("symfpu.reproduction.APPENDIX_F", tuple(row for row in APPENDIX_F if row.label == "Fig. 8"))
+
+
+def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
+    small_rows(monkeypatch)
+    folder = tmp_path / "new" / "out"
+    code, out, err = run(capsys, "reproduce", "table", "-o", str(folder))
+    assert (code, err) == (0, "")
+    assert sorted(path.name for path in folder.iterdir()) == ["report.json", "report.md"]
+    assert "Fig. 8" in out
+    assert "amplitudes met at frequency order 22" in out
+    assert "amplitudes met at no frequency order" in out
+    assert [row["label"] for row in json.loads((folder / "report.json").read_text())["table"]] == ["Fig. 1", "Fig. 8"]
+    assert "met at no frequency order" in (folder / "report.md").read_text()
+
+
+def test_reproduce_fig1_writes_pictures_and_data(capsys, tmp_path):
+    code, out, _ = run(capsys, "reproduce", "fig1", "-o", str(tmp_path), "--json")
+    assert code == 0
+    expected = {f"fig1{panel}.{suffix}" for panel in "abcd" for suffix in ("png", "pdf", "csv")}
+    assert {path.name for path in tmp_path.iterdir()} == expected | {"report.md", "report.json"}
+    assert all((tmp_path / name).stat().st_size > 500 for name in expected if not name.endswith("csv"))
+    assert json.loads(out) == json.loads((tmp_path / "report.json").read_text())
+    assert set(json.loads(out)["fig1"]["claims"]) == {"best_difference", "cancellation", "term_size", "harmonic_error", "energy_error"}
+
+
+def test_reproduce_table_meets_five_rows_to_ten_digits(capsys, tmp_path):
+    """The whole table, nothing replaced."""
+    code, out, err = run(capsys, "reproduce", "table", "-o", str(tmp_path), "--json")
+    rows = {row["label"]: row for row in json.loads(out)["table"]}
+    assert (code, err) == (0, "")
+    assert len(rows) == 9
+    met = [row for label, row in rows.items() if label != "Fig. 1" and row["met_at_frequency_orders"] and row["digits"] >= 10]
+    assert len(met) >= 5
+    for label in ("Fig. 7", "Fig. 8"):
+        assert rows[label]["met_at_frequency_orders"] == []
+        assert "met at no frequency order" in rows[label]["verdict"]
+
+
+def test_the_console_script_returns_the_code():
+    command = [sys.executable, "-c", "import sys; sys.argv = ['symfpu', 'propagate']; from symfpu.cli import run; run()"]
+    finished = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert finished.returncode == 2
+    assert finished.stdout == ""
+    assert len(finished.stderr.splitlines()) == 1
+
+
+def test_version(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out.startswith("symfpu 0.")

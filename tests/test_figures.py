@@ -1,0 +1,60 @@
+"""Pictures take axes, return them, and draw the numbers that they are given."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from symfpu.figures import plot_absolute_sums, plot_amplitude_differences, plot_energy_errors, plot_spectrum, save_panel
+
+
+@pytest.fixture
+def ax():
+    return Figure().add_subplot()
+
+
+def test_spectrum_leaves_out_what_a_logarithm_cannot_show(ax):
+    assert plot_spectrum(np.array([1.0, 0.0, 1e-8]), ax, label="order 4") is ax
+    (line,) = ax.get_lines()
+    assert line.get_xdata().tolist() == [1, 3]
+    assert line.get_ydata().tolist() == [1.0, 1e-8]
+    assert line.get_label() == "order 4"
+    assert (ax.get_xlabel(), ax.get_yscale()) == ("$q$", "log")
+
+
+def test_differences_have_a_line_for_each_seed(ax):
+    assert plot_amplitude_differences({2: (0.1, 0.3), 4: (0.01, 0.03)}, (1, 5), ax) is ax
+    assert [line.get_ydata().tolist() if hasattr(line.get_ydata(), "tolist") else list(line.get_ydata()) for line in ax.get_lines()] == [
+        [0.1, 0.01],
+        [0.3, 0.03],
+    ]
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == [r"$\Delta A_{1}$", r"$\Delta A_{5}$"]
+
+
+def test_sums_are_two_lines_over_the_order(ax):
+    assert plot_absolute_sums((np.array([1.0, 0.0, 0.5]), np.array([1.0, 0.0, 0.1])), 1, ax) is ax
+    upper, lower = ax.get_lines()
+    assert list(upper.get_xdata()) == list(lower.get_xdata()) == [0, 2]
+    assert list(lower.get_ydata()) == [1.0, 0.1]
+
+
+def test_errors_are_moduli_after_the_start(ax):
+    total, harmonic = np.array([0.0, -1e-4, 2e-4]), np.array([0.0, -1e-2, 2e-2])
+    assert plot_energy_errors(np.arange(3.0), {12: (total, harmonic)}, ax) is ax
+    drawn = sorted(max(line.get_ydata()) for line in ax.get_lines())
+    assert drawn == [2e-4, 2e-2]
+    assert all(min(line.get_xdata()) > 0 for line in ax.get_lines())
+
+
+def test_a_panel_is_written_as_png_and_pdf(tmp_path):
+    paths = save_panel(lambda ax: plot_spectrum(np.array([1.0, 0.1]), ax), "title", tmp_path / "panel")
+    assert [path.suffix for path in paths] == [".png", ".pdf"]
+    assert paths[0].read_bytes().startswith(b"\x89PNG")
+    assert paths[1].read_bytes().startswith(b"%PDF")
+
+
+def test_the_style_does_not_leak(tmp_path):
+    import matplotlib as mpl
+
+    before = dict(mpl.rcParams)
+    save_panel(lambda ax: ax, "title", tmp_path / "panel")
+    assert dict(mpl.rcParams) == before
