@@ -43,9 +43,14 @@ def _symbolic(chain: Chain, space: CosineModes, frequencies: Sequence[Fraction] 
     return SymbolicRing(space), UniversalDivisors(chain, space.seeds)
 
 
+def _nested(chain: Chain, space: CosineModes, frequencies: Sequence[Fraction] | None) -> tuple[Ring, Any]:
+    return SymbolicRing(space, nested=True), UniversalDivisors(chain, space.seeds)
+
+
 RINGS: dict[str, Callable[[Chain, CosineModes, Sequence[Fraction] | None], tuple[Ring, Any]]] = {
     "float64": _float64,
     "symbolic": _symbolic,
+    "nested": _nested,
 }
 
 
@@ -63,7 +68,8 @@ def lindstedt(
     chain : the model. seeds : distinct modes D_0. frequencies : omega_q of each seed, exact numbers; None gives the
     universal form with symbols L_q(nu). order : K of the coordinates and of the frequency corrections, from 0 up; order
     k has degree k+1 in the amplitudes (2k+1 if alpha = 0, and with both couplings beta enters two orders up).
-    ring : 'float64' or 'symbolic'; default by whether frequencies are given. progress : called as (order done, orders).
+    ring : 'float64', or in universal form 'symbolic' (expanded) or 'nested'; default by whether frequencies are given.
+    progress : called as (order done, orders).
 
     Raises InputError for arguments out of range, TooLarge before allocating what would not fit into memory,
     ResonantDivisor at the first divisor that is zero.
@@ -198,4 +204,4 @@ def _check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str) -> 
 
 def _needed(chain: Chain, seeds: int, order: int, ring: str) -> int:
     size = predicted_bytes(chain.N, seeds, 1 + chain.degree_step * order, cubic=chain.beta != 0)
-    return size * SYMBOLIC_GROWTH**order if ring == "symbolic" else size
+    return size * SYMBOLIC_GROWTH**order if ring in ("symbolic", "nested") else size

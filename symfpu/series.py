@@ -52,6 +52,11 @@ class LindstedtSeries:
         )
 
     @property
+    def symbolic(self) -> bool:
+        """Whether the coefficients are expressions in the symbols L_q(nu) (the universal form)."""
+        return self.ring in ("symbolic", "nested")
+
+    @property
     def coefficient_count(self) -> int:
         """Coefficients stored: one for each canonical monomial and mode."""
         return sum(table.size for table in self.coordinates)
@@ -76,11 +81,11 @@ class LindstedtSeries:
         return self.seeds.index(q)
 
     def _linear(self, q: int) -> Any:
-        return self.chain.frequencies()[q - 1] if self.ring != "symbolic" else se.Symbol(f"Omega_{q}")
+        return self.chain.frequencies()[q - 1] if not self.symbolic else se.Symbol(f"Omega_{q}")
 
     def _times(self, values: NDArray[Any], powers: Ints, exponent: int) -> NDArray[Any]:
         """values times prod Omega_i^powers 2^exponent, in numbers or in symbols."""
-        if self.ring == "symbolic":
+        if self.symbolic:
             factors = [se.Mul(*(self._linear(q) ** int(e) for q, e in zip(self.seeds, row, strict=True))) for row in powers]
             return np.array([v * f for v, f in zip(values, factors, strict=True)], dtype=object)
         linear = np.array([self._linear(q) for q in self.seeds])
@@ -119,12 +124,12 @@ class LindstedtSeries:
             polynomials = roots
         chosen = {e: c for e, c in polynomials[order].items() if c != 0}
         exponents = np.array(list(chosen), dtype=np.int64).reshape(len(chosen), len(self.seeds)) * 2
-        values = np.array(list(chosen.values()), dtype=object if self.ring == "symbolic" else float)
-        if self.ring == "symbolic":
-            values = np.array([se.expand(v) for v in values], dtype=object)
+        values = np.array(list(chosen.values()), dtype=object if self.symbolic else float)
+        if self.symbolic:
+            values = np.array([v if self.ring == "nested" else se.expand(v) for v in values], dtype=object)
         degree = self.chain.degree_step * order
         result = self._times(values, exponents, self.scale * degree - degree)
-        if self.ring == "symbolic":
+        if self.symbolic:
             result = np.array([v / se.Integer(2) ** degree for v in result], dtype=object)
         return exponents, self._finite(result, f"omega_{q}^({order})")
 
@@ -137,7 +142,7 @@ class LindstedtSeries:
         return {tuple(map(int, e)): linear**2 * c for e, c in zip(diagonal, self.corrections[order][:, i], strict=True)}
 
     def _finite(self, values: NDArray[Any], what: str) -> NDArray[Any]:
-        if self.ring != "symbolic" and not np.isfinite(values).all():
+        if not self.symbolic and not np.isfinite(values).all():
             raise SymfpuError(f"{what} has coefficients beyond the range of doubles; evaluate at amplitudes (harmonic_terms) instead")
         return values
 

@@ -23,11 +23,11 @@ Cosines = dict[int, Any]  # wave number 0 .. N-1 -> coefficient of cos(q theta)
 
 
 class SymbolicRing:
-    """Coefficients as expanded SymEngine expressions."""
+    """Coefficients as SymEngine expressions: expanded, or nested as the recursion builds them (zeros are found either way)."""
 
-    name = "symbolic"
-
-    def __init__(self, space: CosineModes) -> None:
+    def __init__(self, space: CosineModes, *, nested: bool = False) -> None:
+        self.name = "nested" if nested else "symbolic"
+        self.nested = nested
         self.space, self.grading = space, space.grading
         self._modes: dict[int, Objects] = {}
         self._bonds: dict[int, dict[Monomial, Cosines]] = {}
@@ -69,7 +69,11 @@ class SymbolicRing:
             for a, f in left[d].items() if degree - d in right else ():
                 for b, g in right[degree - d].items():
                     self._add_product(result[tuple(x + y for x, y in zip(a, b, strict=True))], f, g)
-        return {m: {q: e for q, v in f.items() if (e := se.expand(v)) != 0} for m, f in result.items()}
+        return {m: {q: e for q, v in f.items() if (e := self._simplified(v)) != 0} for m, f in result.items()}
+
+    def _simplified(self, value: Any) -> Any:
+        expanded = se.expand(value)
+        return value if self.nested and expanded != 0 else expanded
 
     def _add_product(self, out: Cosines, f: Cosines, g: Cosines) -> None:
         """out += f o g by 2 T_l T_m = T_(l+m) + T_(l-m), with T_N = 0 and T_(2N-q) = -T_q."""
@@ -123,7 +127,7 @@ class SymbolicRing:
         bracket[:, np.array(self.space.seeds) - 1] += corrected
         modes = self._zeros(degree)
         for row, column in np.argwhere(bracket != 0):
-            modes[row, column] = se.expand(multipliers[index[row], column] * se.expand(bracket[row, column]))
+            modes[row, column] = self._simplified(multipliers[index[row], column] * self._simplified(bracket[row, column]))
         return modes
 
     def results(self) -> tuple[list[Objects], list[Objects], int]:

@@ -64,3 +64,14 @@ def test_the_series_is_that_of_mode_space(case):
                 assert_equal(substituted(squared, numbers), oracle.omega_squared[q][k])
                 corrections = from_amplitudes(*series.frequency_coefficients(q, k))
                 assert_equal(substituted(corrections, numbers), oracle.omega[q][k])
+
+
+def test_nested_coefficients_are_the_expanded_ones():
+    expanded, nested = (lindstedt(Chain(7, alpha=1), (1, 3), order=3, ring=ring) for ring in ("symbolic", "nested"))
+    shorter = 0
+    for a, b in zip(expanded.coordinates, nested.coordinates, strict=True):
+        assert ((a == 0) == (b == 0)).all()
+        assert all(se.expand(x - y) == 0 for x, y in zip(a.ravel(), b.ravel(), strict=True))
+        shorter += sum(len(str(x)) > len(str(y)) for x, y in zip(a.ravel(), b.ravel(), strict=True))
+    assert shorter > 0
+    assert se.expand(expanded.frequency_correction(1, 2) - nested.frequency_correction(1, 2)) == 0
