@@ -14,6 +14,7 @@ from symfpu.errors import (
     UndeterminedAmplitudes,
 )
 from symfpu.frequency_shift import frequency_shift, frequency_shift_formula
+from symfpu.leading import leading_term, lemma_holds
 from symfpu.lindstedt import lindstedt
 from symfpu.notebook import init_printing
 from symfpu.propagation import coupling_sequence, excitation_sequence, reachable_modes
@@ -46,6 +47,8 @@ __all__ = [
     "frequency_shift",
     "frequency_shift_formula",
     "init_printing",
+    "leading_term",
+    "lemma_holds",
     "lindstedt",
     "prove_propagation",
     "reachable_modes",

@@ -205,11 +205,10 @@ class DenseRing:
     def project(self, degree: int, parts: Sequence[tuple[float, Floats]]) -> Floats:
         canonical = self.grading.canonical(degree)
         modes = np.zeros((len(canonical), self.space.N - 1))
-        back = self._to_modes.reshape(-1, self._slices, self._lanes)
         for rows, columns in self._parts(degree):
             for coefficient, values in parts:
-                term = sum(self._matrix_product(values[i, canonical[rows]], back[columns, i].T.copy()) for i in range(self._slices))
-                modes[rows, columns] += self._times(np.asarray(term), coefficient)
+                bonds = np.concatenate([values[i, canonical[rows]] for i in range(self._slices)], axis=1)
+                modes[rows, columns] += self._times(self._matrix_product(bonds, self._to_modes[columns].T), coefficient)
         return self._reduced(np.multiply(modes, self.space.mask(degree), out=modes))
 
     def secular(self, degree: int, modes: Floats) -> Floats:
