@@ -164,7 +164,7 @@ def write_figure6_csv(data: Figure6, folder: Path) -> list[Path]:
     """The data behind the panels of Fig. 6, one CSV file each."""
     return write_csv(
         {
-            f"fig6{panel}": (["q", "kappa", "order"], ([q, q / data.N, orders[q]] for q in sorted(orders)))
+            f"fig6{panel}": (["q", "kappa", "order"], [[q, q / data.N, orders[q]] for q in sorted(orders)])
             for panel, (_, orders) in data.panels.items()
         },
         folder,
