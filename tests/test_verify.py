@@ -334,17 +334,23 @@ def replaced(body, path, value):
 
 
 def still_true(body, path, value):
-    """The alterations that leave a true certificate; all are here.
+    """The alterations that leave a true certificate, by full tables made anew; these are all of them.
 
-    A frequency that no witness of its point depends on; a point that no witness refers to, put at the end.
+    Frequencies that the witnesses of their point do not feel (absent from them, or exchanged in one that is symmetric in both), and
+    a witness at the conjugate monomial.
     """
-    if path[:1] == ("points",) and len(path) == 4 and path[2] == "frequencies" and type(value) is int:
-        at = value_at(replaced(body, path, value), path[:2])
-        table = Table(body["N"], body["model"], body["seeds"], body["order"], *at.values())
-        return 0 <= value < at["prime"] and all(
-            table.u[e["order"]].get((e["mode"], tuple(e["monomial"]))) == e["residue"] for e in body["excited"] if e["point"] == path[1]
-        )
-    return path == ("points",) and isinstance(value, list) and value == body["points"] + body["points"][-1:]
+    altered = replaced(body, path, value)
+    if path[:1] == ("points",) and path[2:3] == ("frequencies",):
+        at, s = altered["points"][path[1]], len(body["seeds"])
+        well_formed = isinstance(at["frequencies"], list) and [type(w) for w in at["frequencies"]] == [int] * s
+        return well_formed and all(0 <= w < at["prime"] for w in at["frequencies"]) and residues_hold(altered)
+    plain = isinstance(value, list) and all(type(e) is int for e in value)
+    return path[:1] == ("excited",) and path[2:] == ("monomial",) and plain and residues_hold(altered)
+
+
+def residues_hold(body):
+    tables = [Table(body["N"], body["model"], body["seeds"], body["order"], *at.values()) for at in body["points"]]
+    return all(tables[e["point"]].u[e["order"]].get((e["mode"], tuple(e["monomial"]))) == e["residue"] for e in body["excited"])
 
 
 def value_at(body, path):
@@ -360,7 +366,7 @@ def test_every_altered_field_is_refused_with_a_right_digest(check, name, path):
     body = CERTIFICATES[name]
     value = value_at(body, path)
     for other in alterations(value):
-        if json.dumps(other) == json.dumps(value):
+        if json.dumps(other) == json.dumps(value) or (not path and isinstance(other, dict) and "digest" not in other):
             continue
         altered = replaced(body, path, other)
         content = signed(altered) if isinstance(altered, dict) else altered
@@ -453,8 +459,8 @@ def test_roots_of_another_order_are_refused(check):
     p, g = body["points"][0]["prime"], body["points"][0]["root"]
     for d in range(24):
         changed = signed(replaced(body, ("points", 0, "root"), pow(g, d, p)))
-        if d in (1, 23):
-            check(changed)  # g and 1/g have the same cosines
+        if d in (1, 11, 13, 23):
+            check(changed)  # the same cos(q pi / N)
         elif gcd(d, 24) > 1:
             refused(check, changed, "not of order 4N")
         else:
@@ -589,7 +595,7 @@ def test_work_without_end_is_refused(check):
         "vanishing": [],
         "undecided": [{"mode": q, "orders": list(range(1, place.get(q, order + 1))), "error_probability": "0.5"} for q in rest],
     }
-    refused(check, signed(body), "5 million steps")
+    refused(check, signed(body), "2 million steps")
     body["vanishing"] = [e | {"by": "identity"} for e in body["undecided"][:1]]
     del body["vanishing"][0]["error_probability"]
     body |= {"undecided": body["undecided"][1:], "verdict": "refuted"}
