@@ -18,6 +18,7 @@ from symfpu.torus import QTorus
 Floats = NDArray[np.float64]
 
 RESIDUAL_FLOOR = 1e-10  # relative residual below which growth with the order is no reason to doubt
+LARGE_RESIDUAL = 1e-4  # relative residual above which the solution is doubtful whatever the orders say
 RESIDUAL_POINTS = 128  # angles at which two neighbouring orders are compared, about
 ROUNDING = 256 * np.finfo(float).eps  # of the sum of moduli of the series: what a root may leave
 AGREEMENT = 1e-3  # relative change from the neighbouring order above which a root is doubtful
@@ -212,15 +213,15 @@ def _order_doubts(amplitudes: Floats, orders: list[int], history: AmplitudeHisto
 
 
 def _residual_doubts(torus: QTorus) -> tuple[str, ...]:
-    """Whether the last two orders of the coordinates made the residual of the equations of motion larger."""
-    before = torus.order - 2
-    if before < 1:
-        return ()
+    """Whether the residual of the equations of motion is large, or grew with the last two orders of the coordinates."""
     points = max(3, round(RESIDUAL_POINTS ** (1 / len(torus.series.seeds))))
-    residual, earlier = torus.residual(points), replace(torus, order=before).residual(points)
-    if residual < RESIDUAL_FLOOR or residual < 1.05 * earlier:
-        return ()
-    return (
-        f"the residual of the equations of motion grows with the order ({earlier:.1e} at {before}, {residual:.1e} at {torus.order}): "
-        f"the series is best cut earlier, by order=",
-    )
+    residual, before = torus.residual(points), torus.order - 2
+    doubts = []
+    if residual > LARGE_RESIDUAL:
+        doubts.append(f"the equations of motion are met only to {residual:.1e} of the largest acceleration")
+    if before >= 1 and residual > RESIDUAL_FLOOR:
+        earlier = replace(torus, order=before).residual(points)
+        if residual > 1.05 * earlier:
+            growth = f"{earlier:.1e} at {before}, {residual:.1e} at {torus.order}"
+            doubts.append(f"the residual of the equations of motion grows with the order ({growth}): cut the series earlier, by order=")
+    return tuple(doubts)
