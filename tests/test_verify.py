@@ -270,6 +270,7 @@ def test_the_lazy_recursion_gives_the_full_table_modulo_p_and_in_symbols(tmp_pat
                 total = 0
                 for symbols, coefficient in checker.term(m)[0].get(q, {}).items():
                     for mode, nu in symbols:
+                        assert nu >= tuple(-n for n in nu)  # L_q(nu) = L_q(-nu) is one symbol
                         harmonic = [e for n in nu for e in (max(n, 0), max(-n, 0))]
                         coefficient *= table.multiplier(mode, harmonic)
                     total += coefficient
@@ -439,7 +440,8 @@ def test_a_witness_may_be_another_but_not_of_a_seed_or_twice(check):
     ("prime", "root"),
     [
         (2**20 + 1, 2),
-        (3 * 5 * 7 * 11 * 13 * 17 * 19, 2),  # composite
+        (73 * 1009, 2),  # composite, = 1 mod 4N
+        (41 * 61 * 101, 2),  # a Carmichael number, = 1 mod 4N
         (3215031751, 2),  # strong pseudoprime to 2, 3, 5, 7
         (3825123056546413051, 2),  # strong pseudoprime to 2 .. 23
         (65537, 2),  # not = 1 mod 4N with N = 6
@@ -468,13 +470,34 @@ def test_roots_of_another_order_are_refused(check):
 
 
 def test_a_vanishing_divisor_is_refused(check):
-    """omega_1 and omega_2 such that 2 omega_1 - omega_2 = -Omega_3 modulo p, in a point of a witness that needs it."""
-    body = CERTIFICATES["alpha"]
-    p, g = body["points"][0]["prime"], body["points"][0]["root"]
-    for q in (1, 4, 5, 6):
-        half = (pow(g, q, p) - pow(g, 28 - q, p)) * pow(pow(g, 7, p), -1, p) % p  # 2 i sin(q pi / 2N) / i
-        frequencies = [half * pow(2, -1, p) % p, half]
-        refused(check, signed(replaced(body, ("points", 0, "frequencies"), frequencies)), "divisor|residue")
+    """A breather with 2 omega_1 = Omega_2 modulo p, Omega_q = (g^q - g^-q) / g^N."""
+    body = CERTIFICATES["breather"]
+    p, g, N = body["points"][0]["prime"], body["points"][0]["root"], body["N"]
+    Omega = (pow(g, 2, p) - pow(g, -2, p)) * pow(g, -N, p) % p
+    resonant = replaced(body, ("points", 0, "frequencies"), [Omega * pow(2, -1, p) % p])
+    refused(check, signed(resonant), "divisor of mode 2 at harmonic")
+
+
+def test_residues_are_below_the_prime(check):
+    body = CERTIFICATES["refuted"]
+    p, g, frequencies = body["points"][0].values()
+    refused(check, signed(replaced(body, ("points", 0, "root"), g + p)))
+    refused(check, signed(replaced(body, ("points", 0, "frequencies"), [frequencies[0] + p, frequencies[1]])))
+    refused(check, signed(replaced(body, ("excited", 0, "residue"), body["excited"][0]["residue"] + p)))
+
+
+def test_a_claim_without_orders_is_refused(check):
+    body = CERTIFICATES["breather"]
+    first = [{"mode": 2, "orders": [], "by": "couplings"}]
+    refused(check, signed(body | {"vanishing": first + body["vanishing"]}))
+
+
+def test_a_witness_of_a_later_order_proves_nothing_of_an_earlier_one(check):
+    """The rule upheld by a forger: mode 4 at order 1 as predicted, with the witness of order 2."""
+    body = copy.deepcopy(CERTIFICATES["refuted"])
+    next(e for e in body["excited"] if e["mode"] == 4)["order"] = 1
+    body["vanishing"] = [e for e in body["vanishing"] if e["mode"] != 4]
+    refused(check, signed(body | {"actual": body["rule"], "exceptions": [], "verdict": "proved"}), "degree of order 1")
 
 
 # --- files that are no certificates
@@ -544,26 +567,26 @@ def test_large_files_are_refused_before_they_are_read(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("change", "reason"),
     [
-        {"N": 4097},
-        {"N": 10**19},
-        {"order": 1001},
-        {"N": 4096, "order": 1000},
-        {"N": 200, "seeds": list(range(1, 66))},
-        {"N": 0},
-        {"N": 1},
-        {"seeds": []},
-        {"seeds": [3, 2]},
-        {"seeds": [2, 2]},
-        {"seeds": [2, 6]},
-        {"model": "alpha+beta"},
-        {"points": CERTIFICATES["refuted"]["points"] * 257},
+        ({"N": 4097}, "wrong N"),
+        ({"N": 10**19}, "wrong N"),
+        ({"order": 1001}, "wrong N, order"),
+        ({"N": 4096, "order": 1000}, "wrong N, order"),
+        ({"N": 0}, "wrong N"),
+        ({"N": 1}, "wrong N"),
+        ({"model": "alpha+beta"}, "or model"),
+        ({"N": 200, "seeds": list(range(1, 66))}, "seeds"),
+        ({"seeds": []}, "seeds"),
+        ({"seeds": [3, 2]}, "seeds"),
+        ({"seeds": [2, 2]}, "seeds"),
+        ({"seeds": [2, 6]}, "seeds"),
+        ({"points": [CERTIFICATES["refuted"]["points"][0] | {"frequencies": [i, i + 1]} for i in range(257)]}, "points"),
     ],
-    ids=str,
+    ids=lambda change: str(change)[:40],
 )
-def test_absurd_sizes_are_refused(check, change):
-    refused(check, signed(CERTIFICATES["refuted"] | change))
+def test_absurd_sizes_are_refused(check, change, reason):
+    refused(check, signed(CERTIFICATES["refuted"] | change), reason)
 
 
 @pytest.mark.parametrize(
