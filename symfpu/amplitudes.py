@@ -5,11 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import lcm
 
 import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.chain import decimal
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
 from symfpu.exact import exact, integer
 from symfpu.series import LindstedtSeries
@@ -18,6 +20,7 @@ from symfpu.torus import QTorus
 Floats = NDArray[np.float64]
 
 RESIDUAL_FLOOR = 1e-10  # relative residual below which growth with the order is no reason to doubt
+LARGEST_GUESS = 1e12
 LARGE_RESIDUAL = 1e-4  # relative residual above which the solution is doubtful whatever the orders say
 RESIDUAL_POINTS = 128  # angles at which two neighbouring orders are compared, about
 ROUNDING = 256 * np.finfo(float).eps  # of the sum of moduli of the series: what a root may leave
@@ -86,21 +89,23 @@ def solve_amplitudes(
     guess : amplitudes by seed; default none needed: the lowest correction is linear in A^2, and each order starts from the
     root of the one before. Gauge: A_q multiplies cos(omega_q t + phi_q) in Q_q, not Q_q(0).
 
-    Raises InputError for arguments out of range; NoRealAmplitude if an A^2 comes out negative (names the seed), also where
-    the lowest order has no real root and no later one up to frequency_order has;
-    DidNotConverge with the last iterate and residual; UndeterminedAmplitudes if no correction determines the amplitudes.
+    Raises InputError for arguments out of range and for frequencies that are commensurable within the harmonics of the
+    series; NoRealAmplitude if an A^2 comes out negative (names the seed), also where the lowest order has no real root and
+    no later one up to frequency_order has; DidNotConverge with the last iterate and residual; UndeterminedAmplitudes if
+    no correction determines the amplitudes.
     Where neighbouring frequency orders disagree, the torus says so in its warnings.
     """
     if series.frequencies is None:
         raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
+    _refuse_commensurable(series)
     K = _order_argument("frequency_order", frequency_order, series)
     coordinate_order = _order_argument("order", order, series)
     angles = dict.fromkeys(series.seeds, 0.0) | _by_seed("phases", phases, series)
     orders = [k for k in frequency_orders(series) if k <= K]
     if not orders:
-        raise InputError(
-            "frequency_order", K, f"at least {2 // series.chain.degree_step}, the first frequency correction", "compute a longer series"
-        )
+        first = 2 // series.chain.degree_step
+        advice = "compute a longer series" if series.order < first else f"take {first} or more"
+        raise InputError("frequency_order", K, f"{first} or more, the order of the first frequency correction", advice)
     history = amplitude_history(series)
     start = _start(series, orders, history, guess)
     squares, residual = _root(series, orders[-1], start)
@@ -117,6 +122,24 @@ def solve_amplitudes(
     return replace(torus, warnings=(*_order_doubts(amplitudes, orders, history), *_residual_doubts(torus)))
 
 
+def _refuse_commensurable(series: LindstedtSeries) -> None:
+    """Refuse frequencies for which two harmonics of the series coincide, or one is at rest: the orbit fills no torus of s angles."""
+    assert series.frequencies is not None
+    common = lcm(*(w.denominator for w in series.frequencies))
+    whole = [int(w * common) for w in series.frequencies]
+    seen: dict[int, tuple[int, ...]] = {0: (0,) * len(series.seeds)}
+    for order in range(series.order + 1):
+        for row in series.grading.harmonics(series.degree(order))[0].tolist():
+            nu = tuple(row)
+            other = seen.setdefault(abs(sum(n * w for n, w in zip(nu, whole, strict=True))), nu)
+            if other != nu:
+                allowed = "incommensurable up to the harmonics of the series"
+                advice = (
+                    f"harmonics {nu} and {other} of the seeds {series.seeds} coincide: change omega_{series.seeds[-1]} or lower the order"
+                )
+                raise InputError("frequencies", tuple(map(decimal, series.frequencies)), allowed, advice)
+
+
 def _order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
     if value is None:
         return series.order
@@ -126,6 +149,8 @@ def _order_argument(name: str, value: int | None, series: LindstedtSeries) -> in
 
 
 def _by_seed(name: str, values: Mapping[int, float] | None, series: LindstedtSeries) -> dict[int, float]:
+    if values is not None and not isinstance(values, Mapping):
+        raise InputError(name, values, f"a mapping from the seeds {series.seeds} to numbers", "write it as {seed: number}")
     for q in values or {}:
         if q not in series.seeds:
             raise InputError(name, q, f"seeds {series.seeds} as keys", "name seeds only")
@@ -137,6 +162,10 @@ def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory
         given = _by_seed("guess", guess, series)
         if set(given) != set(series.seeds):
             raise InputError("guess", dict(guess), f"an amplitude for each of the seeds {series.seeds}", "complete it or leave it out")
+        if not all(0 < abs(a) < LARGEST_GUESS for a in given.values()):
+            raise InputError(
+                "guess", dict(guess), f"amplitudes that are not 0 and below {LARGEST_GUESS:g}", "take them near the expected ones"
+            )
         return np.array([given[q] ** 2 for q in series.seeds])
     earlier = [k for k in orders if k in history.amplitudes]
     if not earlier:

@@ -23,7 +23,7 @@ from symfpu.algebra.residue import largest_modulus
 from symfpu.chain import Chain
 from symfpu.errors import InputError, SymfpuError, VanishingResidue
 from symfpu.exact import integer, seed_modes
-from symfpu.lindstedt import Progress, ResiduePoint, lindstedt, residue_series, shared_grading
+from symfpu.lindstedt import Progress, ResiduePoint, check_size, lindstedt, residue_series, shared_grading
 from symfpu.propagation import coupled_modes, excitation_sequence
 from symfpu.series import LindstedtSeries
 
@@ -170,6 +170,9 @@ def prove_propagation(
     seeds = tuple(sorted(seed_modes(seeds, N)))
     order = integer(order, "order", 0)
     chain = Chain(N, alpha=int(model == "alpha"), beta=int(model == "beta"))
+    check_size(chain, seeds, order, "residue")
+    if workers is not None:
+        integer(workers, "workers", 1)
     rule = excitation_sequence(N, seeds, order, model=model)
     source = random.Random(random_seed)  # noqa: S311 (points need be random, not secret)
     used: list[ResiduePoint] = []

@@ -19,6 +19,7 @@ from symfpu.exact import Number, exact, integer
 
 Floats = NDArray[np.float64]
 
+SMALLEST_COUPLING = Fraction(1, 10**50)
 LARGEST_EXPRESSION = 40  # bonds; the cubic coupling has about N^3 terms
 
 
@@ -43,6 +44,9 @@ class Chain:
         object.__setattr__(self, "N", integer(N, "N", 2))
         object.__setattr__(self, "alpha", exact(alpha, "alpha"))
         object.__setattr__(self, "beta", exact(beta, "beta"))
+        for name, typed, value in (("alpha", alpha, self.alpha), ("beta", beta, self.beta)):
+            if value and not SMALLEST_COUPLING <= abs(value) <= 1 / SMALLEST_COUPLING:
+                raise InputError(name, typed, "0, or a number of size 1e-50 to 1e50", "rescale the amplitudes")
         if self.alpha == 0 and self.beta == 0:
             raise InputError("alpha, beta", (0, 0), "at least one of them not zero", "give alpha=, beta= or both")
 
@@ -113,7 +117,10 @@ class Chain:
         return self.positions(np.diff(tension, axis=-1))
 
     def _state(self, values: ArrayLike, argument: str) -> Floats:
-        array = np.asarray(values, dtype=np.float64)
+        try:
+            array = np.asarray(values, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputError(argument, values, "an array of real numbers", "pass numbers") from error
         if array.ndim == 0 or array.shape[-1] != self.N - 1:
             raise InputError(argument, array.shape, f"an array whose last axis has length N-1 = {self.N - 1}", "put the modes last")
         return array

@@ -17,7 +17,6 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
 from symfpu.amplitudes import solve_amplitudes
 from symfpu.certificates import PropagationProof, prove_propagation, write_text
@@ -198,7 +197,7 @@ def solve(
     alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
     beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
     frequency_order: Annotated[
-        str | None, typer.Option(help="Order of the frequency series that gives the amplitudes.  [default: --order]", metavar="K")
+        str | None, typer.Option(help="Order of the frequency series that gives the amplitudes.  Default: --order.", metavar="K")
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -220,10 +219,8 @@ def solve(
 
 def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
     print(torus.series)
-    table = Table("seed", "omega", "amplitude", box=None, pad_edge=False)
     for q, amplitude in record["amplitudes"].items():
-        table.add_row(q, record["frequencies"][q], amplitude)
-    Console().print(table)
+        print(f"seed {q:<4} omega {record['frequencies'][q]:<20} amplitude {amplitude}")
     print(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
     print(f"energy H           {record['energy']}   (at t = 0)")
     print(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {record['average_harmonic_energy']})")
@@ -266,8 +263,8 @@ def reproduce(
             advance("fig6: pictures", None)
             draw_figure6(patterns, folder)
     text = "\n\n".join(parts)
-    (folder / "report.md").write_text(text)
-    (folder / "report.json").write_text(json.dumps(record, indent=1) + "\n")
+    write_text(folder / "report.md", text)
+    write_text(folder / "report.json", json.dumps(record, indent=1) + "\n")
     if as_json:
         _print_json(record)
         return
@@ -327,6 +324,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(str(error), 2)
     except SymfpuError as error:
         return _fail(str(error), 1)
+    except OSError as error:
+        return _fail(f"{error.filename}: {error.strerror}; name another file or folder", 2)
     except (KeyboardInterrupt, EOFError):
         return _fail("interrupted", 130)
     except Exception as error:
@@ -335,7 +334,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if type(error).__name__ == "Abort":
             return _fail("interrupted", 130)
         raise
-    return int(code or 0)
+    return _fail("interrupted", 130) if code == 130 else int(code or 0)
 
 
 def _fail(message: str, code: int) -> int:

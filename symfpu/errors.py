@@ -50,9 +50,11 @@ class NoRealAmplitude(SymfpuError):
 
     def __init__(self, seed: int, squared: float, frequency_order: int) -> None:
         self.seed, self.squared, self.frequency_order = seed, squared, frequency_order
+        need = "= 0, no oscillation" if squared == 0 else f"= {squared:.6g} < 0"
+        advice = "choose a frequency off it" if squared == 0 else "or choose frequencies nearer to the linear ones"
+        side = f"omega_{seed} is the linear frequency" if squared == 0 else f"move omega_{seed} to the other side of its linear value"
         super().__init__(
-            f"no real amplitude: at frequency order {frequency_order} the frequencies need A_{seed}^2 = {squared:.6g} < 0; "
-            f"move omega_{seed} to the other side of its linear value, or choose frequencies nearer to the linear ones"
+            f"no real amplitude: at frequency order {frequency_order} the frequencies need A_{seed}^2 {need}; {side}, {advice}"
         )
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from numbers import Integral, Rational, Real
 
 from symfpu.errors import InputError
+
+LONGEST = 1000  # characters of a number, and the largest power of ten in it
 
 Number = int | float | str | Fraction | Decimal
 
@@ -22,6 +25,9 @@ def exact(value: object, argument: str) -> Fraction:
         if isinstance(value, bool):
             raise TypeError("a truth value is no number")
         if isinstance(value, str):
+            exponent = re.search(r"[eE]([+-]?\d+)", value)
+            if len(value) > LONGEST or (exponent and abs(int(exponent[1])) > LONGEST):
+                raise ValueError("too long")
             return Fraction(value.strip())
         if isinstance(value, Rational):
             return Fraction(int(value.numerator), int(value.denominator))
@@ -48,7 +54,7 @@ def integer(value: object, argument: str, least: int) -> int:
 
 
 def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
-    """The seeds as ascending integers in 1 .. N-1; InputError if empty, repeated, outside or not integers."""
+    """The seeds as integers in 1 .. N-1, in the given order; InputError if empty, repeated, outside or not integers."""
     allowed = f"distinct integers in 1..{N - 1} (N = {N})"
     modes: list[int] = []
     try:

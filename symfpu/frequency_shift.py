@@ -20,7 +20,7 @@ import symengine as se
 
 from symfpu.chain import Chain, rational
 from symfpu.errors import InputError
-from symfpu.exact import seed_modes
+from symfpu.exact import exact, seed_modes
 
 
 def shift_coefficients(N: int, q: int, n: int) -> tuple[tuple[Fraction, Fraction], Fraction]:
@@ -44,10 +44,10 @@ def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, 
     >>> round(frequency_shift(Chain(N=2, beta=1), {1: 0.1})[1], 12)  # sqrt(2)/4 3/4 2 0.01
     0.005303300859
     """
+    if not isinstance(amplitudes, Mapping):
+        raise InputError("amplitudes", amplitudes, "a mapping from modes to numbers", "write it as {mode: amplitude}")
     seeds = seed_modes(amplitudes, chain.N)
-    for q in seeds:
-        if not abs(float(amplitudes[q])) < float("inf"):
-            raise InputError("amplitudes", amplitudes[q], "finite numbers", f"give A_{q} a number")
+    numbers = {q: float(exact(amplitudes[q], f"amplitudes, A_{q}")) for q in seeds}
     linear = chain.frequencies()
     quadratic, cubic = float(chain.alpha**2) / (2 * chain.N), float(chain.beta) / (2 * chain.N)
     shifts = {}
@@ -56,7 +56,7 @@ def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, 
         for n in seeds:
             (a, b), c = shift_coefficients(chain.N, q, n)
             square = float(linear[n - 1]) ** 2
-            total += float(amplitudes[n]) ** 2 * (quadratic * (float(a) + float(b) * square) + cubic * float(c) * square)
+            total += numbers[n] ** 2 * (quadratic * (float(a) + float(b) * square) + cubic * float(c) * square)
         shifts[q] = float(linear[q - 1]) * total
     return shifts
 

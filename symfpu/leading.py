@@ -121,7 +121,8 @@ def lemma_holds(chain: Chain, seeds: Sequence[int], order: int) -> dict[int, boo
     >>> lemma_holds(Chain(N=6, beta=1), (2, 3), 2)
     {1: True, 4: True, 5: True}
     """
-    terms, series = leading_terms(chain, seeds, order), lindstedt(chain, seeds, order=order)
+    series = lindstedt(chain, seeds, order=order)
+    terms = leading_terms(chain, seeds, order)
     first = {q: k for k in range(order, -1, -1) for q in range(1, chain.N) if (series.coordinates[k][:, q - 1] != 0).any()}
     same = {q for q, term in terms.items() if first.get(q) == term.order and se.expand(term.expression() - series.term(q, first[q])) == 0}
     return {q: q in same for q in sorted({q for q, k in first.items() if k > 0} | terms.keys())}

@@ -7,7 +7,7 @@ and W_q^(k) makes the bracket vanish at the secular harmonic nu = e_q of a seed,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -85,7 +85,7 @@ def lindstedt(
     ring = ring or ("symbolic" if frequencies is None else "float64")
     if ring not in RINGS:
         raise InputError("ring", ring, f"one of {', '.join(RINGS)}", "name a ring or leave it out")
-    _check_size(chain, seeds, order, ring)
+    check_size(chain, seeds, order, ring)
     space = _space(chain, seeds, order)
     arithmetic, divisors = RINGS[ring](chain, space, exact_frequencies)
     return _series(chain, exact_frequencies, order, arithmetic, divisors, progress)
@@ -108,8 +108,8 @@ def residue_series(
     workers : threads; default one for each core. Raises VanishingResidue where a divisor vanishes modulo the prime,
     TooLarge as `lindstedt` does.
     """
-    seeds = seed_modes(seeds, chain.N)
-    _check_size(chain, seeds, integer(order, "order", 0), "residue")
+    seeds = tuple(sorted(seed_modes(seeds, chain.N)))
+    check_size(chain, seeds, integer(order, "order", 0), "residue")
     space = _space(chain, seeds, order)
     ring = ResidueRing(space, point.prime, point.root, workers=workers)
     return _series(chain, None, order, ring, ResidueDivisors(chain, seeds, ring, point.frequencies), progress)
@@ -169,19 +169,16 @@ def _run(ring: Ring, divisors: Any, chain: Chain, order: int, progress: Progress
 
 
 def _frequencies(frequencies: Sequence[Number], seeds: tuple[int, ...]) -> tuple[Fraction, ...]:
-    try:
-        values = tuple(exact(w, "frequencies") for w in frequencies)
-    except TypeError as error:
-        raise InputError("frequencies", frequencies, "one positive number for each seed", "pass a sequence") from error
+    if isinstance(frequencies, (str, Mapping)) or not isinstance(frequencies, Iterable):
+        raise InputError("frequencies", frequencies, "a sequence, one positive number for each seed", "list them in the order of the seeds")
+    frequencies = list(frequencies)
+    values = tuple(exact(w, "frequencies") for w in frequencies)
     if len(values) != len(seeds):
-        raise InputError(
-            "frequencies", tuple(map(str, frequencies)), f"{len(seeds)} numbers, one for each of the seeds {seeds}", "add or drop some"
-        )
+        raise InputError("frequencies", tuple(map(str, frequencies)), f"one number for each of the seeds {seeds}", "add or drop some")
     for q, w, typed in zip(seeds, values, frequencies, strict=True):
-        if w <= 0 or w > 10**6:
-            raise InputError(
-                f"frequencies, omega_{q}", str(typed), "a positive finite number (up to 1e6)", "take one near the linear frequency"
-            )
+        if not Fraction(1, 10**6) <= w <= 10**6:
+            allowed = "a positive finite number (1e-6 to 1e6)"
+            raise InputError(f"frequencies, omega_{q}", str(typed), allowed, "take one near the linear frequency")
     return values
 
 
@@ -191,7 +188,7 @@ def _ascending(seeds: tuple[int, ...], frequencies: tuple[Fraction, ...] | None)
     return tuple(seeds[i] for i in order), None if frequencies is None else tuple(frequencies[i] for i in order)
 
 
-def _check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str) -> None:
+def check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str) -> None:
     """Refuse an order whose arrays would not fit, before anything is allocated."""
     free = psutil.virtual_memory().available
     if _needed(chain, len(seeds), order, ring) <= free:
@@ -204,4 +201,4 @@ def _check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str) -> 
 
 def _needed(chain: Chain, seeds: int, order: int, ring: str) -> int:
     size = predicted_bytes(chain.N, seeds, 1 + chain.degree_step * order, cubic=chain.beta != 0)
-    return size * SYMBOLIC_GROWTH**order if ring in ("symbolic", "nested") else size
+    return size * SYMBOLIC_GROWTH ** min(order, 100) if ring in ("symbolic", "nested") else size

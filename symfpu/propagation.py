@@ -15,6 +15,7 @@ from symfpu.algebra.selection import fold
 from symfpu.errors import InputError
 from symfpu.exact import integer, seed_modes
 
+LARGEST_ORDER = 10_000
 MODELS = ("alpha", "beta", "alpha+beta")
 
 
@@ -30,6 +31,8 @@ def reachable_modes(N: int, seeds: Iterable[int], order: int, *, model: str = "a
     N = integer(N, "N", 2)
     modes = seed_modes(seeds, N)
     order = integer(order, "order", 0)
+    if order > LARGEST_ORDER:
+        raise InputError("order", order, f"at most {LARGEST_ORDER}", "the sets repeat long before")
     if model not in MODELS:
         raise InputError("model", model, "'alpha', 'beta' or 'alpha+beta'", "pass one of these")
     sums = {fold(q, N) for q in modes}

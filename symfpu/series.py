@@ -206,6 +206,10 @@ class LindstedtSeries:
         absolute : take the modulus of every monomial before they are summed (for S_1 of Eq. serabs2).
         """
         self._numeric()
+        if np.shape(amplitudes) != (len(self.seeds),):
+            raise InputError(
+                "amplitudes", np.shape(amplitudes), f"one for each of the seeds {self.seeds}", "pass a sequence in their order"
+            )
         degree = self.degree(order)
         powers, (nu, index) = self.grading.powers(degree), self.grading.harmonics(degree)
         monomials = np.prod(self.scaled_seeds(amplitudes) ** powers, axis=1) * (self._sign(order) / self._kappa)

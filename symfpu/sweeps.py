@@ -10,7 +10,7 @@ import json
 import multiprocessing
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from itertools import combinations
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from symfpu.certificates import prove_propagation
-from symfpu.errors import InputError
+from symfpu.errors import InputError, SymfpuError
 from symfpu.exact import integer
 from symfpu.propagation import coupling_sequence
 
@@ -80,7 +80,8 @@ def sweep_propagation(
 ) -> Sweep:
     """Decide the propagation rule for all seed sets of up to `largest_set` modes and every N in `lengths`.
 
-    executor : any concurrent.futures.Executor, such as dask.distributed's client.get_executor(); default a pool of processes.
+    executor : any concurrent.futures.Executor, such as dask.distributed's client.get_executor(); default a pool of
+    processes, which a script must start under `if __name__ == "__main__":`.
     file : JSON lines, one for each decided case; an existing file of the same sweep is continued, its last line dropped if
     it was cut. progress : called as (cases done, cases in all). Raises InputError, also for a file of another sweep.
     """
@@ -104,6 +105,10 @@ def sweep_propagation(
                         log.append(record)
                 if progress:
                     progress(len(decided), len(cases))
+        except BrokenExecutor as error:
+            raise SymfpuError(
+                "the worker processes died: in a script, call sweep_propagation under `if __name__ == '__main__':`, or pass executor="
+            ) from error
         finally:
             for task in tasks:
                 task.cancel()
@@ -130,15 +135,13 @@ class SweepLog:
         """The cases decided so far; starts the file if there is none, and cuts off a last line that was not finished."""
         try:
             text = self.path.read_text() if self.path.exists() else ""
-            complete = text[: text.rfind("\n") + 1]
-            if not complete:
-                complete = self.header + "\n"
+            start = self.header + "\n"
+            if not text.startswith(start) and not start.startswith(text):
+                raise InputError("file", str(self.path), f"a new file, or a sweep with header {self.header}", "name another file")
+            complete = text[: text.rfind("\n") + 1] or start
+            cases = [_case(json.loads(line)) for line in complete.splitlines()[1:]]
             if complete != text:
                 self.path.write_text(complete)
-            header, *lines = complete.splitlines()
-            if header != self.header:
-                raise InputError("file", str(self.path), f"a sweep with header {self.header}", "name another file")
-            cases = [_case(json.loads(line)) for line in lines]
         except OSError as error:
             raise InputError("file", str(self.path), "a file that can be read and written", f"name another ({error.strerror})") from error
         except (ValueError, KeyError, TypeError) as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -90,7 +91,10 @@ class QTorus:
         return self._along(t, lambda angles: np.sin(angles) @ (-self._rates[:, None] * self.cosines))
 
     def _along(self, t: ArrayLike, evaluate: object) -> Floats:
-        times = np.asarray(t, dtype=np.float64)
+        try:
+            times = np.asarray(t, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputError("t", t, "a finite number or an array of them", "pass real numbers") from error
         if times.ndim > 1 or not np.isfinite(times).all():
             raise InputError("t", t, "a finite number or a one-dimensional array of them", "flatten it")
         phases = np.array([self.phases[q] for q in self.series.seeds])
@@ -130,7 +134,7 @@ class QTorus:
             weights = np.where(moving, 0.5, 1.0)
             kinetic = (weights * self._rates**2) @ self.cosines**2
             return np.asarray(0.5 * (kinetic + linear**2 * (weights @ self.cosines**2)))
-        if not np.isfinite(T) or T <= 0:
+        if not isinstance(T, Real) or not np.isfinite(float(T)) or T <= 0:
             raise InputError("T", T, "a positive finite time, or None for infinite", "pass T > 0")
         psi = self.harmonics @ np.array([self.phases[q] for q in self.series.seeds])
         velocity = self._rates[:, None] * self.cosines

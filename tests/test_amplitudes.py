@@ -231,3 +231,23 @@ def test_no_real_root_at_the_lowest_order_is_said_as_such():
     series = lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3900", "0.7651"), 14)
     with pytest.raises(NoRealAmplitude, match="A_1"):
         solve_amplitudes(series)
+
+
+def test_commensurable_frequencies_are_refused_though_no_divisor_vanishes():
+    """2 omega_1 = omega_2: harmonics (3, 0) and (1, -2) .. coincide, and averages over them would be wrong."""
+    series = lindstedt(Chain(16, beta=1), (1, 2), ("0.2", "0.4"), 1)
+    with pytest.raises(InputError, match="incommensurable"):
+        solve_amplitudes(series)
+
+
+@pytest.mark.parametrize("arguments", [{"phases": [1]}, {"guess": {1: 1e200}}, {"guess": {1: 0}}, {"frequency_order": 0}])
+def test_odd_arguments_are_named(arguments):
+    series = lindstedt(Chain(8, beta=1), (1,), ("0.4",), 2)
+    with pytest.raises(InputError) as caught:
+        solve_amplitudes(series, **arguments)
+    assert caught.value.argument == next(iter(arguments))
+
+
+def test_linear_frequency_has_no_amplitude():
+    with pytest.raises(NoRealAmplitude, match="linear frequency"):
+        solve_amplitudes(lindstedt(Chain(3, beta=1), (1,), ("1",), 2))

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from symfpu.chain import Chain
 from symfpu.errors import InputError
 from symfpu.exact import exact, integer, seed_modes
 
@@ -74,3 +75,15 @@ def test_bad_seeds_are_refused(seeds):
     with pytest.raises(InputError) as caught:
         seed_modes(seeds, 8)
     assert caught.value.argument == "seeds"
+
+
+@pytest.mark.parametrize("text", ["1e999999999", "1e-999999999", "9" * 2000])
+def test_absurd_numbers_are_refused_at_once(text):
+    with pytest.raises(InputError):
+        exact(text, "alpha")
+
+
+@pytest.mark.parametrize("coupling", ["1e400", "1e-200", "1e60"])
+def test_couplings_that_doubles_cannot_carry_are_refused(coupling):
+    with pytest.raises(InputError, match="alpha"):
+        Chain(4, alpha=coupling)

@@ -183,3 +183,27 @@ def test_the_largest_order_named_is_the_largest_that_fits(monkeypatch):
     assert lindstedt(chain, seeds, frequencies, largest).order == largest
     with pytest.raises(TooLarge):
         lindstedt(chain, seeds, frequencies, largest + 1)
+
+
+@pytest.mark.parametrize("N", [6000, 10**7])
+def test_long_chains_are_counted_before_anything_is_allocated(N):
+    """Transforms take N^2 doubles: they are in the prediction, so that a chain too long is refused."""
+    from symfpu.algebra.dense import predicted_bytes
+
+    assert predicted_bytes(N, 1, 2, cubic=False) > 16 * N * N
+
+
+@pytest.mark.parametrize("frequencies", [{1: "0.4"}, "0.4", 0.4])
+def test_frequencies_are_a_sequence(frequencies):
+    with pytest.raises(InputError, match="frequencies"):
+        lindstedt(Chain(8, alpha=1), (1,), frequencies, 1)
+
+
+def test_frequencies_may_come_from_a_generator():
+    assert lindstedt(Chain(8, alpha=1), (1,), (w for w in ["0.4"]), 1).order == 1
+
+
+def test_huge_symbolic_order_is_refused_in_one_line():
+    with pytest.raises(TooLarge) as caught:
+        lindstedt(Chain(16, alpha=1), (1,), order=10_000)
+    assert "\n" not in str(caught.value)

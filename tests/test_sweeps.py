@@ -96,3 +96,12 @@ def test_summary_counts_what_the_sweep_holds(beta):
     text = sweep_markdown(beta)
     assert f"{len(beta.cases)} seed sets" in text
     assert text.count(" -> ") == 1 + sum(len(case.exceptions) for case in beta.cases)
+
+
+@pytest.mark.parametrize("text", ["precious data without newline", "line one\nprecious tail"])
+def test_foreign_file_is_left_as_it_is(tmp_path, threads, text):
+    file = tmp_path / "notes.txt"
+    file.write_text(text)
+    with pytest.raises(InputError, match="another file"):
+        sweep_propagation([4], 1, 1, executor=threads, file=file)
+    assert file.read_text() == text

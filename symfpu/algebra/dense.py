@@ -34,7 +34,8 @@ def predicted_bytes(N: int, seeds: int, top: int, *, cubic: bool) -> int:
     canonical = (rows + comb(top // 2 + seeds, seeds)) // 2
     stored = rows * 8 * (lanes * (2 if cubic else 1) + 16 * -(-seeds // 8) + 4 * seeds + 4)
     working = monomial_count(seeds, top) * 8 * 3 * lanes + canonical_count(seeds, top) * (N - 1) * 8 * 5
-    return stored + canonical * (N - 1) * 8 + working
+    transforms = N * lanes * 8 * 4 + 2 * N * comb(top + seeds, seeds) + N * 1000  # cosines, selection rules, exact frequencies
+    return stored + canonical * (N - 1) * 8 + working + transforms
 
 
 class DenseRing:
