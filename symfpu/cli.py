@@ -52,6 +52,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+UsageProblem: Any = typer.BadParameter.__mro__[2]  # click's ClickException, which typer may carry inside itself
 TARGETS = ("table", "fig1", "fig6")
 
 BondsOption = Annotated[str, typer.Option("-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N")]
@@ -318,22 +319,19 @@ def _progress() -> Iterator[Callable[[str, float | None], None]]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
     command = typer.main.get_command(app)
+    words = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     try:
-        code = command.main(args=None if arguments is None else list(arguments), prog_name="symfpu", standalone_mode=False)
+        code = command.main(args=words, prog_name="symfpu", standalone_mode=False)
     except InputError as error:
         return _fail(str(error), 2)
     except SymfpuError as error:
         return _fail(str(error), 1)
     except OSError as error:
         return _fail(f"{error.filename}: {error.strerror}; name another file or folder", 2)
-    except (KeyboardInterrupt, EOFError):
+    except (KeyboardInterrupt, EOFError, typer.Abort):
         return _fail("interrupted", 130)
-    except Exception as error:
-        if hasattr(error, "format_message") and hasattr(error, "exit_code"):  # usage errors of the command-line library
-            return _fail(f"{error.format_message()} (see symfpu --help)", int(error.exit_code))
-        if type(error).__name__ == "Abort":
-            return _fail("interrupted", 130)
-        raise
+    except UsageProblem as error:
+        return _fail(f"{error.format_message()} (see symfpu --help)", int(error.exit_code))
     return _fail("interrupted", 130) if code == 130 else int(code or 0)
 
 

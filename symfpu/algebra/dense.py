@@ -7,6 +7,7 @@ what its cosines are, how it multiplies and reduces arrays, and whether it resca
 from __future__ import annotations
 
 import os
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from math import comb
@@ -38,7 +39,7 @@ def predicted_bytes(N: int, seeds: int, top: int, *, cubic: bool) -> int:
     return stored + canonical * (N - 1) * 8 + working + transforms
 
 
-class DenseRing:
+class DenseRing(ABC):
     """Coefficients as doubles; products on bonds by compiled, threaded kernels.
 
     multiply_adds counts the multiply-adds that the kernels performed on the bonds so far. exponent : degree d of
@@ -71,26 +72,27 @@ class DenseRing:
         self._diagonal: list[Floats] = []
         self._to_bonds, self._to_modes = self._transforms()
 
+    @abstractmethod
     def _cosines(self, angles: Ints) -> Floats:
         """cos(angle pi / 2N) for integers in 0 .. 2N, as elements of the ring."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _reciprocal(self, number: int) -> float:
         """1 / number as an element of the ring."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _matrix_product(self, left: Floats, right: Floats) -> Floats:
         """Product of two matrices of ring elements."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _times(self, values: Floats, factor: Floats | float) -> Floats:
         """Element by element product with an array or a number of the ring; may overwrite values."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _reduced(self, values: Floats) -> Floats:
         """The values in their normal form, after sums; may overwrite them."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _keep_in_range(self, degree: int, modes: Floats) -> None:
         """Called after a degree is stored; a ring that can overflow rescales here."""
 

@@ -73,6 +73,9 @@ class ResidueRing(DenseRing):
         values -= self.modulus * np.rint(values / self.modulus)
         return values
 
+    def _keep_in_range(self, degree: int, modes: Floats) -> None:
+        """Residues do not grow."""
+
     def inverses(self, values: Floats) -> Floats:
         """1 / value for every element, by Fermat's little theorem; zero stays zero."""
         result, power, exponent = np.ones_like(values), values.copy(), self.prime - 2
