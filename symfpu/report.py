@@ -29,6 +29,11 @@ def output_folder(path: Path) -> Path:
     return path
 
 
+def fifteen_digits(value: float) -> float:
+    """A measure of size to 15 digits, the most that a number in JSON has; what needs more is written as a string."""
+    return float(f"{value:.15g}")
+
+
 def torus_record(torus: QTorus) -> dict[str, Any]:
     """A torus for JSON: keys of the command line, numbers of more than 15 digits as strings."""
     series = torus.series
@@ -45,10 +50,11 @@ def torus_record(torus: QTorus) -> dict[str, Any]:
         "energy": repr(float(torus.energy())),
         "harmonic_energy": repr(float(torus.harmonic_energies().sum())),
         "average_harmonic_energy": repr(float(torus.average_spectrum().sum())),
-        "residual": torus.residual(),
-        "root_residual": torus.root_residual,
+        "residual": fifteen_digits(torus.residual()),
+        "root_residual": fifteen_digits(torus.root_residual),
         "smallest_divisors": [
-            {"size": d.size, "mode": d.mode, "harmonic": list(d.harmonic), "order": d.order} for d in series.smallest_divisors
+            {"size": fifteen_digits(d.size), "mode": d.mode, "harmonic": list(d.harmonic), "order": d.order}
+            for d in series.smallest_divisors
         ],
         "warnings": list(torus.warnings),
     }

@@ -27,7 +27,7 @@ def test_a_record_survives_json_without_losing_a_digit(torus):
     assert float(record["average_harmonic_energy"]) == torus.average_spectrum().sum()
     assert {int(k): tuple(map(float, values)) for k, values in record["history"].items()} == torus.history
     assert (record["alpha"], record["beta"], record["seeds"]) == ("1/3", "0.1", [1, 2])
-    assert record["residual"] == torus.residual()
+    assert record["residual"] == float(f"{torus.residual():.15g}")
     assert record["warnings"] == list(torus.warnings)
     assert len(record["smallest_divisors"]) == len(torus.series.smallest_divisors)
 
@@ -70,3 +70,19 @@ def test_csv_files_hold_the_data_of_the_panels(torus, tmp_path):
     assert tables["fig1c"][1:] == [["0", "1.0", "1.0"], ["1", "0.5", "0.25"]]
     assert [float(row[0]) for row in tables["fig1d"][1:]] == data.times.tolist()
     assert [float(row[2]) for row in tables["fig1d"][1:]] == data.errors[4][1].tolist()
+
+
+def test_json_numbers_have_at_most_fifteen_digits(torus):
+    """More digits are written as strings, so that no reader rounds them."""
+    record = json.loads(json.dumps(torus_record(torus)))
+
+    def numbers(value):
+        if isinstance(value, dict | list):
+            for inner in value.values() if isinstance(value, dict) else value:
+                yield from numbers(inner)
+        elif isinstance(value, float):
+            yield value
+
+    found = list(numbers(record))
+    assert len(found) > 5
+    assert all(float(f"{value:.15g}") == value for value in found)

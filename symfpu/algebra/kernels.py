@@ -68,7 +68,7 @@ def multiply_row(
 ) -> Any:
     """out[o + table[t + n]] += weight left[i] right[j + n] for start <= n < stop; `lanes` is a tuple whose length is the row's.
 
-    modulus : None, or a number: then every product is taken modulo it.
+    modulus : None, or a number: then every product is taken modulo it. One piece of code on purpose: it emits one loop.
     """
     integer = types.intp
     signature = types.void(lanes, left, integer, Float64, right, integer, out, integer, table, integer, integer, integer, modulus)
