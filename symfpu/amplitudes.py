@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import lcm
+from typing import Any
 
 import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.arithmetic import GUARD_DIGITS, Numbers, mpf
 from symfpu.chain import decimal
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
 from symfpu.exact import exact, integer
+from symfpu.interval_newton import certify_root
 from symfpu.series import LindstedtSeries
 from symfpu.torus import QTorus
 
@@ -23,6 +26,9 @@ RESIDUAL_FLOOR = 1e-10  # relative residual below which growth with the order is
 LARGEST_GUESS = 1e12
 LARGE_RESIDUAL = 1e-4  # relative residual above which the solution is doubtful whatever the orders say
 RESIDUAL_POINTS = 128  # angles at which two neighbouring orders are compared, about
+SHIFT_GUARD = 35  # digits beyond the asked ones, of which the difference of two nearly equal frequencies loses some
+NEWTON_STEPS = 50
+LOST_DIGITS = 5  # of the guard digits of an evaluation, at a root
 ROUNDING = 256 * np.finfo(float).eps  # of the sum of moduli of the series: what a root may leave
 AGREEMENT = 1e-3  # relative change from the neighbouring order above which a root is doubtful
 
@@ -36,7 +42,7 @@ class AmplitudeHistory:
 
     seeds: tuple[int, ...]
     orders: tuple[int, ...]
-    amplitudes: Mapping[int, tuple[float, ...]]
+    amplitudes: Mapping[int, tuple[Any, ...]]
     failures: Mapping[int, SymfpuError]
 
     def __repr__(self) -> str:
@@ -46,7 +52,7 @@ class AmplitudeHistory:
     def differences(self) -> dict[int, tuple[float, ...]]:
         """Delta A(k) = |A(k + step) - A(k)| for consecutive orders that have a root (the paper's step is 2)."""
         pairs = ((a, b) for a, b in itertools.pairwise(self.orders) if a in self.amplitudes and b in self.amplitudes)
-        return {a: tuple(np.abs(np.subtract(self.amplitudes[b], self.amplitudes[a])).tolist()) for a, b in pairs}
+        return {a: tuple(float(abs(y - x)) for x, y in zip(self.amplitudes[a], self.amplitudes[b], strict=True)) for a, b in pairs}
 
 
 def frequency_orders(series: LindstedtSeries) -> tuple[int, ...]:
@@ -61,13 +67,13 @@ def amplitude_history(series: LindstedtSeries) -> AmplitudeHistory:
     The lowest order is linear in A^2 and needs no guess. Raises UndeterminedAmplitudes if it does not determine A^2.
     """
     orders = frequency_orders(series)
-    found: dict[int, tuple[float, ...]] = {}
+    found: dict[int, tuple[Any, ...]] = {}
     failures: dict[int, SymfpuError] = {}
     squares = np.abs(_lowest_order(series)) if orders else np.zeros(len(series.seeds))
     for K in orders:
         try:
             root, _ = _root(series, K, squares)
-            found[K] = tuple(np.sqrt(root).tolist())
+            found[K] = _square_roots(series, root)
             squares = root
         except (NoRealAmplitude, DidNotConverge) as failure:
             failures[K] = failure
@@ -93,7 +99,8 @@ def solve_amplitudes(
     series; NoRealAmplitude if an A^2 comes out negative (names the seed), also where the lowest order has no real root and
     no later one up to frequency_order has; DidNotConverge with the last iterate and residual; UndeterminedAmplitudes if
     no correction determines the amplitudes.
-    Where neighbouring frequency orders disagree, the torus says so in its warnings.
+    Where neighbouring frequency orders disagree, the torus says so in its warnings. For a series with digits the root is
+    polished to them by mpmath, and its certificate says whether ball arithmetic proves that it exists within 10^-digits.
     """
     if series.frequencies is None:
         raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
@@ -109,17 +116,23 @@ def solve_amplitudes(
     history = amplitude_history(series)
     start = _start(series, orders, history, guess)
     squares, residual = _root(series, orders[-1], start)
-    amplitudes = np.sqrt(squares)
+    amplitudes = _square_roots(series, squares)
     torus = QTorus(
         series=series,
-        amplitudes=dict(zip(series.seeds, amplitudes.tolist(), strict=True)),
+        amplitudes=dict(zip(series.seeds, amplitudes, strict=True)),
         phases=angles,
         frequency_order=K,
         order=coordinate_order,
         history=dict(history.amplitudes),
         root_residual=residual,
+        certificate=certify_root(series, list(squares), K) if series.digits else None,
     )
     return replace(torus, warnings=(*_order_doubts(amplitudes, orders, history), *_residual_doubts(torus)))
+
+
+def _square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:
+    with series.numbers.context(series.digits):
+        return tuple(series.numbers.sqrt(squares).tolist())
 
 
 def _refuse_commensurable(series: LindstedtSeries) -> None:
@@ -148,16 +161,17 @@ def _order_argument(name: str, value: int | None, series: LindstedtSeries) -> in
     return int(value)
 
 
-def _by_seed(name: str, values: Mapping[int, float] | None, series: LindstedtSeries) -> dict[int, float]:
+def _by_seed(name: str, values: Mapping[int, Any] | None, series: LindstedtSeries) -> dict[int, Any]:
     if values is not None and not isinstance(values, Mapping):
         raise InputError(name, values, f"a mapping from the seeds {series.seeds} to numbers", "write it as {seed: number}")
     for q in values or {}:
         if q not in series.seeds:
             raise InputError(name, q, f"seeds {series.seeds} as keys", "name seeds only")
-    return {int(q): float(exact(v, name)) for q, v in (values or {}).items()}
+    with series.numbers.context(series.digits):
+        return {int(q): series.numbers.number(exact(v, name)) for q, v in (values or {}).items()}
 
 
-def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory, guess: Mapping[int, float] | None) -> Floats:
+def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory, guess: Mapping[int, float] | None) -> Numbers:
     if guess is not None:
         given = _by_seed("guess", guess, series)
         if set(given) != set(series.seeds):
@@ -166,36 +180,33 @@ def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory
             raise InputError(
                 "guess", dict(guess), f"amplitudes that are not 0 and below {LARGEST_GUESS:g}", "take them near the expected ones"
             )
-        return np.array([given[q] ** 2 for q in series.seeds])
+        return np.array([float(given[q]) ** 2 for q in series.seeds])
     earlier = [k for k in orders if k in history.amplitudes]
     if not earlier:
         raise history.failures[orders[0]]
-    return np.array(history.amplitudes[earlier[-1]]) ** 2
+    with series.numbers.context(series.digits):
+        return np.array(history.amplitudes[earlier[-1]]) ** 2
 
 
-def shifts(series: LindstedtSeries) -> Floats:
+def shifts(series: LindstedtSeries) -> Numbers:
     """omega_q - Omega_q of the seeds, correctly rounded; shape (s,)."""
     assert series.frequencies is not None
-    with mpmath.workdps(50):
-        return np.array(
-            [
-                float(mpmath.mpf(w.numerator) / w.denominator - series.chain.linear_frequency(q))
-                for q, w in zip(series.seeds, series.frequencies, strict=True)
-            ]
-        )
+    with mpmath.workdps((series.digits or 17) + SHIFT_GUARD):
+        exact = [mpf(w) - series.chain.linear_frequency(q) for q, w in zip(series.seeds, series.frequencies, strict=True)]
+    return np.array([float(x) for x in exact]) if series.digits is None else np.array(exact, dtype=object)
 
 
 def _lowest_order(series: LindstedtSeries) -> Floats:
     """A^2 from the lowest correction, which is linear in A^2; it may be negative."""
     first = frequency_orders(series)[0]
     _, jacobian = series.frequency_terms(np.zeros(len(series.seeds)), first)
-    matrix = jacobian[first]
+    matrix = jacobian[first].astype(float)
     if not np.any(matrix) or np.linalg.cond(matrix) > 1 / np.finfo(float).eps:
         raise UndeterminedAmplitudes(series.seeds, first)
-    return np.asarray(np.linalg.solve(matrix, shifts(series)))
+    return np.asarray(np.linalg.solve(matrix, shifts(series).astype(float)))
 
 
-def _root(series: LindstedtSeries, K: int, start: Floats) -> tuple[Floats, float]:
+def _root(series: LindstedtSeries, K: int, start: Numbers) -> tuple[Numbers, float]:
     """A^2 that solves the equations truncated at order K, and the residual it leaves."""
     from scipy.optimize import root
 
@@ -203,17 +214,23 @@ def _root(series: LindstedtSeries, K: int, start: Floats) -> tuple[Floats, float
     scale = np.where(start != 0, np.abs(start), 1.0)
     unit = np.abs(target) + np.finfo(float).tiny
 
-    def equations(y: Floats) -> tuple[Floats, Floats]:
+    def equations(y: Numbers) -> tuple[Numbers, Numbers]:
         terms, jacobian = series.frequency_terms(y * scale, K)
         return (terms[1:].sum(axis=0) - target) / unit, jacobian[1:].sum(axis=0) * scale / unit[:, None]
 
-    with np.errstate(over="ignore", invalid="ignore"):
-        squares = np.asarray(root(equations, start / scale, jac=True, method="hybr", tol=1e-15).x) * scale
+    def doubles(y: Floats) -> tuple[Floats, Floats]:
+        values, jacobian = equations(y)
+        return values.astype(float), jacobian.astype(float)
+
+    with np.errstate(over="ignore", invalid="ignore"), series.numbers.context(series.digits):
+        near = root(doubles, (start / scale).astype(float), jac=True, method="hybr", tol=1e-15).x
+        squares = (near if series.digits is None else _polished(equations, near, series.digits)) * scale
         terms, _ = series.frequency_terms(squares, K)
-    residual = float(np.max(np.abs(terms[1:].sum(axis=0) - target)))
-    allowed = ROUNDING * np.max(np.abs(terms[1:]).sum(axis=0) + np.abs(target))
+        residual = float(np.max(np.abs(terms[1:].sum(axis=0) - target)))
+        rounding = ROUNDING if series.digits is None else 10.0 ** -(series.digits + GUARD_DIGITS - LOST_DIGITS)
+        allowed = rounding * float(np.max(np.abs(terms[1:]).sum(axis=0) + np.abs(target)))
     if not residual <= allowed:  # also when it is not a number
-        iterate = {q: float(np.sign(x) * np.sqrt(abs(x))) for q, x in zip(series.seeds, squares, strict=True)}
+        iterate = {q: float(np.sign(float(x)) * abs(float(x)) ** 0.5) for q, x in zip(series.seeds, squares, strict=True)}
         raise DidNotConverge(K, iterate, residual)
     for q, x in zip(series.seeds, squares, strict=True):
         if x <= 0:
@@ -221,7 +238,28 @@ def _root(series: LindstedtSeries, K: int, start: Floats) -> tuple[Floats, float
     return squares, residual
 
 
-def _order_doubts(amplitudes: Floats, orders: list[int], history: AmplitudeHistory) -> tuple[str, ...]:
+def _polished(equations: Callable[[Numbers], tuple[Numbers, Numbers]], near: Floats, digits: int) -> Numbers:
+    """The root near a point to all digits, by mpmath's Newton iteration; the last iterate where it does not converge."""
+    known: dict[tuple[Any, ...], tuple[Numbers, Numbers]] = {}
+
+    def at(point: tuple[Any, ...]) -> tuple[Numbers, Numbers]:
+        if point not in known:
+            known[point] = equations(np.array(point, dtype=object))
+        return known[point]
+
+    def values(*point: Any) -> list[Any]:
+        return list(at(point)[0])
+
+    def jacobian(*point: Any) -> Any:
+        return mpmath.matrix(at(point)[1].tolist())
+
+    start = [mpmath.mpf(float(x)) for x in near]
+    tolerance = mpmath.mpf(10) ** -(digits + GUARD_DIGITS - LOST_DIGITS)
+    found = mpmath.findroot(values, start, solver="mdnewton", J=jacobian, tol=tolerance, maxsteps=NEWTON_STEPS, verify=False)
+    return np.array(list(found), dtype=object)
+
+
+def _order_doubts(amplitudes: tuple[Any, ...], orders: list[int], history: AmplitudeHistory) -> tuple[str, ...]:
     """Why the root may be one of the truncated polynomial only."""
     K = orders[-1]
     if len(orders) == 1:
@@ -229,7 +267,7 @@ def _order_doubts(amplitudes: Floats, orders: list[int], history: AmplitudeHisto
     before = orders[-2]
     if before not in history.amplitudes:
         return (f"frequency order {before} has no root: the root at order {K} may be one of the truncated polynomial only",)
-    change = np.max(np.abs(amplitudes / np.array(history.amplitudes[before]) - 1))
+    change = max(abs(float(a / b - 1)) for a, b in zip(amplitudes, history.amplitudes[before], strict=True))
     doubts = []
     if change > AGREEMENT:
         doubts.append(f"the amplitudes of frequency orders {before} and {K} differ by {change:.1%}: not a torus to that accuracy")
@@ -243,7 +281,7 @@ def _order_doubts(amplitudes: Floats, orders: list[int], history: AmplitudeHisto
 
 def _residual_doubts(torus: QTorus) -> tuple[str, ...]:
     """Whether the residual of the equations of motion is large, or grew with the last two orders of the coordinates."""
-    points = max(3, round(RESIDUAL_POINTS ** (1 / len(torus.series.seeds))))
+    points = None if torus.digits else max(3, round(RESIDUAL_POINTS ** (1 / len(torus.seeds))))
     residual, before = torus.residual(points), torus.order - 2
     doubts = []
     if residual > LARGE_RESIDUAL:

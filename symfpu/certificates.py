@@ -23,9 +23,9 @@ from symfpu.algebra.residue import largest_modulus
 from symfpu.chain import Chain
 from symfpu.errors import InputError, SymfpuError, VanishingResidue
 from symfpu.exact import integer, seed_modes
-from symfpu.lindstedt import Progress, ResiduePoint, check_size, lindstedt, residue_series, shared_grading
+from symfpu.lindstedt import Progress, check_size, lindstedt, residue_series, shared_grading
 from symfpu.propagation import coupled_modes, excitation_sequence
-from symfpu.series import LindstedtSeries
+from symfpu.series import LindstedtSeries, ResiduePoint
 
 FORMAT, SCHEMA = "symfpu propagation certificate", 1
 ATTEMPTS = 50  # points tried before giving up on vanishing divisors

@@ -14,6 +14,7 @@ import numpy as np
 import symengine as se
 from numpy.typing import ArrayLike, NDArray
 
+from symfpu.arithmetic import DOUBLES, Doubles, Numbers, arithmetic_of, sine_matrix
 from symfpu.errors import InputError
 from symfpu.exact import Number, exact, integer
 
@@ -78,52 +79,70 @@ class Chain:
         """Omega_q = 2 sin(q pi / 2N) at the working precision of mpmath."""
         return 2 * mpmath.sinpi(mpmath.mpf(q) / (2 * self.N))
 
-    def frequencies(self) -> Floats:
-        """Linear frequencies Omega_q, q = 1 .. N-1, correctly rounded; shape (N-1,)."""
-        return linear_frequencies(self.N)
+    def small_parameter(self, numbers: Doubles = DOUBLES) -> Any:
+        """mu in the given arithmetic."""
+        if numbers is DOUBLES:
+            return self.mu
+        if self.alpha:
+            return numbers.number(self.alpha) / mpmath.sqrt(2 * self.N)
+        return numbers.number(self.beta / (2 * self.N))
 
-    def positions(self, Q: ArrayLike) -> Floats:
+    def frequencies(self, numbers: Doubles = DOUBLES) -> Numbers:
+        """Linear frequencies Omega_q, q = 1 .. N-1, correctly rounded, or in another arithmetic; shape (N-1,)."""
+        if numbers is DOUBLES:
+            return linear_frequencies(self.N)
+        return np.array([self.linear_frequency(q) for q in range(1, self.N)], dtype=object)
+
+    def positions(self, Q: ArrayLike) -> Numbers:
         """Particle displacements x_1 .. x_(N-1) of mode coordinates (Eq. lintra); shape (..., N-1) to (..., N-1).
 
-        The transform is orthogonal and its own inverse: it also takes momenta, and positions to modes.
+        The transform is orthogonal and its own inverse: it also takes momenta, and positions to modes. Here and below arrays
+        of mpf give arrays of mpf at mpmath's working precision.
         """
         from scipy.fft import dst
 
-        return np.asarray(dst(self._state(Q, "Q"), type=1, norm="ortho", axis=-1))
+        state, numbers = self._state(Q, "Q")
+        if numbers is not DOUBLES:
+            return numbers.dot(state, sine_matrix(self.N))
+        return np.asarray(dst(state, type=1, norm="ortho", axis=-1))
 
-    def modes(self, x: ArrayLike) -> Floats:
+    def modes(self, x: ArrayLike) -> Numbers:
         """Mode coordinates Q_1 .. Q_(N-1) of particle displacements, the inverse of `positions`; shape (..., N-1)."""
         return self.positions(x)
 
-    def stretches(self, Q: ArrayLike) -> Floats:
+    def stretches(self, Q: ArrayLike) -> Numbers:
         """Bond stretches r_j = x_(j+1) - x_j, j = 0 .. N-1, of mode coordinates; shape (..., N-1) to (..., N)."""
         x = self.positions(Q)
         return np.diff(np.concatenate([np.zeros_like(x[..., :1]), x, np.zeros_like(x[..., :1])], axis=-1), axis=-1)
 
-    def energy(self, Q: ArrayLike, P: ArrayLike) -> Floats:
+    def energy(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
         """Total energy H (Eq. fpuham) of mode coordinates and momenta; shapes (..., N-1) to (...)."""
-        r, P = self.stretches(Q), self._state(P, "P")
-        potential = r**2 * (0.5 + r * (float(self.alpha) / 3 + r * float(self.beta) / 4))
+        r, (P, numbers) = self.stretches(Q), self._state(P, "P")
+        alpha, beta = numbers.number(self.alpha), numbers.number(self.beta)
+        potential = r**2 * (0.5 + r * (alpha / 3 + r * beta / 4))
         return np.asarray(0.5 * np.sum(P**2, axis=-1) + np.sum(potential, axis=-1))
 
-    def harmonic_energies(self, Q: ArrayLike, P: ArrayLike) -> Floats:
+    def harmonic_energies(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
         """Harmonic energy E_q = (P_q^2 + Omega_q^2 Q_q^2)/2 of every mode (Eq. harmonicene); shapes (..., N-1)."""
-        return np.asarray(0.5 * (self._state(P, "P") ** 2 + (self.frequencies() * self._state(Q, "Q")) ** 2))
+        (Q, numbers), (P, _) = self._state(Q, "Q"), self._state(P, "P")
+        return np.asarray(0.5 * (P**2 + (self.frequencies(numbers) * Q) ** 2))
 
-    def accelerations(self, Q: ArrayLike) -> Floats:
+    def accelerations(self, Q: ArrayLike) -> Numbers:
         """Second time derivative of every mode coordinate (Eq. eqmo); shapes (..., N-1)."""
         r = self.stretches(Q)
-        tension = r * (1 + r * (float(self.alpha) + r * float(self.beta)))
+        numbers = arithmetic_of(r)
+        tension = r * (1 + r * (numbers.number(self.alpha) + r * numbers.number(self.beta)))
         return self.positions(np.diff(tension, axis=-1))
 
-    def _state(self, values: ArrayLike, argument: str) -> Floats:
+    def _state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Doubles]:
+        numbers = arithmetic_of(values)
         try:
-            array = np.asarray(values, dtype=np.float64)
+            array = numbers.array(values)
         except (TypeError, ValueError) as error:
             raise InputError(argument, values, "an array of real numbers", "pass numbers") from error
         if array.ndim == 0 or array.shape[-1] != self.N - 1:
             raise InputError(argument, array.shape, f"an array whose last axis has length N-1 = {self.N - 1}", "put the modes last")
-        return array
+        return array, numbers
 
     def B(self, q: int, l: int, m: int) -> int:
         """Coupling of three modes (Eq. transa): -1, 0 or 1 for distinct sums, by selection rule."""

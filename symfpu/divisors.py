@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import lcm
 from typing import Any
 
 import mpmath
@@ -84,19 +85,9 @@ class Float64Divisors:
         resolution = 2.0 ** -(self._grid + 40)
         for row, column in np.argwhere(wanted & (np.abs(difference) < 2.0 ** (4 - self._grid))):
             mode, harmonic = int(column) + 1, tuple(map(int, harmonics[row]))
-            exact = self._is_zero(mode, harmonic)
+            exact = vanishes(self.chain.N, self.seeds, self.frequencies, mode, harmonic)
             if exact or abs(difference[row, column]) < resolution:
                 raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
-
-    def _is_zero(self, mode: int, harmonic: tuple[int, ...]) -> bool:
-        """Whether lambda_mode = (nu.omega)^2 for the exact rational frequencies.
-
-        A linear frequency 2 sin(q pi / 2N) is rational only if it is 1, for q = N/3 (Niven).
-        """
-        drive = sum((n * w for n, w in zip(harmonic, self.frequencies, strict=True)), start=Fraction(0))
-        if mode in self.seeds:
-            return abs(drive) == self.frequencies[self.seeds.index(mode)]
-        return 3 * mode == self.chain.N and abs(drive) == 1
 
     def _remember(self, harmonics: Ints, wanted: NDArray[np.bool_], sizes: Floats, order: int) -> None:
         candidates = np.where(wanted, sizes, np.inf).ravel()
@@ -112,6 +103,44 @@ class Float64Divisors:
     def smallest(self) -> tuple[SmallDivisor, ...]:
         """The smallest divisors met so far, smallest first."""
         return tuple(self._smallest.values())
+
+
+class FixedPointDivisors:
+    """Multipliers as integers, 2^bits L rounded down, from exact frequencies and linear frequencies of four times the bits."""
+
+    def __init__(self, chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], bits: int) -> None:
+        self.chain, self.seeds, self.frequencies, self._bits = chain, tuple(seeds), tuple(frequencies), bits
+        self._places = 4 * bits + 64
+        self._common = lcm(*(w.denominator for w in frequencies))
+        self._omega = np.array([int(w * self._common) for w in frequencies], dtype=object)
+        with mpmath.workprec(self._places + 32):
+            linear = [int(mpmath.nint(mpmath.ldexp(chain.linear_frequency(q) ** 2, self._places))) for q in range(1, chain.N)]
+        self._numerators = np.array(linear, dtype=object)
+        self._lambda = self._numerators.copy()
+        for q, whole in zip(seeds, self._omega, strict=True):
+            self._lambda[q - 1] = self._squared(whole)
+
+    def _squared(self, whole: Any) -> Any:
+        return ((whole * whole) << self._places) // self._common**2
+
+    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> NDArray[np.object_]:
+        """2^bits L_q(nu) where the selection rules let mode q carry nu, zero elsewhere and in the gauge term; shape (H, N-1).
+
+        Raises ResonantDivisor where a divisor is zero or below 2^-bits.
+        """
+        rows, columns = np.nonzero(carried & ~gauge_terms(harmonics, self.seeds, self.chain.N))
+        divisors = self._lambda[columns] - self._squared(harmonics.astype(object) @ self._omega)[rows]
+        for at in np.flatnonzero(np.abs(divisors) < 1 << (self._places - self._bits)):
+            mode, harmonic = int(columns[at]) + 1, tuple(map(int, harmonics[rows[at]]))
+            exact = vanishes(self.chain.N, self.seeds, self.frequencies, mode, harmonic)
+            raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
+        table = np.full(carried.shape, 0, dtype=object)
+        table[rows, columns] = (self._numerators[columns] << self._bits) // divisors
+        return table
+
+    def smallest(self) -> tuple[SmallDivisor, ...]:
+        """None here: doubles, which come first, remember them."""
+        return ()
 
 
 class ResidueDivisors:
@@ -159,6 +188,17 @@ class UniversalDivisors:
     def smallest(self) -> tuple[SmallDivisor, ...]:
         """None: symbols have no size."""
         return ()
+
+
+def vanishes(N: int, seeds: Sequence[int], frequencies: Sequence[Fraction], mode: int, harmonic: Sequence[int]) -> bool:
+    """Whether lambda_mode = (nu.omega)^2 for the exact rational frequencies.
+
+    A linear frequency 2 sin(q pi / 2N) is rational only if it is 1, for q = N/3 (Niven).
+    """
+    drive = sum((n * w for n, w in zip(harmonic, frequencies, strict=True)), start=Fraction(0))
+    if mode in seeds:
+        return abs(drive) == frequencies[list(seeds).index(mode)]
+    return 3 * mode == N and abs(drive) == 1
 
 
 def gauge_terms(harmonics: Ints, seeds: Sequence[int], N: int) -> NDArray[np.bool_]:

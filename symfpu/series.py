@@ -7,17 +7,32 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+import mpmath
 import numpy as np
 import symengine as se
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.grading import Grading, Ints
+from symfpu.algebra.words import IntegerTable
+from symfpu.arithmetic import DOUBLES, MULTIPRECISION, Doubles, Numbers, from_integers, integers
 from symfpu.chain import Chain
 from symfpu.divisors import SmallDivisor
 from symfpu.errors import InputError, SymfpuError
 from symfpu.exact import integer
+from symfpu.frequency_polynomials import Polynomial, evaluate, powers_of, square_root
 
 Floats = NDArray[np.float64]
+
+LOG10_2 = 0.30102999566398120
+
+
+@dataclass(frozen=True)
+class ResiduePoint:
+    """A prime p = 1 mod 4N, an element of order 4N and the chosen frequencies, all modulo p."""
+
+    prime: int
+    root: int
+    frequencies: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,10 +40,13 @@ class LindstedtSeries:
     """The series Q_q = sum mu^k Q_q^(k) and omega_q = Omega_q + sum mu^k omega_q^(k) with free seed amplitudes.
 
     Made by `lindstedt`. The tables are in the ring's variables w_i = Omega_i z_i, z_i = (A_i/2) exp(i theta_i), and in
-    u_q = Omega_q Q_q, [omega_q^2]^(k) = Omega_q^2 W_q^(k), without mu; degree d carries the factor 2^(-scale (d-1)).
+    u_q = Omega_q Q_q, [omega_q^2]^(k) = Omega_q^2 W_q^(k), without mu; degree d carries the factor unit^-(d-1).
 
     coordinates : for each order 0 .. order, u_q^(k); shape (canonical monomials, N-1).
     corrections : for each order 0 .. order, W_q^(k); shape (diagonal monomials, s); no rows where none exist.
+    With digits, both are IntegerTables in units of 2^-bits, and results are mpf: every coefficient is correct to `digits`
+    digits of the largest one of its order, proved. radii : for each order, the largest error of u_q^(k), and the errors of
+    W_q^(k) by monomial and seed, in the same units. point : where a series of residues was taken.
     """
 
     chain: Chain
@@ -37,24 +55,48 @@ class LindstedtSeries:
     order: int
     ring: str
     grading: Grading = field(repr=False)
-    coordinates: tuple[NDArray[Any], ...] = field(repr=False)
-    corrections: tuple[NDArray[Any], ...] = field(repr=False)
-    scale: int
+    coordinates: tuple[Any, ...] = field(repr=False)
+    corrections: tuple[Any, ...] = field(repr=False)
+    unit: Fraction
     smallest_divisors: tuple[SmallDivisor, ...]
     multiply_adds: int = 0
+    digits: int | None = None
+    bits: int = 0
+    radii: tuple[tuple[float, Floats], ...] = field(repr=False, default=())
+    point: ResiduePoint | None = None
 
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
         smallest = f", smallest divisor {self.smallest_divisors[0]}" if self.smallest_divisors else ""
         return (
             f"LindstedtSeries({chain}, seeds={','.join(map(str, self.seeds))}, order {self.order}, "
-            f"{self.coefficient_count:,} coefficients ({self.ring}){smallest})"
+            f"{self.coefficient_count:,} coefficients ({self.precision}){smallest})"
         )
 
     @property
     def symbolic(self) -> bool:
         """Whether the coefficients are expressions in the symbols L_q(nu) (the universal form)."""
         return self.ring in ("symbolic", "nested")
+
+    @property
+    def precision(self) -> str:
+        """The ring of the coefficients, and how many digits it was asked for and carries."""
+        if self.digits is None:
+            return self.ring
+        return f"{self.digits} digits, {self.guard_digits} guard digits"
+
+    @property
+    def guard_digits(self) -> int:
+        """Decimal places carried beyond the promised ones: what the recursion can lose, from its divisors and order."""
+        return int(self.bits * LOG10_2) - (self.digits or 0)
+
+    @property
+    def numbers(self) -> Doubles:
+        """The arithmetic of numeric results."""
+        return DOUBLES if self.digits is None else MULTIPRECISION
+
+    def _context(self) -> Any:
+        return self.numbers.context(self.digits)
 
     @property
     def coefficient_count(self) -> int:
@@ -81,15 +123,23 @@ class LindstedtSeries:
         return self.seeds.index(q)
 
     def _linear(self, q: int) -> Any:
-        return self.chain.frequencies()[q - 1] if not self.symbolic else se.Symbol(f"Omega_{q}")
+        return self.chain.frequencies(self.numbers)[q - 1] if not self.symbolic else se.Symbol(f"Omega_{q}")
 
-    def _times(self, values: NDArray[Any], powers: Ints, exponent: int) -> NDArray[Any]:
-        """values times prod Omega_i^powers 2^exponent, in numbers or in symbols."""
-        if self.symbolic:
-            factors = [se.Mul(*(self._linear(q) ** int(e) for q, e in zip(self.seeds, row, strict=True))) for row in powers]
+    def _entries(self, table: Any, columns: Any = slice(None)) -> NDArray[Any]:
+        """Entries of a table as the numbers they denote: doubles, mpf or expressions."""
+        if isinstance(table, IntegerTable):
+            return from_integers(table.integers(columns), np.asarray(-self.bits))
+        return np.asarray(table[:, columns])
+
+    def _times(self, values: NDArray[Any], powers: Ints, units: int, halves: int = 0) -> NDArray[Any]:
+        """values times prod Omega_i^powers unit^units 2^-halves, in numbers or in symbols."""
+        if self.symbolic or self.digits:
+            unit = self.numbers.number(self.unit) if self.digits else se.Integer(1)
+            scale = unit**units / (2 if self.digits else se.Integer(2)) ** halves
+            factors = [np.prod([self._linear(q) ** int(e) for q, e in zip(self.seeds, row, strict=True)]) * scale for row in powers]
             return np.array([v * f for v, f in zip(values, factors, strict=True)], dtype=object)
         linear = np.array([self._linear(q) for q in self.seeds])
-        logarithm = powers @ np.log2(linear) + exponent
+        logarithm = powers @ np.log2(linear) + units * np.log2(float(self.unit)) - halves
         whole = np.floor(logarithm).astype(int)
         with np.errstate(over="ignore", under="ignore"):
             return np.asarray(np.ldexp(values * np.exp2(logarithm - whole), whole))
@@ -102,11 +152,12 @@ class LindstedtSeries:
         Raises InputError for a mode or an order outside the series, SymfpuError where a coefficient exceeds doubles.
         """
         degree, column = self.degree(order), self._mode(q) - 1
-        values = self.coordinates[order][:, column]
-        at = np.flatnonzero(values != 0)
-        exponents = self.grading.exponents(degree)[self.grading.canonical(degree)[at]]
-        result = self._times(values[at] / self._linear(q), self.grading.powers(degree)[at], self.scale * (degree - 1))
-        return exponents, self._finite(result, f"Q_{q}^({order})")
+        with self._context():
+            values = self._entries(self.coordinates[order], [column])[:, 0]
+            at = np.flatnonzero(values != 0)
+            exponents = self.grading.exponents(degree)[self.grading.canonical(degree)[at]]
+            result = self._times(values[at] / self._linear(q), self.grading.powers(degree)[at], degree - 1)
+            return exponents, self._finite(result, f"Q_{q}^({order})")
 
     def frequency_coefficients(self, q: int, order: int, *, squared: bool = False) -> tuple[Ints, NDArray[Any]]:
         """omega_q^(k), or [omega_q^2]^(k) if squared, without mu^k, as a polynomial in the amplitudes (Eq. omeser).
@@ -115,34 +166,30 @@ class LindstedtSeries:
         (its square). omega^(k) = ([omega^2]^(k) - sum_{0<j<k} omega^(j) omega^(k-j)) / (2 Omega).
         """
         i, order = self._seed(q), self._order(order)
-        polynomials = [self._squared_correction(i, k) for k in range(order + 1)]
-        linear = self._linear(q)
-        if not squared:
-            roots: list[dict[tuple[int, ...], Any]] = [{(0,) * len(self.seeds): linear}]
-            for k in range(1, order + 1):
-                roots.append(_root_term(polynomials[k], roots, linear))
-            polynomials = roots
-        chosen = {e: c for e, c in polynomials[order].items() if c != 0}
-        exponents = np.array(list(chosen), dtype=np.int64).reshape(len(chosen), len(self.seeds)) * 2
-        values = np.array(list(chosen.values()), dtype=object if self.symbolic else float)
-        if self.symbolic:
-            values = np.array([v if self.ring == "nested" else se.expand(v) for v in values], dtype=object)
         degree = self.chain.degree_step * order
-        result = self._times(values, exponents, self.scale * degree - degree)
-        if self.symbolic:
-            result = np.array([v / se.Integer(2) ** degree for v in result], dtype=object)
-        return exponents, self._finite(result, f"omega_{q}^({order})")
+        with self._context():
+            polynomials = [self._squared_correction(i, k) for k in range(order + 1)]
+            if not squared:
+                polynomials = square_root(polynomials, self._linear(q))
+            chosen = {e: c for e, c in polynomials[order].items() if c != 0}
+            exponents = np.array(list(chosen), dtype=np.int64).reshape(len(chosen), len(self.seeds)) * 2
+            values = np.array(list(chosen.values()), dtype=object if self.symbolic or self.digits else float)
+            if self.ring == "symbolic":
+                values = np.array([se.expand(v) for v in values], dtype=object)
+            result = self._times(values, exponents, degree, degree)
+            return exponents, self._finite(result, f"omega_{q}^({order})")
 
-    def _squared_correction(self, i: int, order: int) -> dict[tuple[int, ...], Any]:
+    def _squared_correction(self, i: int, order: int) -> Polynomial:
         """[omega_q^2]^(k) as {powers of w_i^2: coefficient}, scaled as the tables are."""
         linear = self._linear(self.seeds[i])
         if order == 0:
             return {(0,) * len(self.seeds): linear**2}
         diagonal = self.grading.diagonal(self.chain.degree_step * order)
-        return {tuple(map(int, e)): linear**2 * c for e, c in zip(diagonal, self.corrections[order][:, i], strict=True)}
+        column = self._entries(self.corrections[order], [i])[:, 0] if len(diagonal) else ()
+        return {tuple(map(int, e)): linear**2 * c for e, c in zip(diagonal, column, strict=True)}
 
     def _finite(self, values: NDArray[Any], what: str) -> NDArray[Any]:
-        if not self.symbolic and not np.isfinite(values).all():
+        if not self.symbolic and not self.digits and not np.isfinite(values).all():
             raise SymfpuError(f"{what} has coefficients beyond the range of doubles; evaluate at amplitudes (harmonic_terms) instead")
         return values
 
@@ -160,7 +207,7 @@ class LindstedtSeries:
             scalar = se.Integer(2 if any(nu) else 1) / se.Integer(2) ** sum(powers)
             amplitude = se.Mul(*(a**e for a, e in zip(A, powers, strict=True)))
             angle = se.Add(*(n * angle for n, angle in zip(nu, theta, strict=True)))
-            terms.append(scalar * _number(value) * amplitude * se.cos(angle))
+            terms.append(scalar * self._symbol(value) * amplitude * se.cos(angle))
         return se.Add(*terms)
 
     def frequency_correction(self, q: int, order: int) -> Any:
@@ -175,10 +222,16 @@ class LindstedtSeries:
         A, _ = self._amplitude_symbols()
         return se.Add(
             *(
-                _number(value) * se.Mul(*(a ** int(e) for a, e in zip(A, row, strict=True)))
+                self._symbol(value) * se.Mul(*(a ** int(e) for a, e in zip(A, row, strict=True)))
                 for row, value in zip(exponents, values, strict=True)
             )
         )
+
+    def _symbol(self, value: Any) -> Any:
+        """A coefficient as a SymEngine number; with digits, of that precision."""
+        if isinstance(value, se.Basic):
+            return value
+        return se.RealDouble(float(value)) if self.digits is None else se.Float(mpmath.nstr(value, self.digits + 2), dps=self.digits + 2)
 
     def _amplitude_symbols(self) -> tuple[list[Any], list[Any]]:
         return [se.Symbol(f"A{q}") for q in self.seeds], [se.Symbol(f"theta{q}") for q in self.seeds]
@@ -188,18 +241,24 @@ class LindstedtSeries:
             raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
 
     @cached_property
-    def _kappa(self) -> float:
-        """|mu|^(1/step) 2^scale: what the variables w_i are multiplied by before the scaled tables apply."""
-        return float(abs(self.chain.mu) ** (1 / self.chain.degree_step) * 2.0**self.scale)
+    def _kappa(self) -> Any:
+        """|mu|^(1/step) unit: what the variables w_i are multiplied by before the scaled tables apply."""
+        return abs(self.chain.small_parameter(self.numbers)) ** (1 / self.chain.degree_step) * self.numbers.number(self.unit)
 
     def _sign(self, order: int) -> float:
         return -1.0 if self.chain.mu < 0 and order % 2 else 1.0
 
-    def scaled_seeds(self, amplitudes: ArrayLike) -> Floats:
-        """The variables of the scaled tables, kappa Omega_i A_i / 2; shapes (s,)."""
-        return np.asarray(self._kappa / 2 * self.chain.frequencies()[np.array(self.seeds) - 1] * np.asarray(amplitudes, dtype=float))
+    @cached_property
+    def _seed_factors(self) -> Numbers:
+        """kappa Omega_i / 2, the scaled variables at unit amplitudes; shape (s,)."""
+        return np.asarray(self._kappa / 2 * self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1])
 
-    def harmonic_terms(self, amplitudes: ArrayLike, order: int, *, absolute: bool = False) -> tuple[Ints, Floats]:
+    def scaled_seeds(self, amplitudes: ArrayLike) -> Numbers:
+        """The variables of the scaled tables, kappa Omega_i A_i / 2; shapes (s,)."""
+        with self._context():
+            return np.asarray(self._seed_factors * self.numbers.array(amplitudes))
+
+    def harmonic_terms(self, amplitudes: ArrayLike, order: int, *, absolute: bool = False) -> tuple[Ints, Numbers]:
         """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients: sum over rows of value[., q] cos(nu.theta).
 
         amplitudes : (s,) in the order of the seeds. Returns harmonics (H, s), one of each pair +-nu, and values (H, N-1).
@@ -210,20 +269,34 @@ class LindstedtSeries:
             raise InputError(
                 "amplitudes", np.shape(amplitudes), f"one for each of the seeds {self.seeds}", "pass a sequence in their order"
             )
-        degree = self.degree(order)
-        powers, (nu, index) = self.grading.powers(degree), self.grading.harmonics(degree)
-        monomials = np.prod(self.scaled_seeds(amplitudes) ** powers, axis=1) * (self._sign(order) / self._kappa)
-        table = self.coordinates[order] * monomials[:, None]
-        if absolute:
-            np.abs(table, out=table)
+        nu, index = self.grading.harmonics(self.degree(order))
         by_harmonic = np.argsort(index, kind="stable")
         starts = np.searchsorted(index[by_harmonic], np.arange(len(nu)))
-        values = np.add.reduceat(table[by_harmonic], starts, axis=0) / self.chain.frequencies()
-        values[(nu != 0).any(axis=1)] *= 2
+        with self._context():
+            table, exponent = self._terms(amplitudes, order)
+            if absolute:
+                table = np.abs(table)
+            values = np.add.reduceat(table[by_harmonic], starts, axis=0)
+            if self.digits:
+                values = from_integers(values, exponent)
+            values = values * (self._sign(order) / self._kappa) / self.chain.frequencies(self.numbers)
+            values[(nu != 0).any(axis=1)] *= 2
         return nu, values
 
+    def _terms(self, amplitudes: ArrayLike, order: int) -> tuple[NDArray[Any], NDArray[np.int64]]:
+        """Every coefficient of an order times its monomial: doubles, or with digits integers and the power of two of their unit."""
+        powers, seeds = self.grading.powers(self.degree(order)), self.scaled_seeds(amplitudes)
+        if self.digits is None:
+            return self.coordinates[order] * np.prod(seeds**powers, axis=1)[:, None], np.zeros(1, dtype=np.int64)
+        table = powers_of(list(seeds), int(powers.max()), mpmath.mpf(1))
+        monomials = np.array(table[0], dtype=object)[powers[:, 0]]
+        for i in range(1, len(seeds)):
+            monomials = monomials * np.array(table[i], dtype=object)[powers[:, i]]
+        whole, exponent = integers(monomials[:, None])
+        return self.coordinates[order].integers() * whole, exponent - self.bits
+
     def absolute_sums(self, q: int, amplitudes: ArrayLike, *, with_mu: bool = False) -> tuple[Floats, Floats]:
-        """S_1(k) and S_2(k) of Eqs. serabs2 and serabs3 for Q_q^(k), k = 0 .. order; shapes (order + 1,) each.
+        """S_1(k) and S_2(k) of Eqs. serabs2 and serabs3 for Q_q^(k), k = 0 .. order, as doubles; shapes (order + 1,) each.
 
         S_1 adds the moduli of all coefficients, S_2 those of the cosines after the monomials of one harmonic are summed.
         with_mu : sums of mu^k Q_q^(k) instead, which cannot leave the range of doubles.
@@ -233,20 +306,42 @@ class LindstedtSeries:
         for k in range(self.order + 1):
             unit = 1.0 if with_mu else abs(self.chain.mu) ** -float(k)
             for row, absolute in enumerate((True, False)):
-                sums[row, k] = unit * np.abs(self.harmonic_terms(amplitudes, k, absolute=absolute)[1][:, column]).sum()
+                sums[row, k] = unit * float(np.abs(self.harmonic_terms(amplitudes, k, absolute=absolute)[1][:, column]).sum())
         return sums[0], sums[1]
 
-    def frequency_terms(self, squared_amplitudes: ArrayLike, order: int | None = None) -> tuple[Floats, Floats]:
+    def frequency_terms(self, squared_amplitudes: ArrayLike, order: int | None = None) -> tuple[Numbers, Numbers]:
         """mu^k omega_q^(k) for k = 0 .. order (default all) at these values of A^2, and the derivatives by A^2.
 
         squared_amplitudes : (s,). Returns terms (order + 1, s), order 0 being Omega_q, and derivatives (order + 1, s, s)
         with the last axis for the variable.
         """
         self._numeric()
-        top, s = self.order if order is None else self._order(order), len(self.seeds)
+        top = self.order if order is None else self._order(order)
+        if self.digits is None:
+            return self._frequency_doubles(np.asarray(squared_amplitudes, dtype=float), top)
+        with self._context():
+            point = list(self.numbers.array(squared_amplitudes))
+            powers = powers_of(point, self.chain.degree_step * top // 2, mpmath.mpf(1))
+            parts = [[evaluate(p, powers) for p in polynomials] for polynomials in self._frequency_polynomials[: top + 1]]
+            terms = np.array([[mpmath.mpf(value) for value, _ in row] for row in parts], dtype=object)
+            slopes = np.array([[[mpmath.mpf(x) for x in gradient] for _, gradient in row] for row in parts], dtype=object)
+        return terms, slopes
+
+    @cached_property
+    def _frequency_polynomials(self) -> list[list[Polynomial]]:
+        """mu^k omega_q^(k) as polynomials in A^2, by order and seed, in mpf."""
+        slopes = [f**2 for f in self._seed_factors]
+        by_seed = []
+        for i, q in enumerate(self.seeds):
+            roots = square_root([self._squared_correction(i, k) for k in range(self.order + 1)], self._linear(q))
+            by_seed.append([rescaled(p, slopes, self._sign(k)) for k, p in enumerate(roots)])
+        return [list(row) for row in zip(*by_seed, strict=True)]
+
+    def _frequency_doubles(self, squares: Floats, top: int) -> tuple[Floats, Floats]:
+        s = len(self.seeds)
         linear = self.chain.frequencies()[np.array(self.seeds) - 1]
-        slope = (self._kappa * linear / 2) ** 2
-        y = slope * np.asarray(squared_amplitudes, dtype=float)
+        slope = self._seed_factors**2
+        y = slope * squares
         terms, jacobian = np.zeros((top + 1, s)), np.zeros((top + 1, s, s))
         terms[0] = linear
         for k in range(1, top + 1):
@@ -274,17 +369,12 @@ def _polynomial(y: Floats, exponents: Ints, table: Floats) -> tuple[Floats, Floa
     return square, np.stack(slopes, axis=1)
 
 
-def _number(value: Any) -> Any:
-    return value if isinstance(value, se.Basic) else se.RealDouble(float(value))
-
-
-def _root_term(square: dict[tuple[int, ...], Any], roots: list[dict[tuple[int, ...], Any]], linear: Any) -> dict[tuple[int, ...], Any]:
-    """The next term of the square root of a power series, by the terms found so far."""
-    term = dict(square)
-    k = len(roots)
-    for j in range(1, k):
-        for e, a in roots[j].items():
-            for f, b in roots[k - j].items():
-                key = tuple(x + y for x, y in zip(e, f, strict=True))
-                term[key] = term.get(key, 0) - a * b
-    return {e: c / (2 * linear) for e, c in term.items()}
+def rescaled(polynomial: Polynomial, slopes: list[Any], sign: float) -> Polynomial:
+    """The polynomial in the variables y_i / slope_i, times a sign."""
+    result = {}
+    for exponents, coefficient in polynomial.items():
+        factor: Any = int(sign)
+        for e, slope in zip(exponents, slopes, strict=True):
+            factor = factor * slope**e
+        result[exponents] = coefficient * factor
+    return result

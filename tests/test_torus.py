@@ -10,8 +10,9 @@ from scipy.integrate import simpson, solve_ivp
 from symfpu.amplitudes import solve_amplitudes
 from symfpu.chain import Chain
 from symfpu.errors import InputError
+from symfpu.fourier import mean_cosine
 from symfpu.lindstedt import lindstedt
-from symfpu.torus import QTorus, mean_cosine
+from symfpu.torus import QTorus
 from tests.tolerances import COEFFICIENT, DIFFERENCE, GRID_AVERAGE, ORBIT, QUADRATURE, ROUNDING, SLOPE
 
 PHASES = {1: 0.4, 2: -1.3}

@@ -10,7 +10,9 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from fractions import Fraction
 from math import comb
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +28,11 @@ PARALLEL_FROM = 500_000  # multiply-adds below which threads cost more than they
 def lane_width(columns: int) -> int:
     """Lanes in a row of the kernel: one vector register of doubles, or two where there are enough columns."""
     return 8 if columns <= 8 else 16
+
+
+def available_cores() -> int:
+    """Processor cores that this process may use."""
+    return len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count() or 1))
 
 
 def predicted_bytes(N: int, seeds: int, top: int, *, cubic: bool) -> int:
@@ -48,17 +55,19 @@ class DenseRing(ABC):
 
     modulus: float | None = None
 
-    def __init__(self, space: CosineModes, *, workers: int | None = None) -> None:
+    def __init__(self, space: CosineModes, *, workers: int | None = None, points: int | None = None) -> None:
+        """points : values kept for each monomial; default those on half of the bonds."""
         from symfpu.algebra import kernels  # lazy: numba takes longer to import than all the rest
 
         self._kernels = kernels
         self.space, self.grading = space, space.grading
         self.exponent = 0
         self.multiply_adds = 0
-        self._workers = workers or len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count() or 1))
+        self._workers = workers or available_cores()
         self._pool = ThreadPoolExecutor(self._workers)
-        self._lanes = lane_width(space.half)
-        self._slices = -(-space.half // self._lanes)
+        self._points = points or space.half
+        self._lanes = lane_width(self._points)
+        self._slices = -(-self._points // self._lanes)
         rows, seed_slices = int(self.grading.first_row[-1]), -(-len(space.seeds) // 8)
         self._bonds = np.zeros((self._slices, rows, self._lanes))
         self._squares: Floats | None = None
@@ -128,17 +137,23 @@ class DenseRing(ABC):
     def put(self, degree: int, modes: Floats) -> None:
         self._degrees.append(degree)
         self._modes.append(modes)
-        base = int(self.grading.first_row[degree])
-        canonical, conjugate = base + self.grading.canonical(degree), base + self.grading.conjugate(degree)
         for rows, columns in self._parts(degree):
-            values = self._matrix_product(modes[rows, columns], self._to_bonds[columns])
-            values = np.moveaxis(values.reshape(len(rows), self._slices, self._lanes), 1, 0)
-            self._bonds[:, canonical[rows]] = values
-            self._bonds[:, conjugate[rows]] = values
-        for i, q in enumerate(self.space.seeds):
-            for rows in (canonical, conjugate):
-                self._seed_modes[i // 8, rows, i % 8] = modes[:, q - 1]
+            self._store(self._bonds, degree, rows, self._matrix_product(modes[rows, columns], self._to_bonds[columns]))
+        self._store_seed_modes(degree, modes)
         self._keep_in_range(degree, modes)
+
+    def _store(self, target: Floats, degree: int, rows: Ints, values: Floats) -> None:
+        """Values (rows, points) of some canonical monomials, and of their conjugates, into the rows of the kernel."""
+        base = int(self.grading.first_row[degree])
+        lanes = np.moveaxis(values.reshape(len(rows), target.shape[0], target.shape[2]), 1, 0)
+        target[:, base + self.grading.canonical(degree)[rows]] = lanes
+        target[:, base + self.grading.conjugate(degree)[rows]] = lanes
+
+    def _store_seed_modes(self, degree: int, modes: Floats) -> None:
+        base = int(self.grading.first_row[degree])
+        for i, q in enumerate(self.space.seeds):
+            for rows in (self.grading.canonical(degree), self.grading.conjugate(degree)):
+                self._seed_modes[i // 8, base + rows, i % 8] = modes[:, q - 1]
 
     def _product(
         self, left: Floats, right: Floats, degree: int, splits: list[tuple[int, int]], *, symmetric: bool = False, sparse: bool = False
@@ -182,39 +197,48 @@ class DenseRing(ABC):
         return self._reduced(out)
 
     def square(self, degree: int) -> Floats:
-        splits = [(d, degree - d) for d in self._degrees if d <= degree - d and degree - d in self._degrees]
-        out = self._product(self._bonds, self._bonds, degree, splits, symmetric=True)
+        out = self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
         return self._times(out, float(np.ldexp(2.0, -self.exponent)))
 
-    def cube(self, degree: int) -> Floats:
+    def _canonical_points(self, degree: int, values: Floats) -> Floats:
+        """What the kernel gave for the canonical monomials, (slices, rows, lanes) to (canonical, points)."""
+        canonical = self.grading.canonical(degree)
+        return np.concatenate([part[canonical] for part in values], axis=1)
+
+    def _square_splits(self, degree: int) -> list[tuple[int, int]]:
+        return [(d, degree - d) for d in self._degrees if d <= degree - d and degree - d in self._degrees]
+
+    def _cube_splits(self, degree: int) -> list[tuple[int, int]]:
+        """Splits into a square and a single; squares that are still missing are made first."""
         if self._squares is None:
             self._squares = np.zeros_like(self._bonds)
         for d in range(2, degree):
-            if d not in self._square_degrees and (d - 2 * self._degrees[0]) >= 0:
+            if d not in self._square_degrees:
                 self._put_square(d)
-        splits = [(d, degree - d) for d in self._square_degrees if degree - d in self._degrees]
+        return [(d, degree - d) for d in self._square_degrees if degree - d in self._degrees]
+
+    def cube(self, degree: int) -> Floats:
+        splits = self._cube_splits(degree)
+        assert self._squares is not None
         out = self._product(self._squares, self._bonds, degree, splits)
         return self._times(out, float(np.ldexp(2.0, -self.exponent)))
 
     def _put_square(self, degree: int) -> None:
         assert self._squares is not None
-        values = self.square(degree)
+        values = self._canonical_points(degree, self.square(degree))
         self._square_degrees.append(degree)
-        base = int(self.grading.first_row[degree])
-        canonical, conjugate = self.grading.canonical(degree), self.grading.conjugate(degree)
-        self._squares[:, base + canonical] = values[:, canonical]
-        self._squares[:, base + conjugate] = values[:, canonical]
+        self._store(self._squares, degree, np.arange(len(values)), values)
 
     def project(self, degree: int, parts: Sequence[tuple[float, Floats]]) -> Floats:
         canonical = self.grading.canonical(degree)
         modes = np.zeros((len(canonical), self.space.N - 1))
         for rows, columns in self._parts(degree):
             for coefficient, values in parts:
-                bonds = np.concatenate([values[i, canonical[rows]] for i in range(self._slices)], axis=1)
+                bonds = np.concatenate([part[canonical[rows]] for part in values], axis=1)
                 modes[rows, columns] += self._times(self._matrix_product(bonds, self._to_modes[columns].T), coefficient)
         return self._reduced(np.multiply(modes, self.space.mask(degree), out=modes))
 
-    def secular(self, degree: int, modes: Floats) -> Floats:
+    def secular(self, degree: int, modes: NDArray[Any]) -> NDArray[Any]:
         canonical = self.grading.canonical(degree)
         diagonal = self.grading.diagonal(degree - 1)
         columns = []
@@ -228,14 +252,22 @@ class DenseRing(ABC):
     def correct(self, degree: int, corrections: Floats) -> None:
         self._correction_degrees.append(degree)
         self._diagonal.append(corrections)
-        rows = self.grading.first_row[degree] + self.grading.rows(np.repeat(self.grading.diagonal(degree), 2, axis=1))
+        rows = self._diagonal_rows(degree)
         for i in range(len(self.space.seeds)):
             self._corrections[i // 8, rows, i % 8] = corrections[:, i]
         self._active[rows] = True
 
+    def _diagonal_rows(self, degree: int) -> Ints:
+        """Rows, over all degrees, of the monomials |z|^(2e)."""
+        return np.asarray(self.grading.first_row[degree] + self.grading.rows(np.repeat(self.grading.diagonal(degree), 2, axis=1)))
+
     def corrected(self, degree: int) -> Floats:
+        return self._seed_product(degree, self._corrections, self._seed_modes)
+
+    def _seed_product(self, degree: int, corrections: Floats, seed_modes: Floats) -> Floats:
+        """Sum W_q u_q over all stored pairs of degrees; (canonical, s)."""
         splits = [(n, degree - n) for n in self._correction_degrees if degree - n in self._degrees]
-        lanes = self._product(self._corrections, self._seed_modes, degree, splits, sparse=True)
+        lanes = self._product(corrections, seed_modes, degree, splits, sparse=True)
         canonical = self.grading.canonical(degree)
         return np.stack([lanes[i // 8, canonical, i % 8] for i in range(len(self.space.seeds))], axis=1)
 
@@ -245,5 +277,5 @@ class DenseRing(ABC):
         bracket[:, np.array(self.space.seeds) - 1] += corrected
         return self._times(self._reduced(bracket), multipliers[index])
 
-    def results(self) -> tuple[list[Floats], list[Floats], int]:
-        return self._modes, self._diagonal, self.exponent
+    def results(self) -> tuple[list[Floats], list[Floats], Fraction]:
+        return self._modes, self._diagonal, Fraction(2) ** self.exponent

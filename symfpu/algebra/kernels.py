@@ -166,3 +166,24 @@ def multiply_elements(left, right, modulus, out):  # type: ignore[no-untyped-def
     for n in range(len(a)):
         value = modular_product(a[n], b[n], modulus, inverse)  # type: ignore[call-arg, var-annotated]
         c[n] = value - modulus * np.rint(value * inverse)
+
+
+@njit(nogil=True, cache=True)
+def multiply_rows(values, factors, moduli):  # type: ignore[no-untyped-def]
+    """values[i] *= factors[i] modulo moduli[i], in -p/2 .. p/2; values (primes, count), overwritten."""
+    for i in range(len(values)):
+        modulus, factor = moduli[i], factors[i]
+        inverse = 1.0 / modulus
+        for n in range(values.shape[1]):
+            value = modular_product(values[i, n], factor, modulus, inverse)  # type: ignore[call-arg, var-annotated]
+            values[i, n] = value - modulus * np.rint(value * inverse)
+
+
+@njit(nogil=True, cache=True)
+def reduce_rows(values, moduli):  # type: ignore[no-untyped-def]
+    """values[i] modulo moduli[i], in -p/2 .. p/2, for integers below 2^52 in size; values (primes, count), overwritten."""
+    for i in range(len(values)):
+        modulus = moduli[i]
+        inverse = 1.0 / modulus
+        for n in range(values.shape[1]):
+            values[i, n] -= modulus * np.rint(values[i, n] * inverse)

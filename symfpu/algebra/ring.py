@@ -52,5 +52,5 @@ class Ring(Protocol):
     def solve(self, degree: int, corrected: Any, force: Any, multipliers: Any) -> Any:
         """Modes L (corrected - force), which may overwrite force; multipliers has a row a harmonic and a column a mode."""
 
-    def results(self) -> tuple[list[Any], list[Any], int]:
-        """Modes and corrections of all degrees, and the exponent x by which degree d was scaled: 2^(-x (d - 1))."""
+    def results(self) -> tuple[list[Any], list[Any], Fraction]:
+        """Modes and corrections of all degrees, and the unit by which degree d was scaled: unit^-(d - 1)."""

@@ -130,8 +130,8 @@ class SymbolicRing:
             modes[row, column] = self._simplified(multipliers[index[row], column] * self._simplified(bracket[row, column]))
         return modes
 
-    def results(self) -> tuple[list[Objects], list[Objects], int]:
-        return list(self._modes.values()), list(self._corrections.values()), 0
+    def results(self) -> tuple[list[Objects], list[Objects], Fraction]:
+        return list(self._modes.values()), list(self._corrections.values()), Fraction(1)
 
 
 def conjugate(monomial: Monomial) -> Monomial:

@@ -16,7 +16,8 @@ from symfpu.algebra.selection import CosineModes
 from symfpu.certificates import random_point
 from symfpu.chain import Chain
 from symfpu.errors import VanishingResidue
-from symfpu.lindstedt import ResiduePoint, lindstedt, residue_series
+from symfpu.lindstedt import lindstedt, residue_series
+from symfpu.series import ResiduePoint
 
 PRIMES = (97, 65537, nextprime(2**39), 2**40 - 87)
 residues = st.integers(-(2**39), 2**39)

@@ -1,0 +1,238 @@
+"""The ring of fixed-point numbers: integers times 2^-bits, of any number of digits, multiplied modulo many primes.
+
+Every product of the recursion (on bonds, with cosines, with multipliers) is exact, modulo primes of 40 bits, at the speed of
+the residue kernels. Between two products the integers are recombined and rounded to the nearest at `bits` binary places.
+All arrays of degree d carry the factor unit^-(d - 1), which keeps the degrees of one series near one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import mpmath
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.algebra.dense import Floats, available_cores
+from symfpu.algebra.grading import Ints
+from symfpu.algebra.residue import ResidueRing, largest_modulus
+from symfpu.algebra.selection import CosineModes
+from symfpu.algebra.words import LIMB_BITS, IntegerTable, ResidueBasis, words_of
+
+BLOCK = 1 << 15  # integers converted at once, so that they stay in the cache
+
+
+class Precision(NamedTuple):
+    """bits : binary places, a multiple of 20. headroom : bits of the largest sum above 2^(2 bits). unit : scale of a degree."""
+
+    bits: int
+    headroom: int
+    unit: Fraction
+
+
+class Modes(NamedTuple):
+    """Coefficients of one degree: residues (primes, canonical, N-1), and the integers as words."""
+
+    residues: Floats
+    table: IntegerTable
+
+
+class Bonds(NamedTuple):
+    """Values on bonds: residues (primes, canonical, points), still to be multiplied by unit^-power."""
+
+    residues: Floats
+    power: int
+
+
+class _Image(ResidueRing):
+    """The series modulo one prime; what it stores is rounded by the ring that owns it."""
+
+    def __init__(self, space: CosineModes, prime: int) -> None:
+        super().__init__(space, prime, 0, workers=1)
+
+    def _transforms(self) -> tuple[Floats, Floats]:
+        return np.zeros((0, 0)), np.zeros((0, 0))
+
+    def store(self, degree: int, modes: Floats) -> None:
+        """Register a degree; its bonds are stored apart."""
+        self._degrees.append(degree)
+        self._store_seed_modes(degree, modes)
+
+    def store_bonds(self, degree: int, rows: Ints, values: Floats) -> None:
+        self._store(self._bonds, degree, rows, values)
+
+    def store_square(self, degree: int, values: Floats) -> None:
+        if self._squares is None:
+            self._squares = np.zeros_like(self._bonds)
+        if degree not in self._square_degrees:
+            self._square_degrees.append(degree)
+        self._store(self._squares, degree, np.arange(len(values)), values)
+
+    def canonical_square(self, degree: int) -> Floats:
+        return self._canonical_points(degree, self.square(degree))
+
+    def canonical_cube(self, degree: int) -> Floats:
+        return self._canonical_points(degree, self.cube(degree))
+
+    def add_projection(self, degree: int, total: Floats, values: Floats, back: Floats) -> None:
+        """Add the modes of values on bonds (canonical, points)."""
+        for rows, columns in self._parts(degree):
+            total[rows, columns] += self._matrix_product(values[rows], back[columns].T)
+
+
+class FixedPointRing:
+    """Coefficients as integers times 2^-bits."""
+
+    name = "fixedpoint"
+
+    def __init__(self, space: CosineModes, precision: Precision) -> None:
+        self.space, self.grading, self.precision = space, space.grading, precision
+        self._drop = precision.bits // LIMB_BITS
+        largest = largest_modulus(len(space.seeds), space.grading.degree)
+        self.basis = ResidueBasis(2 * precision.bits + precision.headroom, largest)
+        self._images = [_Image(space, p) for p in self.basis.primes]
+        self._pool = ThreadPoolExecutor(available_cores())
+        self._points = self._images[0]._slices * self._images[0]._lanes
+        self._to_bonds = self._cosines(np.ones(space.half))
+        self._back: dict[Fraction, Floats] = {}
+        self._squares: list[int] = []
+        self._modes: list[IntegerTable] = []
+        self._corrections: list[IntegerTable] = []
+
+    @property
+    def multiply_adds(self) -> int:
+        """Multiply-adds of the kernels, over all primes."""
+        return sum(image.multiply_adds for image in self._images)
+
+    def number(self, value: Fraction) -> Fraction:
+        return value
+
+    def _each(self, work: Callable[[int, _Image], Any]) -> list[Any]:
+        return list(self._pool.map(lambda item: work(*item), enumerate(self._images)))
+
+    def _cosines(self, weights: NDArray[Any]) -> Floats:
+        """Residues of weight_j cos(q (j + 1/2) pi / N) on the first half of the bonds; (primes, N-1, points)."""
+        N, half = self.space.N, self.space.half
+        angles = np.outer(np.arange(1, N), 2 * np.arange(half) + 1) % (4 * N)
+        angles = np.minimum(angles, 4 * N - angles)
+        whole = np.zeros((N - 1, self._points), dtype=object)
+        largest = max(1, *(abs(w) for w in weights))
+        with mpmath.workprec(self.precision.bits + math.ceil(math.log2(largest)) + 32):
+            table = [mpmath.ldexp(mpmath.cospi(mpmath.mpf(n) / (2 * N)), self.precision.bits) for n in range(2 * N + 1)]
+            for j, weight in enumerate(weights):
+                exact = Fraction(weight)
+                column = [int(mpmath.nint(table[n] * exact.numerator / exact.denominator)) for n in range(2 * N + 1)]
+                whole[:, j] = np.array(column, dtype=object)[angles[:, j]]
+        return self.basis.of_integers(whole)
+
+    def _to_modes(self, coefficient: Fraction) -> Floats:
+        """The way back, times a coefficient: weights 4/N, half of it for a bond that is its own mirror image."""
+        if coefficient not in self._back:
+            N, half = self.space.N, self.space.half
+            weights = [coefficient * Fraction(2 if N % 2 and j == half - 1 else 4, N) for j in range(half)]
+            self._back[coefficient] = self._cosines(np.array(weights, dtype=object))
+        return self._back[coefficient]
+
+    def _rounded(self, residues: Floats) -> tuple[Floats, NDArray[np.int64]]:
+        """Integers / 2^bits, rounded: residues (primes, count) and words (count, n)."""
+        starts = range(0, residues.shape[1], BLOCK)
+
+        def convert(start: int) -> tuple[Floats, NDArray[np.int64]]:
+            limbs = self.basis.limbs(residues[:, start : start + BLOCK].copy(), self._drop)
+            return self.basis.residues(limbs), words_of(limbs)
+
+        parts = list(self._pool.map(convert, starts))
+        longest = max((words.shape[1] for _, words in parts), default=1)
+        words = [np.pad(w, ((0, 0), (0, longest - w.shape[1]))) for _, w in parts]
+        empty = np.zeros((len(self.basis), 0)), np.zeros((0, 1), dtype=np.int64)
+        return (np.concatenate([r for r, _ in parts], axis=1), np.concatenate(words)) if parts else empty
+
+    def _rounded_where(self, residues: Floats, wanted: NDArray[np.bool_]) -> Modes:
+        """Round the wanted entries of (primes, rows, columns); the others are exactly zero."""
+        chosen, words = self._rounded(residues[:, wanted])
+        result = np.zeros_like(residues)
+        result[:, wanted] = chosen
+        table = np.zeros((*wanted.shape, words.shape[1]), dtype=np.int64)
+        table[wanted] = words
+        return Modes(result, IntegerTable(table))
+
+    def seed_terms(self) -> Modes:
+        whole = np.zeros((len(self.space.seeds), self.space.N - 1), dtype=object)
+        for row, power in enumerate(self.grading.powers(1)):
+            whole[row, self.space.seeds[int(np.argmax(power))] - 1] = 1 << self.precision.bits
+        return Modes(self.basis.of_integers(whole), IntegerTable.of(whole))
+
+    def put(self, degree: int, modes: Modes) -> None:
+        self._modes.append(modes.table)
+        self._each(lambda i, image: image.store(degree, modes.residues[i]))
+        for rows, columns in self._images[0]._parts(degree):
+            self._put_part(degree, rows, columns, modes.residues)
+
+    def _put_part(self, degree: int, rows: Ints, columns: slice, residues: Floats) -> None:
+        products = self._each(lambda i, image: image._matrix_product(residues[i][rows, columns], self._to_bonds[i][columns]))
+        values, _ = self._rounded(np.stack(products).reshape(len(self.basis), -1))
+        shaped = values.reshape(len(self.basis), len(rows), self._points)
+        self._each(lambda i, image: image.store_bonds(degree, rows, shaped[i]))
+
+    def _bonds(self, products: list[Floats], power: int) -> Bonds:
+        stack = np.stack(products)
+        values, _ = self._rounded(stack.reshape(len(self.basis), -1))
+        return Bonds(values.reshape(stack.shape), power)
+
+    def square(self, degree: int) -> Bonds:
+        return self._bonds(self._each(lambda _, image: image.canonical_square(degree)), 1)
+
+    def cube(self, degree: int) -> Bonds:
+        for d in range(2, degree):
+            if d not in self._squares:
+                self._put_square(d)
+        return self._bonds(self._each(lambda _, image: image.canonical_cube(degree)), 2)
+
+    def _put_square(self, degree: int) -> None:
+        values = self.square(degree).residues
+        self._squares.append(degree)
+        self._each(lambda i, image: image.store_square(degree, values[i]))
+
+    def project(self, degree: int, parts: Sequence[tuple[Fraction, Bonds]]) -> Modes:
+        total = np.zeros((len(self.basis), len(self.grading.canonical(degree)), self.space.N - 1))
+        for coefficient, bonds in parts:
+            back = self._to_modes(coefficient / self.precision.unit**bonds.power)
+            self._add_projection(degree, total, bonds.residues, back)
+        self._each(lambda i, image: image.reduced(total[i]))
+        return self._rounded_where(total, self.space.mask(degree))
+
+    def _add_projection(self, degree: int, total: Floats, values: Floats, back: Floats) -> None:
+        self._each(lambda i, image: image.add_projection(degree, total[i], values[i], back[i]))
+
+    def secular(self, degree: int, modes: Modes) -> Modes:
+        residues = np.stack(self._each(lambda i, image: image.secular(degree, modes.residues[i])))
+        image, words = self._images[0], modes.table.words
+        columns = [image.secular(degree, words[..., n]) for n in range(words.shape[2])]  # only picks entries
+        return Modes(residues, IntegerTable(np.stack(columns, axis=-1)))
+
+    def correct(self, degree: int, corrections: Modes) -> None:
+        self._corrections.append(corrections.table)
+        self._each(lambda i, image: image.correct(degree, corrections.residues[i]))
+
+    def corrected(self, degree: int) -> Modes:
+        residues = np.stack(self._each(lambda _, image: image.corrected(degree)))
+        return self._rounded_where(residues, np.ones(residues.shape[1:], dtype=np.bool_))
+
+    def solve(self, degree: int, corrected: Modes, force: Modes, multipliers: NDArray[np.object_]) -> Modes:
+        _, index = self.grading.harmonics(degree)
+        factors = self.basis.of_integers(multipliers)
+        seeds = np.array(self.space.seeds) - 1
+
+        def work(i: int, image: _Image) -> Floats:
+            bracket = -force.residues[i]
+            bracket[:, seeds] += corrected.residues[i]
+            return image.products(image.reduced(bracket), factors[i][index])
+
+        return self._rounded_where(np.stack(self._each(work)), (multipliers != 0)[index])
+
+    def results(self) -> tuple[list[IntegerTable], list[IntegerTable], Fraction]:
+        return self._modes, self._corrections, self.precision.unit

@@ -1,0 +1,166 @@
+"""Rounding errors of a fixed-point series, bounded: the same recursion over moduli and radii.
+
+The coefficients of a finished series are replaced by their moduli, the couplings and multipliers by theirs, and every
+coefficient carries a radius: how far it can be off, in units of its last place, through all roundings before it. Replacing
+the folded cosine T_(2N-q) = -T_q by |.| gives cosines on the points j pi / N, j = 0 .. N, so radii of products are again
+pointwise products between two cosine transforms. Radii are doubles; each step is enlarged by more than doubles can lose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+
+from symfpu.algebra.dense import Floats
+from symfpu.algebra.float64 import Float64Ring
+from symfpu.algebra.grading import Ints
+from symfpu.algebra.selection import CosineModes
+
+ROUNDED = 0.51  # units: nearest, by balanced limbs
+MULTIPLIER = 1.01  # units: rounded down
+LOST = 1e-12  # relative to the largest: what the transforms of radii lose as doubles
+SLACK = 1 + 1e-9
+
+
+class Bounds(NamedTuple):
+    """radii : (canonical, points) of values on bonds; sizes : (canonical,) sums of moduli; unit^-power is still to come."""
+
+    radii: Floats
+    sizes: Floats
+    power: int
+
+
+class MajorantRing(Float64Ring):
+    """Radii in units of the last place.
+
+    tables, corrections : moduli of the series, by degree, scaled by unit^-(d - 1). epsilon : the unit of the last place, for
+    products of two radii; zero leaves them out. largest : the largest sum of moduli met on the way.
+    """
+
+    name = "majorant"
+
+    def __init__(
+        self, space: CosineModes, tables: dict[int, Floats], corrections: dict[int, Floats], unit: Fraction, epsilon: float = 0.0
+    ) -> None:
+        super().__init__(space, points=(space.N + 2) // 2)
+        self._tables, self._known = tables, corrections
+        self._unit, self._epsilon = float(unit), epsilon
+        self._radii = np.zeros_like(self._bonds)
+        self._sums = np.zeros_like(self._bonds)  # 2 |u| + epsilon r
+        self._square_radii: Floats | None = None
+        self._seed_radii = np.zeros_like(self._seed_modes)
+        self._correction_radii = np.zeros_like(self._corrections)
+        self.largest = 1.0
+        points, width = np.arange(self._points), self._slices * self._lanes
+        self._noise = np.zeros((2, width))  # a function bounded by one half on the bonds: any mode of its parity up to one
+        for parity in (0, 1):
+            modes = np.arange(parity, space.N, 2)
+            self._noise[parity, : self._points] = 2 * np.cos(np.outer(modes, points) * np.pi / space.N).sum(axis=0)
+
+    def number(self, value: Fraction) -> float:
+        return abs(float(value))
+
+    def _transforms(self) -> tuple[Floats, Floats]:
+        N, points = self.space.N, np.arange(self._points)
+        there = np.zeros((N - 1, self._slices * self._lanes))
+        there[:, : self._points] = np.cos(np.outer(np.arange(1, N), points) * np.pi / N)
+        weights = np.where((points == 0) | (2 * points == N), 2 / N, 4 / N)
+        back = there.copy()
+        back[:, : self._points] *= weights
+        return there, back
+
+    def _keep_in_range(self, degree: int, modes: Floats) -> None:
+        """Tables come scaled."""
+
+    def _note(self, sizes: Floats) -> None:
+        self.largest = max(self.largest, float(sizes.max(initial=0.0)) * SLACK)
+
+    def seed_terms(self) -> Floats:
+        return np.zeros_like(super().seed_terms())
+
+    def put(self, degree: int, modes: Floats) -> None:
+        self._degrees.append(degree)
+        self._modes.append(modes)
+        known = self._tables[degree]
+        sizes = known.sum(axis=1)
+        self._note(sizes)
+        for parity, (rows, columns) in enumerate(self._parts(degree)):
+            values = known[rows, columns] @ self._to_bonds[columns]
+            radii = modes[rows, columns] @ self._to_bonds[columns] + np.outer(sizes[rows] + 1, self._noise[parity])
+            self._store(self._bonds, degree, rows, values)
+            self._store(self._radii, degree, rows, radii)
+            self._store(self._sums, degree, rows, 2 * values + self._epsilon * radii)
+        self._store_seed_modes(degree, known)
+        base = int(self.grading.first_row[degree])
+        for i, q in enumerate(self.space.seeds):
+            for at in (self.grading.canonical(degree), self.grading.conjugate(degree)):
+                self._seed_radii[i // 8, base + at, i % 8] = modes[:, q - 1]
+
+    def _bounds(self, degree: int, radii: Floats, sizes: Floats, power: int) -> Bounds:
+        """What the kernel gave, f o g = 2 f g, with the rounding on the bonds added."""
+        fresh = ROUNDED * self._noise[self.space.parity(degree)]
+        sums = 2 * self._canonical_points(degree, sizes)[:, 0]
+        self._note(sums)
+        return Bounds(2 * self._canonical_points(degree, radii) + fresh, sums, power)
+
+    def square(self, degree: int) -> Bounds:  # type: ignore[override]
+        ordered = [(d, degree - d) for d in self._degrees if degree - d in self._degrees]
+        radii = self._product(self._sums, self._radii, degree, ordered)
+        sizes = self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
+        return self._bounds(degree, radii, sizes, 1)
+
+    def _put_square(self, degree: int) -> None:
+        assert self._squares is not None
+        assert self._square_radii is not None
+        sizes = self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
+        radii = self.square(degree).radii
+        self._square_degrees.append(degree)
+        rows = np.arange(len(radii))
+        self._store(self._squares, degree, rows, 2 * self._canonical_points(degree, sizes))
+        self._store(self._square_radii, degree, rows, radii)
+
+    def cube(self, degree: int) -> Bounds:  # type: ignore[override]
+        if self._square_radii is None:
+            self._square_radii = np.zeros_like(self._bonds)
+        splits = self._cube_splits(degree)
+        assert self._squares is not None
+        radii = self._product(self._squares, self._radii, degree, splits)
+        radii += self._product(self._square_radii, self._bonds + self._epsilon * self._radii, degree, splits)
+        return self._bounds(degree, radii, self._product(self._squares, self._bonds, degree, splits), 2)
+
+    def project(self, degree: int, parts: Sequence[tuple[float, Bounds]]) -> Floats:  # type: ignore[override]
+        mask = self.space.mask(degree)
+        modes = np.full(mask.shape, ROUNDED)
+        for coefficient, bounds in parts:
+            scale = coefficient / self._unit**bounds.power
+            self._note(2 * scale * bounds.sizes)
+            modes += (ROUNDED * self.space.half * bounds.sizes + LOST * scale * bounds.radii[:, 0])[:, None]
+            for rows, columns in self._parts(degree):
+                modes[rows, columns] += scale * bounds.radii[rows] @ self._to_modes[columns].T
+        return np.asarray(np.where(mask, modes * SLACK, 0.0))
+
+    def correct(self, degree: int, corrections: Floats) -> None:
+        super().correct(degree, self._known[degree])
+        self._diagonal[-1] = corrections
+        rows = self._diagonal_rows(degree)
+        for i in range(len(self.space.seeds)):
+            self._correction_radii[i // 8, rows, i % 8] = corrections[:, i]
+
+    def corrected(self, degree: int) -> Floats:
+        shifted = self._seed_modes + self._epsilon * self._seed_radii
+        factors = ((self._corrections, self._seed_radii), (self._correction_radii, shifted), (self._corrections, self._seed_modes))
+        first, second, sizes = (self._seed_product(degree, *pair) for pair in factors)
+        self._note(sizes)
+        return (first + second) * SLACK + ROUNDED
+
+    def solve(self, degree: int, corrected: Floats, force: Floats, multipliers: Floats) -> Floats:
+        index: Ints = self.grading.harmonics(degree)[1]
+        radii = force
+        radii[:, np.array(self.space.seeds) - 1] += corrected
+        factors = np.abs(multipliers)[index]
+        bracket = np.divide(self._tables[degree], factors, out=np.zeros_like(radii), where=factors != 0)
+        radii = factors * radii + MULTIPLIER * (bracket + self._epsilon * radii) + ROUNDED
+        return np.asarray(np.where(factors != 0, radii * SLACK, 0.0))

@@ -1,0 +1,177 @@
+"""Large integers in bulk: residues modulo many primes, limbs of 20 bits, and words for storage.
+
+Sums and products are taken modulo each prime; only rounding needs the integers themselves. Both changes of basis, residues
+to limbs (Chinese remainders) and limbs to residues, are products with small matrices, exact in doubles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import flint
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Words = NDArray[np.int64]
+
+LIMB_BITS = 20
+LIMB = 2.0**LIMB_BITS
+LIMBS_PER_WORD = 3
+WORD_BITS = LIMB_BITS * LIMBS_PER_WORD
+
+
+@dataclass(frozen=True, eq=False)
+class IntegerTable:
+    """A table of signed integers, stored as words: the entry is sum_j words[..., j] 2^(60 j).
+
+    words : (rows, columns, n), each word below 2^60 in size and with its own sign.
+    """
+
+    words: Words
+
+    def __repr__(self) -> str:
+        rows, columns, n = self.words.shape
+        return f"IntegerTable({rows} x {columns} integers of up to {n * WORD_BITS} bits)"
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return self.words.shape[0], self.words.shape[1]
+
+    @property
+    def size(self) -> int:
+        return int(self.words.shape[0] * self.words.shape[1])
+
+    def integers(self, columns: Any = slice(None)) -> NDArray[np.object_]:
+        """The entries of some columns as Python's integers."""
+        words = self.words[:, columns]
+        total = words[..., -1].astype(object)
+        for j in range(words.shape[-1] - 2, -1, -1):
+            total = (total << WORD_BITS) + words[..., j].astype(object)
+        return np.asarray(total)
+
+    def floats(self, exponent: int = 0) -> Floats:
+        """The entries times 2^exponent as doubles, correct to about an ulp."""
+        total = np.zeros(self.shape)
+        for j in range(self.words.shape[-1]):
+            total += np.ldexp(self.words[..., j].astype(np.float64), j * WORD_BITS + exponent)
+        return total
+
+    @staticmethod
+    def of(integers: NDArray[np.object_]) -> IntegerTable:
+        """The table of an array (rows, columns) of Python's integers.
+
+        >>> IntegerTable.of(np.array([[-5, 2**100]], dtype=object)).integers().tolist()
+        [[-5, 1267650600228229401496703205376]]
+        """
+        longest = max((int(x).bit_length() for x in integers.ravel()), default=0)
+        words, rest = [], integers.astype(object)
+        for _ in range(max(1, -(-(longest + 1) // WORD_BITS))):
+            low = ((rest + 2 ** (WORD_BITS - 1)) % 2**WORD_BITS) - 2 ** (WORD_BITS - 1)
+            words.append(low.astype(np.int64))
+            rest = (rest - low) >> WORD_BITS
+        assert not np.any(rest)
+        return IntegerTable(np.stack(words, axis=-1))
+
+
+class ResidueBasis:
+    """Integers below `bits` bits as residues modulo enough primes below `largest`; arrays of residues are (primes, count)."""
+
+    def __init__(self, bits: int, largest: int) -> None:
+        from symfpu.algebra import kernels  # lazy: numba takes longer to import than all the rest
+
+        self._kernels = kernels
+        self.primes = _primes(bits + 4, largest)  # an overflow of the promised bits by a factor of eight is still seen
+        self.moduli = np.array(self.primes, dtype=np.float64)
+        self._limit = 2.0 ** (bits - flint.fmpz(prod(self.primes)).bit_length() + 1)
+        modulus = prod(self.primes)
+        count = -(-modulus.bit_length() // LIMB_BITS) + 2
+        cofactors = [modulus // p for p in self.primes]
+        self._inverses = np.array([_centred(pow(c, -1, p), p) for c, p in zip(cofactors, self.primes, strict=True)])
+        self._cofactor_limbs = np.array([_limbs(c, count) for c in cofactors]).T.copy()
+        self._modulus_limbs = np.array(_limbs(modulus, count))[:, None]
+        powers = [[_centred(pow(2, LIMB_BITS * n, p), p) for n in range(count)] for p in self.primes]
+        self._powers = np.array(powers)
+        self._fold = np.array([_centred(2**LIMB_BITS, p) for p in self.primes])
+
+    def __len__(self) -> int:
+        return len(self.primes)
+
+    def limbs(self, residues: Floats, drop: int = 0) -> Floats:
+        """The integers / 2^(20 drop), rounded to the nearest, as balanced limbs (limbs, count), lowest first.
+
+        residues : overwritten. Raises OverflowError if an integer exceeds the promised bits.
+        """
+        self._kernels.multiply_rows(residues, self._inverses, self.moduli)
+        high = np.rint(residues / LIMB)
+        low = residues - high * LIMB
+        share = (1 / self.moduli) @ residues
+        turns = np.rint(share)
+        if np.any(np.abs(share - turns) > self._limit + 2.0**-40):
+            raise OverflowError("an integer exceeds the range of the residues")
+        limbs = self._cofactor_limbs @ low - self._modulus_limbs * turns
+        limbs[1:] += (self._cofactor_limbs @ high)[:-1]
+        for n in range(len(limbs) - 1):
+            carry = np.rint(limbs[n] / LIMB)
+            limbs[n] -= carry * LIMB
+            limbs[n + 1] += carry
+        return np.asarray(limbs[drop:])
+
+    def residues(self, limbs: Floats) -> Floats:
+        """Residues (primes, count) of the integers given by balanced limbs (limbs, count)."""
+        powers = self._powers[:, : len(limbs)]
+        high = np.rint(powers / LIMB)
+        low = powers - high * LIMB
+        top = high @ limbs
+        self._kernels.reduce_rows(top, self.moduli)
+        self._kernels.multiply_rows(top, self._fold, self.moduli)
+        top += low @ limbs
+        self._kernels.reduce_rows(top, self.moduli)
+        return np.asarray(top)
+
+    def of_integers(self, integers: NDArray[np.object_]) -> Floats:
+        """Residues (primes, ...) of Python's integers, of any size."""
+        stack = []
+        for p in self.primes:
+            residues = (integers % p).astype(np.float64)
+            stack.append(np.where(residues > p // 2, residues - p, residues))
+        return np.stack(stack)
+
+
+def words_of(limbs: Floats) -> Words:
+    """Words (count, n) of the integers given by limbs (limbs, count)."""
+    top = np.flatnonzero(limbs.any(axis=1))
+    used = limbs[: int(top[-1]) + 1 if len(top) else 1].astype(np.int64)
+    words = np.zeros((limbs.shape[1], -(-len(used) // LIMBS_PER_WORD)), dtype=np.int64)
+    for n, row in enumerate(used):
+        words[:, n // LIMBS_PER_WORD] += row << (LIMB_BITS * (n % LIMBS_PER_WORD))
+    return words
+
+
+def _primes(bits: int, largest: int) -> tuple[int, ...]:
+    """The largest odd primes up to `largest` whose product has more than `bits` bits."""
+    primes: list[int] = []
+    candidate, product = largest - 1 + largest % 2, 1
+    while product.bit_length() <= bits:
+        if flint.fmpz(candidate).is_prime():
+            primes.append(candidate)
+            product *= candidate
+        candidate -= 2
+    return tuple(primes)
+
+
+def _limbs(number: int, count: int) -> list[float]:
+    """Balanced limbs of a non-negative number, lowest first."""
+    limbs = []
+    for _ in range(count):
+        low = ((number + 2 ** (LIMB_BITS - 1)) % 2**LIMB_BITS) - 2 ** (LIMB_BITS - 1)
+        limbs.append(float(low))
+        number = (number - low) >> LIMB_BITS
+    assert number == 0
+    return limbs
+
+
+def _centred(residue: int, prime: int) -> float:
+    return float(residue - prime if residue > prime // 2 else residue)

@@ -1,0 +1,158 @@
+"""Arrays of numbers in two precisions under one set of names: doubles, or mpmath's numbers at the precision of the context.
+
+Functions of a torus and of the chain are written once and take their cosines and dot products from here. Multiprecision
+arrays are object arrays of mpf. A float in them is read by its shortest decimal: 0.1 means one tenth.
+"""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import mpmath
+import numpy as np
+from mpmath import libmp
+from numpy.typing import NDArray
+
+Numbers = NDArray[Any]  # doubles, or mpf
+
+GUARD_DIGITS = 15  # carried beyond the asked digits by every evaluation
+
+
+class Doubles:
+    """Arrays of float64."""
+
+    def context(self, digits: int | None) -> AbstractContextManager[Any]:
+        """Nothing to set and to restore."""
+        return nullcontext()
+
+    def number(self, value: Fraction) -> Any:
+        """An exact number, rounded."""
+        return float(value)
+
+    def array(self, values: Any) -> NDArray[Any]:
+        """The values as an array; TypeError or ValueError where they are no numbers."""
+        return np.asarray(values, dtype=np.float64)
+
+    def cos(self, values: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(np.cos(values))
+
+    def sin(self, values: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(np.sin(values))
+
+    def sqrt(self, values: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(np.sqrt(values))
+
+    def dot(self, left: NDArray[Any], right: NDArray[Any]) -> NDArray[Any]:
+        """Product of an array (..., n) with a matrix (n, m)."""
+        return np.asarray(left @ right)
+
+    def finite(self, values: NDArray[Any]) -> bool:
+        return bool(np.isfinite(values).all())
+
+    @property
+    def pi(self) -> Any:
+        return np.pi
+
+
+class Multiprecision(Doubles):
+    """Object arrays of mpf at mpmath's working precision; `context` sets it and restores it."""
+
+    def context(self, digits: int | None) -> AbstractContextManager[Any]:
+        assert digits is not None
+        return mpmath.workdps(digits + GUARD_DIGITS)  # type: ignore[no-any-return]
+
+    def number(self, value: Fraction) -> Any:
+        return mpmath.mpf(value.numerator) / value.denominator
+
+    def array(self, values: Any) -> NDArray[Any]:
+        return np.asarray(_MPF(np.asarray(values, dtype=object)), dtype=object)
+
+    def cos(self, values: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(_COS(values), dtype=object)
+
+    def sin(self, values: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(_SIN(values), dtype=object)
+
+    def sqrt(self, values: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(_SQRT(values), dtype=object)
+
+    def dot(self, left: NDArray[Any], right: NDArray[Any]) -> NDArray[Any]:
+        """By integers: every row of left and every column of right has its own power of two, so small ones keep their digits."""
+        if left.size == 0 or right.size == 0:
+            return np.full((*left.shape[:-1], right.shape[1]), mpmath.mpf(0), dtype=object)
+        rows, below = integers(left.reshape(-1, left.shape[-1]).T)
+        columns, scale = integers(right)
+        sums = rows.T.dot(columns)
+        return from_integers(sums, below[:, None] + scale[None, :]).reshape(*left.shape[:-1], right.shape[1])
+
+    def finite(self, values: NDArray[Any]) -> bool:
+        return all(mpmath.isfinite(x) for x in values.flat)
+
+    @property
+    def pi(self) -> Any:
+        return +mpmath.pi
+
+
+DOUBLES, MULTIPRECISION = Doubles(), Multiprecision()
+
+
+def arithmetic_of(values: Any) -> Doubles:
+    """Multiprecision for arrays with an mpf in them, else doubles."""
+    array = np.asarray(values)
+    return MULTIPRECISION if array.dtype == object and any(isinstance(x, mpmath.mpf) for x in array.flat) else DOUBLES
+
+
+def integers(values: NDArray[Any]) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+    """Columns of mpf as integers times 2^exponent: (n, m) and exponents (m,), at the working precision of each column's largest."""
+    precision = int(mpmath.mp.prec)
+    table = np.empty(values.shape, dtype=object)
+    exponents = np.zeros(values.shape[1], dtype=np.int64)
+    for j in range(values.shape[1]):
+        parts = [x._mpf_ for x in values[:, j]]
+        top = max((e + b for _, man, e, b in parts if man), default=precision)
+        exponents[j] = top - precision
+        table[:, j] = [libmp.to_fixed(x, precision - top) for x in parts]
+    return table, exponents
+
+
+def from_integers(values: NDArray[np.object_], exponents: NDArray[Any]) -> NDArray[np.object_]:
+    """Integers times 2^exponents as mpf, rounded to the working precision; shapes that broadcast."""
+    return np.asarray(_LDEXP(values, np.asarray(exponents).astype(object)), dtype=object)
+
+
+def mpf(value: Any) -> Any:
+    """One number as mpf at the working precision; floats by their shortest decimal, fractions exactly."""
+    if isinstance(value, Fraction):
+        return mpmath.mpf(value.numerator) / value.denominator
+    if isinstance(value, (float, np.floating)):
+        return mpmath.mpf(repr(float(value)))
+    return mpmath.mpf(int(value) if isinstance(value, np.integer) else value)
+
+
+def text(value: Any, digits: int) -> str:
+    """A double or an mpf with so many significant digits."""
+    return str(mpmath.nstr(value, digits)) if isinstance(value, mpmath.mpf) else f"{float(value):.{digits}g}"
+
+
+def _from_integer(value: int, exponent: int) -> Any:
+    return mpmath.mp.make_mpf(libmp.from_man_exp(value, exponent, mpmath.mp.prec, "n"))
+
+
+@lru_cache(maxsize=8)
+def _sines(N: int, precision: int) -> NDArray[np.object_]:
+    root = mpmath.sqrt(mpmath.mpf(2) / N)
+    table = [root * mpmath.sinpi(mpmath.mpf(n) / N) for n in range(2 * N)]
+    q = np.arange(1, N)
+    return np.array(table, dtype=object)[np.outer(q, q) % (2 * N)]
+
+
+def sine_matrix(N: int) -> NDArray[np.object_]:
+    """sqrt(2/N) sin(q k pi / N), q, k = 1 .. N-1, at the working precision."""
+    return _sines(N, int(mpmath.mp.prec))
+
+
+_MPF, _COS, _SIN, _SQRT = (np.frompyfunc(f, 1, 1) for f in (mpf, mpmath.cos, mpmath.sin, mpmath.sqrt))
+_LDEXP = np.frompyfunc(_from_integer, 2, 1)
