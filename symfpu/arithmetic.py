@@ -36,6 +36,10 @@ class Doubles:
         """The values as an array; TypeError or ValueError where they are no numbers."""
         return np.asarray(values, dtype=np.float64)
 
+    def zeros(self, shape: tuple[int, ...]) -> NDArray[Any]:
+        """An array of zeros."""
+        return np.zeros(shape)
+
     def cos(self, values: NDArray[Any]) -> NDArray[Any]:
         return np.asarray(np.cos(values))
 
@@ -69,6 +73,9 @@ class Multiprecision(Doubles):
 
     def array(self, values: Any) -> NDArray[Any]:
         return np.asarray(_MPF(np.asarray(values, dtype=object)), dtype=object)
+
+    def zeros(self, shape: tuple[int, ...]) -> NDArray[Any]:
+        return np.full(shape, mpmath.mpf(0), dtype=object)
 
     def cos(self, values: NDArray[Any]) -> NDArray[Any]:
         return np.asarray(_COS(values), dtype=object)

@@ -7,6 +7,7 @@ standard error, progress goes there too when it is a terminal, and --json leaves
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -19,27 +20,17 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from symfpu.amplitudes import solve_amplitudes
+from symfpu.bundle import load, save
 from symfpu.certificates import PropagationProof, prove_propagation, write_text
 from symfpu.chain import Chain
 from symfpu.errors import InputError, SymfpuError
-from symfpu.figures import draw_figure1, draw_figure6
 from symfpu.lindstedt import lindstedt
 from symfpu.propagation import excitation_sequence
-from symfpu.report import (
-    figure1_markdown,
-    figure1_record,
-    figure6_markdown,
-    output_folder,
-    row_record,
-    sweep_markdown,
-    table_markdown,
-    torus_record,
-    write_figure1_csv,
-    write_figure6_csv,
-)
-from symfpu.reproduction import amplitude_table, figure1, figure6
+from symfpu.report import output_folder, sweep_markdown, torus_record
 from symfpu.sweeps import sweep_propagation
+from symfpu.targets import TARGETS
 from symfpu.torus import QTorus
+from symfpu.verdict import assess
 from symfpu.verify import CertificateError
 from symfpu.verify import verify as verify_certificate
 
@@ -53,7 +44,6 @@ app = typer.Typer(
 )
 
 UsageProblem: Any = typer.BadParameter.__mro__[2]  # click's ClickException, which typer may carry inside itself
-TARGETS = ("table", "fig1", "fig6")
 
 BondsOption = Annotated[str, typer.Option("-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N")]
 SeedsOption = Annotated[str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")]
@@ -200,28 +190,55 @@ def solve(
     frequency_order: Annotated[
         str | None, typer.Option(help="Order of the frequency series that gives the amplitudes.  Default: --order.", metavar="K")
     ] = None,
+    coordinate_order: Annotated[
+        str | None, typer.Option(help="Order at which the coordinates Q(t) are cut.  Default: --order.", metavar="K")
+    ] = None,
+    digits: Annotated[str | None, typer.Option(help="Any number of digits, proved.  Default: doubles.", metavar="D")] = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="Keep series, torus and verdict in this file.")] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Amplitudes and energies of the q-torus with the given frequencies."""
+    """Amplitudes and energies of the q-torus with the given frequencies, and a verdict on its series."""
     chain = Chain(_whole("N", bonds), alpha=alpha, beta=beta)
     chosen = _whole_numbers("seeds", seeds)
-    highest = None if frequency_order is None else _whole("frequency-order", frequency_order)
-    frequencies = omega.split(",")
+    highest, cut = _optional("frequency-order", frequency_order), _optional("coordinate-order", coordinate_order)
+    places = _optional("digits", digits)
     with _progress() as advance:
-        series = lindstedt(chain, chosen, frequencies, _whole("order", order), progress=lambda done, total: advance("series", done / total))
+        series = lindstedt(
+            chain,
+            chosen,
+            omega.split(","),
+            _whole("order", order),
+            digits=places,
+            progress=lambda done, total: advance("series", done / total),
+        )
         advance("amplitudes", None)
-        torus = solve_amplitudes(series, frequency_order=highest)
-        record = torus_record(torus)
+        torus = solve_amplitudes(series, frequency_order=highest, order=cut)
+        assessment = assess(series, torus, progress=lambda done, total: advance("verdict", done / total))
+        record = torus_record(torus, assessment)
+        if output:
+            advance("writing", None)
+            save(output, torus, verdict=assessment.record(), command=_command_line())
     if as_json:
         _print_json(record)
     else:
+        print(f"verdict: {assessment.headline}")
         _print_torus(torus, record)
+        print("".join(f"  {reason}\n" for reason in assessment.reasons), end="")
+        if output:
+            print(f"written: {output}")
 
 
 def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
     print(torus.series)
     for q, amplitude in record["amplitudes"].items():
         print(f"seed {q:<4} omega {record['frequencies'][q]:<20} amplitude {amplitude}")
+    if torus.certificate is not None:
+        radius = max(torus.certificate.radius.values())
+        print(
+            f"exactly one root within {radius:.1e}: certified"
+            if torus.certificate.certified
+            else f"root not certified: {torus.certificate.reason}"
+        )
     print(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
     print(f"energy H           {record['energy']}   (at t = 0)")
     print(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {record['average_harmonic_energy']})")
@@ -230,9 +247,38 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
         _console().print(f"warning: {warning}", style="yellow", highlight=False)
 
 
+@app.command(epilog="Example: symfpu show torus.symfpu")
+def show(
+    file: Annotated[Path, typer.Argument(help="A file written by symfpu solve -o.", metavar="FILE")],
+    as_json: JsonOption = False,
+) -> None:
+    """What a result file holds: series, torus, verdict, and what made it."""
+    bundle = load(file)
+    record = {} if bundle.torus is None else torus_record(bundle.torus)
+    if as_json:
+        _print_json(record | {"provenance": dict(bundle.provenance), "assessment": bundle.verdict, "test_vectors": bundle.test_vectors})
+        return
+    if bundle.verdict:
+        print(f"verdict: {bundle.verdict.get('verdict')}")
+    if bundle.torus is None:
+        print(bundle.series)
+    else:
+        _print_torus(bundle.torus, record)
+    for key, value in bundle.provenance.items():
+        print(f"{key:<18} {value}")
+
+
+def _command_line() -> str:
+    return shlex.join(["symfpu", *sys.argv[1:]])
+
+
+def _optional(argument: str, text: str | None) -> int | None:
+    return None if text is None else _whole(argument, text)
+
+
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
 def reproduce(
-    targets: Annotated[list[str], typer.Argument(help="table, fig1, fig6, or all.", metavar="TARGET...")],
+    targets: Annotated[list[str], typer.Argument(help="table, fig1, fig6, convergence, or all.", metavar="TARGET...")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the report, pictures and data.")] = Path("out"),
     as_json: JsonOption = False,
 ) -> None:
@@ -240,41 +286,24 @@ def reproduce(
     for target in targets:
         if target not in (*TARGETS, "all"):
             raise InputError("target", target, f"{', '.join(TARGETS)} or all", "name one or more of these")
-    wanted = TARGETS if "all" in targets else tuple(t for t in TARGETS if t in targets)
     folder = output_folder(output)
-    record: dict[str, Any] = {}
-    parts = ["# The paper's numbers, computed from its printed frequencies"]
+    pages = {}
     with _progress() as advance:
-        if "table" in wanted:
-            rows = list(amplitude_table(lambda label: advance(label, None)))
-            record["table"] = [row_record(row) for row in rows]
-            parts.append(table_markdown(rows))
-        if "fig1" in wanted:
-            data = figure1(lambda label: advance(label, None))
-            record["fig1"] = figure1_record(data)
-            parts.append(figure1_markdown(data))
-            write_figure1_csv(data, folder)
-            advance("fig1: pictures", None)
-            draw_figure1(data, folder)
-        if "fig6" in wanted:
-            patterns = figure6()
-            record["fig6"] = {panel: {"seeds": list(seeds), "orders": orders} for panel, (seeds, orders) in patterns.panels.items()}
-            parts.append(figure6_markdown(patterns))
-            write_figure6_csv(patterns, folder)
-            advance("fig6: pictures", None)
-            draw_figure6(patterns, folder)
-    text = "\n\n".join(parts)
-    write_text(folder / "report.md", text)
+        for target in TARGETS:
+            if target in targets or "all" in targets:
+                pages[target] = TARGETS[target](folder, lambda label: advance(label, None))
+    record = {target: page.record for target, page in pages.items()}
+    title = "# The paper's numbers, computed from its printed frequencies"
+    write_text(folder / "report.md", "\n\n".join([title, *(page.markdown for page in pages.values())]))
     write_text(folder / "report.json", json.dumps(record, indent=1) + "\n")
     if as_json:
         _print_json(record)
         return
-    if "table" in wanted:
-        _print_rows(record["table"])
+    _print_rows(record.get("table", []))
     for key, claim in record.get("fig1", {}).get("claims", {}).items():
         print(f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}")
-    pictures = [name for target, name in (("fig1", "fig1a..d"), ("fig6", "fig6a..c")) if target in wanted]
-    print(f"written: {folder / 'report.md'}, report.json" + (f", {' and '.join(pictures)} as PNG, PDF and CSV" if pictures else ""))
+    pictures = [page.files for page in pages.values() if page.files]
+    print(f"written: {folder / 'report.md'}, report.json" + (f", {', '.join(pictures)} as PNG, PDF and CSV" if pictures else ""))
 
 
 def _print_rows(rows: Sequence[dict[str, Any]]) -> None:

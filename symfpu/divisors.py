@@ -201,6 +201,15 @@ def vanishes(N: int, seeds: Sequence[int], frequencies: Sequence[Fraction], mode
     return 3 * mode == N and abs(drive) == 1
 
 
+def divisor(chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], mode: int, harmonic: Sequence[int]) -> float:
+    """lambda_q - (nu.omega)^2 of one mode and harmonic, correctly rounded."""
+    drive = sum((n * w for n, w in zip(harmonic, frequencies, strict=True)), start=Fraction(0))
+    with mpmath.workdps(60):
+        own = frequencies[list(seeds).index(mode)] if mode in seeds else None
+        base = chain.linear_frequency(mode) if own is None else mpmath.mpf(own.numerator) / own.denominator
+        return float(base**2 - (mpmath.mpf(drive.numerator) / drive.denominator) ** 2)
+
+
 def gauge_terms(harmonics: Ints, seeds: Sequence[int], N: int) -> NDArray[np.bool_]:
     """Where a harmonic is +-e_q in the seed mode q itself: the gauge leaves no term there; shape (H, N-1)."""
     gauge = np.zeros((len(harmonics), N - 1), dtype=np.bool_)

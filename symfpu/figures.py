@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.convergence import BreatherStudy, CancellationStudy
 from symfpu.reproduction import Figure1, Figure6
 
 Floats = NDArray[np.float64]
@@ -84,6 +85,47 @@ def draw_figure1(data: Figure1, folder: Path) -> list[Path]:
         "fig1d": "Fig. 1(d): relative errors in time",
     }
     return [path for name, panel in panels.items() for path in save_panel(panel, titles[name], folder / name)]
+
+
+def plot_variants(curves: Mapping[str, Mapping[int, float]], label: str, ax: Axes) -> Axes:
+    """Several quantities by order on a logarithmic scale; curves by name, the first ones drawn on top of each other as rings."""
+    for i, (name, values) in enumerate(curves.items()):
+        orders = [k for k, value in values.items() if value > 0]
+        ax.semilogy(orders, [values[k] for k in orders], marker="osD^v"[i % 5], ms=9 - 1.5 * i, mfc="none", label=name)
+    ax.set_xlabel(r"order $k$")
+    ax.set_ylabel(label)
+    ax.legend()
+    return ax
+
+
+def plot_breather_roots(data: BreatherStudy, ax: Axes) -> Axes:
+    """A(K) of the truncated series beside the periodic orbit and the end of the series."""
+    ax.plot(list(data.amplitudes), list(data.amplitudes.values()), marker=".", ls="none", label=r"root $A(K)$ of the truncated series")
+    ax.axhline(data.orbit.amplitude, color="C1", label=rf"periodic orbit with the printed $\omega$: {data.orbit.amplitude:.6f}")
+    ax.axhline(data.singularity, color="C2", ls="--", label=f"the series ends: {data.singularity:.6f}")
+    ax.set_xlabel(r"frequency order $K$")
+    ax.set_ylabel(r"$A_1$")
+    ax.set_ylim(1.25, 1.5)
+    ax.legend()
+    return ax
+
+
+def draw_convergence(cancellation: CancellationStudy, breather: BreatherStudy, folder: Path) -> list[Path]:
+    """Write the four pictures of the convergence study as PNG and PDF."""
+    variants = cancellation.variants
+    differences = {v.name: {k: max(d) for k, d in v.differences.items()} for v in variants}
+    sums = {v.name: dict(enumerate(v.sums.tolist())) for v in variants}
+    truncated = {k: float(r) for k, r in enumerate(cancellation.residuals) if k >= 2}
+    panels: dict[str, tuple[str, Callable[[Axes], Axes]]] = {
+        "convergence-a": ("Settling of the amplitudes", lambda ax: plot_variants(differences, r"$\max_i |A_i(k+2) - A_i(k)|$", ax)),
+        "convergence-b": ("Size of the terms of mode 1", lambda ax: plot_variants(sums, r"$\mu^k S_2(k)$", ax)),
+        "convergence-c": (
+            "Residual of the 2-torus of Fig. 1",
+            lambda ax: plot_variants({"truncated": truncated, "resummed": cancellation.resummed}, "relative residual", ax),
+        ),
+        "convergence-d": ("The breather of E = 0.014915", lambda ax: plot_breather_roots(breather, ax)),
+    }
+    return [path for name, (title, panel) in panels.items() for path in save_panel(panel, title, folder / name)]
 
 
 def plot_propagation(N: int, orders: Mapping[int, int], ax: Axes) -> Axes:

@@ -141,8 +141,12 @@ APPENDIX_F = (
     ),
 )
 
+FIG9_BREATHER = APPENDIX_F[-1]
+
 FIG1_AMPLITUDE_ORDER = 24  # "in subsequent calculations we use the values of the amplitudes found at the order k=24"
 FIG1_CANCELLATION_ORDER = 14  # "the cancellation takes place up to four orders of magnitude ... at the order k=14"
+
+FIG1_DIGITS = 20  # our choice: doubles lose some of their digits in the cancellations of Fig. 1(c)
 
 FIG1_CLAIMS = {
     "best_difference": "1e-8 .. 1e-7, at k = 24",

@@ -8,12 +8,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from symfpu.arithmetic import text
 from symfpu.chain import decimal
+from symfpu.convergence import BreatherStudy, CancellationStudy
 from symfpu.errors import InputError
 from symfpu.paper import FIG1_CLAIMS
 from symfpu.reproduction import AmplitudeRow, Figure1, Figure6
 from symfpu.sweeps import Sweep, SweepCase
 from symfpu.torus import QTorus
+from symfpu.verdict import Assessment
 
 
 def output_folder(path: Path) -> Path:
@@ -34,9 +37,20 @@ def fifteen_digits(value: float) -> float:
     return float(f"{value:.15g}")
 
 
-def torus_record(torus: QTorus) -> dict[str, Any]:
+def number_text(value: Any, digits: int | None) -> str:
+    """A number that loses no digit: the shortest decimal of a double, or so many digits of an mpf."""
+    return repr(float(value)) if digits is None else text(value, digits)
+
+
+def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[str, Any]:
     """A torus for JSON: keys of the command line, numbers of more than 15 digits as strings."""
-    series = torus.series
+    series, digits = torus.series, torus.digits
+    energies = {
+        "energy": torus.energy(),
+        "harmonic_energy": torus.harmonic_energies().sum(),
+        "average_harmonic_energy": torus.average_spectrum().sum(),
+    }
+    judged = {} if assessment is None else {"verdict": assessment.headline, "assessment": assessment.record()}
     return {
         "N": series.chain.N,
         "alpha": decimal(series.chain.alpha),
@@ -45,11 +59,12 @@ def torus_record(torus: QTorus) -> dict[str, Any]:
         "frequencies": {str(q): decimal(w) for q, w in zip(series.seeds, series.frequencies or (), strict=True)},
         "order": torus.order,
         "frequency_order": torus.frequency_order,
-        "amplitudes": {str(q): repr(a) for q, a in torus.amplitudes.items()},
-        "history": {str(k): [repr(a) for a in values] for k, values in torus.history.items()},
-        "energy": repr(float(torus.energy())),
-        "harmonic_energy": repr(float(torus.harmonic_energies().sum())),
-        "average_harmonic_energy": repr(float(torus.average_spectrum().sum())),
+        "digits": digits,
+        "guard_digits": None if digits is None else series.guard_digits,
+        "amplitudes": {str(q): number_text(a, digits) for q, a in torus.amplitudes.items()},
+        "certified": None if torus.certificate is None else torus.certificate.certified,
+        "history": {str(k): [number_text(a, digits) for a in values] for k, values in torus.history.items()},
+        **{name: number_text(value, digits) for name, value in energies.items()},
         "residual": fifteen_digits(torus.residual()),
         "root_residual": fifteen_digits(torus.root_residual),
         "smallest_divisors": [
@@ -57,6 +72,7 @@ def torus_record(torus: QTorus) -> dict[str, Any]:
             for d in series.smallest_divisors
         ],
         "warnings": list(torus.warnings),
+        **judged,
     }
 
 
@@ -82,7 +98,8 @@ def row_record(row: AmplitudeRow) -> dict[str, Any]:
 def figure1_record(data: Figure1) -> dict[str, Any]:
     """The claims about Fig. 1 for JSON."""
     ours = data.claims()
-    return {"best_order": data.best_order, "claims": {key: {"printed": FIG1_CLAIMS[key], "computed": ours[key]} for key in ours}}
+    judged = {"digits": data.torus.digits, "rounding_of_doubles": fifteen_digits(data.rounding), "assessment": data.assessment.record()}
+    return {"best_order": data.best_order, **judged, "claims": {key: {"printed": FIG1_CLAIMS[key], "computed": ours[key]} for key in ours}}
 
 
 def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -140,7 +157,10 @@ def figure1_markdown(data: Figure1) -> str:
         "## Fig. 1: the 2-torus of N = 16, alpha = 0.33, seeds 1 and 2\n\n"
         + markdown_table(["claim", "printed", "computed"], rows)
         + f"\n\nResidual of the equations of motion by coordinate order: {residual}.\n"
-        + f"The least is at order {data.best_order}.\n\n{pictures}\n"
+        + f"The least is at order {data.best_order}.\n\n"
+        + f"Verdict on the series: {data.assessment.headline} ({'; '.join(data.assessment.reasons)}).\n\n"
+        + f"Computed with {data.torus.series.precision}. In doubles the amplitudes of all orders come out the same to "
+        + f"{data.rounding:.1e}.\n\n{pictures}\n"
     )
 
 
@@ -185,6 +205,97 @@ def figure6_markdown(data: Figure6) -> str:
     pictures = "\n\n".join(f"![Fig. 6({panel})](fig6{panel}.png)" for panel in data.panels)
     table = markdown_table(["panel", "seeds", "modes excited", "at order, at the latest"], lines)
     return f"## Fig. 6: orders of first excitation, N = {data.N}, alpha\n\n{table}\n\n{pictures}\n"
+
+
+def cancellation_markdown(data: CancellationStudy) -> str:
+    """Question (i) of the convergence study: what was tested, what came out."""
+    shown = (14, 20, 24, 28)
+    rows = [
+        [v.name, *(f"{max(v.differences[k]):.2e}" for k in shown), *(f"{v.sums[k]:.2e}" for k in (14, 30)), f"{v.residuals.min():.1e}"]
+        for v in data.variants
+    ]
+    table = markdown_table(["case", *(f"dA({k})" for k in shown), "S_2(14)", "S_2(30)", "least residual"], rows)
+    ratios = ", ".join(f"{k}: {r:.6f}" for k, r in data.ratios.items() if k >= 20)
+    by_order = [
+        [str(k), f"{data.residuals[k]:.1e}", f"{data.resummed[k]:.1e}", *(f"{a:.10f}" for pair in data.amplitudes[k] for a in pair)]
+        for k in data.resummed
+    ]
+    columns = ["order", "residual", "resummed", "A_1", "A_2", "A_1 resummed", "A_2 resummed"]
+    first, second = data.coincidence
+    return "\n\n".join(
+        [
+            "## Question (i): Fig. 1(b, c), why the errors stop falling",
+            table,
+            f"Exact coincidence: {first} omega_1 {second:+d} omega_2 = 0, at order {abs(first) + abs(second) - 1}; none before.",
+            f"Verdict: {data.assessment.headline} ({'; '.join(data.assessment.reasons)}).",
+            f"The coefficient of harmonic (5,-4) in mode 3, divisor {data.divisor:.4e}, grows every two orders by: {ratios}.",
+            f"Mode 3's own frequency on the torus, a series in mu^2, meets 4 omega_2 - 5 omega_1 at {data.pole:.5f} of the actual mu^2: "
+            f"a pole there makes terms grow by {1 / data.pole:.5f} every two orders.",
+            markdown_table(columns, by_order),
+        ]
+    )
+
+
+def breather_markdown(data: BreatherStudy) -> str:
+    """Question (ii) of the convergence study."""
+    rows = [
+        [name, f"{float(o.frequency):.14f}", f"{o.amplitude:.11f}", f"{o.energy:.10f}", f"{o.harmonic_energy:.10f}", f"{o.residual:.0e}"]
+        for name, o in (("printed frequency", data.orbit), ("printed amplitude", data.at_printed))
+    ]
+    orders = [k for k in data.amplitudes if k in (2, 10, 50, 100, 150, 200) or k == max(data.amplitudes)]
+    return "\n\n".join(
+        [
+            "## Question (ii): the breather of E = 0.014915",
+            markdown_table(["periodic orbit with the", "omega", "A", "H", "harmonic E(0)", "residual"], rows),
+            "A(K) of the truncated series: " + ", ".join(f"{k}: {data.amplitudes[k]:.8f}" for k in orders) + ".",
+            f"The frequency series with these divisors ends at A = {data.singularity:.9f} (spread of the fit {data.spread:.0e}) in a "
+            f"singularity of exponent {data.exponent:.4f}.",
+            f"Verdict: {data.assessment.headline} ({'; '.join(data.assessment.reasons)}).",
+        ]
+    )
+
+
+def convergence_markdown(cancellation: CancellationStudy, breather: BreatherStudy) -> str:
+    """Both questions, and where the pictures are."""
+    pictures = "\n\n".join(f"![{name}]({name}.png)" for name in ("convergence-a", "convergence-b", "convergence-c", "convergence-d"))
+    return "\n\n".join([cancellation_markdown(cancellation), breather_markdown(breather), pictures]) + "\n"
+
+
+def convergence_record(cancellation: CancellationStudy, breather: BreatherStudy) -> dict[str, Any]:
+    """Both questions for JSON."""
+    return {
+        "coincidence": list(cancellation.coincidence),
+        "divisor": fifteen_digits(cancellation.divisor),
+        "pole": fifteen_digits(cancellation.pole),
+        "ratios": {str(k): fifteen_digits(r) for k, r in cancellation.ratios.items()},
+        "resummed_residuals": {str(k): fifteen_digits(r) for k, r in cancellation.resummed.items()},
+        "torus": cancellation.assessment.record(),
+        "orbit": {"frequency": decimal(breather.orbit.frequency), "amplitude": repr(breather.orbit.amplitude)},
+        "orbit_energy": repr(breather.orbit.energy),
+        "singularity": fifteen_digits(breather.singularity),
+        "breather": breather.assessment.record(),
+    }
+
+
+def write_convergence_csv(cancellation: CancellationStudy, breather: BreatherStudy, folder: Path) -> list[Path]:
+    """The data behind the pictures of the convergence study."""
+    names = [v.name for v in cancellation.variants]
+    orders = list(cancellation.variants[0].differences)
+    return write_csv(
+        {
+            "convergence-a": (["k", *names], ([k, *(max(v.differences[k]) for v in cancellation.variants)] for k in orders)),
+            "convergence-b": (
+                ["k", *names],
+                ([k, *row] for k, row in enumerate(zip(*(v.sums for v in cancellation.variants), strict=True))),
+            ),
+            "convergence-c": (
+                ["order", "truncated", "resummed"],
+                ([k, cancellation.residuals[k], r] for k, r in cancellation.resummed.items()),
+            ),
+            "convergence-d": (["K", "A"], ([k, a] for k, a in breather.amplitudes.items())),
+        },
+        folder,
+    )
 
 
 def write_csv(tables: Mapping[str, tuple[Sequence[str], Iterable[Sequence[Any]]]], folder: Path) -> list[Path]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 
@@ -15,6 +15,7 @@ from symfpu.paper import (
     APPENDIX_F,
     FIG1_AMPLITUDE_ORDER,
     FIG1_CANCELLATION_ORDER,
+    FIG1_DIGITS,
     FIG6_CHAIN,
     FIG6_WIDTH,
     TWO_TORUS,
@@ -23,6 +24,7 @@ from symfpu.paper import (
 from symfpu.propagation import excitation_sequence
 from symfpu.series import LindstedtSeries
 from symfpu.torus import QTorus
+from symfpu.verdict import Assessment, assess
 
 Floats = NDArray[np.float64]
 Step = Callable[[str], None]
@@ -158,22 +160,37 @@ def figure6() -> Figure6:
 class Figure1:
     """Data of Fig. 1 (a) to (d): the 2-torus of N = 16, alpha = 0.33, seeds 1 and 2.
 
-    spectra, errors : by coordinate order, for the order of least residual and for the amplitudes' own order.
-    spectra : time averages of E_q over the total energy. errors : relative errors in time (total, harmonic).
+    assessment : verdict with amplitudes, sums and residuals by order. spectra, errors : by coordinate order, for the order of
+    least residual and for the amplitudes' own order. spectra : time averages of E_q over the total energy. errors : relative
+    errors in time (total, harmonic). rounding : largest relative error of the amplitudes of all orders if computed in doubles.
     """
 
     torus: QTorus
-    residuals: dict[int, float]
+    assessment: Assessment
     spectra: dict[int, Floats]
-    differences: dict[int, tuple[float, ...]]
-    sums: tuple[Floats, Floats]
     times: Floats
     errors: dict[int, tuple[Floats, Floats]]
+    rounding: float
+
+    @property
+    def sums(self) -> tuple[Floats, Floats]:
+        """mu^k S_1(k) and mu^k S_2(k) of mode 1."""
+        return self.assessment.sums[1]
+
+    @property
+    def differences(self) -> Mapping[int, tuple[float, ...]]:
+        """Delta A(k) of both seeds."""
+        return self.assessment.differences
+
+    @property
+    def residuals(self) -> dict[int, float]:
+        """Residual of the equations of motion by coordinate order."""
+        return {k: float(r) for k, r in enumerate(self.assessment.residuals) if k >= 2}
 
     @property
     def best_order(self) -> int:
         """The coordinate order with the least residual of the equations of motion."""
-        return min(self.residuals, key=lambda k: self.residuals[k])
+        return self.assessment.best_order
 
     def claims(self) -> dict[str, str]:
         """What the paper's text says of Fig. 1, in our numbers; the keys are those of paper.FIG1_CLAIMS."""
@@ -196,23 +213,28 @@ class Figure1:
 
 
 def figure1(step: Step = lambda label: None) -> Figure1:
-    """Compute the data of Fig. 1 (a) to (d) from the printed frequencies."""
+    """Compute the data of Fig. 1 (a) to (d) from the printed frequencies, with FIG1_DIGITS digits.
+
+    Doubles run beside them show what precision is needed: they lose no more than `rounding`.
+    """
     step("fig1: series")
     printed = TWO_TORUS
-    series = lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order)
-    step("fig1: residual by order")
-    tori = {k: solve_amplitudes(series, frequency_order=FIG1_AMPLITUDE_ORDER, order=k) for k in range(2, series.order + 1)}
-    residuals = {k: torus.residual() for k, torus in tori.items()}
-    shown = sorted({min(residuals, key=lambda k: residuals[k]), FIG1_AMPLITUDE_ORDER})
-    torus = tori[FIG1_AMPLITUDE_ORDER]
-    times = np.linspace(0.0, 1000.0, 2001)
+    series = lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order, digits=FIG1_DIGITS)
+    torus = solve_amplitudes(series, frequency_order=FIG1_AMPLITUDE_ORDER)
+    step("fig1: verdict")
+    assessment = assess(series, torus)
+    step("fig1: doubles")
+    doubles = amplitude_history(lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order)).amplitudes
+    pairs = [(a, b) for k, row in torus.history.items() for a, b in zip(row, doubles[k], strict=True)]
     step("fig1: errors in time")
+    shown = sorted({assessment.best_order, FIG1_AMPLITUDE_ORDER})
+    tori = {k: replace(torus, order=k).in_doubles() for k in shown}
+    times = np.linspace(0.0, 1000.0, 2001)
     return Figure1(
         torus=torus,
-        residuals=residuals,
-        spectra={k: tori[k].average_spectrum() / tori[k].energy() for k in shown},
-        differences=amplitude_history(series).differences(),
-        sums=series.absolute_sums(1, [torus.amplitudes[q] for q in series.seeds], with_mu=True),
+        assessment=assessment,
+        spectra={k: t.average_spectrum() / t.energy() for k, t in tori.items()},
         times=times,
-        errors={k: (tori[k].energy_error(times), tori[k].energy_error(times, harmonic=True)) for k in shown},
+        errors={k: (t.energy_error(times), t.energy_error(times, harmonic=True)) for k, t in tori.items()},
+        rounding=max(abs(float(b / a - 1)) for a, b in pairs),
     )

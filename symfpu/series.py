@@ -262,7 +262,7 @@ class LindstedtSeries:
         """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients: sum over rows of value[., q] cos(nu.theta).
 
         amplitudes : (s,) in the order of the seeds. Returns harmonics (H, s), one of each pair +-nu, and values (H, N-1).
-        absolute : take the modulus of every monomial before they are summed (for S_1 of Eq. serabs2).
+        absolute : take the modulus of every monomial before they are summed (for S_1 of Eq. serabs2); always doubles.
         """
         self._numeric()
         if np.shape(amplitudes) != (len(self.seeds),):
@@ -272,22 +272,32 @@ class LindstedtSeries:
         nu, index = self.grading.harmonics(self.degree(order))
         by_harmonic = np.argsort(index, kind="stable")
         starts = np.searchsorted(index[by_harmonic], np.arange(len(nu)))
+        doubles = absolute or self.digits is None
         with self._context():
-            table, exponent = self._terms(amplitudes, order)
-            if absolute:
-                table = np.abs(table)
-            values = np.add.reduceat(table[by_harmonic], starts, axis=0)
-            if self.digits:
-                values = from_integers(values, exponent)
-            values = values * (self._sign(order) / self._kappa) / self.chain.frequencies(self.numbers)
+            table: NDArray[Any] = np.zeros(0)
+            exponent = np.zeros(1, dtype=np.int64)
+            if doubles:
+                table = self._doubles(amplitudes, order)
+            else:
+                table, exponent = self._integers(amplitudes, order)
+            values = np.add.reduceat(np.abs(table[by_harmonic]) if absolute else table[by_harmonic], starts, axis=0)
+            numbers = DOUBLES if doubles else MULTIPRECISION
+            factor = self._sign(order) / self._kappa
+            values = values * float(factor) if doubles else from_integers(values, exponent) * factor
+            values = values / self.chain.frequencies(numbers)
             values[(nu != 0).any(axis=1)] *= 2
-        return nu, values
+        return nu, np.abs(values) if absolute else values
 
-    def _terms(self, amplitudes: ArrayLike, order: int) -> tuple[NDArray[Any], NDArray[np.int64]]:
-        """Every coefficient of an order times its monomial: doubles, or with digits integers and the power of two of their unit."""
+    def _doubles(self, amplitudes: ArrayLike, order: int) -> Floats:
+        """Every coefficient of an order times its monomial, as doubles."""
+        table = self.coordinates[order]
+        values = table.floats(-self.bits) if isinstance(table, IntegerTable) else table
+        seeds = self.scaled_seeds(amplitudes).astype(float)
+        return np.asarray(values * np.prod(seeds ** self.grading.powers(self.degree(order)), axis=1)[:, None])
+
+    def _integers(self, amplitudes: ArrayLike, order: int) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+        """The same as integers, and the power of two of their unit."""
         powers, seeds = self.grading.powers(self.degree(order)), self.scaled_seeds(amplitudes)
-        if self.digits is None:
-            return self.coordinates[order] * np.prod(seeds**powers, axis=1)[:, None], np.zeros(1, dtype=np.int64)
         table = powers_of(list(seeds), int(powers.max()), mpmath.mpf(1))
         monomials = np.array(table[0], dtype=object)[powers[:, 0]]
         for i in range(1, len(seeds)):

@@ -87,7 +87,7 @@ class QTorus(QuasiPeriodic):
             parts = [self.series.harmonic_terms(amplitudes, k) for k in range(self.order + 1)]
             keys = np.concatenate([self.series.grading.harmonic_keys(nu) for nu, _ in parts])
             _, first, index = np.unique(keys, return_index=True, return_inverse=True)
-            values = self.numbers.array(np.zeros((len(first), self.chain.N - 1)))
+            values = self.numbers.zeros((len(first), self.chain.N - 1))
             at = 0
             for nu, part in parts:
                 values[index[at : at + len(nu)]] += part

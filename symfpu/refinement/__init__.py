@@ -1,0 +1,1 @@
+"""Exact orbits to which truncated series are compared."""
