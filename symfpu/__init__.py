@@ -1,7 +1,8 @@
 """Poincare-Lindstedt series of q-tori and q-breathers in Fermi-Pasta-Ulam chains, symbolic first."""
 
 from symfpu.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
-from symfpu.bundle import Bundle, BundleError, load, save
+from symfpu.archive import BundleError
+from symfpu.bundle import Bundle, load, save
 from symfpu.certificates import PropagationProof, prove_propagation
 from symfpu.chain import Chain
 from symfpu.commensurability import frequency_rank

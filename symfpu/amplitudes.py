@@ -127,7 +127,7 @@ def solve_amplitudes(
         root_residual=residual,
         certificate=certify_root(series, list(squares), K) if series.digits else None,
     )
-    return replace(torus, warnings=(*_order_doubts(amplitudes, orders, history), *_residual_doubts(torus)))
+    return torus.doubted((*_order_doubts(amplitudes, orders, history), *_residual_doubts(torus)))
 
 
 def _square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -63,14 +63,17 @@ class QTorus(QuasiPeriodic):
 
     @property
     def chain(self) -> Chain:  # type: ignore[override]
+        """The chain."""
         return self.series.chain
 
     @property
     def seeds(self) -> tuple[int, ...]:  # type: ignore[override]
+        """The seed modes."""
         return self.series.seeds
 
     @property
     def frequencies(self) -> tuple[Fraction, ...]:  # type: ignore[override]
+        """The chosen frequency of every seed."""
         assert self.series.frequencies is not None
         return self.series.frequencies
 
@@ -78,6 +81,13 @@ class QTorus(QuasiPeriodic):
     def digits(self) -> int | None:  # type: ignore[override]
         """Digits of all results; None for doubles."""
         return self.series.digits
+
+    def doubted(self, warnings: tuple[str, ...]) -> QTorus:
+        """The same torus with warnings; what was computed of it is kept."""
+        torus = replace(self, warnings=warnings)
+        if "_terms" in self.__dict__:
+            torus.__dict__["_terms"] = self.__dict__["_terms"]
+        return torus
 
     @cached_property
     def _terms(self) -> tuple[Ints, Numbers]:
