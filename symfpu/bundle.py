@@ -315,7 +315,7 @@ def _torus_entries(torus: QTorus) -> Json:
         "order": torus.order,
         "history": {str(K): [number_entry(a) for a in row] for K, row in torus.history.items()},
         "root_residual": repr(float(torus.root_residual)),
-        "certificate": proof and asdict(proof) | {"radius": {str(q): repr(float(r)) for q, r in proof.radius.items()}},
+        "certificate": proof and asdict(proof) | {"radius": {str(q): number_entry(r) for q, r in proof.radius.items()}},
         "warnings": list(torus.warnings),
     }
 

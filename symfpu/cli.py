@@ -20,6 +20,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from symfpu.amplitudes import solve_amplitudes
+from symfpu.arithmetic import text
 from symfpu.bundle import load, save
 from symfpu.certificates import PropagationProof, prove_propagation, write_text
 from symfpu.chain import Chain
@@ -233,9 +234,9 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
     for q, amplitude in record["amplitudes"].items():
         print(f"seed {q:<4} omega {record['frequencies'][q]:<20} amplitude {amplitude}")
     if torus.certificate is not None:
-        radius = max(torus.certificate.radius.values())
+        radius = text(max(torus.certificate.radius.values()), 2)
         print(
-            f"exactly one root within {radius:.1e}: certified"
+            f"exactly one root within {radius}: certified"
             if torus.certificate.certified
             else f"root not certified: {torus.certificate.reason}"
         )

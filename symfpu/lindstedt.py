@@ -38,7 +38,9 @@ Progress = Callable[[int, int], None]
 Frequencies = tuple[Fraction, ...] | None
 MOST_DIGITS = 10_000
 SPARE_DIGITS = 6  # beyond the promised ones, for what is computed from the coefficients
-EXPECTED_GUARD = 20  # digits, for the prediction of memory only
+EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60  # digits, an order and at most, for the prediction of memory only
+OTHER_STAGES = 6  # series in doubles that the stages before and after a fixed-point series hold, with their radii
+CONSTANT_BYTES = 2**24
 ATTEMPTS = 3
 SYMBOLIC_GROWTH = 4  # factor by which an expanded coefficient grows with the order, about
 
@@ -301,5 +303,7 @@ def check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str, digi
 def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int:
     size = predicted_bytes(chain.N, seeds, 1 + chain.degree_step * order, cubic=chain.beta != 0)
     if ring == "fixedpoint":
-        return size * math.ceil((digits + EXPECTED_GUARD) / LOG10_2 * 2 / PRIME_BITS)
+        guard = EXPECTED_GUARD + min(EXPECTED_LOSS * order, MOST_EXPECTED)
+        primes = math.ceil((digits + guard) / LOG10_2 * 2 / (PRIME_BITS - 2))
+        return CONSTANT_BYTES + size * (primes + OTHER_STAGES)
     return size * SYMBOLIC_GROWTH ** min(order, 100) if ring in ("symbolic", "nested") else size

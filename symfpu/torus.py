@@ -26,7 +26,7 @@ class RootCertificate:
     """
 
     certified: bool
-    radius: Mapping[int, float]
+    radius: Mapping[int, Any]  # mpf: doubles end at 1e-308
     reason: str = ""
 
 

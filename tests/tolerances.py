@@ -46,3 +46,20 @@ HIGH_PRECISION = 1e-32
 # Omega - nu.omega of 1e-13 keeps its digits, since both are split on a grid on which the difference is exact; what is
 # left is the rounding of the sum of the two frequencies, of the quotient and of the stored remainders.
 NEAR_RESONANCE = 1e-14
+
+# Rounding by balanced limbs, in units of the last place: one half, and the limbs below the next one.
+NEAREST = 0.5 + 2.0**-18
+
+# What `digits=40` promises: coefficients to so many digits of the largest one of their order. Ours are divided by Omega_q
+# and multiplied by powers of Omega_i <= 2, and largest ones of two different modes are compared: one digit.
+FORTY_DIGITS = 1e-39
+
+# A printed number of 40 decimal places, correctly rounded: half of the last one, and what a longer print would show.
+LAST_PLACE = 0.5001e-40
+
+# A torus of many digits against the one of doubles: its amplitudes carry AMPLITUDE, and everything else follows from them
+# with factors of a few.
+SAME_AS_DOUBLES = 16 * AMPLITUDE
+
+# Small amplitudes and high orders: the next order of a beta breather at A = 0.01 is some (beta A^2 Omega^2 / 8)^9.
+TINY_RESIDUAL = 1e-25

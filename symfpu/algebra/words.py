@@ -53,10 +53,11 @@ class IntegerTable:
         return np.asarray(total)
 
     def floats(self, exponent: int = 0) -> Floats:
-        """The entries times 2^exponent as doubles, correct to about an ulp."""
+        """The entries times 2^exponent as doubles, correct to about an ulp; infinite beyond their range."""
         total = np.zeros(self.shape)
-        for j in range(self.words.shape[-1]):
-            total += np.ldexp(self.words[..., j].astype(np.float64), j * WORD_BITS + exponent)
+        with np.errstate(over="ignore", invalid="ignore"):
+            for j in range(self.words.shape[-1]):
+                total += np.ldexp(self.words[..., j].astype(np.float64), j * WORD_BITS + exponent)
         return total
 
     @staticmethod
@@ -68,7 +69,7 @@ class IntegerTable:
         """
         longest = max((int(x).bit_length() for x in integers.ravel()), default=0)
         words, rest = [], integers.astype(object)
-        for _ in range(max(1, -(-(longest + 1) // WORD_BITS))):
+        for _ in range(max(1, -(-(longest + 2) // WORD_BITS))):
             low = ((rest + 2 ** (WORD_BITS - 1)) % 2**WORD_BITS) - 2 ** (WORD_BITS - 1)
             words.append(low.astype(np.int64))
             rest = (rest - low) >> WORD_BITS

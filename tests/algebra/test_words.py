@@ -1,0 +1,154 @@
+"""Large integers in bulk: every change of basis is exact, rounding is to the nearest, and what does not fit is seen."""
+
+from fractions import Fraction
+from math import prod
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from symfpu.algebra.words import LIMB_BITS, WORD_BITS, IntegerTable, ResidueBasis, words_of
+from tests.tolerances import EPS, NEAREST
+
+BITS = 150
+LARGEST = 2**40
+BASIS = ResidueBasis(BITS, LARGEST)
+
+within = st.integers(-(2**BITS) + 1, 2**BITS - 1)
+lists = st.lists(within, min_size=1, max_size=6)
+tables = st.integers(0, 4).flatmap(lambda columns: st.lists(st.lists(st.integers(), min_size=columns, max_size=columns), max_size=4))
+
+
+def row(integers):
+    return np.array(integers, dtype=object)
+
+
+def of_limbs(limbs):
+    """Python's integers of balanced limbs (limbs, count)."""
+    return [sum(int(limb) << (LIMB_BITS * n) for n, limb in enumerate(column)) for column in limbs.T]
+
+
+def of_words(words):
+    return IntegerTable(words[:, None, :]).integers()[:, 0].tolist()
+
+
+def test_the_primes_are_distinct_primes_below_the_largest_and_are_enough():
+    assert len(set(BASIS.primes)) == len(BASIS) == len(BASIS.primes)
+    assert all(pow(2, p - 1, p) == 1 and p % 2 and p <= LARGEST for p in BASIS.primes)
+    assert prod(BASIS.primes) > 2 ** (BITS + 1)
+
+
+@given(lists)
+def test_residues_of_integers_are_the_centred_remainders(integers):
+    for p, residues in zip(BASIS.primes, BASIS.of_integers(row(integers)), strict=True):
+        assert np.abs(residues).max() <= p // 2
+        assert [int(r) % p for r in residues] == [x % p for x in integers]
+
+
+@given(lists)
+def test_chinese_remainders_give_the_integers_back(integers):
+    limbs = BASIS.limbs(BASIS.of_integers(row(integers)))
+    assert of_limbs(limbs) == integers
+    assert np.abs(limbs[:-1]).max() <= 2 ** (LIMB_BITS - 1)
+
+
+@given(lists)
+def test_limbs_give_the_residues_back(integers):
+    residues = BASIS.of_integers(row(integers))
+    assert (BASIS.residues(BASIS.limbs(residues.copy())) == residues).all()
+
+
+@given(lists)
+def test_words_give_the_integers_back(integers):
+    words = words_of(BASIS.limbs(BASIS.of_integers(row(integers))))
+    assert of_words(words) == integers
+    assert np.abs(words).max() < 2**WORD_BITS
+
+
+@given(lists, st.integers(0, BITS // LIMB_BITS + 1))
+def test_dropped_limbs_round_to_the_nearest(integers, drop):
+    """The remainder of balanced limbs is at most 2^19 (1 + 2^20 + ..) / 2^(20 drop): half a unit and one part in 2^20."""
+    rounded = of_limbs(BASIS.limbs(BASIS.of_integers(row(integers)), drop))
+    unit = 2 ** (LIMB_BITS * drop)
+    assert all(abs(Fraction(x, unit) - r) <= NEAREST for x, r in zip(integers, rounded, strict=True))
+
+
+@given(st.integers(0, 2 ** (BITS - 60)), st.sampled_from([-1, 1]), st.sampled_from([-1, 1]))
+def test_rounding_just_off_the_half_goes_to_the_nearer_side(whole, sign, side):
+    """A quarter of a unit off the half nobody may go wrong."""
+    unit = 2**40
+    number = sign * (whole * unit + unit // 2 + side * unit // 4)
+    (rounded,) = of_limbs(BASIS.limbs(BASIS.of_integers(row([number])), drop=2))
+    assert rounded == sign * (whole + (side > 0))
+
+
+@given(st.integers(2 ** (BITS + 1), 2 ** (BITS + 2)), st.sampled_from([-1, 1]), lists)
+def test_an_integer_beyond_the_promised_bits_is_seen(number, sign, others):
+    """The basis has four bits to spare: up to eight times the promised range nothing wraps around unseen."""
+    with pytest.raises(OverflowError, match="range"):
+        BASIS.limbs(BASIS.of_integers(row([*others, sign * number])))
+
+
+@pytest.mark.parametrize("size", [2**BITS - 1, 2 ** (BITS - 1), 1, 0])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_ends_of_the_promised_range_pass(size, sign):
+    assert of_limbs(BASIS.limbs(BASIS.of_integers(row([sign * size])))) == [sign * size]
+
+
+@pytest.mark.parametrize(("bits", "largest"), [(40, 2**40), (400, 2**40), (4000, 2**40), (12_000, 2**40), (400, 2**33), (4000, 5_000_011)])
+def test_round_trips_at_every_size_of_the_basis(bits, largest):
+    """Three hundred primes: sums of limbs stay exact in doubles."""
+    basis = ResidueBasis(bits, largest)
+    generator = np.random.default_rng(bits)
+    integers = [int.from_bytes(generator.bytes(bits // 8), "little", signed=True) for _ in range(5)] + [2**bits - 1, 1 - 2**bits]
+    limbs = basis.limbs(basis.of_integers(row(integers)))
+    assert of_limbs(limbs) == of_words(words_of(limbs)) == integers
+    assert (basis.residues(limbs) == basis.of_integers(row(integers))).all()
+
+
+def test_no_integers_at_all():
+    empty = BASIS.of_integers(np.zeros(0, dtype=object))
+    assert empty.shape == (len(BASIS), 0)
+    limbs = BASIS.limbs(empty)
+    assert limbs.shape[1] == 0
+    assert words_of(limbs).shape == (0, 1)
+
+
+@given(tables)
+def test_tables_hold_any_integers(rows):
+    integers = np.array(rows, dtype=object).reshape(len(rows), len(rows[0]) if rows else 0)
+    table = IntegerTable.of(integers)
+    assert table.shape == integers.shape
+    assert table.size == integers.size
+    assert table.integers().tolist() == integers.tolist()
+    assert np.abs(table.words).max(initial=0) < 2**WORD_BITS
+
+
+@pytest.mark.parametrize("power", [58, 59, 60, 61, 119, 120, 1000, 40_000])
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("off", [-1, 0, 1])
+def test_tables_hold_integers_at_the_borders_of_words(power, sign, off):
+    number = sign * 2**power + off
+    assert IntegerTable.of(row([[number, 0, -number]])).integers().tolist() == [[number, 0, -number]]
+
+
+def test_columns_are_picked():
+    table = IntegerTable.of(row([[1, 2**70, 3], [4, 5, -(2**90)]]))
+    assert table.integers([1]).tolist() == [[2**70], [5]]
+    assert table.integers(slice(1, 3)).tolist() == [[2**70, 3], [5, -(2**90)]]
+    assert repr(table) == "IntegerTable(2 x 3 integers of up to 120 bits)"
+
+
+@given(st.lists(st.integers(-(2**900), 2**900), min_size=1, max_size=5), st.integers(-1000, 100))
+def test_floats_are_the_numbers_to_about_an_ulp(integers, exponent):
+    """The first word may be one, the next half a word of the other sign: two roundings of the larger, one of the sum."""
+    values = IntegerTable.of(row([integers])).floats(exponent)[0]
+    for x, value in zip(integers, values, strict=True):
+        exact = Fraction(x) * Fraction(2) ** exponent
+        assert abs(Fraction(float(value)) - exact) <= 4 * Fraction(EPS) * abs(exact)
+
+
+def test_floats_of_entries_that_only_fit_with_their_exponent():
+    assert IntegerTable.of(row([[3 << 4000, 0]])).floats(-4000).tolist() == [[3.0, 0.0]]
+    assert IntegerTable.of(row([[1]])).floats(-4000).tolist() == [[0.0]]
