@@ -27,7 +27,7 @@ from symfpu.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.lindstedt import lindstedt
 from symfpu.propagation import excitation_sequence
-from symfpu.report import output_folder, sweep_markdown, torus_record
+from symfpu.report import output_file, output_folder, sweep_markdown, torus_record
 from symfpu.sweeps import sweep_propagation
 from symfpu.targets import TARGETS
 from symfpu.torus import QTorus
@@ -202,7 +202,7 @@ def solve(
     chain = Chain(_whole("N", bonds), alpha=alpha, beta=beta)
     chosen = _whole_numbers("seeds", seeds)
     highest, cut = _optional("frequency-order", frequency_order), _optional("coordinate-order", coordinate_order)
-    places = _optional("digits", digits)
+    places, file = _optional("digits", digits), output_file(output) if output else None
     with _progress() as advance:
         series = lindstedt(
             chain,
@@ -216,17 +216,17 @@ def solve(
         torus = solve_amplitudes(series, frequency_order=highest, order=cut)
         assessment = assess(series, torus, progress=lambda done, total: advance("verdict", done / total))
         record = torus_record(torus, assessment)
-        if output:
+        if file:
             advance("writing", None)
-            save(output, torus, verdict=assessment.record(), command=_command_line())
+            save(file, torus, verdict=assessment.record(), command=_command_line())
     if as_json:
         _print_json(record)
     else:
         print(f"verdict: {assessment.headline}")
         _print_torus(torus, record)
         print("".join(f"  {reason}\n" for reason in assessment.reasons), end="")
-        if output:
-            print(f"written: {output}")
+        if file:
+            print(f"written: {file}")
 
 
 def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:

@@ -32,6 +32,13 @@ def output_folder(path: Path) -> Path:
     return path
 
 
+def output_file(path: Path) -> Path:
+    """The path, if a file can be written there; InputError before anything is computed otherwise."""
+    if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
+        raise InputError("output", str(path), "a file in a folder that exists and can be written", "choose another with -o")
+    return path
+
+
 def fifteen_digits(value: float) -> float:
     """A measure of size to 15 digits, the most that a number in JSON has; what needs more is written as a string."""
     return float(f"{value:.15g}")
