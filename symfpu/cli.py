@@ -27,7 +27,7 @@ from symfpu.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.lindstedt import lindstedt
 from symfpu.propagation import excitation_sequence
-from symfpu.report import output_file, output_folder, sweep_markdown, torus_record
+from symfpu.report import assessment_text, output_file, output_folder, sweep_markdown, torus_record
 from symfpu.sweeps import sweep_propagation
 from symfpu.targets import TARGETS
 from symfpu.torus import QTorus
@@ -224,7 +224,7 @@ def solve(
     else:
         print(f"verdict: {assessment.headline}")
         _print_torus(torus, record)
-        print("".join(f"  {reason}\n" for reason in assessment.reasons), end="")
+        print(assessment_text(assessment))
         if file:
             print(f"written: {file}")
 

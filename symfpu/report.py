@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -81,6 +82,36 @@ def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[st
         "warnings": list(torus.warnings),
         **judged,
     }
+
+
+def assessment_text(found: Assessment) -> str:
+    """The evidence of a verdict: reasons, radii, and a line for some of the orders (all of them are in the JSON)."""
+    lines = [f"  {reason}" for reason in found.reasons]
+    poles = "no pole" if math.isinf(found.pole_radius) else f"{found.pole_radius:.3g}"
+    lines.append(f"  radius of convergence in units of mu: {found.radius:.3g} by ratio of terms, {poles} by Pade poles of the frequencies")
+    seed = next(iter(found.sums))
+    head = ("order", f"A_{seed}(k)", "dA(k)", f"S_1, S_2 of Q_{seed}", "residual", "energy error", "largest term: mode, harmonic, divisor")
+    rows = [_order_line(found, seed, k) for k in _some(found)]
+    widths = [max(len(row[i]) for row in (head, *rows)) for i in range(len(head))]
+    lines += ["  " + "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in (head, *rows)]
+    return "\n".join(lines)
+
+
+def _some(found: Assessment) -> list[int]:
+    """At most about a dozen orders: the first, the best, the last, and some between."""
+    step = max(1, found.order // 10)
+    return sorted({*range(0, found.order + 1, step), found.best_order, found.order})
+
+
+def _order_line(found: Assessment, seed: int, k: int) -> tuple[str, ...]:
+    first, second = (sums[k] for sums in found.sums[seed])
+    term = next((t for t in found.terms if t.order == k), None)
+    largest = "" if term is None else f"{term.size:.1e}: {term.mode}, ({','.join(map(str, term.harmonic))}), {term.divisor:.1e}"
+    position = list(found.sums).index(seed)
+    amplitude = f"{float(found.amplitudes[k][position]):.10g}" if k in found.amplitudes else ""
+    change = f"{max(found.differences[k]):.1e}" if k in found.differences else ""
+    sums, errors = f"{first:.1e}, {second:.1e}", (f"{found.residuals[k]:.1e}", f"{found.energy_errors[k]:.1e}")
+    return (str(k), amplitude, change, sums, *errors, largest)
 
 
 def row_record(row: AmplitudeRow) -> dict[str, Any]:

@@ -29,7 +29,7 @@ Progress = Callable[[int, int], None]
 AGREEMENT = 1e-3  # relative uncertainty of an amplitude above which the root is not stable under the order
 LARGE_RESIDUAL = 1e-3  # relative residual that no truncation of a torus' series should exceed at its best order
 FLOOR = 1e-12  # relative residual of doubles at which nothing more can be seen
-RATIO_ORDERS = 6  # how many of the last orders with a term the growth ratio is fitted to
+RATIO_ORDERS = 4  # how many of the last orders a growth ratio is fitted to
 GRID_POINTS = 512  # angles at which residuals by order are taken, about, in doubles
 
 
@@ -159,7 +159,7 @@ def assess(series: LindstedtSeries, torus: QTorus, *, progress: Progress | None 
         root_uncertainty=_root_uncertainty(torus, differences),
         sums={q: (np.array([o.moduli[q] for o in found]), np.array([o.cosines[q] for o in found])) for q in series.seeds},
         terms=tuple(terms),
-        growth=_growth(terms),
+        growth=_growth(terms, 2 // series.chain.degree_step),
         **_poles(torus),
         residuals=np.array(residuals),
         energy_errors=np.array([order.energy_error for order in found]),
@@ -219,9 +219,10 @@ def _largest(torus: QTorus, order: int, nu: NDArray[np.int64], values: Numbers) 
     )
 
 
-def _growth(terms: list[LargestTerm]) -> float:
-    """Factor from order to order by which the largest terms grow, fitted to the last ones."""
-    last = [t for t in terms[-RATIO_ORDERS:] if t.size > 0 and t.order > 0]
+def _growth(terms: list[LargestTerm], step: int) -> float:
+    """Factor from order to order by which the largest terms grow, fitted to the last ones of the last one's parity (alpha)."""
+    alike = [t for t in terms if t.size > 0 and t.order > 0 and (terms[-1].order - t.order) % step == 0]
+    last = alike[-RATIO_ORDERS:]
     if len(last) < 2:
         return 0.0
     return float(np.exp(np.polyfit([t.order for t in last], np.log([t.size for t in last]), 1)[0]))
