@@ -125,10 +125,11 @@ def short(value: float) -> float | None:
     return float(f"{value:.6g}") if math.isfinite(value) else None
 
 
-def assess(series: LindstedtSeries, torus: QTorus, *, progress: Progress | None = None) -> Assessment:
+def assess(series: LindstedtSeries, torus: QTorus, *, resummed: bool = True, progress: Progress | None = None) -> Assessment:
     """Judge a series and the torus solved from it (Fig. 1(b), (c) of the paper for any torus, and more).
 
-    torus : made from this series by `solve_amplitudes`. progress : called as (steps done, steps). Raises InputError if the
+    torus : made from this series by `solve_amplitudes`. resummed : also judge the torus of Pade sums (the slowest part for
+    long series with digits); else its residual is infinite. progress : called as (steps done, steps). Raises InputError if the
     torus belongs to another series. The residuals decide: they fall to the last order of a converged series, fall and rise
     again for an asymptotic one; a root that moves with the frequency order, or whose best residual is large, is no torus.
     """
@@ -163,7 +164,7 @@ def assess(series: LindstedtSeries, torus: QTorus, *, progress: Progress | None 
         **_poles(torus),
         residuals=np.array(residuals),
         energy_errors=np.array([order.energy_error for order in found]),
-        resummed_residual=resum(torus).residual() if torus.order else residuals[0],
+        resummed_residual=resum(torus).residual() if resummed else math.inf,
         certificate=torus.certificate,
     )
     advance(steps, steps)
