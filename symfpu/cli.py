@@ -182,6 +182,7 @@ def sweep(
 
 @app.command(epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 24")
 def solve(
+    context: typer.Context,
     bonds: BondsOption,
     seeds: SeedsOption,
     omega: Annotated[str, typer.Option(help="Frequencies, one for each seed, such as 0.19626,0.39046.", metavar="W,W,...")],
@@ -218,7 +219,7 @@ def solve(
         record = torus_record(torus, assessment)
         if file:
             advance("writing", None)
-            save(file, torus, verdict=assessment.record(), command=_command_line())
+            save(file, torus, verdict=assessment.record(), command=shlex.join(["symfpu", *context.obj]))
     if as_json:
         _print_json(record)
     else:
@@ -265,12 +266,10 @@ def show(
         print(bundle.series)
     else:
         _print_torus(bundle.torus, record)
+    for reason in (bundle.verdict or {}).get("reasons", []):
+        print(f"  {reason}")
     for key, value in bundle.provenance.items():
         print(f"{key:<18} {value}")
-
-
-def _command_line() -> str:
-    return shlex.join(["symfpu", *sys.argv[1:]])
 
 
 def _optional(argument: str, text: str | None) -> int | None:
@@ -351,7 +350,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command = typer.main.get_command(app)
     words = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     try:
-        code = command.main(args=words, prog_name="symfpu", standalone_mode=False)
+        code = command.main(args=words, prog_name="symfpu", standalone_mode=False, obj=words)
     except InputError as error:
         return _fail(str(error), 2)
     except SymfpuError as error:

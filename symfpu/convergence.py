@@ -39,7 +39,7 @@ PROBE_SHIFTS = ("1e-6", "1e-7")  # of the probe frequency from the resonance, to
 PROBE_ORDER = 14
 REAL = 1e-9  # imaginary part below which a root of the probe counts as real
 INCOMMENSURABLE = ("0.19626000014142135623730950488", "0.39046000017320508075688772935")  # printed digits, then sqrt 2, sqrt 3
-DETUNED = ("0.19626", "0.39056")  # the divisor of the resonance eleven times larger
+DETUNED = ("0.19626", "0.39056")  # the divisor of the resonance 12.6 times larger, of the other sign
 BREATHER_DIGITS = 30
 SINGULARITY_TERMS = 60  # last terms of the frequency series to which its singularity is fitted
 

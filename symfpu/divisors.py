@@ -40,7 +40,7 @@ class SmallDivisor:
 
 
 class Float64Divisors:
-    """Multipliers as doubles, each correct to a few units in the last place however small its divisor.
+    """Multipliers as doubles, correct to a few units in the last place down to divisors of 1e-18, less beyond.
 
     Frequencies are split on a grid of doubles so coarse that nu.omega is summed without rounding; what the grid leaves
     over is carried separately. So Omega_q - |nu.omega| loses no digits where the two nearly cancel.
@@ -109,7 +109,7 @@ class FixedPointDivisors:
     """Multipliers as integers, 2^bits L rounded down, from exact frequencies and linear frequencies of four times the bits."""
 
     def __init__(self, chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], bits: int) -> None:
-        self.chain, self.seeds, self.frequencies, self._bits = chain, tuple(seeds), tuple(frequencies), bits
+        self.chain, self.seeds, self.frequencies, self.bits = chain, tuple(seeds), tuple(frequencies), bits
         self._places = 4 * bits + 64
         self._common = lcm(*(w.denominator for w in frequencies))
         self._omega = np.array([int(w * self._common) for w in frequencies], dtype=object)
@@ -130,17 +130,33 @@ class FixedPointDivisors:
         """
         rows, columns = np.nonzero(carried & ~gauge_terms(harmonics, self.seeds, self.chain.N))
         divisors = self._lambda[columns] - self._squared(harmonics.astype(object) @ self._omega)[rows]
-        for at in np.flatnonzero(np.abs(divisors) < 1 << (self._places - self._bits)):
+        for at in np.flatnonzero(np.abs(divisors) < 1 << (self._places - self.bits)):
             mode, harmonic = int(columns[at]) + 1, tuple(map(int, harmonics[rows[at]]))
             exact = vanishes(self.chain.N, self.seeds, self.frequencies, mode, harmonic)
             raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
         table = np.full(carried.shape, 0, dtype=object)
-        table[rows, columns] = (self._numerators[columns] << self._bits) // divisors
+        table[rows, columns] = (self._numerators[columns] << self.bits) // divisors
         return table
+
+    def moduli(self) -> MultiplierModuli:
+        """The same multipliers by their moduli, as doubles not below them."""
+        return MultiplierModuli(self)
 
     def smallest(self) -> tuple[SmallDivisor, ...]:
         """None here: doubles, which come first, remember them."""
         return ()
+
+
+class MultiplierModuli:
+    """Upper bounds of |L_q(nu)| as doubles, from fixed-point multipliers."""
+
+    def __init__(self, divisors: FixedPointDivisors) -> None:
+        self._divisors = divisors
+
+    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Floats:
+        """|L_q(nu)|, enlarged by more than the rounding to a double; shape (H, N-1)."""
+        whole = self._divisors.multipliers(harmonics, carried, order)
+        return np.asarray(np.abs((whole / 2**self._divisors.bits).astype(np.float64)) * (1 + 1e-12))
 
 
 class ResidueDivisors:

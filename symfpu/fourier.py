@@ -30,7 +30,7 @@ class QuasiPeriodic:
     """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)): what every torus and breather can do.
 
     seeds, frequencies, phases : the s angles. harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : c_q[nu];
-    shape (H, N-1). With digits, results are arrays of mpf, correct to that many digits of their largest terms; else doubles.
+    shape (H, N-1). With digits, results are arrays of mpf, evaluated with that many digits and more; else doubles.
     """
 
     chain: Chain

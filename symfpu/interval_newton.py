@@ -32,7 +32,7 @@ def certify_root(series: LindstedtSeries, squares: Sequence[Any], frequency_orde
         point = [_exact_ball(y) for y in squares]
         radii = [y * flint.arb(10) ** -digits for y in point]
         box = [flint.arb(y, r.upper()) for y, r in zip(point, radii, strict=True)]
-        reached = [_upper(r / (2 * y.sqrt()) * (1 + r / y)) for y, r in zip(point, radii, strict=True)]
+        reached = [_lower((y + r).sqrt() - y.sqrt()) for y, r in zip(point, radii, strict=True)]
         value = flint.arb_mat([[f] for f in _equations(series, balls, point)[0]])
         slope = flint.arb_mat(_equations(series, balls, box)[1])
         try:
@@ -96,7 +96,7 @@ def _exact_ball(value: Any) -> Any:
     return flint.arb(-int(mantissa) if sign else int(mantissa)) * flint.arb(2) ** int(exponent)
 
 
-def _upper(value: Any) -> Any:
-    """An upper bound of a ball's modulus as mpf, rounded up to 30 bits."""
-    mantissa, exponent = value.abs_upper().man_exp()
-    return mpmath.mp.make_mpf(mpmath.libmp.from_man_exp(int(mantissa), int(exponent), 30, "u"))
+def _lower(value: Any) -> Any:
+    """A lower bound of a positive ball as mpf, rounded down to 30 bits."""
+    mantissa, exponent = value.abs_lower().man_exp()
+    return mpmath.mp.make_mpf(mpmath.libmp.from_man_exp(int(mantissa), int(exponent), 30, "d"))

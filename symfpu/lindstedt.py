@@ -41,7 +41,8 @@ SPARE_DIGITS = 6  # beyond the promised ones, for what is computed from the coef
 EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60  # digits, an order and at most, for the prediction of memory only
 OTHER_STAGES = 6  # series in doubles that the stages before and after a fixed-point series hold, with their radii
 CONSTANT_BYTES = 2**24
-ATTEMPTS = 3
+ATTEMPTS = 4
+LEAST_LIMBS = 5  # 100 bits: below any divisor that doubles, which come first, let pass
 SYMBOLIC_GROWTH = 4  # factor by which an expanded coefficient grows with the order, about
 
 
@@ -138,14 +139,18 @@ def _fixed_point(
 
     known = _float64(chain, space, chosen, order, stage(0))
     unit = _fitting_unit(known)
-    bounds = _rounding_bounds(known, space, unit, stage(1))
+    bounds = _rounding_bounds(known, space, unit, Float64Divisors(chain, seeds, chosen, space.grading.degree), stage(1))
     for attempt in range(ATTEMPTS):
-        bits = LIMB_BITS * math.ceil(((digits + SPARE_DIGITS) / LOG10_2 + bounds.lost_bits) / LIMB_BITS)
+        bits = LIMB_BITS * max(LEAST_LIMBS, math.ceil(((digits + SPARE_DIGITS) / LOG10_2 + bounds.lost_bits) / LIMB_BITS))
         precision = Precision(bits, math.ceil(math.log2(bounds.largest)) + 3, unit)
-        ring, divisors = FixedPointRing(space, precision), FixedPointDivisors(chain, seeds, chosen, bits)
-        result = _series(chain, chosen, order, ring, divisors, stage(2 + attempt))
+        divisors = FixedPointDivisors(chain, seeds, chosen, bits)
+        try:
+            result = _series(chain, chosen, order, FixedPointRing(space, precision), divisors, stage(2 + attempt))
+        except OverflowError:  # sums larger than doubles had made them
+            bounds = bounds._replace(largest=bounds.largest * 2.0**LIMB_BITS)
+            continue
         result = replace(result, smallest_divisors=known.smallest_divisors, digits=digits, bits=bits)
-        bounds = _rounding_bounds(result, space, unit, stage(3))
+        bounds = _rounding_bounds(result, space, unit, divisors.moduli(), stage(3))
         if math.log2(bounds.largest) <= precision.headroom and bounds.lost_bits <= bits - digits / LOG10_2:
             return replace(result, radii=bounds.radii)
     raise SymfpuError(f"the rounding errors of order {order} stay above 10^-{digits} at {bits} binary places; take a lower order")
@@ -181,13 +186,15 @@ def _fitting_unit(series: LindstedtSeries) -> Fraction:
     return Fraction(2.0 ** float(np.polyfit(degrees, grown, 1)[0])).limit_denominator(64) or Fraction(1, 64)
 
 
-def _rounding_bounds(series: LindstedtSeries, space: CosineModes, unit: Fraction, progress: Progress | None) -> _RoundingBounds:
+def _rounding_bounds(
+    series: LindstedtSeries, space: CosineModes, unit: Fraction, divisors: Any, progress: Progress | None
+) -> _RoundingBounds:
     """How far the coefficients can be off, in units of the last place."""
-    chain, order, chosen = series.chain, series.order, _chosen(series.frequencies, "fixed-point")
+    chain, order = series.chain, series.order
     tables, corrections = _moduli(series, unit)
     ring = MajorantRing(space, tables, corrections, unit, 2.0**-series.bits if series.bits else 0.0)
     with np.errstate(over="ignore", invalid="ignore"):
-        _run(ring, Float64Divisors(chain, space.seeds, chosen, space.grading.degree), chain, order, progress)
+        _run(ring, divisors, chain, order, progress)
     modes, diagonal, _ = ring.results()
     radii = [(float(r.max(initial=0.0)), w) for r, w in zip(modes, [np.zeros((0, len(space.seeds))), *diagonal], strict=True)]
     lost = 0.0

@@ -88,7 +88,9 @@ def assessment_text(found: Assessment) -> str:
     """The evidence of a verdict: reasons, radii, and a line for some of the orders (all of them are in the JSON)."""
     lines = [f"  {reason}" for reason in found.reasons]
     poles = "no pole" if math.isinf(found.pole_radius) else f"{found.pole_radius:.3g}"
-    lines.append(f"  radius of convergence in units of mu: {found.radius:.3g} by ratio of terms, {poles} by Pade poles of the frequencies")
+    lines.append(
+        f"  radius of convergence in units of mu: {found.radius:.3g} by ratio of terms, {poles} by Pade poles of the frequencies (a hint)"
+    )
     seed = next(iter(found.sums))
     head = ("order", f"A_{seed}(k)", "dA(k)", f"S_1, S_2 of Q_{seed}", "residual", "energy error", "largest term: mode, harmonic, divisor")
     rows = [_order_line(found, seed, k) for k in _some(found)]

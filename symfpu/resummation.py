@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from symfpu.amplitudes import frequency_orders, shifts
 from symfpu.arithmetic import Numbers
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
+from symfpu.exact import integer
 from symfpu.fourier import FourierTorus
 from symfpu.series import LindstedtSeries
 from symfpu.torus import QTorus
@@ -33,7 +34,8 @@ LARGEST_SUM = 20  # and of those that sum a series
 
 @dataclass(frozen=True)
 class PadeSum:
-    """values : highest approximant; disagreement : its distance from the neighbouring one, doubles; shapes alike."""
+    """values : highest approximant; disagreement : doubles, its distance from the neighbour of the same terms whose denominator
+    has one degree less (zero where the sum is exact). It measures trust, and bounds no error. Shapes alike."""
 
     values: Numbers
     disagreement: Floats
@@ -44,9 +46,11 @@ def pade_sum(terms: Numbers) -> PadeSum:
 
     Approximants have degree LARGEST_SUM at most: beyond, later terms are not used.
 
+    Where two neighbours of the table coincide, as by a zero term within the series, the highest approximant before is taken.
     Entries that begin with zeros count from their first term that is not zero; one that is zero throughout has the sum zero.
     """
-    flat = terms.reshape(len(terms), -1)
+    terms = np.asarray(terms)
+    flat = (terms.astype(float) if terms.dtype.kind in "iu" else terms).reshape(len(terms), -1)
     values, disagreement = flat.sum(axis=0), np.zeros(flat.shape[1])
     present = flat != 0
     first = np.where(present.any(axis=0), present.argmax(axis=0), len(flat))
@@ -61,11 +65,13 @@ def pade_sum(terms: Numbers) -> PadeSum:
 def _epsilon(terms: Numbers) -> tuple[Numbers, Floats]:
     """Wynn's table: the last entry of the highest even column, and its distance from the one before it along the staircase."""
     before, column = np.zeros_like(terms[:1]), np.cumsum(terms, axis=0)
-    best = last = column[-1]
-    previous = column[-2] if len(column) > 1 else np.zeros_like(last)
-    alive = np.ones(terms.shape[1], dtype=np.bool_)  # a difference of zero ends the table: the sum is reached
+    best = column[-1]
+    previous = column[-2] if len(column) > 1 else np.zeros_like(best)
+    alive = np.ones(terms.shape[1], dtype=np.bool_)
     for number in range(1, len(terms)):
         difference = column[1:] - column[:-1]
+        if number % 2:  # of approximants: where all agree the sum is exact
+            previous = np.where(alive & (difference == 0).all(axis=0), best, previous)
         alive &= (difference != 0).all(axis=0)
         steps = 1 / np.where(difference != 0, difference, 1)
         before, column = column, (before[1 : 1 + len(steps)] if number > 1 else np.zeros_like(steps)) + steps
@@ -77,10 +83,11 @@ def _epsilon(terms: Numbers) -> tuple[Numbers, Floats]:
 
 def pade_frequencies(series: LindstedtSeries, amplitudes: Mapping[int, Any], frequency_order: int | None = None) -> PadeSum:
     """Resummed frequencies omega_q at these amplitudes, of all terms up to frequency_order; shapes (s,)."""
-    orders = [k for k in frequency_orders(series) if frequency_order is None or k <= frequency_order]
+    _, orders = _checked(series, frequency_order)
     with series.numbers.context(series.digits):
-        squares = series.numbers.array([amplitudes[q] for q in series.seeds]) ** 2
-        terms, _ = series.frequency_terms(squares, orders[-1] if orders else 0)
+        given = _by_seed(series, "amplitudes", amplitudes)
+        squares = series.numbers.array([given[q] for q in series.seeds]) ** 2
+        terms, _ = series.frequency_terms(squares, orders[-1])
         return pade_sum(terms[[0, *orders]])
 
 
@@ -89,10 +96,8 @@ def pade_amplitudes(series: LindstedtSeries, guess: Mapping[int, Any], frequency
 
     Raises DidNotConverge with the last iterate, NoRealAmplitude if a squared amplitude comes out negative.
     """
-    if series.frequencies is None:
-        raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
+    guess, orders = _by_seed(series, "guess", guess), _checked(series, frequency_order)[1]
     target = shifts(series)
-    orders = [k for k in frequency_orders(series) if frequency_order is None or k <= frequency_order]
     with series.numbers.context(series.digits):
         scale = series.numbers.array([guess[q] for q in series.seeds]) ** 2
 
@@ -110,6 +115,24 @@ def pade_amplitudes(series: LindstedtSeries, guess: Mapping[int, Any], frequency
             if x <= 0:
                 raise NoRealAmplitude(q, float(x), orders[-1])
         return dict(zip(series.seeds, series.numbers.sqrt(squares).tolist(), strict=True))
+
+
+def _checked(series: LindstedtSeries, frequency_order: int | None) -> tuple[LindstedtSeries, list[int]]:
+    """The orders of the frequency series up to one; InputError if there is none, or none chosen frequency."""
+    if series.frequencies is None:
+        raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
+    top = series.order if frequency_order is None else integer(frequency_order, "frequency_order", 1)
+    orders = [k for k in frequency_orders(series) if k <= top]
+    if not orders or top > series.order:
+        allowed = f"{2 // series.chain.degree_step}..{series.order}, orders with a frequency correction"
+        raise InputError("frequency_order", top, allowed, "take another or compute a longer series")
+    return series, orders
+
+
+def _by_seed(series: LindstedtSeries, argument: str, values: Mapping[int, Any]) -> Mapping[int, Any]:
+    if any(q not in values for q in series.seeds):
+        raise InputError(argument, values, f"a mapping with an amplitude for each of the seeds {series.seeds}", "complete it")
+    return values
 
 
 def _solved(equations: Callable[..., list[Any]], count: int, digits: int | None) -> Numbers:
@@ -140,7 +163,10 @@ def resum(torus: QTorus) -> ResummedTorus:
 
 
 def resum_by_order(torus: QTorus, orders: Iterable[int]) -> Iterator[ResummedTorus]:
-    """The torus resummed from the terms up to each of some orders, none above its own."""
+    """The torus resummed from the terms up to each of some orders; InputError for one above its own."""
+    orders = [integer(order, "order", 0) for order in orders]
+    if max(orders, default=0) > torus.order:
+        raise InputError("order", max(orders), f"0..{torus.order}, the order of the torus", "take a torus of higher order")
     series, keep = torus.series, (torus.chain, torus.seeds, torus.frequencies, torus.harmonics)
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     with series.numbers.context(series.digits):
@@ -173,25 +199,45 @@ def _resummed(table: Numbers, torus: QTorus) -> tuple[Numbers, Floats]:
 def pade_poles(series: LindstedtSeries, q: int, amplitudes: Mapping[int, Any]) -> NDArray[np.complex128]:
     """Poles of the diagonal approximant of omega_q in units of the actual mu (mu^2 with alpha), nearest first.
 
-    A pole beside a zero of the numerator is an artefact of noise (Froissart doublet) and left out. A pole at r means that the
-    series is that of a function with a singularity at r times the mu (mu^2) at hand: it converges if all |r| > 1.
+    A pole beside a zero of the numerator is an artefact of noise (Froissart doublet) and left out. A pole at r suggests a
+    singularity at r times the mu (mu^2) at hand. It is a hint only: short or noisy series have poles of their own and miss weak
+    ones. Raises InputError for a mode that is no seed, or a series without frequency corrections.
     """
-    orders = frequency_orders(series)
+    _, orders = _checked(series, None)
+    if q not in series.seeds:
+        raise InputError("q", q, f"a seed, one of {series.seeds}", "only seeds have frequency corrections")
+    given = _by_seed(series, "amplitudes", amplitudes)
     with mpmath.workdps((series.digits or 17) + 10):
-        squares = [mpmath.mpf(amplitudes[k]) ** 2 for k in series.seeds]
+        squares = [mpmath.mpf(given[k]) ** 2 for k in series.seeds]
         terms, _ = series.frequency_terms(squares, orders[-1])
         coefficients = [mpmath.mpf(x) for x in terms[list(orders), series.seeds.index(q)]]
-        size = next((abs(c) for c in coefficients if c), mpmath.mpf(1))
-        half = min((len(coefficients) - 1) // 2, LARGEST_PADE)
-        coefficients = coefficients[: 2 * half + 1]
-        if half == 0:
-            return np.zeros(0, dtype=np.complex128)
-        try:
-            top, bottom = mpmath.pade([c / size for c in coefficients], half, half)
-            poles = mpmath.polyroots(bottom[::-1], maxsteps=500, extraprec=200 + 10 * half)
-            zeros = mpmath.polyroots(top[::-1], maxsteps=500, extraprec=200 + 10 * half)
-        except (ZeroDivisionError, mpmath.libmp.NoConvergence):
-            return np.zeros(0, dtype=np.complex128)
         close = FROISSART if series.digits is None else 10.0 ** (-series.digits / 2)
-        genuine = [p for p in poles if all(abs(z - p) > close * abs(p) for z in zeros)]
+        genuine = _genuine_poles(coefficients, close)
     return np.array(sorted((complex(p) for p in genuine), key=abs))
+
+
+def _genuine_poles(coefficients: list[Any], close: float) -> list[Any]:
+    """Poles without a zero beside them of the highest diagonal approximant there is, whose system is not singular."""
+    present = [n for n, c in enumerate(coefficients) if c]
+    if len(present) < 2:
+        return []
+    first, last = present[0], present[-1]
+    ratio = abs(coefficients[first] / coefficients[last]) ** (mpmath.mpf(1) / (last - first))  # scaled, terms are alike
+    scaled = [c / coefficients[first] * ratio**n for n, c in enumerate(coefficients)]
+    for half in range(min((len(scaled) - 1) // 2, LARGEST_PADE), 0, -1):
+        options = {"maxsteps": 500, "extraprec": 200 + 10 * half}
+        try:
+            top, bottom = mpmath.pade(scaled[: 2 * half + 1], half, half)
+            zeros, poles = (mpmath.polyroots(_trimmed(p), **options) for p in (top, bottom))
+        except (ZeroDivisionError, mpmath.libmp.NoConvergence):
+            continue
+        return [ratio * p for p in poles if all(abs(z - p) > close * abs(p) for z in zeros)]
+    return []
+
+
+def _trimmed(polynomial: list[Any]) -> list[Any]:
+    """Coefficients from the highest power down, without leading zeros."""
+    reverse = list(polynomial[::-1])
+    while len(reverse) > 1 and not reverse[0]:
+        reverse.pop(0)
+    return reverse

@@ -21,8 +21,9 @@ from symfpu.series import LindstedtSeries
 class RootCertificate:
     """Whether interval Newton in ball arithmetic has shown that the truncated system has exactly one root near the amplitudes.
 
-    radius : by seed, half the width of the box of amplitudes that holds exactly one root, wherever in its proved error bounds
-    each coefficient of the series lies. reason : if not certified, the inequality that failed.
+    radius : by seed; in the box of amplitudes within it there is exactly one root, wherever in its proved error bounds each
+    coefficient of the series lies (A^2 of the root is within 10^-digits, relative). reason : if not certified, the inequality
+    that failed.
     """
 
     certified: bool

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.amplitudes import amplitude_history, frequency_orders
+from symfpu.amplitudes import AmplitudeHistory, frequency_orders
 from symfpu.arithmetic import DOUBLES, MULTIPRECISION, Doubles, Numbers, text
 from symfpu.divisors import divisor
 from symfpu.errors import InputError
@@ -28,9 +28,11 @@ Progress = Callable[[int, int], None]
 
 AGREEMENT = 1e-3  # relative uncertainty of an amplitude above which the root is not stable under the order
 LARGE_RESIDUAL = 1e-3  # relative residual that no truncation of a torus' series should exceed at its best order
+SMALL_RESIDUAL = 1e-7  # relative residual to which a series must have fallen to be called converged
 FLOOR = 1e-12  # relative residual of doubles at which nothing more can be seen
+CLEARLY = 0.9  # of another residual, below which one is called smaller
 RATIO_ORDERS = 4  # how many of the last orders a growth ratio is fitted to
-GRID_POINTS = 512  # angles at which residuals by order are taken, about, in doubles
+GRID_POINTS, MOST_POINTS = 512, 1024  # angles at which residuals by order are taken, about, in doubles, and at most
 
 
 @dataclass(frozen=True)
@@ -56,9 +58,10 @@ class Assessment:
     order; differences : Delta A(K). root_uncertainty : what later frequency orders would change of the amplitudes, relative.
     sums : by seed, mu^k S_1(k) and mu^k S_2(k) of its own coordinate (Eqs. serabs2, serabs3). terms : the largest term of every
     order; growth : by how much terms grow an order, from the last of them. radius : by ratio, 1/growth, in units of the
-    actual mu; pole_radius : modulus of the nearest pole of the frequencies' approximants, in the same units (infinite if
-    there is none). poles : by seed, in units of mu^2 with alpha, of mu with beta alone. residuals, energy_errors : by coordinate
-    order, relative, over a grid of angles. resummed_residual : of the torus whose coefficients are Pade sums.
+    actual mu; pole_radius : modulus of the nearest pole of the frequencies' approximants, in the same units (infinite if there
+    is none): a hint, since approximants of noisy or short series have poles of their own and miss weak ones. poles : by seed, in
+    units of mu^2 with alpha, of mu with beta alone. residuals, energy_errors : by coordinate order, relative, over a grid of
+    angles. resummed_residual : of the torus whose coefficients are Pade sums.
     """
 
     word: str
@@ -148,7 +151,7 @@ def assess(series: LindstedtSeries, torus: QTorus, *, resummed: bool = True, pro
             advance(torus.order + 2 + k, steps)
     residuals = [order.residual for order in found]
     terms = [order.largest for order in found if order.largest]
-    differences = amplitude_history(series).differences() if frequency_orders(series) else {}
+    differences = AmplitudeHistory(series.seeds, frequency_orders(series), torus.history, {}).differences()
     evidence = Assessment(
         word="undecided",
         best_order=int(np.argmin(residuals)),
@@ -187,7 +190,7 @@ def _by_order(torus: QTorus, numbers: Doubles) -> Iterator[_Order]:
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     number = max(2, min(64, round((GRID_POINTS if numbers is DOUBLES else GRID_POINTS_DIGITS) ** (1 / len(torus.seeds)))))
     with numbers.context(torus.digits):
-        theta = numbers.array(np.concatenate(list(torus.angle_grid(number))))
+        theta = numbers.array(_angles(torus, number))
         omega = numbers.array([numbers.number(w) for w in torus.frequencies])
         Q, P, second = (numbers.zeros((len(theta), torus.chain.N - 1)) for _ in range(3))
         for k in range(torus.order + 1):
@@ -207,6 +210,14 @@ def _by_order(torus: QTorus, numbers: Doubles) -> Iterator[_Order]:
                 float(np.abs(second - force).max() / np.abs(force).max()),
                 float((energy.max() - energy.min()) / abs(energy.mean())),
             )
+
+
+def _angles(torus: QTorus, number: int) -> Numbers:
+    """A tensor grid of angles; for many seeds, where even two points for each are too many, points drawn at random."""
+    s = len(torus.seeds)
+    if number**s <= MOST_POINTS:
+        return np.concatenate(list(torus.angle_grid(number)))
+    return 2 * np.pi * np.random.default_rng(s).random((MOST_POINTS, s))
 
 
 def _largest(torus: QTorus, order: int, nu: NDArray[np.int64], values: Numbers) -> LargestTerm | None:
@@ -261,7 +272,7 @@ def _judge(evidence: Assessment, series: LindstedtSeries) -> tuple[str, tuple[st
     residuals, best = evidence.residuals, evidence.best_order
     least, last = float(residuals[best]), float(residuals[-1])
     step = 2 // series.chain.degree_step
-    floor = FLOOR if series.digits is None else 10.0**-series.digits
+    floor = FLOOR if series.digits is None else min(FLOOR, 10.0**-series.digits)
     reasons = [f"residual of the equations of motion {least:.1e} at order {best}"]
     if best < evidence.order:
         reasons[0] += f", {last:.1e} at order {evidence.order}"
@@ -269,18 +280,21 @@ def _judge(evidence: Assessment, series: LindstedtSeries) -> tuple[str, tuple[st
         reasons.append(f"amplitudes settle to {evidence.root_uncertainty:.1e}")
     if evidence.terms and evidence.growth:
         reasons.append(f"terms grow by {evidence.growth:.3g} an order, the last being {evidence.terms[-1]!r}")
-    if evidence.resummed_residual < least:
+    if evidence.resummed_residual < CLEARLY * least:
         reasons.append(f"the resummed torus leaves {evidence.resummed_residual:.1e}")
     if evidence.certificate and not evidence.certificate.certified:
         reasons.append(f"the root of the truncated series is not certified: {evidence.certificate.reason}")
     if evidence.order < 2 * step or (not math.isfinite(evidence.root_uncertainty) and least > floor):
         return "undecided", (*reasons, "too few orders to compare")
-    if evidence.root_uncertainty > AGREEMENT and best == evidence.order:
+    falling = best > evidence.order - step
+    if evidence.root_uncertainty > AGREEMENT and falling:
         return "undecided", (*reasons, "the residual still falls, but the root has not settled: more orders are needed")
     if evidence.root_uncertainty > AGREEMENT:
         return "not a torus", (*reasons, "the root does not settle with the frequency order: it is one of the truncated polynomial only")
     if least > LARGE_RESIDUAL:
         return "not a torus", (*reasons, "no truncation meets the equations of motion")
-    if least < floor or (best > evidence.order - step and evidence.growth < 1):
+    if least < floor or (falling and evidence.growth < 1 and least < SMALL_RESIDUAL):
         return "converged", tuple(reasons)
+    if falling and evidence.growth < 1:
+        return "undecided", (*reasons, "the residual still falls: more orders would tell whether it goes on")
     return "asymptotic", tuple(reasons)

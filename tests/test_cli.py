@@ -4,9 +4,13 @@ import json
 import subprocess
 import sys
 
+import mpmath
 import pytest
 
+from symfpu.amplitudes import solve_amplitudes
+from symfpu.chain import Chain
 from symfpu.cli import main
+from symfpu.lindstedt import lindstedt
 from symfpu.paper import APPENDIX_F
 from tests.reference import TWO_TORUS as REFERENCE
 from tests.tolerances import AMPLITUDE
@@ -61,6 +65,101 @@ def test_frequency_order_is_its_own_option(capsys):
     assert float(record["amplitudes"]["1"]) == pytest.approx(float(REFERENCE.amplitudes[4][0]), rel=AMPLITUDE)
 
 
+BREATHER = {"-N": "32", "--alpha": "0.33", "--seeds": "25", "--omega": "1.8830741847088537", "--order": "8"}
+
+
+def test_solve_with_digits_is_certified_and_judged(capsys):
+    code, out, err = run(capsys, *arguments("solve", BREATHER, digits="30"), "--json")
+    record = json.loads(out)
+    assert (code, err) == (0, "")
+    assert (record["digits"], record["certified"], record["verdict"]) == (30, True, "converged")
+    text = record["amplitudes"]["25"]
+    series = lindstedt(Chain(32, alpha="0.33"), (25,), ("1.8830741847088537",), 8, digits=40)
+    with mpmath.workdps(50):
+        assert mpmath.nstr(solve_amplitudes(series).amplitudes[25], 30) == text
+    assert record["assessment"]["verdict"] == "converged"
+    assert len(record["assessment"]["residuals"]) == 9
+    assert record["assessment"]["residuals"][-1] < 1e-20
+    assert record["residual"] < 1e-20
+
+
+def test_solve_prints_the_verdict_first_and_its_evidence_last(capsys):
+    code, out, err = run(capsys, *arguments("solve", BREATHER, digits="30"))
+    lines = out.splitlines()
+    assert (code, err) == (0, "")
+    assert lines[0] == "verdict: converged"
+    assert any(line.startswith("exactly one root within") and line.endswith("certified") for line in lines)
+    evidence = next(i for i, line in enumerate(lines) if line.startswith("  residual of the equations of motion"))
+    assert all(line.startswith("  ") for line in lines[evidence:])
+    assert lines[-10].split()[:2] == ["order", "A_25(k)"]
+    assert [line.split()[0] for line in lines[-9:]] == [str(k) for k in range(9)]
+    _, out, _ = run(capsys, *arguments("solve", SOLVE, order="16"))
+    assert out.startswith("verdict: asymptotic, best at order 12\n")
+
+
+def test_coordinates_are_cut_at_their_own_order(capsys):
+    """The amplitudes are those of the whole series, the residual that of the shorter coordinates."""
+    _, whole, _ = run(capsys, *arguments("solve", SOLVE), "--json")
+    code, cut, err = run(capsys, *arguments("solve", SOLVE, coordinate_order="6"), "--json")
+    whole, cut = json.loads(whole), json.loads(cut)
+    assert (code, err) == (0, "")
+    assert (cut["order"], cut["frequency_order"]) == (6, 12)
+    assert cut["amplitudes"] == whole["amplitudes"]
+    assert cut["assessment"]["residuals"] == whole["assessment"]["residuals"][:7]
+    assert cut["residual"] > whole["residual"]
+
+
+@pytest.mark.parametrize("digits", [None, "30"])
+def test_show_prints_what_solve_has_written(capsys, tmp_path, digits):
+    file = str(tmp_path / "a torus.symfpu")
+    solve = arguments("solve", BREATHER, digits=digits, output=file, coordinate_order="5")
+    code, out, _ = run(capsys, *solve)
+    assert code == 0
+    assert out.splitlines()[-1] == f"written: {file}"
+    code, shown, err = run(capsys, "show", file)
+    assert (code, err) == (0, "")
+    assert shown.splitlines()[0] == out.splitlines()[0] == "verdict: converged"
+    torus = [line for line in out.splitlines()[:-1] if not line.startswith("  ")]
+    assert shown.splitlines()[: len(torus)] == torus
+    assert any(line.startswith("created") for line in shown.splitlines())
+
+
+def test_show_json_is_the_record_of_solve(capsys, tmp_path):
+    file = str(tmp_path / "torus.symfpu")
+    _, out, _ = run(capsys, *arguments("solve", BREATHER, output=file), "--json")
+    solved = json.loads(out)
+    code, out, err = run(capsys, "show", file, "--json")
+    shown = json.loads(out)
+    assert (code, err) == (0, "")
+    assert {key: shown[key] for key in solved if key != "verdict"} == {key: solved[key] for key in solved if key != "verdict"}
+    assert shown["assessment"]["verdict"] == solved["verdict"]
+    assert set(shown) - set(solved) == {"provenance", "test_vectors"}
+    assert shown["provenance"]["command"].startswith("symfpu ")
+    assert len(shown["test_vectors"]) > 0
+
+
+FOREIGN = {"empty": b"", "text": b"hello\n", "json": b'{"amplitudes": {}}', "zip": b"PK\x03\x04 no archive"}
+
+
+@pytest.mark.parametrize("content", FOREIGN.values(), ids=FOREIGN)
+def test_a_foreign_file_is_one_line_and_no_traceback(capsys, tmp_path, content):
+    file = tmp_path / "foreign"
+    file.write_bytes(content)
+    for options in ([], ["--json"]):
+        code, out, err = run(capsys, "show", str(file), *options)
+        assert (code, out) == (1, "")
+        assert len(err.splitlines()) == 1
+        assert "foreign" in err
+        assert "Traceback" not in err
+
+
+def test_an_output_file_that_cannot_be_written_is_bad_input(capsys, tmp_path):
+    code, out, err = run(capsys, *arguments("solve", BREATHER, output=str(tmp_path / "none" / "torus.symfpu")))
+    assert (code, out) == (2, "")
+    assert len(err.splitlines()) == 1
+    assert "torus.symfpu" in err
+
+
 def test_solve_prints_numbers_and_warnings(capsys):
     code, out, err = run(capsys, *arguments("solve", SOLVE, frequency_order="4"))
     assert code == 0
@@ -100,6 +199,17 @@ BAD_INPUT = {
     "frequency order above the order": (arguments("solve", SOLVE, frequency_order="13"), "frequency_order"),
     "more than fits": (arguments("solve", SOLVE, seeds="1,2,3,4", omega="0.196,0.391,0.581,0.766", order="200"), "bytes"),
     "commensurable frequencies": (arguments("solve", SOLVE, omega="0.2,0.4"), "commensurable"),
+    "no digits": (arguments("solve", SOLVE, digits="0"), "digits"),
+    "negative digits": (arguments("solve", SOLVE, digits="-3"), "digits"),
+    "digits no integer": (arguments("solve", SOLVE, digits="2.5"), "digits"),
+    "digits no number": (arguments("solve", SOLVE, digits="abc"), "digits"),
+    "coordinate order above the order": (arguments("solve", SOLVE, coordinate_order="13"), "order"),
+    "negative coordinate order": (arguments("solve", SOLVE, coordinate_order="-1"), "order"),
+    "coordinate order no number": (arguments("solve", SOLVE, coordinate_order="x"), "coordinate-order"),
+    "no file to show": (["show"], "FILE"),
+    "missing file to show": (["show", "/no such folder/file"], "No such file"),
+    "folder to show": (["show", "/"], "Is a directory"),
+    "target without a page": (["reproduce", "nosuch"], "nosuch"),
     "unknown option": ([*arguments("solve", SOLVE), "--colour", "red"], "--colour"),
     "missing option": (arguments("solve", SOLVE, omega=None), "--omega"),
     "unknown verb": (["conquer"], "conquer"),
@@ -146,12 +256,14 @@ def test_honest_failures_are_one_line_and_code_1(capsys, argv):
         assert len(err.splitlines()) == 1
 
 
-@pytest.mark.parametrize("verb", ["propagate", "solve", "reproduce"])
-def test_help_has_an_example_that_is_parsed(capsys, verb):
+VERBS = ("propagate", "prove", "verify", "sweep", "solve", "show", "reproduce")
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_help_has_an_example_of_its_verb(capsys, verb):
     code, out, err = run(capsys, verb, "--help")
     assert (code, err) == (0, "")
-    assert f"symfpu {verb}" in out
-    assert "Example:" in out
+    assert f"Example: symfpu {verb}" in out
     assert "--json" in out
 
 
@@ -163,7 +275,7 @@ def test_examples_of_the_help_run(capsys):
 def test_help_names_every_verb(capsys):
     code, out, _ = run(capsys, "--help")
     assert code == 0
-    assert all(verb in out for verb in ("propagate", "solve", "reproduce"))
+    assert all(verb in out for verb in VERBS)
 
 
 def small_rows(monkeypatch):

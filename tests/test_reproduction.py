@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from symfpu.chain import Chain
-from symfpu.paper import APPENDIX_F, TWO_TORUS, PrintedTorus
+from symfpu.paper import APPENDIX_F, FIG1_DIGITS, TWO_TORUS, PrintedTorus
 from symfpu.reproduction import MET_DIGITS, agreement_digits, amplitude_row, energies, figure1, rounds_to
 from tests.reference import BETA_BREATHER, PERIODIC_ORBITS
 from tests.reference import TWO_TORUS as REFERENCE
-from tests.tolerances import PERIODIC_ORBIT, ROUNDING
+from tests.tolerances import AMPLITUDE, PERIODIC_ORBIT, ROUNDING
 
 
 def printed(amplitude, energy="1", order=12):
@@ -115,6 +115,10 @@ def test_figure_1_is_computed_from_the_printed_frequencies():
     assert data.torus.series.frequencies == tuple(Fraction(w) for w in REFERENCE.frequencies)
     assert labels[0].startswith("fig1")
     assert data.residuals[data.best_order] == min(data.residuals.values())
+    assert data.assessment.headline == "asymptotic, best at order 12"
+    assert tuple(data.residuals) == tuple(range(2, 31))
+    assert data.torus.digits == FIG1_DIGITS
+    assert 0 < data.rounding < AMPLITUDE
     assert all(spectrum.shape == (15,) for spectrum in data.spectra.values())
     assert set(data.spectra) == set(data.errors) == {data.best_order, 24}
     for total, harmonic in data.errors.values():

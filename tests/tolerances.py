@@ -63,3 +63,25 @@ SAME_AS_DOUBLES = 16 * AMPLITUDE
 
 # Small amplitudes and high orders: the next order of a beta breather at A = 0.01 is some (beta A^2 Omega^2 / 8)^9.
 TINY_RESIDUAL = 1e-25
+
+# Wynn's table of seven columns in doubles against mpmath's linear system: each column loses about a digit in its differences.
+PADE_TABLE = 1e-9
+
+# A torus that has converged to the rounding of doubles, and its Pade sums: the last column of a table of twenty is rounded
+# in differences of converged sums, some thousand EPS.
+RESUMMED = 1e-12
+
+# Poles line the cut from a branch point on: the nearest one of [n/n] lies beyond it by some (1/n)^2 to 1/n.
+BRANCH_POINT = 0.03
+
+# Residuals of some 1e-5 of the accelerations, from coefficients summed in another order: EPS / 1e-5.
+RESIDUAL_ROUNDING = 1e-9
+
+# Ratios of terms at order 30 against their limit: they alternate around it and come nearer by 0.6 every two orders.
+TERM_RATIO = 1e-3
+
+# Frequencies changed in their eleventh digit, with a divisor of 3e-5 among those of the series.
+ALIKE = 1e-3
+
+# Domb and Sykes' fit to ratios of doubles at order 150.
+SINGULARITY = 2e-6

@@ -224,8 +224,9 @@ class FixedPointRing:
 
     def solve(self, degree: int, corrected: Modes, force: Modes, multipliers: NDArray[np.object_]) -> Modes:
         _, index = self.grading.harmonics(degree)
-        factors = self.basis.of_integers(multipliers)
         seeds = np.array(self.space.seeds) - 1
+        self._check_range(corrected, force, (multipliers / 2**self.precision.bits).astype(float)[index], seeds)
+        factors = self.basis.of_integers(multipliers)
 
         def work(i: int, image: _Image) -> Floats:
             bracket = -force.residues[i]
@@ -233,6 +234,13 @@ class FixedPointRing:
             return image.products(image.reduced(bracket), factors[i][index])
 
         return self._rounded_where(np.stack(self._each(work)), (multipliers != 0)[index])
+
+    def _check_range(self, corrected: Modes, force: Modes, factors: Floats, seeds: Ints) -> None:
+        """The last products have no bound of their own beforehand: refuse them where they could leave the range of the residues."""
+        sizes = np.abs(force.table.floats(-self.precision.bits))
+        sizes[:, seeds] += np.abs(corrected.table.floats(-self.precision.bits))
+        if np.any(sizes * np.abs(factors) > 2.0**self.precision.headroom):
+            raise OverflowError("a product of a force with its multiplier exceeds the range of the residues")
 
     def results(self) -> tuple[list[IntegerTable], list[IntegerTable], Fraction]:
         return self._modes, self._corrections, self.precision.unit

@@ -17,11 +17,12 @@ import numpy as np
 from symfpu.algebra.dense import Floats
 from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.grading import Ints
+from symfpu.algebra.residue import longest_sum
 from symfpu.algebra.selection import CosineModes
 
 ROUNDED = 0.51  # units: nearest, by balanced limbs
+COSINE = 0.51  # units: cosines, times weights and couplings, are rounded to the nearest
 MULTIPLIER = 1.01  # units: rounded down
-LOST = 1e-12  # relative to the largest: what the transforms of radii lose as doubles
 SLACK = 1 + 1e-9
 
 
@@ -54,19 +55,24 @@ class MajorantRing(Float64Ring):
         self._seed_radii = np.zeros_like(self._seed_modes)
         self._correction_radii = np.zeros_like(self._corrections)
         self.largest = 1.0
-        points, width = np.arange(self._points), self._slices * self._lanes
-        self._noise = np.zeros((2, width))  # a function bounded by one half on the bonds: any mode of its parity up to one
+        sums = 4 * space.N + 2 * longest_sum(len(space.seeds), space.grading.degree) + 64
+        self._lost = sums * float(np.finfo(float).eps)  # what sums of doubles can lose, relative to the sum of moduli
+        self._noise = np.zeros((2, self._slices * self._lanes))  # a function bounded by one on the bonds: modes of its parity up to two
         for parity in (0, 1):
-            modes = np.arange(parity, space.N, 2)
-            self._noise[parity, : self._points] = 2 * np.cos(np.outer(modes, points) * np.pi / space.N).sum(axis=0)
+            self._noise[parity, : self._points] = 2 * self._table(np.arange(parity, space.N, 2)).sum(axis=0)
 
     def number(self, value: Fraction) -> float:
         return abs(float(value))
 
+    def _table(self, modes: Ints) -> Floats:
+        """cos(q j pi / N) on half of the points j = 0 .. N, from exactly reduced angles."""
+        angles = 2 * np.outer(modes, np.arange(self._points)) % (4 * self.space.N)
+        return self._cosines(np.minimum(angles, 4 * self.space.N - angles))
+
     def _transforms(self) -> tuple[Floats, Floats]:
         N, points = self.space.N, np.arange(self._points)
         there = np.zeros((N - 1, self._slices * self._lanes))
-        there[:, : self._points] = np.cos(np.outer(np.arange(1, N), points) * np.pi / N)
+        there[:, : self._points] = self._table(np.arange(1, N))
         weights = np.where((points == 0) | (2 * points == N), 2 / N, 4 / N)
         back = there.copy()
         back[:, : self._points] *= weights
@@ -89,7 +95,7 @@ class MajorantRing(Float64Ring):
         self._note(sizes)
         for parity, (rows, columns) in enumerate(self._parts(degree)):
             values = known[rows, columns] @ self._to_bonds[columns]
-            radii = modes[rows, columns] @ self._to_bonds[columns] + np.outer(sizes[rows] + 1, self._noise[parity])
+            radii = modes[rows, columns] @ self._to_bonds[columns] + np.outer(COSINE * sizes[rows] + ROUNDED, self._noise[parity])
             self._store(self._bonds, degree, rows, values)
             self._store(self._radii, degree, rows, radii)
             self._store(self._sums, degree, rows, 2 * values + self._epsilon * radii)
@@ -137,7 +143,8 @@ class MajorantRing(Float64Ring):
         for coefficient, bounds in parts:
             scale = coefficient / self._unit**bounds.power
             self._note(2 * scale * bounds.sizes)
-            modes += (ROUNDED * self.space.half * bounds.sizes + LOST * scale * bounds.radii[:, 0])[:, None]
+            reached = bounds.sizes + self._epsilon * bounds.radii[:, 0]
+            modes += (COSINE * self.space.half * reached + self._lost * scale * bounds.radii[:, 0])[:, None]
             for rows, columns in self._parts(degree):
                 modes[rows, columns] += scale * bounds.radii[rows] @ self._to_modes[columns].T
         return np.asarray(np.where(mask, modes * SLACK, 0.0))

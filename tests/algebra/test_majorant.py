@@ -54,7 +54,8 @@ def compared(case):
     ours = [table.integers() for table in (*series.coordinates, *series.corrections[1:])]
     exact = tables(space, series, Precision(series.bits + MORE_BITS, HEADROOM, series.unit))
     bound = MajorantRing(space, *_moduli(series, series.unit), series.unit, 2.0**-series.bits)
-    _run(bound, Float64Divisors(series.chain, series.seeds, series.frequencies, space.grading.degree), series.chain, series.order, None)
+    moduli = FixedPointDivisors(series.chain, series.seeds, series.frequencies, series.bits).moduli()
+    _run(bound, moduli, series.chain, series.order, None)
     coordinates, corrections, _ = bound.results()
     errors = [_in_units((a << MORE_BITS) - b) for a, b in zip(ours, exact, strict=True)]
     return Compared(series, errors, [*coordinates, *corrections])
