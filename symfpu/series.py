@@ -44,9 +44,10 @@ class LindstedtSeries:
 
     coordinates : for each order 0 .. order, u_q^(k); shape (canonical monomials, N-1).
     corrections : for each order 0 .. order, W_q^(k); shape (diagonal monomials, s); no rows where none exist.
-    With digits, both are IntegerTables in units of 2^-bits, and results are mpf: every entry of these tables is correct to `digits`
-    digits of the largest one of its order, proved; terms at other amplitudes keep the absolute error of their order. radii : for each order, the largest error of u_q^(k), and the errors of
-    W_q^(k) by monomial and seed, in the same units. point : where a series of residues was taken.
+    With digits, both are IntegerTables in units of 2^-bits, and results are mpf: every entry of these tables is correct to
+    `digits` digits of the largest one of its order, proved; sums at given amplitudes keep the absolute error of their order.
+    radii : for each order, the largest error of u_q^(k), and the errors of W_q^(k) by monomial and seed, in the same units.
+    point : where a series of residues was taken.
     """
 
     chain: Chain
