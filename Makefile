@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
 
-.PHONY: install reproduce test bench sweeps long clean
+.PHONY: install reproduce test bench sweeps long generated clean
 
 install: .venv/installed
 
@@ -32,6 +32,9 @@ long: install  ## exact checks that take minutes
 
 bench: install  ## speed and memory, each beside a matrix product
 	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-columns=median,min,max -o addopts=--strict-markers
+
+generated: install  ## the gallery of exported evaluators, byte for byte
+	$(BIN)/python -m symfpu.codegen.gallery generated
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

@@ -5,6 +5,8 @@ from symfpu.archive import BundleError
 from symfpu.bundle import Bundle, load, save
 from symfpu.certificates import PropagationProof, prove_propagation
 from symfpu.chain import Chain
+from symfpu.codegen.evaluator import Evaluator, compile_evaluator
+from symfpu.codegen.export import export
 from symfpu.commensurability import frequency_rank
 from symfpu.errors import (
     DidNotConverge,
@@ -38,6 +40,7 @@ __all__ = [
     "BundleError",
     "Chain",
     "DidNotConverge",
+    "Evaluator",
     "FourierTorus",
     "InputError",
     "LindstedtSeries",
@@ -54,8 +57,10 @@ __all__ = [
     "UndeterminedAmplitudes",
     "amplitude_history",
     "assess",
+    "compile_evaluator",
     "coupling_sequence",
     "excitation_sequence",
+    "export",
     "frequency_rank",
     "frequency_shift",
     "frequency_shift_formula",

@@ -24,6 +24,7 @@ from symfpu.arithmetic import text
 from symfpu.bundle import load, save
 from symfpu.certificates import PropagationProof, prove_propagation, write_text
 from symfpu.chain import Chain
+from symfpu.codegen.export import export as export_source
 from symfpu.errors import InputError, SymfpuError
 from symfpu.lindstedt import lindstedt
 from symfpu.propagation import excitation_sequence
@@ -270,6 +271,24 @@ def show(
         print(f"  {reason}")
     for key, value in bundle.provenance.items():
         print(f"{key:<18} {value}")
+
+
+@app.command(epilog="Example: symfpu export torus.symfpu --lang c -o my_torus")
+def export(
+    context: typer.Context,
+    file: Annotated[Path, typer.Argument(help="A torus written by symfpu solve -o.", metavar="FILE")],
+    language: Annotated[str, typer.Option("--lang", help="c, fortran, numpy or mpmath.", metavar="LANGUAGE")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="The source file; its name names the functions.")],
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+) -> None:
+    """The torus as source code that needs nothing of symfpu: Q(t), P(t), E_q(t), H(t), with a self-test."""
+    bundle = load(file)
+    if bundle.torus is None:
+        raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
+    with _progress() as advance:
+        advance("source code", None)
+        written = export_source(bundle.torus, language, output, force=force, command=shlex.join(["symfpu", *context.obj]))
+    print(f"written: {written}")
 
 
 def _optional(argument: str, text: str | None) -> int | None:

@@ -1,0 +1,1 @@
+"""Evaluators as source code: one program, one emitter a language."""

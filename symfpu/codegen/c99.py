@@ -1,0 +1,180 @@
+"""A torus as one C99 file that needs nothing but the standard library.
+
+Sixteen times go together. Powers of e^(i theta) of every seed are tabled, a harmonic costs one complex product with its
+neighbour's leading factors, and what remains is two matrix products a parity block, done in tiles of four modes by two vectors.
+Vectors are those of GCC and Clang, as wide as the machine that is compiled for; other compilers get plain doubles.
+Half of this file is the C text itself, kept beside the Python that fills it.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from string import Template
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from symfpu.chain import linear_frequencies
+from symfpu.codegen.c99_text import DECLARATIONS, FUNCTIONS, HEADER, KERNEL, SELF_TEST
+from symfpu.codegen.program import TOLERANCE, Block, Check, TorusProgram
+
+EXTENSION = "c"
+
+WIDTH = 116  # columns of a line
+TIMES = 16  # evaluated together: two vectors of AVX-512
+CHUNK = 32  # harmonics between two accumulations: cosines and sines of 16 times are 8 kB
+TILE = 4  # modes of a register tile
+SPLIT_DIGITS = 60  # to which omega / 2 pi is split into two doubles
+
+
+def emit_torus(program: TorusProgram) -> str:
+    """The C99 source of a torus: Q(t), P(t), E_q(t) and H(t) for arrays of times, with adjustable phases.
+
+    Deterministic: the same program gives the same bytes. program.name must be an identifier that C leaves to the user, which
+    whoever makes the program checks; it begins all external names (name_positions, name_momenta, name_orbit,
+    name_harmonic_energies, name_energy) and the macro name_SELF_TEST that adds a main.
+    """
+    if not program.blocks:
+        program = replace(program, blocks=(_silent(program),))
+    blocks = program.blocks
+    rows = sum(_padded(block) for block in blocks)
+    powers = sum(2 * n + 1 for n in program.highest)
+    words = {
+        "name": program.name,
+        "bonds": program.N,
+        "modes": program.N - 1,
+        "seeds": len(program.seeds),
+        "rows": rows,
+        "powers": powers,
+        "times": TIMES,
+        "chunk": CHUNK,
+        "tile": TILE,
+        "tolerance": TOLERANCE,
+        "stack": 8 * TIMES * (2 * (rows + 1) + 2 * (powers + len(program.seeds)) + 2 * CHUNK + 2 * program.N),
+        "calls": _calls(blocks),
+    }
+    parts = (DECLARATIONS, KERNEL, FUNCTIONS)
+    declarations, kernel, functions = (Template(part).substitute(words) for part in parts)
+    test = Template(SELF_TEST).substitute(words, tables=_check_tables(program.check), checks=len(program.check.times))
+    return "".join((_header(program, words), declarations, _tables(program, blocks), kernel, functions, test))
+
+
+def _silent(program: TorusProgram) -> Block:
+    """What stands for a torus without a coefficient."""
+    return Block((1,), np.zeros((1, len(program.seeds)), dtype=np.int64), np.zeros((1, 1)))
+
+
+def _padded(block: Block) -> int:
+    return -(-len(block.modes) // TILE) * TILE
+
+
+def _calls(blocks: Sequence[Block]) -> str:
+    lines, row = [], 0
+    for k, block in enumerate(blocks):
+        where = f"q + {row} * TIMES, p ? p + {row} * TIMES : NULL"
+        lines.append(f"    add_block({len(block.harmonics)}, {_padded(block)}, &harmonics_{k}[0][0], rates_{k},")
+        lines.append(f"              &coefficients_{k}[0][0], powers, {where});")
+        row += _padded(block)
+    return "\n".join(lines)
+
+
+def _header(program: TorusProgram, words: dict[str, Any]) -> str:
+    facts = []
+    for key, value in program.facts.items():
+        text = f"{key}: {value}".replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
+        facts += textwrap.wrap(text, WIDTH - 4, initial_indent="  ", subsequent_indent="      ", break_on_hyphens=False)
+    lines = "\n".join(f" *{line}" for line in facts)
+    return Template(HEADER).substitute(words, facts=lines, default=", ".join(repr(float(x)) for x in program.phases))
+
+
+def _tables(program: TorusProgram, blocks: Sequence[Block]) -> str:
+    """All numbers of the torus and of its chain, the rates nu.omega correctly rounded."""
+    N, highest = program.N, program.highest
+    starts = np.cumsum([0, *(2 * n + 1 for n in highest)])
+    high, low = _turns(program)
+    with mpmath.workdps(SPLIT_DIGITS):
+        cosines = [float(mpmath.cospi(mpmath.mpf(k) / (2 * N))) for k in range(4 * N)]
+        norm = float(mpmath.sqrt(mpmath.mpf(2) / N))
+    parts = [
+        "\n/* Turns per time omega / (2 pi) of every seed, as sums of two doubles. */\n",
+        _vector("turns", high),
+        _vector("turns_low", low),
+        _vector("default_phases", map(float, program.phases)),
+        _vector("highest", highest, "int"),
+        _vector("zeroth", (int(a) + n for a, n in zip(starts, highest, strict=False)), "int"),
+        "\n/* Row of every mode among the sums; the last row is zero. */\n",
+        _vector("row", _rows(N, blocks), "int"),
+        "\n/* Linear frequencies Omega_q, cos(k pi / 2N), sqrt(2/N), and the couplings alpha/3 and beta/4. */\n",
+        _vector("linear", linear_frequencies(N).tolist()),
+        _vector("cosines", cosines),
+        f"static const double norm = {norm!r};\n",
+        f"static const double cubic = {float(program.alpha / 3)!r};\n",
+        f"static const double quartic = {float(program.beta / 4)!r};\n",
+    ]
+    for k, block in enumerate(blocks):
+        rates = [float(sum(int(n) * w for n, w in zip(nu, program.frequencies, strict=True))) for nu in block.harmonics]
+        parts.append(f"\n/* Modes {', '.join(map(str, block.modes[:3]))}{', ...' if len(block.modes) > 3 else ''}: ")
+        parts.append("harmonics nu, rates nu.omega, and coefficients of cos(nu.theta) in every mode. */\n")
+        parts.append(_matrix(f"harmonics_{k}", block.harmonics.tolist(), len(program.seeds), "short"))
+        parts.append(_vector(f"rates_{k}", rates))
+        parts.append(_matrix(f"coefficients_{k}", ([float(c) for c in row] for row in block.coefficients), _padded(block)))
+    return "".join(parts)
+
+
+def _turns(program: TorusProgram) -> tuple[list[float], list[float]]:
+    with mpmath.workdps(SPLIT_DIGITS):
+        exact = [mpmath.mpf(w.numerator) / w.denominator / (2 * mpmath.pi) for w in program.frequencies]
+        high = [float(x) for x in exact]
+        return high, [float(x - h) for x, h in zip(exact, high, strict=True)]
+
+
+def _rows(N: int, blocks: Sequence[Block]) -> list[int]:
+    row: dict[int, int] = {}
+    start = 0
+    for block in blocks:
+        row |= {q: start + i for i, q in enumerate(block.modes)}
+        start += _padded(block)
+    return [row.get(q, start) for q in range(1, N)]
+
+
+def _vector(name: str, values: Iterable[Any], kind: str = "double") -> str:
+    numbers = [_literal(x) for x in values]
+    return f"static const {kind} {name}[{len(numbers)}] = {{\n{_wrapped(numbers)}\n}};\n"
+
+
+def _matrix(name: str, rows: Iterable[list[Any]], width: int, kind: str = "double") -> str:
+    """Rows shorter than the width end in zeros, by the rules of C."""
+    texts = ["{" + ",".join(map(_literal, row)) + "}" for row in rows]
+    return f"static const {kind} {name}[{len(texts)}][{width}] = {{\n{_wrapped(texts)}\n}};\n"
+
+
+def _literal(value: Any) -> str:
+    return repr(value) if value else "0"
+
+
+def _wrapped(items: Sequence[str]) -> str:
+    """Items with commas between them, in lines of at most WIDTH columns broken at commas."""
+    lines, line = [], ""
+    for piece in ",".join(items).split(","):
+        if len(line) + len(piece) + 1 > WIDTH:
+            lines.append(line)
+            line = ""
+        line += piece + ","
+    return "\n".join([*lines, line[:-1]])
+
+
+def _check_tables(check: Check) -> str:
+    def table(name: str, rows: Sequence[Sequence[str]]) -> str:
+        return _matrix(name, ([float(x) for x in row] for row in rows), len(rows[0]))
+
+    return "".join(
+        (
+            _vector("test_times", map(float, check.times)),
+            table("test_positions", check.positions),
+            table("test_momenta", check.momenta),
+            _vector("test_energies", map(float, check.energies)),
+        )
+    )

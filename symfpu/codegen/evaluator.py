@@ -1,0 +1,204 @@
+"""A torus as fast functions in the session: compiled C where there is a compiler, else NumPy."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from numbers import Real
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.codegen.c99 import emit_torus
+from symfpu.codegen.program import torus_facts, torus_program
+from symfpu.errors import InputError, SymfpuError
+from symfpu.fourier import FourierTorus, QuasiPeriodic
+
+Floats = NDArray[np.float64]
+Call = Callable[[Floats, Floats | None], Floats]
+
+BACKENDS = ("c", "numpy")
+COMPILERS = ("cc", "gcc", "clang")
+FLAGS = ("-std=c99", "-O2", "-march=native", "-shared", "-fPIC")
+NAME = "torus"
+
+
+class Backend(Protocol):
+    """Functions of times (T,) and phases (s,) or None for the torus' own."""
+
+    def positions(self, t: Floats, phases: Floats | None) -> Floats: ...
+    def momenta(self, t: Floats, phases: Floats | None) -> Floats: ...
+    def harmonic_energies(self, t: Floats, phases: Floats | None) -> Floats: ...
+    def energy(self, t: Floats, phases: Floats | None) -> Floats: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluator:
+    """A torus to be evaluated in doubles at many times. Made by `compile_evaluator`; `torus` is what it was made of.
+
+    t : a number or an array (T,). phases : an angle in radians for each seed, a mapping by seed or an array (s,) in the order of
+    torus.seeds; seeds left out of a mapping, and None, keep the phases of the torus. Raises InputError for others.
+    """
+
+    torus: QuasiPeriodic = field(repr=False)
+    backend: str
+    functions: Backend = field(repr=False)
+
+    def __repr__(self) -> str:
+        seeds = ",".join(map(str, self.torus.seeds))
+        return f"Evaluator({self.torus.chain!r}, seeds={seeds}, {len(self.torus.harmonics)} harmonics, backend={self.backend!r})"
+
+    def positions(self, t: ArrayLike, phases: Mapping[int, float] | ArrayLike | None = None) -> Floats:
+        """Mode coordinates Q_q(t); (N-1,) for a number, (T, N-1) for an array."""
+        return self._at(t, phases, self.functions.positions)
+
+    def momenta(self, t: ArrayLike, phases: Mapping[int, float] | ArrayLike | None = None) -> Floats:
+        """Mode momenta P_q(t); (N-1,) for a number, (T, N-1) for an array."""
+        return self._at(t, phases, self.functions.momenta)
+
+    def harmonic_energies(self, t: ArrayLike = 0.0, phases: Mapping[int, float] | ArrayLike | None = None) -> Floats:
+        """Harmonic energies E_q(t) (Eq. harmonicene); (N-1,) for a number, (T, N-1) for an array."""
+        return self._at(t, phases, self.functions.harmonic_energies)
+
+    def energy(self, t: ArrayLike = 0.0, phases: Mapping[int, float] | ArrayLike | None = None) -> Any:
+        """Total energy H; a number, or (T,) for an array."""
+        return self._at(t, phases, self.functions.energy)
+
+    def _at(self, t: ArrayLike, phases: Mapping[int, float] | ArrayLike | None, function: Call) -> Floats:
+        times = _finite("t", t, "a finite number or a one-dimensional array of them")
+        if times.ndim > 1:
+            raise InputError("t", t, "a finite number or a one-dimensional array of them", "flatten it")
+        values = function(np.ascontiguousarray(times.reshape(-1)), self._angles(phases))
+        result: Floats = values[0] if times.ndim == 0 else values
+        return result
+
+    def _angles(self, phases: Mapping[int, float] | ArrayLike | None) -> Floats | None:
+        if phases is None:
+            return None
+        seeds = self.torus.seeds
+        allowed = f"{len(seeds)} finite angles, of the seeds {', '.join(map(str, seeds))}"
+        if isinstance(phases, Mapping):
+            if set(phases) - set(seeds):
+                raise InputError("phases", phases, allowed, "name seeds only")
+            phases = [float(x) if isinstance(x, Real) else x for x in (phases.get(q, self.torus.phases[q]) for q in seeds)]
+        angles = _finite("phases", phases, allowed)
+        if angles.shape != (len(seeds),):
+            raise InputError("phases", phases, allowed, "give one for each seed")
+        return np.ascontiguousarray(angles)
+
+
+def _finite(argument: str, values: Any, allowed: str) -> Floats:
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(argument, values, allowed, "pass real numbers") from error
+    if not np.isfinite(array).all():
+        raise InputError(argument, values, allowed, "leave out infinities and NaN")
+    return array
+
+
+def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Evaluator:
+    """The torus as fast functions of time and phases, in doubles.
+
+    backend : 'c' writes C99, compiles it by $CC or the first of cc, gcc, clang in PATH, and loads it; 'numpy' needs no compiler;
+    None takes 'c' if there is a compiler. The C functions keep the digits of omega t at any t; NumPy rounds omega t.
+
+    Raises InputError for an unknown backend; SymfpuError if 'c' finds no compiler, or with the compiler's first line if it fails.
+
+    >>> from symfpu.chain import Chain
+    >>> from symfpu.fourier import FourierTorus
+    >>> from fractions import Fraction
+    >>> mode = FourierTorus(Chain(4, alpha=1), (1,), (Fraction(1, 2),), np.array([[1]]), np.array([[1.0, 0.0, 0.0]]), {1: 0.0})
+    >>> compile_evaluator(mode, backend="numpy").momenta(0.0, phases={1: 1.5707963267948966}).tolist()
+    [-0.5, 0.0, 0.0]
+    """
+    if backend is not None and backend not in BACKENDS:
+        raise InputError("backend", backend, f"one of {', '.join(BACKENDS)}, or None", "name a backend or leave it out")
+    compiler = None if backend == "numpy" else find_compiler()
+    if backend == "c" and compiler is None:
+        raise SymfpuError(f"no C compiler: $CC is not set and none of {', '.join(COMPILERS)} is in PATH; install one or take 'numpy'")
+    if compiler is None:
+        return Evaluator(torus, "numpy", NumpyFunctions(torus.in_doubles()))
+    return Evaluator(torus, "c", CompiledFunctions(_library(torus, compiler), torus.chain.N - 1))
+
+
+def find_compiler() -> list[str] | None:
+    """The command of a C compiler: $CC if it is set, else what PATH has of cc, gcc and clang; None if there is none."""
+    if command := os.environ.get("CC", "").split():
+        return command
+    found = next((path for name in COMPILERS if (path := shutil.which(name))), None)
+    return None if found is None else [found]
+
+
+def _library(torus: QuasiPeriodic, compiler: list[str]) -> ctypes.CDLL:
+    """The loaded functions; their files are gone when this returns."""
+    with tempfile.TemporaryDirectory(prefix="symfpu-", ignore_cleanup_errors=True) as folder:
+        source, library = Path(folder) / f"{NAME}.c", Path(folder) / f"{NAME}.so"
+        source.write_text(emit_torus(torus_program(torus, NAME, torus_facts(torus))), encoding="ascii")
+        command = [*compiler, *FLAGS, "-o", str(library), str(source), "-lm"]
+        try:
+            run = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
+        except OSError as error:
+            raise SymfpuError(f"the C compiler {compiler[0]} does not start: {error.strerror}; set CC or take 'numpy'") from error
+        if run.returncode:
+            first = next(iter(run.stderr.strip().splitlines()), f"exit status {run.returncode}")
+            raise SymfpuError(f"the C compiler {compiler[0]} failed: {first}; set CC or take 'numpy'")
+        return ctypes.CDLL(str(library))
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledFunctions:
+    """The functions of an exported C file, loaded. modes : N-1."""
+
+    library: ctypes.CDLL
+    modes: int
+
+    def positions(self, t: Floats, phases: Floats | None) -> Floats:
+        return self._call("positions", t, phases, (len(t), self.modes))
+
+    def momenta(self, t: Floats, phases: Floats | None) -> Floats:
+        return self._call("momenta", t, phases, (len(t), self.modes))
+
+    def harmonic_energies(self, t: Floats, phases: Floats | None) -> Floats:
+        return self._call("harmonic_energies", t, phases, (len(t), self.modes))
+
+    def energy(self, t: Floats, phases: Floats | None) -> Floats:
+        return self._call("energy", t, phases, (len(t),))
+
+    def _call(self, name: str, t: Floats, phases: Floats | None, shape: tuple[int, ...]) -> Floats:
+        function, values = getattr(self.library, f"{NAME}_{name}"), np.empty(shape)
+        function.restype = None
+        angles = None if phases is None else ctypes.c_void_p(phases.ctypes.data)
+        function(ctypes.c_size_t(len(t)), ctypes.c_void_p(t.ctypes.data), angles, ctypes.c_void_p(values.ctypes.data))
+        return values
+
+
+@dataclass(frozen=True, eq=False)
+class NumpyFunctions:
+    """The torus in doubles, evaluated by matrix products."""
+
+    torus: FourierTorus
+
+    def positions(self, t: Floats, phases: Floats | None) -> Floats:
+        return self._with(phases).positions(t)
+
+    def momenta(self, t: Floats, phases: Floats | None) -> Floats:
+        return self._with(phases).momenta(t)
+
+    def harmonic_energies(self, t: Floats, phases: Floats | None) -> Floats:
+        return self._with(phases).harmonic_energies(t)
+
+    def energy(self, t: Floats, phases: Floats | None) -> Floats:
+        return np.asarray(self._with(phases).energy(t))
+
+    def _with(self, phases: Floats | None) -> FourierTorus:
+        if phases is None:
+            return self.torus
+        return replace(self.torus, phases=dict(zip(self.torus.seeds, phases.tolist(), strict=True)))

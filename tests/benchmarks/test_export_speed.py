@@ -1,0 +1,73 @@
+"""Exported evaluators of the 4-torus (N = 32, order 11): Q and P at 1e5 times, emission, size, compilation. Measured, not asserted."""
+
+import importlib.util
+import shutil
+import subprocess
+import time
+
+import numpy as np
+import pytest
+
+from symfpu.amplitudes import solve_amplitudes
+from symfpu.codegen.evaluator import compile_evaluator
+from symfpu.codegen.export import export
+from symfpu.lindstedt import lindstedt
+from symfpu.paper import APPENDIX_F
+
+TIMES = 100_000
+DRIVER = """#include <stdlib.h>
+#include <stddef.h>
+void four_torus_orbit(size_t count, const double *t, const double *phases, double *Q, double *P);
+int main(void)
+{
+    size_t i, n = 100000;
+    double *t = malloc(n * sizeof *t), *Q = malloc(n * 31 * sizeof *Q), *P = malloc(n * 31 * sizeof *P);
+    if (!t || !Q || !P) return 1;
+    for (i = 0; i < n; i++) t[i] = (double)i;
+    four_torus_orbit(n, t, NULL, Q, P);
+    return Q[5] == 0.5;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def torus():
+    printed = APPENDIX_F[0]
+    return solve_amplitudes(lindstedt(printed.chain, printed.seeds, printed.frequencies, 11))
+
+
+@pytest.fixture
+def multiply_adds(torus):
+    """Without the coefficients that parity makes zero, Q and P."""
+    return 2 * TIMES * int((torus.cosines != 0).sum())
+
+
+def test_numpy(benchmark, record, torus, tmp_path, multiply_adds):
+    path = export(torus, "numpy", tmp_path / "four_torus")
+    spec = importlib.util.spec_from_file_location("four_torus", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    benchmark.pedantic(module.orbit, (np.arange(float(TIMES)),), rounds=1, iterations=1)
+    record("4-torus, Q and P at 1e5 times, NumPy", multiply_adds=multiply_adds, note=f"{path.stat().st_size / 1e6:.1f} MB of source")
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no C compiler")
+def test_c(benchmark, record, torus, tmp_path, multiply_adds):
+    start = time.perf_counter()
+    path = export(torus, "c", tmp_path / "four_torus")
+    emitted = time.perf_counter() - start
+    (tmp_path / "driver.c").write_text(DRIVER)
+    start = time.perf_counter()
+    subprocess.run(["gcc", "-std=c99", "-O2", str(path), "driver.c", "-o", "driver", "-lm"], check=True, cwd=tmp_path)
+    compiled = time.perf_counter() - start
+    benchmark.pedantic(subprocess.run, ([str(tmp_path / "driver")],), {"check": True}, rounds=3, iterations=1)
+    note = f"emitted in {emitted:.1f} s, {path.stat().st_size / 1e6:.1f} MB, compiled in {compiled:.1f} s"
+    record("4-torus, Q and P at 1e5 times, C at -O2, one core", multiply_adds=multiply_adds, note=note)
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no C compiler")
+def test_evaluator(benchmark, record, torus, multiply_adds):
+    evaluator = compile_evaluator(torus)
+    times = np.arange(float(TIMES))
+    benchmark.pedantic(lambda: (evaluator.positions(times), evaluator.momenta(times)), rounds=1, iterations=1)
+    record("4-torus, positions and momenta at 1e5 times, compile_evaluator", multiply_adds=multiply_adds)

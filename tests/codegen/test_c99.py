@@ -1,0 +1,179 @@
+"""Exported C against the series at forty digits: what a stranger's compiler makes of the file, and nothing of ours."""
+
+import ctypes
+import os
+import shutil
+import subprocess
+from dataclasses import replace
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.chain import Chain
+from symfpu.codegen.c99 import emit_torus
+from symfpu.codegen.program import torus_facts, torus_program
+from symfpu.fourier import FourierTorus
+from symfpu.lindstedt import lindstedt
+from symfpu.torus import QTorus
+
+OF_LARGEST = 1e-13  # issue 5: of the largest coordinate or momentum; rounded sums leave some 1e-15
+OF_TAIL = 1e-12  # issue 5: of a mode's own largest value; cancelling terms cost a digit or two
+DIGITS = 40
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O2")
+
+COMPILER = next((c for c in ("gcc", "cc", "clang") if shutil.which(c)), None)
+NEEDS_COMPILER = pytest.mark.skipif(
+    COMPILER is None and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"), reason="no C compiler (gcc, cc or clang) in PATH"
+)
+pytestmark = NEEDS_COMPILER
+
+# Every amplitude is chosen freely: a sum of cosines need not be a torus to be evaluated.
+CASES = {
+    "alpha, one seed": (Chain(8, alpha="0.3"), (1,), ("0.39",), 8),
+    "alpha, two seeds": (Chain(16, alpha="0.33"), (1, 2), ("0.19626", "0.39046"), 6),
+    "mixed, three seeds": (Chain(8, alpha="0.3", beta="0.1"), (1, 2, 5), ("0.3905", "0.7663", "1.667"), 4),
+    "beta, four seeds": (Chain(10, beta="0.5"), (1, 3, 6, 9), ("0.315", "0.911", "1.623", "1.981"), 2),
+    "alpha, five seeds": (Chain(12, alpha="-0.2"), (1, 2, 3, 4, 5), ("0.262", "0.519", "0.767", "1.003", "1.221"), 3),
+    "one mode": (Chain(2, alpha="0.2", beta="0.3"), (1,), ("1.42",), 7),
+    "wrapped modes": (Chain(4, alpha="0.3"), (2, 3), ("1.42", "1.86"), 6),
+    "one parity only": (Chain(9, beta="0.6"), (5,), ("1.54",), 5),
+    "order 0": (Chain(6, alpha="0.25"), (2, 3), ("1.01", "1.43"), 0),
+}
+
+
+def case(name, digits=DIGITS):
+    """A case with amplitudes and phases drawn once."""
+    chain, seeds, frequencies, order = CASES[name]
+    draw = np.random.default_rng(len(name))
+    series = lindstedt(chain, seeds, frequencies, order, digits=digits)
+    number = float if digits is None else mpmath.mpf
+    amplitudes = {q: number(draw.uniform(0.05, 0.3)) for q in seeds}
+    return QTorus(series=series, amplitudes=amplitudes, phases=angles(draw, seeds), frequency_order=0, order=order)
+
+
+def angles(draw, seeds):
+    """Random phases with few binary places: a double and its shortest decimal are one number."""
+    return {q: float(np.round(draw.uniform(-3, 3) * 64) / 64) for q in seeds}
+
+
+def random_times(draw, count):
+    """Times of all sizes that are exact in double and decimal: 19 is more than a block of sixteen."""
+    return np.round(draw.uniform(-1, 1, count) * 10.0 ** draw.integers(0, 7, count) * 64) / 64
+
+
+def program(torus, name="sample"):
+    return torus_program(torus, name, torus_facts(torus))
+
+
+def compile_c(folder, sources, *options, output="a.out"):
+    """Compiled by a strict compiler without a word, by the path of what came out."""
+    for name, text in sources.items():
+        (folder / name).write_text(text)
+    run = subprocess.run(
+        [COMPILER or "gcc", *STRICT, *options, "-o", output, *sources, "-lm"], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert (run.returncode, run.stderr) == (0, "")
+    return folder / output
+
+
+def call(library, name, t, phases, shape):
+    values = np.full(shape, np.nan)
+    pointer = ctypes.c_void_p
+    held = None if phases is None else np.array(phases, dtype=float)
+    angle = None if held is None else pointer(held.ctypes.data)
+    getattr(library, name)(ctypes.c_size_t(len(t)), pointer(t.ctypes.data), angle, pointer(values.ctypes.data))
+    return values
+
+
+def assert_close(values, expected):
+    """Of the largest value, and of every mode's own largest."""
+    error = np.abs(values - expected).astype(float)
+    scale = np.abs(expected).astype(float)
+    assert error.max() <= OF_LARGEST * scale.max()
+    assert (error.max(axis=0) <= OF_TAIL * scale.max(axis=0)).all()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
+    torus = case(name)
+    draw = np.random.default_rng(5)
+    t, modes = random_times(draw, 19), torus.chain.N - 1
+    library = ctypes.CDLL(str(compile_c(tmp_path, {"sample.c": emit_torus(program(torus))}, "-shared", "-fPIC", output="sample.so")))
+    for phases in (None, angles(draw, torus.seeds)):
+        exact = torus if phases is None else replace(torus, phases=phases)
+        given = None if phases is None else list(phases.values())
+        Q, P = exact.positions(t), exact.momenta(t)
+        assert_close(call(library, "sample_positions", t, given, (19, modes)), Q)
+        assert_close(call(library, "sample_momenta", t, given, (19, modes)), P)
+        assert_close(call(library, "sample_harmonic_energies", t, given, (19, modes)), exact.harmonic_energies(t))
+        assert_close(call(library, "sample_energy", t, given, (19,))[:, None], exact.energy(t)[:, None])
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_self_test_of_the_file(name, tmp_path):
+    binary = compile_c(tmp_path, {"sample.c": emit_torus(program(case(name)))}, "-Dsample_SELF_TEST")
+    run = subprocess.run([binary], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout
+    assert "at most 1e-13" in run.stdout
+
+
+def test_self_test_sees_a_changed_coefficient(tmp_path):
+    torus = case("alpha, one seed", digits=None)
+    broken = program(torus)
+    largest = max((c for block in broken.blocks for c in block.coefficients.flat), key=abs)
+    source = emit_torus(broken)
+    at = source.index("coefficients_")
+    assert repr(float(largest)) in source[at:]
+    source = source[:at] + source[at:].replace(repr(float(largest)), repr(float(largest) * (1 + 1e-11)))
+    run = subprocess.run([compile_c(tmp_path, {"a.c": source}, "-Dsample_SELF_TEST")], capture_output=True, text=True, check=False)
+    assert run.returncode == 1
+    assert "ABOVE 1e-13" in run.stdout
+
+
+MAIN = """
+#include <stdio.h>
+#include <stddef.h>
+void first_orbit(size_t count, const double *t, const double *phases, double *Q, double *P);
+void second_orbit(size_t count, const double *t, const double *phases, double *Q, double *P);
+int main(void)
+{
+    double t[1] = {2.5}, Q[7], P[7], q[1], p[1];
+    first_orbit(1, t, NULL, Q, P);
+    second_orbit(1, t, NULL, q, p);
+    printf("%.17g %.17g %.17g %.17g\\n", Q[0], P[6], q[0], p[0]);
+    return 0;
+}
+"""
+
+
+def test_two_files_in_one_program(tmp_path):
+    first, second = case("alpha, one seed"), case("one mode")
+    sources = {"first.c": emit_torus(program(first, "first")), "second.c": emit_torus(program(second, "second")), "main.c": MAIN}
+    run = subprocess.run([compile_c(tmp_path, sources)], capture_output=True, text=True, check=True)
+    expected = [first.positions(2.5)[0], first.momenta(2.5)[6], second.positions(2.5)[0], second.momenta(2.5)[0]]
+    assert np.array(run.stdout.split(), dtype=float) == pytest.approx(np.array(expected, dtype=float), rel=OF_TAIL)
+
+
+@pytest.mark.parametrize("name", ["mixed, three seeds", "one mode"])
+def test_same_bytes_twice_in_short_lines(name):
+    source = emit_torus(program(case(name)))
+    assert source == emit_torus(program(case(name)))
+    assert max(map(len, source.splitlines())) < 120
+    assert source.isascii()
+
+
+def test_facts_cannot_leave_their_comment(tmp_path):
+    torus = case("one mode")
+    facts = {"command": "export */ #error here /* ??/ \\", "title": "x" * 300}
+    source = emit_torus(torus_program(torus, "sample", facts))
+    compile_c(tmp_path, {"sample.c": source}, "-c", output="sample.o")
+    assert "#error here" in source
+    assert "hash of the coefficients" in source
+
+
+def test_a_torus_at_rest(tmp_path):
+    chain, seeds = Chain(5, alpha=1), (1, 2)
+    rest = FourierTorus(chain, seeds, case("order 0").frequencies, np.zeros((1, 2), dtype=int), np.zeros((1, 4)), {1: 0.0, 2: 0.0})
+    binary = compile_c(tmp_path, {"sample.c": emit_torus(program(rest))}, "-Dsample_SELF_TEST")
+    assert subprocess.run([binary], capture_output=True, check=False).returncode == 0

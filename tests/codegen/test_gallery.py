@@ -1,0 +1,67 @@
+"""The gallery: the same bytes again, files that pass their own tests, and commands that make them."""
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from symfpu.cli import main
+from symfpu.codegen.gallery import GALLERY, build
+
+FOLDER = Path(__file__).parents[2] / "generated"
+FILES = sorted(path for path in FOLDER.iterdir() if path.name != "manifest.json")
+COMPILERS = {
+    ".c": ["gcc", "-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror"],
+    ".F90": ["gfortran", "-std=f2008", "-O2", "-Wall", "-Werror"],
+}
+
+
+@pytest.fixture(scope="module")
+def rebuilt(tmp_path_factory):
+    return build(tmp_path_factory.mktemp("generated")).parent
+
+
+def test_the_gallery_rebuilds_byte_for_byte(rebuilt):
+    assert sorted(path.name for path in rebuilt.iterdir()) == sorted(path.name for path in FOLDER.iterdir())
+    for path in FOLDER.iterdir():
+        assert path.read_bytes() == (rebuilt / path.name).read_bytes(), path.name
+
+
+def test_the_manifest_lists_every_file_with_its_hash():
+    manifest = json.loads((FOLDER / "manifest.json").read_text())
+    assert sorted(manifest) == [path.name for path in FILES]
+    for path in FILES:
+        assert manifest[path.name]["sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def test_the_commands_of_the_manifest_make_the_file(tmp_path, monkeypatch):
+    manifest = json.loads((FOLDER / "manifest.json").read_text())
+    monkeypatch.chdir(tmp_path)
+    for command in manifest["breather_25.c"]["commands"]:
+        assert main(command.split()[1:]) == 0
+    assert (tmp_path / "breather_25.c").read_bytes() == (FOLDER / "breather_25.c").read_bytes()
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_every_file_passes_its_own_test(path, tmp_path):
+    if path.suffix == ".py":
+        command = [sys.executable, str(path)]
+    else:
+        compiler, *flags = COMPILERS[path.suffix]
+        if not shutil.which(compiler) and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"):
+            pytest.skip(f"{compiler} is not installed")
+        macro = f"-D{path.stem}_SELF_TEST" if path.suffix == ".c" else f"-D{path.stem.upper()}_SELF_TEST"
+        program = tmp_path / "program"
+        subprocess.run([compiler, *flags, macro, str(path), "-o", str(program), "-lm"], check=True, cwd=tmp_path)
+        command = [str(program)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_every_example_is_there():
+    assert {path.stem.removesuffix("_mp") for path in FILES} == set(GALLERY)
