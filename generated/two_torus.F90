@@ -37,7 +37,7 @@
 ! Accuracy: omega t is reduced to one turn without loss up to |t| of about 1e14; the sums are those of doubles, some
 ! 1e-15 of the largest coordinate. A time that is not finite, or above 1e38, gives NaN. Compile without -ffast-math.
 !
-! Self-test: gfortran -std=f2008 -O2 -DTWO_TORUSSELF_TEST FILE.F90 && ./a.out
+! Self-test: gfortran -std=f2008 -O2 -DTWO_TORUS_SELF_TEST FILE.F90 && ./a.out
 ! prints the largest deviation from embedded vectors and fails above 1d-13.
 
 module two_torus
@@ -654,7 +654,7 @@ contains
 
 end module two_torus
 
-#ifdef TWO_TORUSSELF_TEST
+#ifdef TWO_TORUS_SELF_TEST
 program two_torus_self_test
   use, intrinsic :: iso_fortran_env, only: rk => real64
   use two_torus, only: orbit, energy

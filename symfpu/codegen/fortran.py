@@ -51,7 +51,7 @@ def emit_torus(program: TorusProgram) -> str:
 def _words(program: TorusProgram) -> dict[str, Any]:
     return {
         "name": _module_name(program.name),
-        "macro": f"{program.name.upper()}SELF_TEST",
+        "macro": f"{program.name.upper()}_SELF_TEST",
         "bonds": program.N,
         "modes": program.N - 1,
         "seeds": len(program.seeds),

@@ -62,7 +62,7 @@ GALLERY = {
 def build(folder: Path) -> Path:
     """Write every example in every language, and the manifest; returns its path. Existing files are replaced."""
     folder.mkdir(parents=True, exist_ok=True)
-    manifest = {}
+    manifest: dict[str, dict[str, object]] = {}
     for name, example in GALLERY.items():
         torus = example.torus()
         for language in LANGUAGES:
