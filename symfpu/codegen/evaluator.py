@@ -1,4 +1,4 @@
-"""A torus as fast functions in the session: compiled C where there is a compiler, else NumPy."""
+"""A torus as fast functions at once, without files: compiled C where there is a compiler, else NumPy."""
 
 from __future__ import annotations
 
