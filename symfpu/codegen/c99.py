@@ -19,7 +19,7 @@ import numpy as np
 
 from symfpu.chain import linear_frequencies
 from symfpu.codegen.c99_text import DECLARATIONS, FUNCTIONS, HEADER, KERNEL, SELF_TEST
-from symfpu.codegen.program import TOLERANCE, Block, Check, TorusProgram
+from symfpu.codegen.program import SPLIT_DIGITS, TOLERANCE, Block, Check, TorusProgram, turns
 
 EXTENSION = "c"
 
@@ -27,7 +27,6 @@ WIDTH = 116  # columns of a line
 TIMES = 16  # evaluated together: two vectors of AVX-512
 CHUNK = 32  # harmonics between two accumulations: cosines and sines of 16 times are 8 kB
 TILE = 4  # modes of a register tile
-SPLIT_DIGITS = 60  # to which omega / 2 pi is split into two doubles
 
 
 def emit_torus(program: TorusProgram) -> str:
@@ -94,7 +93,7 @@ def _tables(program: TorusProgram, blocks: Sequence[Block]) -> str:
     """All numbers of the torus and of its chain, the rates nu.omega correctly rounded."""
     N, highest = program.N, program.highest
     starts = np.cumsum([0, *(2 * n + 1 for n in highest)])
-    high, low = _turns(program)
+    high, low = zip(*turns(program), strict=True)
     with mpmath.workdps(SPLIT_DIGITS):
         cosines = [float(mpmath.cospi(mpmath.mpf(k) / (2 * N))) for k in range(4 * N)]
         norm = float(mpmath.sqrt(mpmath.mpf(2) / N))
@@ -122,13 +121,6 @@ def _tables(program: TorusProgram, blocks: Sequence[Block]) -> str:
         parts.append(_vector(f"rates_{k}", rates))
         parts.append(_matrix(f"coefficients_{k}", ([float(c) for c in row] for row in block.coefficients), _padded(block)))
     return "".join(parts)
-
-
-def _turns(program: TorusProgram) -> tuple[list[float], list[float]]:
-    with mpmath.workdps(SPLIT_DIGITS):
-        exact = [mpmath.mpf(w.numerator) / w.denominator / (2 * mpmath.pi) for w in program.frequencies]
-        high = [float(x) for x in exact]
-        return high, [float(x - h) for x, h in zip(exact, high, strict=True)]
 
 
 def _rows(N: int, blocks: Sequence[Block]) -> list[int]:

@@ -5,10 +5,8 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable
 
-import mpmath
-
 from symfpu.codegen.nested import Nested, nest
-from symfpu.codegen.program import TOLERANCE, TorusProgram, number
+from symfpu.codegen.program import TOLERANCE, TorusProgram, number, turns
 
 EXTENSION = "py"
 WIDTH = 118
@@ -196,17 +194,6 @@ def _blocks(program: TorusProgram, nested: Nested) -> Iterable[str]:
         yield text_constant(f"_COEFFICIENTS_{p}", (number(float(c)) for s in slices for c in s.coefficients.flat))
         names.append(f"(_LAYOUT_{p}, _COEFFICIENTS_{p}, {list(block.modes)!r})")
     yield f"_BLOCK_TEXTS = [{', '.join(names)}]"
-
-
-def turns(program: TorusProgram) -> tuple[tuple[float, float], ...]:
-    """omega / 2 pi of every seed as the sum of two doubles."""
-    pairs = []
-    with mpmath.workdps(60):
-        for w in program.frequencies:
-            exact = mpmath.mpf(w.numerator) / w.denominator / (2 * mpmath.pi)
-            high = float(exact)
-            pairs.append((high, float(exact - high)))
-    return tuple(pairs)
 
 
 def text_constant(name: str, words: Iterable[str]) -> str:

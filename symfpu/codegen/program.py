@@ -24,6 +24,7 @@ Ints = NDArray[np.int64]
 
 CHECK_PERIODS = (0.0, 0.37, 41.3)  # times of the embedded test vectors, in periods of the slowest seed
 EXTRA_DIGITS = 5
+SPLIT_DIGITS = 60  # from which omega / 2 pi is split into two doubles
 TOLERANCE = 1e-13  # of the self-test, relative to the largest coordinate or momentum
 
 
@@ -119,6 +120,17 @@ def coefficient_hash(blocks: list[Block]) -> str:
 def number(value: Any, digits: int = 17) -> str:
     """A coefficient as decimal text that reads back as the same double; an mpf to so many digits."""
     return repr(float(value)) if isinstance(value, float) else text(value, digits)
+
+
+def turns(program: TorusProgram) -> tuple[tuple[float, float], ...]:
+    """omega / 2 pi of every seed as the sum of two doubles."""
+    pairs = []
+    with mpmath.workdps(SPLIT_DIGITS):
+        for w in program.frequencies:
+            exact = mpmath.mpf(w.numerator) / w.denominator / (2 * mpmath.pi)
+            high = float(exact)
+            pairs.append((high, float(exact - high)))
+    return tuple(pairs)
 
 
 def _check(torus: QuasiPeriodic) -> Check:
