@@ -105,8 +105,8 @@ def solve_amplitudes(
     if series.frequencies is None:
         raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
     _refuse_commensurable(series)
-    K = _order_argument("frequency_order", frequency_order, series)
-    coordinate_order = _order_argument("order", order, series)
+    K = order_argument("frequency_order", frequency_order, series)
+    coordinate_order = order_argument("order", order, series)
     angles = dict.fromkeys(series.seeds, 0.0) | _by_seed("phases", phases, series)
     orders = [k for k in frequency_orders(series) if k <= K]
     if not orders:
@@ -153,7 +153,8 @@ def _refuse_commensurable(series: LindstedtSeries) -> None:
                 raise InputError("frequencies", tuple(map(decimal, series.frequencies)), allowed, advice)
 
 
-def _order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
+def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
+    """An order at which a series is cut, by default its own; InputError naming the argument if the series ends before."""
     if value is None:
         return series.order
     if integer(value, name, 0) > series.order:

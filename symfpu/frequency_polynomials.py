@@ -55,3 +55,14 @@ def powers_of(point: Sequence[Any], highest: int, one: Any) -> list[list[Any]]:
             row.append(row[-1] * x)
         table.append(row)
     return table
+
+
+def rescaled(polynomial: Polynomial, slopes: list[Any], sign: float) -> Polynomial:
+    """The polynomial in the variables y_i / slope_i, times a sign."""
+    result = {}
+    for exponents, coefficient in polynomial.items():
+        factor: Any = int(sign)
+        for e, slope in zip(exponents, slopes, strict=True):
+            factor = factor * slope**e
+        result[exponents] = coefficient * factor
+    return result

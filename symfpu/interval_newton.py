@@ -13,8 +13,8 @@ from typing import Any
 import flint
 import mpmath
 
-from symfpu.frequency_polynomials import Polynomial, evaluate, powers_of, square_root
-from symfpu.series import LindstedtSeries, rescaled
+from symfpu.frequency_polynomials import Polynomial, evaluate, powers_of, rescaled, square_root
+from symfpu.series import LindstedtSeries
 from symfpu.torus import RootCertificate
 
 EXTRA_BITS = 64  # of the balls beyond the coefficients

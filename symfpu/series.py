@@ -19,7 +19,7 @@ from symfpu.chain import Chain
 from symfpu.divisors import SmallDivisor
 from symfpu.errors import InputError, SymfpuError
 from symfpu.exact import integer
-from symfpu.frequency_polynomials import Polynomial, evaluate, powers_of, square_root
+from symfpu.frequency_polynomials import Polynomial, evaluate, powers_of, rescaled, square_root
 
 Floats = NDArray[np.float64]
 
@@ -169,7 +169,7 @@ class LindstedtSeries:
         i, order = self._seed(q), self._order(order)
         degree = self.chain.degree_step * order
         with self._context():
-            polynomials = [self._squared_correction(i, k) for k in range(order + 1)]
+            polynomials = [self.squared_polynomial(i, k) for k in range(order + 1)]
             if not squared:
                 polynomials = square_root(polynomials, self._linear(q))
             chosen = {e: c for e, c in polynomials[order].items() if c != 0}
@@ -180,7 +180,7 @@ class LindstedtSeries:
             result = self._times(values, exponents, degree, degree)
             return exponents, self._finite(result, f"omega_{q}^({order})")
 
-    def _squared_correction(self, i: int, order: int) -> Polynomial:
+    def squared_polynomial(self, i: int, order: int) -> Polynomial:
         """[omega_q^2]^(k) as {powers of w_i^2: coefficient}, scaled as the tables are."""
         linear = self._linear(self.seeds[i])
         if order == 0:
@@ -250,14 +250,27 @@ class LindstedtSeries:
         return -1.0 if self.chain.mu < 0 and order % 2 else 1.0
 
     @cached_property
-    def _seed_factors(self) -> Numbers:
-        """kappa Omega_i / 2, the scaled variables at unit amplitudes; shape (s,)."""
+    def seed_factors(self) -> Numbers:
+        """kappa Omega_i / 2: the scaled variables x_i at unit amplitudes; shape (s,)."""
         return np.asarray(self._kappa / 2 * self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1])
 
     def scaled_seeds(self, amplitudes: ArrayLike) -> Numbers:
         """The variables of the scaled tables, kappa Omega_i A_i / 2; shapes (s,)."""
         with self._context():
-            return np.asarray(self._seed_factors * self.numbers.array(amplitudes))
+            return np.asarray(self.seed_factors * self.numbers.array(amplitudes))
+
+    def amplitude_terms(self, order: int) -> tuple[Ints, Ints, Numbers]:
+        """mu^k Q_q^(k) with free amplitudes: sum over rows of value[., q] x^e cos(nu.theta), x = scaled_seeds(A).
+
+        Returns harmonics nu (R, s), exponents e (R, s) and values (R, N-1), one row for each canonical monomial.
+        """
+        self._numeric()
+        degree = self.degree(order)
+        nu, index = self.grading.harmonics(degree)
+        with self._context():
+            values = self._entries(self.coordinates[order]) * (self._sign(order) / self._kappa) / self.chain.frequencies(self.numbers)
+            values[(nu != 0).any(axis=1)[index]] *= 2
+        return nu[index], self.grading.powers(degree), values
 
     def harmonic_terms(self, amplitudes: ArrayLike, order: int, *, absolute: bool = False) -> tuple[Ints, Numbers]:
         """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients: sum over rows of value[., q] cos(nu.theta).
@@ -341,17 +354,17 @@ class LindstedtSeries:
     @cached_property
     def _frequency_polynomials(self) -> list[list[Polynomial]]:
         """mu^k omega_q^(k) as polynomials in A^2, by order and seed, in mpf."""
-        slopes = [f**2 for f in self._seed_factors]
+        slopes = [f**2 for f in self.seed_factors]
         by_seed = []
         for i, q in enumerate(self.seeds):
-            roots = square_root([self._squared_correction(i, k) for k in range(self.order + 1)], self._linear(q))
+            roots = square_root([self.squared_polynomial(i, k) for k in range(self.order + 1)], self._linear(q))
             by_seed.append([rescaled(p, slopes, self._sign(k)) for k, p in enumerate(roots)])
         return [list(row) for row in zip(*by_seed, strict=True)]
 
     def _frequency_doubles(self, squares: Floats, top: int) -> tuple[Floats, Floats]:
         s = len(self.seeds)
         linear = self.chain.frequencies()[np.array(self.seeds) - 1]
-        slope = self._seed_factors**2
+        slope = self.seed_factors**2
         y = slope * squares
         terms, jacobian = np.zeros((top + 1, s)), np.zeros((top + 1, s, s))
         terms[0] = linear
@@ -378,14 +391,3 @@ def _polynomial(y: Floats, exponents: Ints, table: Floats) -> tuple[Floats, Floa
         lowered[:, j] = exponents[:, j] * y[j] ** np.maximum(exponents[:, j] - 1, 0)
         slopes.append(np.prod(lowered, axis=1) @ table)
     return square, np.stack(slopes, axis=1)
-
-
-def rescaled(polynomial: Polynomial, slopes: list[Any], sign: float) -> Polynomial:
-    """The polynomial in the variables y_i / slope_i, times a sign."""
-    result = {}
-    for exponents, coefficient in polynomial.items():
-        factor: Any = int(sign)
-        for e, slope in zip(exponents, slopes, strict=True):
-            factor = factor * slope**e
-        result[exponents] = coefficient * factor
-    return result

@@ -11,9 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symfpu.chain import Chain
-from symfpu.frequency_polynomials import evaluate, powers_of, square_root
+from symfpu.frequency_polynomials import evaluate, powers_of, rescaled, square_root
 from symfpu.lindstedt import lindstedt
-from symfpu.series import rescaled
 
 rationals = st.fractions(-3, 3, max_denominator=20)
 exponents = st.tuples(st.integers(0, 3), st.integers(0, 3))
