@@ -20,6 +20,7 @@ from symfpu.codegen.c99 import emit_torus
 from symfpu.codegen.program import torus_facts, torus_program
 from symfpu.errors import InputError, SymfpuError
 from symfpu.fourier import FourierTorus, QuasiPeriodic
+from symfpu.series import LindstedtSeries
 
 Floats = NDArray[np.float64]
 Call = Callable[[Floats, Floats | None], Floats]
@@ -110,7 +111,8 @@ def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Ev
     backend : 'c' writes C99, compiles it by $CC or the first of cc, gcc, clang in PATH, and loads it; 'numpy' needs no compiler;
     None takes 'c' if there is a compiler. The C functions keep the digits of omega t at any t; NumPy rounds omega t.
 
-    Raises InputError for an unknown backend; SymfpuError if 'c' finds no compiler, or with the compiler's first line if it fails.
+    Raises InputError for an unknown backend and for a series without amplitudes; SymfpuError if 'c' finds no compiler, or with the
+    compiler's first line if it fails.
 
     >>> from symfpu.chain import Chain
     >>> from symfpu.fourier import FourierTorus
@@ -119,6 +121,8 @@ def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Ev
     >>> compile_evaluator(mode, backend="numpy").momenta(0.0, phases={1: 1.5707963267948966}).tolist()
     [-0.5, 0.0, 0.0]
     """
+    if isinstance(torus, LindstedtSeries):
+        raise InputError("torus", "a series without amplitudes", "a torus", "call solve_amplitudes(series) first, or export the series")
     if backend is not None and backend not in BACKENDS:
         raise InputError("backend", backend, f"one of {', '.join(BACKENDS)}, or None", "name a backend or leave it out")
     compiler = None if backend == "numpy" else find_compiler()

@@ -123,7 +123,7 @@ def series_program(
     else:
         tables = series_tables(series, *cuts)
         small = tables.coefficient_count <= STRAIGHT_LINE
-        straight = numeric_statements(series, cuts[0], tables.scales, _unscaled(tables)) if small else None
+        straight = numeric_statements(series, cuts[0], tables.scales, _unscaled(tables, series.digits)) if small else None
         if straight is not None and straight.operations > STRAIGHT_LINE:
             straight = None
         rates = [_rounded(float(w)) + (i + 1) / 1024 for i, w in enumerate(series.frequencies or ())]
@@ -192,14 +192,15 @@ def _frequencies(series: LindstedtSeries, order: int) -> tuple[Numbers, Ints, Nu
     return np.array(linear, dtype=object), np.array(powers, dtype=np.int64).reshape(-1, s), np.array(table, dtype=object).reshape(-1, s)
 
 
-def _unscaled(tables: SeriesTables) -> list[Polynomial]:
+def _unscaled(tables: SeriesTables, digits: int | None) -> list[Polynomial]:
     """omega_i(A) as polynomials {powers of A: coefficient}, order 0 included."""
     polynomials: list[Polynomial] = [{(0,) * len(tables.scales): w} for w in tables.linear]
-    for e, row in zip(tables.frequency_powers.tolist(), tables.frequency_coefficients, strict=True):
-        factor = mpmath.fprod(x ** (2 * n) for x, n in zip(tables.scales, e, strict=True))
-        for polynomial, c in zip(polynomials, row, strict=True):
-            if c != 0:
-                polynomial[tuple(2 * n for n in e)] = c * factor
+    with MULTIPRECISION.context(digits or DOUBLE_DIGITS):
+        for e, row in zip(tables.frequency_powers.tolist(), tables.frequency_coefficients, strict=True):
+            factor = mpmath.fprod(x ** (2 * n) for x, n in zip(tables.scales, e, strict=True))
+            for polynomial, c in zip(polynomials, row, strict=True):
+                if c != 0:
+                    polynomial[tuple(2 * n for n in e)] = c * factor
     return polynomials
 
 

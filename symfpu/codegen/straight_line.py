@@ -15,7 +15,7 @@ import mpmath
 import symengine as se
 import sympy
 
-from symfpu.arithmetic import Numbers
+from symfpu.arithmetic import MULTIPRECISION, Numbers
 from symfpu.chain import Chain
 from symfpu.errors import InputError
 from symfpu.frequency_polynomials import Polynomial
@@ -142,12 +142,13 @@ def _ordered(statements: list[Statement]) -> Iterable[Statement]:
 def numeric_statements(series: LindstedtSeries, order: int, scales: Numbers, frequencies: Sequence[Polynomial]) -> StraightLine:
     """Of a series with chosen frequencies. frequencies : of every seed, in powers of A."""
     places = 17 if series.digits is None else series.digits + 2
-    rows = []
-    for k in range(order + 1):
-        for nu, powers, values in zip(*(x.tolist() for x in series.amplitude_terms(k)), strict=True):
-            factor = mpmath.fprod(x**e for x, e in zip(scales, powers, strict=True))
-            rows += [(tuple(nu), tuple(powers), q, number(factor * v, places)) for q, v in enumerate(values, 1) if v != 0]
-    numbers = [{e: number(c, places) for e, c in polynomial.items()} for polynomial in frequencies]
+    rows: list[Row] = []
+    with MULTIPRECISION.context(places):
+        for k in range(order + 1):
+            for nu, powers, values in zip(*(x.tolist() for x in series.amplitude_terms(k)), strict=True):
+                factor = mpmath.fprod(x**e for x, e in zip(scales, powers, strict=True))
+                rows += [(tuple(nu), tuple(powers), q, number(factor * v, places)) for q, v in enumerate(values, 1) if v != 0]
+        numbers = [{e: number(c, places) for e, c in polynomial.items()} for polynomial in frequencies]
     return straight_line(series.chain.N, series.seeds, rows, numbers, {})
 
 
