@@ -9,7 +9,7 @@ Half of this file is the C text itself, kept beside the Python that fills it.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from string import Template
 from typing import Any
@@ -18,7 +18,7 @@ import mpmath
 import numpy as np
 
 from symfpu.chain import linear_frequencies
-from symfpu.codegen.c99_text import DECLARATIONS, FUNCTIONS, HEADER, KERNEL, SELF_TEST
+from symfpu.codegen.c99_text import DECLARATIONS, DEVIATION, FUNCTIONS, HEADER, KERNEL, LOOP, SELF_TEST
 from symfpu.codegen.program import SPLIT_DIGITS, TOLERANCE, Block, Check, TorusProgram, turns
 
 EXTENSION = "c"
@@ -39,7 +39,7 @@ def emit_torus(program: TorusProgram) -> str:
     if not program.blocks:
         program = replace(program, blocks=(_silent(program),))
     blocks = program.blocks
-    rows = sum(_padded(block) for block in blocks)
+    rows = sum(padded(block.modes) for block in blocks)
     powers = sum(2 * n + 1 for n in program.highest)
     words = {
         "name": program.name,
@@ -53,11 +53,13 @@ def emit_torus(program: TorusProgram) -> str:
         "tile": TILE,
         "tolerance": TOLERANCE,
         "stack": 8 * TIMES * (2 * (rows + 1) + 2 * (powers + len(program.seeds)) + 2 * CHUNK + 2 * program.N),
+        "given": "",
+        "loop": Template(LOOP).substitute(passed=""),
         "calls": _calls(blocks),
     }
     parts = (DECLARATIONS, KERNEL, FUNCTIONS)
     declarations, kernel, functions = (Template(part).substitute(words) for part in parts)
-    test = Template(SELF_TEST).substitute(words, tables=_check_tables(program.check), checks=len(program.check.times))
+    test = Template(SELF_TEST).substitute(words, tables=_check_tables(program.check), deviation=DEVIATION, checks=len(program.check.times))
     return "".join((_header(program, words), declarations, _tables(program, blocks), kernel, functions, test))
 
 
@@ -66,27 +68,33 @@ def _silent(program: TorusProgram) -> Block:
     return Block((1,), np.zeros((1, len(program.seeds)), dtype=np.int64), np.zeros((1, 1)))
 
 
-def _padded(block: Block) -> int:
-    return -(-len(block.modes) // TILE) * TILE
+def padded(modes: Sequence[int]) -> int:
+    """Sums of a block: its modes, filled up to whole tiles."""
+    return -(-len(modes) // TILE) * TILE
 
 
 def _calls(blocks: Sequence[Block]) -> str:
     lines, row = [], 0
     for k, block in enumerate(blocks):
         where = f"q + {row} * TIMES, p ? p + {row} * TIMES : NULL"
-        lines.append(f"    add_block({len(block.harmonics)}, {_padded(block)}, &harmonics_{k}[0][0], rates_{k},")
+        lines.append(f"    add_block({len(block.harmonics)}, {padded(block.modes)}, &harmonics_{k}[0][0], rates_{k},")
         lines.append(f"              &coefficients_{k}[0][0], powers, {where});")
-        row += _padded(block)
+        row += padded(block.modes)
     return "\n".join(lines)
 
 
 def _header(program: TorusProgram, words: dict[str, Any]) -> str:
-    facts = []
-    for key, value in program.facts.items():
+    default = ", ".join(repr(float(x)) for x in program.phases)
+    return Template(HEADER).substitute(words, facts=fact_lines(program.facts), default=default)
+
+
+def fact_lines(facts: Mapping[str, str]) -> str:
+    """Facts as lines of a comment, which they cannot end."""
+    lines: list[str] = []
+    for key, value in facts.items():
         text = f"{key}: {value}".replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
-        facts += textwrap.wrap(text, WIDTH - 4, initial_indent="  ", subsequent_indent="      ", break_on_hyphens=False)
-    lines = "\n".join(f" *{line}" for line in facts)
-    return Template(HEADER).substitute(words, facts=lines, default=", ".join(repr(float(x)) for x in program.phases))
+        lines += textwrap.wrap(text, WIDTH - 4, initial_indent="  ", subsequent_indent="      ", break_on_hyphens=False)
+    return "\n".join(f" *{line}" for line in lines)
 
 
 def _tables(program: TorusProgram, blocks: Sequence[Block]) -> str:
@@ -99,16 +107,16 @@ def _tables(program: TorusProgram, blocks: Sequence[Block]) -> str:
         norm = float(mpmath.sqrt(mpmath.mpf(2) / N))
     parts = [
         "\n/* Turns per time omega / (2 pi) of every seed, as sums of two doubles. */\n",
-        _vector("turns", high),
-        _vector("turns_low", low),
-        _vector("default_phases", map(float, program.phases)),
-        _vector("highest", highest, "int"),
-        _vector("zeroth", (int(a) + n for a, n in zip(starts, highest, strict=False)), "int"),
+        vector("turns", high),
+        vector("turns_low", low),
+        vector("default_phases", map(float, program.phases)),
+        vector("highest", highest, "int"),
+        vector("zeroth", (int(a) + n for a, n in zip(starts, highest, strict=False)), "int"),
         "\n/* Row of every mode among the sums; the last row is zero. */\n",
-        _vector("row", _rows(N, blocks), "int"),
+        vector("row", mode_rows(N, [block.modes for block in blocks]), "int"),
         "\n/* Linear frequencies Omega_q, cos(k pi / 2N), sqrt(2/N), and the couplings alpha/3 and beta/4. */\n",
-        _vector("linear", linear_frequencies(N).tolist()),
-        _vector("cosines", cosines),
+        vector("linear", linear_frequencies(N).tolist()),
+        vector("cosines", cosines),
         f"static const double norm = {norm!r};\n",
         f"static const double cubic = {float(program.alpha / 3)!r};\n",
         f"static const double quartic = {float(program.beta / 4)!r};\n",
@@ -117,37 +125,38 @@ def _tables(program: TorusProgram, blocks: Sequence[Block]) -> str:
         rates = [float(sum(int(n) * w for n, w in zip(nu, program.frequencies, strict=True))) for nu in block.harmonics]
         parts.append(f"\n/* Modes {', '.join(map(str, block.modes[:3]))}{', ...' if len(block.modes) > 3 else ''}: ")
         parts.append("harmonics nu, rates nu.omega, and coefficients of cos(nu.theta) in every mode. */\n")
-        parts.append(_matrix(f"harmonics_{k}", block.harmonics.tolist(), len(program.seeds), "short"))
-        parts.append(_vector(f"rates_{k}", rates))
-        parts.append(_matrix(f"coefficients_{k}", ([float(c) for c in row] for row in block.coefficients), _padded(block)))
+        parts.append(matrix(f"harmonics_{k}", block.harmonics.tolist(), len(program.seeds), "short"))
+        parts.append(vector(f"rates_{k}", rates))
+        parts.append(matrix(f"coefficients_{k}", ([float(c) for c in row] for row in block.coefficients), padded(block.modes)))
     return "".join(parts)
 
 
-def _rows(N: int, blocks: Sequence[Block]) -> list[int]:
+def mode_rows(N: int, blocks: Sequence[tuple[int, ...]]) -> list[int]:
+    """Row of every mode among the sums of blocks with these modes; the row after the last for a mode of none."""
     row: dict[int, int] = {}
     start = 0
-    for block in blocks:
-        row |= {q: start + i for i, q in enumerate(block.modes)}
-        start += _padded(block)
+    for modes in blocks:
+        row |= {q: start + i for i, q in enumerate(modes)}
+        start += padded(modes)
     return [row.get(q, start) for q in range(1, N)]
 
 
-def _vector(name: str, values: Iterable[Any], kind: str = "double") -> str:
+def vector(name: str, values: Iterable[Any], kind: str = "double") -> str:
     numbers = [_literal(x) for x in values]
-    return f"static const {kind} {name}[{len(numbers)}] = {{\n{_wrapped(numbers)}\n}};\n"
+    return f"static const {kind} {name}[{len(numbers)}] = {{\n{wrapped(numbers)}\n}};\n"
 
 
-def _matrix(name: str, rows: Iterable[list[Any]], width: int, kind: str = "double") -> str:
+def matrix(name: str, rows: Iterable[list[Any]], width: int, kind: str = "double") -> str:
     """Rows shorter than the width end in zeros, by the rules of C."""
     texts = ["{" + ",".join(map(_literal, row)) + "}" for row in rows]
-    return f"static const {kind} {name}[{len(texts)}][{width}] = {{\n{_wrapped(texts)}\n}};\n"
+    return f"static const {kind} {name}[{len(texts)}][{width}] = {{\n{wrapped(texts)}\n}};\n"
 
 
 def _literal(value: Any) -> str:
     return repr(value) if value else "0"
 
 
-def _wrapped(items: Sequence[str]) -> str:
+def wrapped(items: Sequence[str]) -> str:
     """Items with commas between them, in lines of at most WIDTH columns broken at commas."""
     lines, line = [], ""
     for piece in ",".join(items).split(","):
@@ -158,15 +167,17 @@ def _wrapped(items: Sequence[str]) -> str:
     return "\n".join([*lines, line[:-1]])
 
 
-def _check_tables(check: Check) -> str:
-    def table(name: str, rows: Sequence[Sequence[str]]) -> str:
-        return _matrix(name, ([float(x) for x in row] for row in rows), len(rows[0]))
+def text_matrix(name: str, rows: Sequence[Sequence[str]]) -> str:
+    """Numbers given as decimal text."""
+    return matrix(name, ([float(x) for x in row] for row in rows), len(rows[0]))
 
+
+def _check_tables(check: Check) -> str:
     return "".join(
         (
-            _vector("test_times", map(float, check.times)),
-            table("test_positions", check.positions),
-            table("test_momenta", check.momenta),
-            _vector("test_energies", map(float, check.energies)),
+            vector("test_times", map(float, check.times)),
+            text_matrix("test_positions", check.positions),
+            text_matrix("test_momenta", check.momenta),
+            vector("test_energies", map(float, check.energies)),
         )
     )

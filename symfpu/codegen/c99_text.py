@@ -159,7 +159,7 @@ static void add_block(int count, int width, const short *nu, const double *rate,
 }
 
 /* Sums q[row][j] and p[row][j] at up to TIMES times; p may be NULL. */
-static void evaluate(size_t count, const double *t, const double *phases, double *q, double *p)
+static void evaluate(${given}size_t count, const double *t, const double *phases, double *q, double *p)
 {
     double powers[POWERS * 2 * TIMES], theta[TIMES];
     int i, j;
@@ -180,15 +180,13 @@ $calls
 }
 """
 
-FUNCTIONS = """
-void ${name}_orbit(size_t count, const double *t, const double *phases, double *Q, double *P)
-{
+LOOP = """\
     double q[(ROWS + 1) * TIMES], p[(ROWS + 1) * TIMES];
     size_t start, j;
     int m;
     for (start = 0; start < count; start += TIMES) {
         const size_t size = count - start < TIMES ? count - start : TIMES;
-        evaluate(size, t + start, phases ? phases : default_phases, q, P ? p : NULL);
+        evaluate(${passed}size, t + start, phases ? phases : default_phases, q, P ? p : NULL);
         for (j = 0; j < size; j++) {
             for (m = 0; m < MODES; m++) {
                 if (Q)
@@ -198,7 +196,12 @@ void ${name}_orbit(size_t count, const double *t, const double *phases, double *
             }
         }
     }
-}
+"""
+
+FUNCTIONS = """
+void ${name}_orbit(size_t count, const double *t, const double *phases, double *Q, double *P)
+{
+$loop}
 
 void ${name}_positions(size_t count, const double *t, const double *phases, double *Q)
 {
@@ -257,11 +260,7 @@ void ${name}_energy(size_t count, const double *t, const double *phases, double 
 }
 """
 
-SELF_TEST = """
-#ifdef ${name}_SELF_TEST
-#include <stdio.h>
-
-$tables
+DEVIATION = """\
 /* Largest deviation of the values relative to the largest of the expected ones. */
 static double deviation(int count, const double *values, const double *expected)
 {
@@ -275,7 +274,14 @@ static double deviation(int count, const double *values, const double *expected)
     }
     return largest > 0 ? worst / largest : worst;
 }
+"""
 
+SELF_TEST = """
+#ifdef ${name}_SELF_TEST
+#include <stdio.h>
+
+$tables
+$deviation
 int main(void)
 {
     double Q[$checks * MODES], P[$checks * MODES], H[$checks], found[3];

@@ -1,4 +1,4 @@
-"""A torus as source code in a file: the languages there are, legal names, and the file itself."""
+"""A torus or a series as source code in a file: the languages there are, legal names, and the file itself."""
 
 from __future__ import annotations
 
@@ -11,8 +11,20 @@ from typing import NamedTuple
 
 from symfpu.arithmetic import text
 from symfpu.certificates import write_text
-from symfpu.codegen import c99, fortran, mpmath_source, numpy_source
+from symfpu.codegen import (
+    c99,
+    c99_series,
+    fortran,
+    fortran_series,
+    mpmath_series,
+    mpmath_source,
+    numpy_series,
+    numpy_source,
+    octave,
+    octave_series,
+)
 from symfpu.codegen.program import TorusProgram, torus_facts, torus_program
+from symfpu.codegen.series_program import SeriesProgram, series_facts, series_program
 from symfpu.errors import InputError
 from symfpu.fourier import QuasiPeriodic
 from symfpu.series import LindstedtSeries
@@ -22,40 +34,62 @@ LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
 
 
 class Language(NamedTuple):
-    """extension : of the file. emit : the program as text."""
+    """extension : of the file. torus, series : what writes the program of either as text."""
 
     extension: str
-    emit: Callable[[TorusProgram], str]
+    torus: Callable[[TorusProgram], str]
+    series: Callable[[SeriesProgram], str]
 
 
 LANGUAGES = {
-    "c": Language(c99.EXTENSION, c99.emit_torus),
-    "fortran": Language(fortran.EXTENSION, fortran.emit_torus),
-    "numpy": Language(numpy_source.EXTENSION, numpy_source.emit_torus),
-    "mpmath": Language(mpmath_source.EXTENSION, mpmath_source.emit_torus),
+    "c": Language(c99.EXTENSION, c99.emit_torus, c99_series.emit_series),
+    "fortran": Language(fortran.EXTENSION, fortran.emit_torus, fortran_series.emit_series),
+    "numpy": Language(numpy_source.EXTENSION, numpy_source.emit_torus, numpy_series.emit_series),
+    "mpmath": Language(mpmath_source.EXTENSION, mpmath_source.emit_torus, mpmath_series.emit_series),
+    "octave": Language(octave.EXTENSION, octave.emit_torus, octave_series.emit_series),
 }
 
 
-def export(torus: QuasiPeriodic, language: str, path: str | Path, *, force: bool = False, command: str | None = None) -> Path:
-    """Write a torus as a source file that needs nothing of this package; returns its path.
+def export(
+    solution: QuasiPeriodic | LindstedtSeries,
+    language: str,
+    path: str | Path,
+    *,
+    order: int | None = None,
+    frequency_order: int | None = None,
+    force: bool = False,
+    command: str | None = None,
+) -> Path:
+    """Write a torus or a series as a source file that needs nothing of this package; returns its path.
 
+    solution : a torus gives Q(t), P(t), E_q(t), H(t), with phases to choose; a series gives Q(t; A, phi), P, omega(A) and its
+    Jacobian, with amplitudes, phases and frequencies to choose. In universal form the frequencies of the divisors are free too.
     language : one of LANGUAGES. path : the file; its name without the extension names the functions or the module, and the
-    extension may be left out. force : replace an existing file. command : what the header says made it.
-    Raises InputError for an unknown language, a series without amplitudes, a name that is no identifier, an existing file.
+    extension may be left out. order, frequency_order : of a series only, where coordinates and frequencies are cut; default
+    series.order. force : replace an existing file. command : what the header says made it.
+    Raises InputError for an unknown language, a name that is no identifier, an existing file, an order above the series' order
+    or given for a torus, and a universal series too large for straight-line code.
     """
     if language not in LANGUAGES:
         raise InputError("language", language, f"one of {', '.join(LANGUAGES)}", "name one of these")
-    if isinstance(torus, LindstedtSeries):
-        raise InputError("torus", "a series without amplitudes", "a torus", "call solve_amplitudes(series) first")
-    extension, emit = LANGUAGES[language]
+    chosen = LANGUAGES[language]
     file = Path(path)
-    file = file if file.suffix else file.with_suffix(f".{extension}")
+    file = file if file.suffix else file.with_suffix(f".{chosen.extension}")
     name = legal_name(file.stem)
     if file.exists() and not force:
         raise InputError("path", str(file), "a file that does not exist yet", "choose another, or replace it with force (--force)")
-    made = {"written by": f"symfpu {version('symfpu')}"}
-    facts = {**made, "made by": command or f"symfpu.export(torus, {language!r}, {file.name!r})", **_orders(torus), **torus_facts(torus)}
-    write_text(file, emit(torus_program(torus, name, facts)))
+    orders = {key: value for key, value in (("order", order), ("frequency_order", frequency_order)) if value is not None}
+    kind = "series" if isinstance(solution, LindstedtSeries) else "torus"
+    words = ", ".join([kind, repr(language), repr(file.name), *(f"{key}={value}" for key, value in orders.items())])
+    made = {"written by": f"symfpu {version('symfpu')}", "made by": command or f"symfpu.export({words})"}
+    if isinstance(solution, LindstedtSeries):
+        facts = {**made, **series_facts(solution, order=order, frequency_order=frequency_order)}
+        source = chosen.series(series_program(solution, name, facts, order=order, frequency_order=frequency_order))
+    elif orders:
+        raise InputError(next(iter(orders)), next(iter(orders.values())), "none for a torus, which has its orders", "export its series")
+    else:
+        source = chosen.torus(torus_program(solution, name, {**made, **_orders(solution), **torus_facts(solution)}))
+    write_text(file, source)
     return file
 
 
@@ -68,52 +102,18 @@ def legal_name(name: str) -> str:
 
 
 RESERVED = frozenset(
-    [
-        "auto",
-        "break",
-        "case",
-        "char",
-        "const",
-        "continue",
-        "default",
-        "do",
-        "double",
-        "else",
-        "enum",
-        "extern",
-        "float",
-        "for",
-        "goto",
-        "if",
-        "inline",
-        "int",
-        "long",
-        "main",
-        "register",
-        "restrict",
-        "return",
-        "short",
-        "signed",
-        "sizeof",
-        "static",
-        "struct",
-        "switch",
-        "typedef",
-        "union",
-        "unsigned",
-        "void",
-        "volatile",
-        "while",
-        "program",
-        "module",
-        "end",
-        "subroutine",
-        "function",
-        "real",
-        "integer",
-        "numpy",
-        "mpmath",
-    ]
+    """
+    auto break case char const continue default do double else enum extern float for goto if inline int long main register restrict
+    return short signed sizeof static struct switch typedef union unsigned void volatile while
+    program module end subroutine function real integer
+    numpy mpmath
+    catch classdef elseif end_try_catch end_unwind_protect endarguments endclassdef endenumeration endevents endfor endfunction endif
+    endmethods endparfor endproperties endspmd endswitch endwhile global otherwise parfor persistent spmd try until unwind_protect
+    unwind_protect_cleanup arguments enumeration events methods properties import
+    abs any cell cos error find fprintf full imag isa ischar isempty isnan isnumeric isreal max min nargin nargout numel ones pi prod
+    reshape round sin size sparse sprintf sqrt sscanf strcmp sum unique vertcat zeros ans eps exp inf nan i j e clear disp eval exit
+    feval help isargout load log path plot quit save test version who whos
+    """.split()  # noqa: SIM905 - of C, Fortran, the Python files, and words and functions of Octave and MATLAB
 )
 
 

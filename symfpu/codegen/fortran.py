@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from string import Template
 from typing import Any
@@ -18,7 +18,7 @@ import mpmath
 import numpy as np
 
 from symfpu.chain import linear_frequencies
-from symfpu.codegen.fortran_text import FUNCTIONS, HEADER, KERNEL, MODULE, SELF_TEST
+from symfpu.codegen.fortran_text import ANGLES, END, EVALUATE, FUNCTIONS, HARMONICS, HEADER, MODULE, SELF_TEST
 from symfpu.codegen.program import TOLERANCE, Block, TorusProgram
 from symfpu.errors import InputError
 
@@ -31,6 +31,7 @@ TILE = 256  # harmonics of one matrix product: cosines and sines of 64 times are
 WORD = 24  # bits of the leading parts of omega / 2 pi: their products with halves of a time are exact
 WORK_DIGITS = 60
 PARITIES = {0: "even", 1: "odd"}  # of the modes of a block
+KERNEL = EVALUATE + ANGLES + HARMONICS + END
 
 
 def emit_torus(program: TorusProgram) -> str:
@@ -58,47 +59,62 @@ def _words(program: TorusProgram) -> dict[str, Any]:
         "highest": max(2, *program.highest),  # compilers warn of a loop from 2 to 1
         "times": TIMES,
         "tile": TILE,
-        "tolerance": _literal(TOLERANCE),
-        "cubic": _literal(float(program.alpha / 3)),
-        "quartic": _literal(float(program.beta / 4)),
+        "tolerance": literal(TOLERANCE),
+        "cubic": literal(float(program.alpha / 3)),
+        "quartic": literal(float(program.beta / 4)),
         "checks": len(program.check.times),
-        "calls": "\n".join(map(_call, program.blocks)),
+        "arguments": "phases",
+        "declarations": "    real(rk) :: phi(seeds)",
+        "start": "    phi = default_phases",
+        "calls": "\n".join(_call(block.modes) for block in program.blocks),
     }
 
 
 def _module_name(name: str) -> str:
-    code = re.sub(r"'[^'\n]*'|!.*", "", "".join((MODULE, FUNCTIONS, KERNEL, SELF_TEST)))
-    tables = {f"{kind}_{parity}" for kind in ("nu", "rates", "c") for parity in PARITIES.values()}
-    own = tables | set(re.findall(r"(?<![${\w])[a-z]\w*", code.lower()))
+    tables = ["default_phases", *(f"{kind}_{parity}" for kind in ("nu", "rates", "c") for parity in PARITIES.values())]
+    return module_name(name, " ".join((MODULE, FUNCTIONS, KERNEL, SELF_TEST, *tables)))
+
+
+def module_name(name: str, code: str) -> str:
+    """The name, if it can be that of a module with this code; InputError otherwise."""
+    code = re.sub(r"'[^'\n]*'|!.*", "", code)
+    own = set(re.findall(r"(?<![${\w])[a-z]\w*", code.lower()))
     if not re.fullmatch(r"[a-z][a-z0-9_]{0,49}", name.lower(), re.ASCII) or name.lower() in own:
-        raise InputError("name", name, "a Fortran identifier of at most 50 characters that the module does not use itself", "rename it")
+        raise InputError("path", name, "a file name that is a Fortran identifier the module does not use itself", "rename the file")
     return name
 
 
-def _call(block: Block) -> str:
-    first, parity = block.modes[0], PARITIES[block.modes[0] % 2]
-    return (
-        f"      call add_harmonics(nu_{parity}, rates_{parity}, c_{parity}, re, im, &\n"
-        f"        cosine_sums(1:n, {first}::2), sine_sums(1:n, {first}::2), moving)"
-    )
+def _call(modes: Sequence[int]) -> str:
+    return add_harmonics(modes, "nu_{0}, rates_{0}, c_{0}".format(PARITIES[modes[0] % 2]))
+
+
+def add_harmonics(modes: Sequence[int], tables: str) -> str:
+    """The call that adds the harmonics of these modes, all those of one parity."""
+    first = modes[0]
+    return f"      call add_harmonics({tables}, re, im, &\n        cosine_sums(1:n, {first}::2), sine_sums(1:n, {first}::2), moving)"
 
 
 def _header(program: TorusProgram, words: dict[str, Any]) -> str:
-    facts = []
-    for key, value in program.facts.items():
-        text = " ".join(f"{key}: {value}".split()).encode("ascii", "backslashreplace").decode().replace("\\", "/")
-        text = text.replace("*/", "* /").replace("/*", "/ *")  # the preprocessor takes these for comments of C
-        facts += textwrap.wrap(text, WIDTH - 4, initial_indent="  ", subsequent_indent="      ", break_on_hyphens=False)
     phases = ", ".join(repr(float(x)) for x in program.phases)
     default = textwrap.fill(phases, WIDTH - 4, initial_indent="!     ", subsequent_indent="!     ")
-    return Template(HEADER).substitute(words, facts="\n".join(f"!{line}" for line in facts), default=default)
+    return Template(HEADER).substitute(words, facts=fact_lines(program.facts), default=default)
+
+
+def fact_lines(facts: Mapping[str, str]) -> str:
+    """The facts of a header as lines of comment."""
+    lines = []
+    for key, value in facts.items():
+        text = " ".join(f"{key}: {value}".split()).encode("ascii", "backslashreplace").decode().replace("\\", "/")
+        text = text.replace("*/", "* /").replace("/*", "/ *")  # the preprocessor takes these for comments of C
+        lines += textwrap.wrap(text, WIDTH - 4, initial_indent="  ", subsequent_indent="      ", break_on_hyphens=False)
+    return "\n".join(f"!{line}" for line in lines)
 
 
 def _chain_tables(program: TorusProgram) -> str:
     """Frequencies in turns, phases, and what the energies need; correctly rounded."""
     with mpmath.workdps(WORK_DIGITS):
-        turns = [_split(mpmath.mpf(w.numerator) / w.denominator / (2 * mpmath.pi)) for w in program.frequencies]
-        radian = _split(1 / (2 * mpmath.pi))
+        turns = [split(mpmath.mpf(w.numerator) / w.denominator / (2 * mpmath.pi)) for w in program.frequencies]
+        radian = split(1 / (2 * mpmath.pi))
         cosines = [float(mpmath.cospi(mpmath.mpf(k) / (2 * program.N))) for k in range(4 * program.N)]
         norm = float(mpmath.sqrt(mpmath.mpf(2) / program.N))
     seeds = range(1, len(turns) + 1)
@@ -107,18 +123,18 @@ def _chain_tables(program: TorusProgram) -> str:
             "\n  ! omega / (2 pi) of every seed and 1 / (2 pi), in three parts each, exact in doubles\n",
             f"  real(rk), save :: turns(3, seeds), radian(3), default_phases(seeds), norm, omega({program.N - 1})\n",
             f"  real(rk), save :: cosines(0:{4 * program.N - 1})\n",
-            *(_data("turns", f"i, {i}", parts, 1) for i, parts in zip(seeds, turns, strict=True)),
-            _data("radian", "i", radian, 1),
-            _data("default_phases", "i", map(float, program.phases), 1),
+            *(data("turns", f"i, {i}", parts, 1) for i, parts in zip(seeds, turns, strict=True)),
+            data("radian", "i", radian, 1),
+            data("default_phases", "i", map(float, program.phases), 1),
             "  ! sqrt(2/N), linear frequencies Omega_q, cos(k pi / 2N)\n",
-            f"  data norm / {_literal(norm)} /\n",
-            _data("omega", "i", linear_frequencies(program.N).tolist(), 1),
-            _data("cosines", "i", cosines, 0),
+            f"  data norm / {literal(norm)} /\n",
+            data("omega", "i", linear_frequencies(program.N).tolist(), 1),
+            data("cosines", "i", cosines, 0),
         )
     )
 
 
-def _split(value: Any) -> list[float]:
+def split(value: Any) -> list[float]:
     """A number as a sum of two doubles of WORD bits and a full one."""
     parts = []
     for _ in range(2):
@@ -138,16 +154,16 @@ def _block_tables(block: Block, frequencies: Sequence[Fraction]) -> str:
             f"\n  ! Harmonics of the {parity} modes: nu, rates nu.omega, and coefficients of cos(nu.theta)\n",
             f"  integer, save :: {name['nu']}({count}, seeds)\n",
             f"  real(rk), save :: {name['rates']}({count}), {name['c']}({count}, {len(block.modes)})\n",
-            *(_data(name["nu"], f"i, {i + 1}", block.harmonics[:, i].tolist(), 1) for i in range(seeds)),
-            _data(name["rates"], "i", rates, 1),
-            *(_data(name["c"], f"i, {m + 1}", map(float, block.coefficients[:, m]), 1) for m in range(len(block.modes))),
+            *(data(name["nu"], f"i, {i + 1}", block.harmonics[:, i].tolist(), 1) for i in range(seeds)),
+            data(name["rates"], "i", rates, 1),
+            *(data(name["c"], f"i, {m + 1}", map(float, block.coefficients[:, m]), 1) for m in range(len(block.modes))),
         )
     )
 
 
-def _data(name: str, index: str, values: Iterable[Any], first: int) -> str:
+def data(name: str, index: str, values: Iterable[Any], first: int) -> str:
     """DATA statements for name(index), the index i running from first."""
-    return "".join(_statements(name, index, [_literal(x) for x in values], first))
+    return "".join(_statements(name, index, [literal(x) for x in values], first))
 
 
 def _statements(name: str, index: str, items: Sequence[str], first: int) -> Iterator[str]:
@@ -171,7 +187,7 @@ def _statement(name: str, index: str, lines: list[str], first: int, last: int) -
     return f"  data ({name}({index}), i = {first}, {last}) / &\n    {body[:-1]} /\n"
 
 
-def _literal(value: Any) -> str:
+def literal(value: Any) -> str:
     """A number that no compiler rounds to single precision or warns of: numbers below the normal doubles are zero."""
     if isinstance(value, int):
         return str(value)
@@ -185,9 +201,9 @@ def _check_tables(program: TorusProgram) -> str:
     check = program.check
     return "".join(
         (
-            _data("t", "i", map(float, check.times), 1),
-            *(_data("positions_of_t", f"i, {k}", map(float, row), 1) for k, row in enumerate(check.positions, 1)),
-            *(_data("momenta_of_t", f"i, {k}", map(float, row), 1) for k, row in enumerate(check.momenta, 1)),
-            _data("energies_of_t", "i", map(float, check.energies), 1),
+            data("t", "i", map(float, check.times), 1),
+            *(data("positions_of_t", f"i, {k}", map(float, row), 1) for k, row in enumerate(check.positions, 1)),
+            *(data("momenta_of_t", f"i, {k}", map(float, row), 1) for k, row in enumerate(check.momenta, 1)),
+            data("energies_of_t", "i", map(float, check.energies), 1),
         )
     )

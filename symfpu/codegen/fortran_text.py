@@ -124,18 +124,7 @@ contains
   end subroutine energy
 """
 
-KERNEL = """
-  ! The sums over all harmonics, at blocks of times.
-  subroutine evaluate(t, phases, Q, P)
-    real(rk), intent(in) :: t(:)
-    real(rk), intent(in), optional :: phases(:)
-    real(rk), intent(out), optional :: Q(:, :), P(:, :)
-    real(rk), allocatable :: re(:, :, :), im(:, :, :), cosine_sums(:, :), sine_sums(:, :)
-    real(rk) :: phi(seeds)
-    integer :: first, last, n, seed, k
-    logical :: moving(2)
-    moving = [present(Q), present(P)]
-    phi = default_phases
+CHECKS = """\
     if (present(phases)) then
       if (size(phases) /= seeds) error stop '$name: phases must have size $seeds'
       phi = phases
@@ -146,6 +135,24 @@ KERNEL = """
     if (present(P)) then
       if (size(P, 1) /= modes .or. size(P, 2) /= size(t)) error stop '$name: P must have shape ($modes, size(t))'
     end if
+"""
+
+EVALUATE = (
+    """
+  ! The sums over all harmonics, at blocks of times.
+  subroutine evaluate(t, $arguments, Q, P)
+    real(rk), intent(in) :: t(:)
+    real(rk), intent(in), optional :: phases(:)
+    real(rk), intent(out), optional :: Q(:, :), P(:, :)
+    real(rk), allocatable :: re(:, :, :), im(:, :, :), cosine_sums(:, :), sine_sums(:, :)
+$declarations
+    integer :: first, last, n, seed, k
+    logical :: moving(2)
+    moving = [present(Q), present(P)]
+$start
+"""
+    + CHECKS
+    + """\
     n = min(times, size(t))
     allocate (re(n, -highest:highest, seeds), im(n, -highest:highest, seeds), cosine_sums(n, modes), sine_sums(n, modes))
     do first = 1, size(t), times
@@ -164,7 +171,10 @@ $calls
       if (present(P)) P(:, first:last) = transpose(sine_sums(1:n, :))
     end do
   end subroutine evaluate
+"""
+)
 
+ANGLES = """
   ! omega t + phi, modulo 2 pi.
   function angle(t, phi, turns_per_time) result(theta)
     real(rk), intent(in) :: t, phi, turns_per_time(3)
@@ -184,7 +194,9 @@ $calls
     turn = part(1) + (part(2) + (part(3) + (part(4) + x * factor(3))))
     turn = turn - anint(turn)
   end function fraction_of
+"""
 
+HARMONICS = """
   ! e^(i m theta) for |m| <= highest, from theta in re(:, 0).
   subroutine fill_powers(re, im)
     real(rk), intent(inout) :: re(:, -highest:), im(:, -highest:)
@@ -244,11 +256,27 @@ $calls
       if (wanted(2)) P = P + matmul(sine(:, :last - first + 1), c(first:last, :))
     end do
   end subroutine add_harmonics
+"""
 
+END = """
 end module $name
 """
 
-SELF_TEST = """
+DEVIATION = """
+contains
+
+  ! Largest deviation relative to the largest expected value; NaN if a value is none.
+  function deviation(values, expected) result(worst)
+    real(rk), intent(in) :: values(:), expected(:)
+    real(rk) :: worst
+    worst = maxval(abs(values - expected))
+    if (.not. all(abs(values) <= huge(worst))) worst = sum(values)
+    if (maxval(abs(expected)) > 0) worst = worst / maxval(abs(expected))
+  end function deviation
+"""
+
+SELF_TEST = (
+    """
 #ifdef $macro
 program ${name}_self_test
   use, intrinsic :: iso_fortran_env, only: rk => real64
@@ -265,17 +293,10 @@ program ${name}_self_test
   print '(a, 3(es9.2, a))', 'largest deviation: ', found(1), ' of the largest coordinate, ', found(2), &
     ' of the largest momentum, ', found(3), ' of the energy'
   if (.not. all(found <= $tolerance)) error stop 'the deviation is above $tolerance'
-
-contains
-
-  ! Largest deviation relative to the largest expected value; NaN if a value is none.
-  function deviation(values, expected) result(worst)
-    real(rk), intent(in) :: values(:), expected(:)
-    real(rk) :: worst
-    worst = maxval(abs(values - expected))
-    if (.not. all(abs(values) <= huge(worst))) worst = sum(values)
-    if (maxval(abs(expected)) > 0) worst = worst / maxval(abs(expected))
-  end function deviation
+"""
+    + DEVIATION
+    + """\
 end program ${name}_self_test
 #endif
 """
+)

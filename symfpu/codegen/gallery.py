@@ -23,12 +23,13 @@ DIGITS = 30  # of the series; doubles have 17
 
 
 class Example(NamedTuple):
-    """One torus of the gallery."""
+    """One torus of the gallery. series_orders : where its series with free amplitudes is cut; empty where it is not shown."""
 
     chain: Chain
     seeds: tuple[int, ...]
     frequencies: tuple[str, ...]
     order: int
+    series_orders: dict[str, int] = {}  # noqa: RUF012 - never changed
 
     def solve_command(self, name: str) -> str:
         """The command that writes it as name.symfpu."""
@@ -47,7 +48,7 @@ class Example(NamedTuple):
 
 
 GALLERY = {
-    "two_torus": Example(Chain(16, "0.33"), (1, 2), ("0.19626", "0.39046"), 12),
+    "two_torus": Example(Chain(16, "0.33"), (1, 2), ("0.19626", "0.39046"), 12, {"order": 3, "frequency_order": 4}),
     "four_torus": Example(
         Chain(32, "0.33"),
         (1, 2, 3, 4),
@@ -55,7 +56,7 @@ GALLERY = {
         4,
     ),
     "breather_25": Example(Chain(32, "0.33"), (25,), ("1.8830741847088537",), 12),
-    "beta_torus": Example(Chain(16, beta="0.6"), (2, 3), ("0.3925", "0.5845"), 4),
+    "beta_torus": Example(Chain(16, beta="0.6"), (2, 3), ("0.3925", "0.5845"), 4, {"order": 3, "frequency_order": 4}),
 }
 
 
@@ -67,10 +68,13 @@ def build(folder: Path) -> Path:
         torus = example.torus()
         for language in LANGUAGES:
             stem = f"{name}_mp" if language == "mpmath" else name
-            command = f"symfpu export {name}.symfpu --lang {language} -o {stem}"
-            path = export(torus, language, folder / stem, force=True, command=command)
-            digest = hashlib.sha256(path.read_bytes()).hexdigest()
-            manifest[path.name] = {"commands": [example.solve_command(name), command], "sha256": digest}
+            for solution, file, orders in ((torus, stem, {}), (torus.series, f"{stem}_series", example.series_orders)):
+                if solution is torus or orders:
+                    words = ["", *(["--series"] if orders else []), *(f"--{key.replace('_', '-')} {k}" for key, k in orders.items())]
+                    command = f"symfpu export {name}.symfpu --lang {language} -o {file}{' '.join(words)}"
+                    path = export(solution, language, folder / file, **orders, force=True, command=command)
+                    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+                    manifest[path.name] = {"commands": [example.solve_command(name), command], "sha256": digest}
     return write_manifest(folder, manifest)
 
 

@@ -122,7 +122,7 @@ def series_program(
         rates = [float(w) for w in known.frequencies or ()]
     else:
         tables = series_tables(series, *cuts)
-        small = tables.coefficient_count <= STRAIGHT_LINE
+        small = 2 * tables.coefficient_count <= STRAIGHT_LINE  # a product and a sum each
         straight = numeric_statements(series, cuts[0], tables.scales, _unscaled(tables, series.digits)) if small else None
         if straight is not None and straight.operations > STRAIGHT_LINE:
             straight = None
@@ -243,9 +243,9 @@ def series_check(tables: SeriesTables, N: int, rates: Sequence[float], digits: i
             return tuple(text(mpmath.mpf(x), places + 2) for x in values)
 
         return SeriesCheck(
-            amplitudes=tuple(map(repr, amplitudes)),
-            phases=tuple(map(repr, phases)),
-            frequencies=tuple(map(repr, rates)),
+            amplitudes=tuple(decimal(Fraction(a)) for a in amplitudes),
+            phases=tuple(decimal(Fraction(p)) for p in phases),
+            frequencies=tuple(decimal(Fraction(w)) for w in rates),
             times=CHECK_TIMES,
             positions=tuple(map(row, Q)),
             momenta=tuple(map(row, P)),

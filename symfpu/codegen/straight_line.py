@@ -21,9 +21,9 @@ from symfpu.errors import InputError
 from symfpu.frequency_polynomials import Polynomial
 from symfpu.series import LindstedtSeries
 
-STRAIGHT_LINE = 2000  # operations; beyond, tables are as fast and compile sooner (docs/performance.md)
+STRAIGHT_LINE = 1000  # operations; up to it a call with few times is faster than by tables, and compiling takes no longer
 
-LARGEST = 20 * STRAIGHT_LINE  # operations of a universal form before elimination, which leaves a tenth of them or less
+LARGEST, LARGEST_ELIMINATED = 40_000, 15_000  # operations of a universal form before and after elimination: 7 s of compiling
 CONSTANT_DIGITS = 40
 
 Statement = tuple[str, sympy.Expr]
@@ -170,7 +170,7 @@ def universal_statements(series: LindstedtSeries, order: int, frequency_order: i
         for k in range(order + 1):
             exponents, values = series.coefficients(q, k)
             size += sum(map(se.count_ops, values))
-            _refuse_large(size)
+            _refuse_large(size, LARGEST)
             for e, value in zip(exponents, values, strict=True):
                 nu, powers = e[0::2] - e[1::2], e[0::2] + e[1::2]
                 factor = sympy.Rational(2 if nu.any() else 1, 2 ** int(powers.sum()))
@@ -181,20 +181,22 @@ def universal_statements(series: LindstedtSeries, order: int, frequency_order: i
         for k in range(frequency_order + 1):
             exponents, values = series.frequency_coefficients(q, k)
             size += sum(map(se.count_ops, values))
-            _refuse_large(size)
+            _refuse_large(size, LARGEST)
             polynomial |= {_ints(e): known.mu**k * known.written_out(v) for e, v in zip(exponents, values, strict=True)}
         frequencies.append(polynomial)
-    return straight_line(chain.N, seeds, rows, frequencies, known.constants)
+    straight = straight_line(chain.N, seeds, rows, frequencies, known.constants)
+    _refuse_large(straight.operations, LARGEST_ELIMINATED)
+    return straight
 
 
 def _ints(row: Any) -> tuple[int, ...]:
     return tuple(int(x) for x in row)
 
 
-def _refuse_large(size: int) -> None:
-    if size > LARGEST:
+def _refuse_large(size: int, largest: int) -> None:
+    if size > largest:
         advice = "lower the orders, or give lindstedt frequencies: numbers become tables of any size"
-        raise InputError("series", "universal form", f"expressions of at most {LARGEST} operations, which compilers take", advice)
+        raise InputError("series", "universal form", f"expressions of at most {largest} operations, which compilers take", advice)
 
 
 class _Multipliers:

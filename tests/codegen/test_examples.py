@@ -5,40 +5,69 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
+import mpmath
 import numpy as np
 import pytest
 
 from symfpu.codegen.gallery import GALLERY
+from symfpu.fourier import FourierTorus
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = dict(re.findall(r"```(c|fortran|python)\n(.*?)```", (ROOT / "docs" / "export.md").read_text(), re.DOTALL))
+EXAMPLES = re.findall(r"```(c|fortran|python|octave)\n(.*?)```", (ROOT / "docs" / "export.md").read_text(), re.DOTALL)
 BUILD = {
-    "c": ("gcc", "use_torus.c", ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"], "two_torus.c"),
-    "fortran": ("gfortran", "use_torus.f90", ["-std=f2008", "-Wall", "-Werror"], "two_torus.F90"),
+    "c": ("gcc", "use_it.c", ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"], "c"),
+    "fortran": ("gfortran", "use_it.f90", ["-std=f2008", "-Wall", "-Werror"], "F90"),
 }
+OF_SERIES = "two_torus_series"
+
+
+def needed(program):
+    if not shutil.which(program) and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"):
+        pytest.skip(f"{program} is not installed")
 
 
 @pytest.fixture(scope="module")
-def expected():
-    torus = GALLERY["two_torus"].torus()
-    object.__setattr__(torus, "phases", {1: 0.5, 2: -1.0})
-    return [float(torus.positions(100.0)[0]), float(torus.momenta(100.0)[0])]
+def torus():
+    return GALLERY["two_torus"].torus()
 
 
-@pytest.mark.parametrize("language", ["c", "fortran", "python"])
-def test_a_program_outside_reproduces_the_torus(language, expected, tmp_path):
+def of_torus(torus):
+    moved = replace(torus, phases={1: 0.5, 2: -1.0})
+    return [moved.positions(100.0)[0], moved.momenta(100.0)[0]]
+
+
+def of_series(torus):
+    orders = GALLERY["two_torus"].series_orders
+    A = [mpmath.mpf("0.5"), mpmath.mpf("0.25")]
+    terms, slopes = torus.series.frequency_terms(np.array(A) ** 2, orders["frequency_order"])
+    omega = terms.sum(axis=0)
+    free = replace(torus, amplitudes={1: A[0], 2: A[1]}, order=orders["order"])
+    exact = tuple(Fraction(float(w)) for w in omega)
+    moved = FourierTorus(torus.chain, torus.seeds, exact, free.harmonics, free.cosines, {1: 0.5, 2: -1.0}, torus.digits)
+    return [moved.positions(100.0)[0], omega[1], slopes.sum(axis=0)[0, 1] * 2 * A[1]]
+
+
+@pytest.mark.parametrize(("language", "code"), EXAMPLES, ids=lambda x: x if len(x) < 10 else OF_SERIES if OF_SERIES in x else "torus")
+def test_a_program_outside_uses_an_exported_file(language, code, torus, tmp_path):
+    stem = OF_SERIES if OF_SERIES in code else "two_torus"
     if language == "python":
-        shutil.copy(ROOT / "generated" / "two_torus.py", tmp_path)
-        command = [sys.executable, "-c", EXAMPLES["python"]]
+        shutil.copy(ROOT / "generated" / f"{stem}.py", tmp_path)
+        command = [sys.executable, "-c", code]
+    elif language == "octave":
+        needed("octave-cli")
+        shutil.copy(ROOT / "generated" / f"{stem}.m", tmp_path)
+        command = ["octave-cli", "--norc", "--eval", code]
     else:
-        compiler, name, flags, gallery = BUILD[language]
-        if not shutil.which(compiler) and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"):
-            pytest.skip(f"{compiler} is not installed")
-        (tmp_path / name).write_text(EXAMPLES[language])
-        command = [compiler, *flags, "-O2", str(ROOT / "generated" / gallery), name, "-o", "program", "-lm"]
-        subprocess.run(command, check=True, cwd=tmp_path)
+        compiler, name, flags, extension = BUILD[language]
+        needed(compiler)
+        (tmp_path / name).write_text(code)
+        sources = [str(ROOT / "generated" / f"{stem}.{extension}"), name]
+        subprocess.run([compiler, *flags, "-O2", *sources, "-o", "program", "-lm"], check=True, cwd=tmp_path)
         command = ["./program"]
     run = subprocess.run(command, check=True, capture_output=True, text=True, cwd=tmp_path)
+    expected = [float(x) for x in (of_series(torus) if stem == OF_SERIES else of_torus(torus))]
     assert np.allclose([float(x) for x in run.stdout.split()], expected, rtol=1e-13, atol=1e-14)

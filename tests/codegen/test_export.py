@@ -1,14 +1,18 @@
 """Export: languages, names, files that are there, and the command line."""
 
+import random
+
 import pytest
 
 from symfpu.amplitudes import solve_amplitudes
 from symfpu.bundle import save
+from symfpu.certificates import random_point
 from symfpu.chain import Chain
 from symfpu.cli import main
+from symfpu.codegen.evaluator import compile_evaluator
 from symfpu.codegen.export import LANGUAGES, export
 from symfpu.errors import InputError
-from symfpu.lindstedt import lindstedt
+from symfpu.lindstedt import lindstedt, residue_series
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +31,21 @@ def test_every_language_writes_a_file_that_says_what_it_is(torus, language, tmp_
     assert path.suffix == f".{LANGUAGES[language].extension}"
     text = path.read_text()
     for fact in ("Chain(N=8, alpha=0.3)", "0.3905", "coordinates 4", "breather", "symfpu.export", "hash"):
+        assert fact in text
+    assert text.isascii()
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_series_says_its_orders(series, language, tmp_path):
+    text = export(series, language, tmp_path / "free", order=3, frequency_order=2).read_text()
+    for fact in (
+        "Chain(N=8, alpha=0.3)",
+        "0.3905",
+        "frequencies 2, coordinates 3",
+        "symfpu.export(series",
+        "order=3",
+        "hash of the series",
+    ):
         assert fact in text
     assert text.isascii()
 
@@ -51,7 +70,20 @@ def test_what_cannot_be_exported_says_so(series, torus, tmp_path):
     with pytest.raises(InputError, match="c, fortran"):
         export(torus, "cobol", tmp_path / "x")
     with pytest.raises(InputError, match="solve_amplitudes"):
-        export(series, "c", tmp_path / "x")
+        compile_evaluator(series)
+    with pytest.raises(InputError, match=r"^order = 5: allowed is 0\.\.4"):
+        export(series, "c", tmp_path / "x", order=5)
+    with pytest.raises(InputError, match=r"^frequency_order = 6: "):
+        export(series, "c", tmp_path / "x", frequency_order=6)
+    with pytest.raises(InputError, match=r"^order = 2: allowed is none for a torus"):
+        export(torus, "c", tmp_path / "x", order=2)
+    with pytest.raises(InputError, match="residues"):
+        export(residue_series(Chain(8, "0.3"), (1,), random_point(8, 1, 3, random.Random(1)), 2), "c", tmp_path / "x")
+    with pytest.raises(InputError, match="give lindstedt frequencies"):
+        export(lindstedt(Chain(8, "0.3"), (1, 2), order=6), "c", tmp_path / "x")
+    with pytest.raises(InputError, match="file name"):
+        export(torus, "fortran", tmp_path / "orbit")
+    assert not list(tmp_path.iterdir())
     with pytest.raises(InputError, match="nowhere"):
         export(torus, "c", tmp_path / "nowhere" / "x")
 
@@ -65,5 +97,10 @@ def test_command_line(torus, series, tmp_path, capsys):
     assert main(words) == 2
     assert "--force" in capsys.readouterr().err
     assert main([*words, "--force"]) == 0
-    assert main(["export", str(save(tmp_path / "s.symfpu", series)), "--lang", "c", "-o", str(tmp_path / "y")]) == 2
-    assert "torus" in capsys.readouterr().err
+    alone = str(save(tmp_path / "s.symfpu", series))
+    assert main(["export", alone, "--lang", "c", "-o", str(tmp_path / "y")]) == 2
+    assert "--series" in capsys.readouterr().err
+    assert main(["export", alone, "--lang", "c", "-o", str(tmp_path / "y"), "--series", "--order", "2"]) == 0
+    assert "coordinates 2" in (tmp_path / "y.c").read_text()
+    assert main(["export", str(file), "--lang", "octave", "-o", str(tmp_path / "z"), "--series", "--frequency-order", "9"]) == 2
+    assert "0..4" in capsys.readouterr().err

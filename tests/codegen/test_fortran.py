@@ -244,5 +244,5 @@ def test_the_header_carries_all_facts():
 @pytest.mark.parametrize("name", ["orbit", "t", "Real64", "first", "2torus", "c_even", "a b", "x" * 51])
 def test_names_that_the_module_needs_are_refused(name):
     torus = made("one mode")
-    with pytest.raises(InputError, match=r"^name = "):
+    with pytest.raises(InputError, match=r"^path = "):
         source(torus, name)

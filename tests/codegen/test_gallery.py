@@ -51,6 +51,10 @@ def test_the_commands_of_the_manifest_make_the_file(tmp_path, monkeypatch):
 def test_every_file_passes_its_own_test(path, tmp_path):
     if path.suffix == ".py":
         command = [sys.executable, str(path)]
+    elif path.suffix == ".m":
+        if not shutil.which("octave-cli") and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"):
+            pytest.skip("octave-cli is not installed")
+        command = ["octave-cli", "--norc", "--path", str(path.parent), "--eval", f"{path.stem}('self_test');"]
     else:
         compiler, *flags = COMPILERS[path.suffix]
         if not shutil.which(compiler) and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"):
@@ -64,4 +68,4 @@ def test_every_file_passes_its_own_test(path, tmp_path):
 
 
 def test_every_example_is_there():
-    assert {path.stem.removesuffix("_mp") for path in FILES} == set(GALLERY)
+    assert {path.stem.removesuffix("_series").removesuffix("_mp") for path in FILES} == set(GALLERY)

@@ -1,0 +1,274 @@
+"""Emitted Fortran of series with free amplitudes against forty digits: compiled without a warning, run, linked with a second one."""
+
+import os
+import re
+import subprocess
+import sys
+from functools import cache
+
+import numpy as np
+import pytest
+
+from symfpu.chain import Chain
+from symfpu.codegen.fortran_series import emit_series
+from symfpu.codegen.series_program import series_facts, series_program
+from symfpu.errors import InputError
+from symfpu.lindstedt import lindstedt
+from tests.codegen import series_cases, test_fortran
+from tests.codegen.series_cases import (
+    CASES,
+    OF_LARGEST,
+    UNIVERSAL,
+    assert_close,
+    assert_frequencies,
+    drawn,
+    expected_frequencies,
+    expected_orbit,
+    numeric,
+    program_of,
+    universal,
+)
+
+build, gfortran, numbers = test_fortran.build, test_fortran.gfortran, test_fortran.numbers  # two fixtures among them
+
+LIMIT = "symfpu.codegen.series_program.STRAIGHT_LINE"
+TABLES_BY_DEFAULT = {"alpha, two seeds", "mixed, three seeds", "beta, four seeds", "alpha, five seeds", "high order"}
+FORMS = {  # of a case, and the operations up to which it becomes statements; universal ones always do
+    **{f"{name}, tables": (name, 0) for name in CASES},
+    **{f"{name}, straight": (name, None) for name in CASES if name not in TABLES_BY_DEFAULT},
+    **{f"{name}, long": (name, 10**9) for name in ("alpha, two seeds", "mixed, three seeds")},
+    **{f"{name}, universal": (name, None) for name in UNIVERSAL},
+}
+FAR = (123456789.125, -98765432109876.5)
+
+DRIVER = """\
+program driver
+  use, intrinsic :: iso_fortran_env, only: rk => real64
+  use sample, only: positions, momenta, orbit, corrected_frequencies
+  implicit none
+  integer :: n
+  real(rk) :: amplitudes(SEEDS), phases(SEEDS), frequencies(SEEDS), omega(SEEDS), jacobian(SEEDS, SEEDS)
+  real(rk), allocatable :: t(:), Q(:, :), P(:, :)
+  read *, n
+  allocate (t(n), Q(MODES, n), P(MODES, n))
+  read *, amplitudes, phases, frequencies, t
+  call corrected_frequencies(amplitudes, BEFORE omega)
+  print '(es26.17e3)', omega
+  call corrected_frequencies(amplitudes, BEFORE omega, jacobian)
+  print '(es26.17e3)', omega, transpose(jacobian)
+  call orbit(t, amplitudes, BEFORE Q, P, phases AFTER)
+  print '(es26.17e3)', Q, P
+  call positions(t, amplitudes, BEFORE Q, phases AFTER)
+  call momenta(t, amplitudes, BEFORE P, phases AFTER)
+  print '(es26.17e3)', Q, P
+  call positions(t, amplitudes, BEFORE Q)
+  call momenta(t, amplitudes, BEFORE P)
+  print '(es26.17e3)', Q, P
+end program driver
+"""
+
+PAIR = """\
+program pair
+  use, intrinsic :: iso_fortran_env, only: rk => real64
+  use alone, only: first_orbit => orbit, first_frequencies => corrected_frequencies
+  use other, only: second_orbit => orbit, second_frequencies => corrected_frequencies
+  implicit none
+  real(rk) :: Q(1, 1), P(1, 1), R(4, 1), S(4, 1), v(1), w(1)
+  call first_orbit([12.5_rk], [0.25_rk], Q, P)
+  call first_frequencies([0.25_rk], v)
+  call second_orbit([12.5_rk], [0.25_rk], [1.1796875_rk], R, S)
+  call second_frequencies([0.25_rk], [1.1796875_rk], w)
+  print '(es26.17e3)', Q, P, v, R, S, w
+end program pair
+"""
+
+HASHES = """\
+import hashlib
+from symfpu.codegen.fortran_series import emit_series
+from tests.codegen.series_cases import CASES, UNIVERSAL, numeric, program_of, universal
+for series, case in ((numeric, CASES["one parity only"]), (universal, UNIVERSAL["wrapped, order 1"])):
+    print(hashlib.sha256(emit_series(program_of(series(case), case)).encode()).hexdigest())
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def computed_once():
+    """The series of a case serves its program and the expected values."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(series_cases, "numeric", cache(numeric))
+        yield
+
+
+@pytest.fixture(scope="module", params=FORMS)
+def form(request):
+    """A case, the program of its series, its source, and whether the frequencies are a required argument."""
+    name, limit = FORMS[request.param]
+    required = request.param.endswith("universal")
+    case = (UNIVERSAL if required else CASES)[name]
+    with pytest.MonkeyPatch.context() as patch:
+        if limit is not None:
+            patch.setattr(LIMIT, limit)
+        program = program_of((universal if required else series_cases.numeric)(case), case)
+    assert (program.straight is None) == request.param.endswith("tables")
+    return case, program, emit_series(program), required
+
+
+def source(name, form="numeric", called="sample"):
+    if form == "universal":
+        return emit_series(program_of(universal(UNIVERSAL[name]), UNIVERSAL[name], called))
+    return emit_series(program_of(series_cases.numeric(CASES[name]), CASES[name], called))
+
+
+def driver(case, required):
+    words = {"SEEDS": str(len(case[1])), "MODES": str(case[0].N - 1)}
+    words |= {"BEFORE": "frequencies,", " AFTER": ""} if required else {"BEFORE ": "", "AFTER": ", frequencies"}
+    text = DRIVER
+    for word, value in words.items():
+        text = text.replace(word, value)
+    return text
+
+
+def test_values_are_those_of_forty_digits(build, form):
+    case, _, text, required = form
+    amplitudes, phases, frequencies, times = drawn(case)
+    if required:
+        frequencies = np.array([float(w) for w in case[2]])
+    times = np.array([0.0, *times, *FAR, *np.linspace(-20, 20, 65)])  # more than one block of times
+    given = "\n".join(map(repr, [len(times), *(float(x) for x in (*amplitudes, *phases, *frequencies, *times))]))
+    s, n = len(phases), len(times) * (case[0].N - 1)
+    found = np.split(numbers(build(text, driver(case, required))(given)), np.cumsum([s, s, s * s, n, n, n, n, n]))
+    omega, again, jacobian, *orbits = found
+    assert_frequencies(omega, jacobian.reshape(s, s), case, amplitudes)
+    assert np.array_equal(omega, again)
+    Q, P, Q_alone, P_alone, Q_default, P_default = (values.reshape(len(times), -1) for values in orbits)
+    assert np.array_equal(Q, Q_alone)
+    assert np.array_equal(P, P_alone)
+    few = np.r_[0:20:3, 20, 21, 63, 64, 86]  # many digits take long
+    near = np.flatnonzero(np.abs(times) < 25)[::9]  # rounded omega(A) turn the angles off at late times
+    exact_Q, exact_P = expected_orbit(case, amplitudes, phases, frequencies, times[few])
+    assert_close(Q[few], exact_Q)
+    assert_close(P[few], exact_P)
+    rates = frequencies if required else expected_frequencies(case, amplitudes)[0]
+    exact_Q, exact_P = expected_orbit(case, amplitudes, np.zeros(s), rates, times[near])
+    assert_close(Q_default[near], exact_Q)
+    assert_close(P_default[near], exact_P)
+
+
+def test_the_self_test_passes(build, form):
+    done = build(form[2], flags=["-DSAMPLE_SELF_TEST", "-O0"])()
+    assert done.returncode == 0, done.stderr
+    deviations = [float(x) for x in re.findall(r"\d\.\d+E[+-]\d+", done.stdout)]
+    assert len(deviations) == 4
+    assert max(deviations) <= OF_LARGEST
+
+
+@pytest.mark.parametrize(
+    ("name", "form", "coefficient"),
+    [
+        ("one mode", "numeric", r"(?<=c1_1 = )"),
+        ("one mode", "numeric", r"(?<=omega\(1\) = )(?!freq|ampl)"),
+        ("one mode", "numeric", r"(?<=jacobian\(1, 1\) = )"),
+        ("order 0", "universal", r"(?<=linear2 = )"),
+        ("high order", "numeric", r"(?<=data \(a_odd\(i, 2\), i = 1, 496\) / &\n    )"),
+        ("high order", "numeric", r"(?<=data \(correction\(i, 1\), i = 1, 30\) / &\n    )"),
+    ],
+)
+def test_the_self_test_fails_for_a_wrong_coefficient(build, name, form, coefficient):
+    text = source(name, form)
+    wrong, changes = re.subn(coefficient, "1.0000001d0*" if "data" not in coefficient else "1", text, count=1)
+    assert changes == 1
+    done = build(wrong, flags=["-DSAMPLE_SELF_TEST", "-O0"])()
+    assert done.returncode != 0
+    assert "above" in done.stderr
+
+
+def test_two_modules_in_one_program(build):
+    first, second = CASES["one mode"], UNIVERSAL["order 0"]
+    values = numbers(build(source("one mode", called="alone"), source("order 0", "universal", "other"), PAIR)())
+    expected = []
+    for case, given in ((first, None), (second, (1.1796875,))):
+        omega, _ = expected_frequencies(case, (0.25,))
+        expected += [*np.ravel(expected_orbit(case, (0.25,), (0.0,), given or omega, [12.5])), *omega]
+    assert len(values) == len(expected) == 12
+    assert np.abs(values - np.array(expected)).max() <= OF_LARGEST
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        ("positions(x, x(1:1), y)", "Q must have shape (1, size(t))"),
+        ("momenta(x, x(1:1), y(:, 1:1))", "P must have shape (1, size(t))"),
+        ("positions(x, x, y(1:1, :))", "amplitudes must have size 1"),
+        ("positions(x, x(1:1), y(1:1, :), phases=x)", "phases must have size 1"),
+        ("positions(x, x(1:1), y(1:1, :), frequencies=x)", "frequencies must have size 1"),
+        ("corrected_frequencies(x, x(1:1))", "amplitudes must have size 1"),
+        ("corrected_frequencies(y(1, 1:1), x)", "omega must have size 1"),
+        ("corrected_frequencies(y(1, 1:1), x(1:1), y)", "jacobian must have shape (1, 1)"),
+    ],
+)
+def test_arrays_of_other_shapes_stop_the_program(stopped, call, message):
+    assert message in stopped(call)
+
+
+@pytest.fixture(scope="module")
+def stopped(gfortran, tmp_path_factory):
+    """What a program with one call says when it stops; the module is compiled once."""
+    folder = tmp_path_factory.mktemp("shapes")
+    (folder / "sample.F90").write_text(source("one mode"))
+    subprocess.run([gfortran, "-c", "sample.F90"], cwd=folder, check=True)
+
+    def stopped(call):
+        text = f"program p\nuse sample\ndouble precision :: x(2) = 1, y(2, 2) = 1\ncall {call}\nend program\n"
+        (folder / "call.f90").write_text(text)
+        subprocess.run([gfortran, "call.f90", "sample.o", "-o", "call"], cwd=folder, check=True)
+        done = subprocess.run([folder / "call"], capture_output=True, text=True)
+        assert done.returncode != 0
+        return done.stderr
+
+    return stopped
+
+
+def test_same_bytes_whatever_the_hash_seed():
+    outputs = []
+    for seed in ("1", "2"):
+        done = subprocess.run([sys.executable, "-c", HASHES], env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        outputs.append(done.stdout.split())
+    assert outputs[0] == outputs[1]
+    assert len(outputs[0]) == 2
+
+
+def test_order_250_compiles_and_stays_finite(build):
+    chain = Chain(2, alpha="0.2", beta="0.3")
+    series = lindstedt(chain, (1,), ("1.421875",), 250)
+    text = emit_series(series_program(series, "sample", series_facts(series)))
+    assert "starts_odd" in text
+    assert not re.search(r"\binf|nan\b", text.split("contains")[0])
+    done = build(text, flags=["-DSAMPLE_SELF_TEST", "-O0"])()
+    assert done.returncode == 0, done.stderr
+
+
+def test_lines_respect_the_limits_of_the_standard(form):
+    lines = form[2].splitlines()
+    assert max(map(len, lines)) <= test_fortran.LONGEST_LINE
+    assert max(map(len, lines[: lines.index("module sample")])) <= 120
+    longest = run = 0
+    for line in lines:
+        assert line.isascii()
+        run = run + 1 if line.endswith("&") else 0
+        longest = max(longest, run)
+    assert longest <= test_fortran.CONTINUATIONS
+
+
+def test_the_header_carries_all_facts(form):
+    _, program, text, _ = form
+    header = text.split("module sample")[0]
+    for key, value in program.facts.items():
+        assert f"{key}: {value}" in " ".join(header.replace("\n!", " ").split())
+    assert all(line.startswith("!") for line in header.splitlines() if line)
+
+
+@pytest.mark.parametrize("name", ["orbit", "t", "Real64", "corrected_frequencies", "c0_1", "a1", "cos0", "2torus", "a b", "x" * 51])
+def test_names_that_the_module_needs_are_refused(name):
+    with pytest.raises(InputError, match=r"^path = "):
+        source("one mode", called=name)
