@@ -1,4 +1,4 @@
-"""A series and its torus in one file: a ZIP archive of bundle.json and of arrays that numpy.load reads.
+"""A series and its torus, or a refined torus, in one file: a ZIP archive of bundle.json and of arrays that numpy.load reads.
 
 Everything but the tables is in bundle.json: numbers that must come back exactly are strings, and a digest covers the whole.
 The tables are flat arrays, order after order and row after row: doubles, words of integers (symfpu.algebra.words), or places
@@ -32,7 +32,10 @@ from symfpu.divisors import SmallDivisor
 from symfpu.errors import InputError
 from symfpu.exact import integer, seed_modes
 from symfpu.exact_text import ExpressionNodes, expressions_of, fraction, fraction_text, number, number_entry
+from symfpu.fourier import QuasiPeriodic
 from symfpu.lindstedt import shared_grading
+from symfpu.refinement.record import refined_entries, refined_from
+from symfpu.refinement.tori import RefinedTorus
 from symfpu.series import LindstedtSeries, ResiduePoint
 from symfpu.torus import QTorus, RootCertificate
 
@@ -41,6 +44,7 @@ Shapes = tuple[list[tuple[int, ...]], list[tuple[int, ...]]]  # of the tables of
 
 PACKAGES = ("symfpu", "numpy", "scipy", "mpmath", "symengine", "sympy", "python-flint", "gmpy2", "numba", "llvmlite")
 DTYPES = {"float64": "<f8", "residue": "<f8", "fixedpoint": "<i8", "symbolic": "<i8", "nested": "<i8"}
+REFINED = "refined"  # kind of a torus without a series
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
 
@@ -55,31 +59,34 @@ class OrbitPoint(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Bundle:
-    """What a file held. torus, verdict : None if none was saved. provenance : created (UTC), command, versions by package.
-    test_vectors : a few points of the torus as it was when it was saved."""
+    """What a file held. series : None for a refined torus. torus, verdict : None if none was saved. provenance : created (UTC),
+    command, versions by package. test_vectors : a few points of the torus as it was when it was saved."""
 
-    series: LindstedtSeries
-    torus: QTorus | None
+    series: LindstedtSeries | None
+    torus: QTorus | RefinedTorus | None
     verdict: Json | None
     provenance: Json
     test_vectors: tuple[OrbitPoint, ...] = field(repr=False, default=())
 
     def __repr__(self) -> str:
-        torus = f"QTorus of frequency order {self.torus.frequency_order}, order {self.torus.order}" if self.torus else "no torus"
+        torus = "no torus"
+        if isinstance(self.torus, QTorus):
+            torus = f"QTorus of frequency order {self.torus.frequency_order}, order {self.torus.order}"
         verdict = "a verdict" if self.verdict is not None else "no verdict"
         saved = f"saved {self.provenance['created']} by symfpu {self.provenance['versions'].get('symfpu', 'of unknown version')}"
-        return f"Bundle({self.series!r}, {torus}, {verdict}, {saved})"
+        held = f"{self.series!r}, {torus}" if self.series else repr(self.torus)
+        return f"Bundle({held}, {verdict}, {saved})"
 
 
 def save(
     path: Path | str,
-    result: LindstedtSeries | QTorus,
+    result: LindstedtSeries | QTorus | RefinedTorus,
     *,
     verdict: Json | None = None,
     command: str | None = None,
     created: datetime | None = None,
 ) -> Path:
-    """Write a series, or a torus with its series, as one file, whole or not at all; returns its path.
+    """Write a series, a torus with its series, or a refined torus as one file, whole or not at all; returns its path.
 
     verdict : any dictionary that JSON gives back unchanged. command : what made the result. created : default now.
     A torus is evaluated at a few times, which go into the file as test vectors.
@@ -93,19 +100,22 @@ def save(
     """
     path = _path(path)
     _require_arguments(result, verdict, command, created)
-    torus = result if isinstance(result, QTorus) else None
-    series = result if isinstance(result, LindstedtSeries) else result.series
-    members, layout = _tables(series)
+    if isinstance(result, RefinedTorus):
+        entries, members = refined_entries(result)
+        parts: Json = {"series": None, "torus": entries | {"kind": REFINED}}
+    else:
+        series = result if isinstance(result, LindstedtSeries) else result.series
+        members, layout = _tables(series)
+        parts = {"series": _series_entries(series) | layout, "torus": _torus_entries(result) if isinstance(result, QTorus) else None}
     body: Json = {
         "format": FORMAT,
         "schema": SCHEMA,
         "created": (created or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="seconds"),
         "command": command,
         "versions": _versions(),
-        "series": _series_entries(series) | layout,
-        "torus": None if torus is None else _torus_entries(torus),
+        **parts,
         "verdict": verdict,
-        "test_vectors": [] if torus is None else [point._asdict() for point in _test_vectors(torus)],
+        "test_vectors": [] if isinstance(result, LindstedtSeries) else [point._asdict() for point in _test_vectors(result)],
         "arrays": {name: member_digest(values) for name, values in members.items()},
     }
     write_archive(path, body | {"digest": digest_of(body)}, members)
@@ -138,8 +148,9 @@ def _path(path: object) -> Path:
 
 
 def _require_arguments(result: object, verdict: object, command: object, created: object) -> None:
-    if not isinstance(result, (LindstedtSeries, QTorus)):
-        raise InputError("result", type(result).__name__, "a LindstedtSeries or a QTorus", "pass what lindstedt or solve_amplitudes gave")
+    if not isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)):
+        allowed = "a LindstedtSeries, a QTorus or a RefinedTorus"
+        raise InputError("result", type(result).__name__, allowed, "pass what lindstedt, solve_amplitudes or refine gave")
     if command is not None and not isinstance(command, str):
         raise InputError("command", command, "a string or None", "join its words")
     if created is not None and not isinstance(created, datetime):
@@ -337,7 +348,7 @@ def _torus(body: Json, series: LindstedtSeries) -> QTorus:
     )
 
 
-def _test_vectors(torus: QTorus) -> list[OrbitPoint]:
+def _test_vectors(torus: QuasiPeriodic) -> list[OrbitPoint]:
     """The torus at the start, after a period of the slowest seed, about, and after many."""
     period = 2 * pi / float(min(torus.frequencies))
     times = [0.0, float(f"{period:.4g}"), float(f"{LONG_RUN * period:.4g}")]
@@ -352,10 +363,17 @@ def _test_vectors(torus: QTorus) -> list[OrbitPoint]:
 
 def _bundle(path: Path, archive: Archive) -> Bundle:
     body = archive.body
-    series = _series(archive, body["series"])
+    series = None if body["series"] is None else _series(archive, body["series"])
+    torus: QTorus | RefinedTorus | None = None
+    if series is None:
+        if body["torus"]["kind"] != REFINED:
+            raise ValueError(f"a torus of kind {body['torus']['kind']!r:.40} without a series")
+        torus = refined_from(archive, body["torus"])
+    elif body["torus"] is not None:
+        torus = _torus(body["torus"], series)
     return Bundle(
         series=series,
-        torus=None if body["torus"] is None else _torus(body["torus"], series),
+        torus=torus,
         verdict=None if body["verdict"] is None else dict(body["verdict"]),
         provenance={name: body[name] for name in ("created", "command", "versions")},
         test_vectors=tuple(OrbitPoint(str(v["t"]), tuple(map(str, v["Q"])), tuple(map(str, v["P"]))) for v in body["test_vectors"]),

@@ -1,5 +1,6 @@
 """Exported evaluators of the 4-torus (N = 32, order 11): Q and P at 1e5 times, emission, size, compilation. Measured, not asserted."""
 
+import ctypes
 import importlib.util
 import shutil
 import subprocess
@@ -11,8 +12,9 @@ import pytest
 from symfpu.amplitudes import solve_amplitudes
 from symfpu.codegen.evaluator import compile_evaluator
 from symfpu.codegen.export import export
+from symfpu.codegen.series_program import series_program
 from symfpu.lindstedt import lindstedt
-from symfpu.paper import APPENDIX_F
+from symfpu.paper import APPENDIX_F, TWO_TORUS
 
 TIMES = 100_000
 DRIVER = """#include <stdlib.h>
@@ -71,3 +73,40 @@ def test_evaluator(benchmark, record, torus, multiply_adds):
     times = np.arange(float(TIMES))
     benchmark.pedantic(lambda: (evaluator.positions(times), evaluator.momenta(times)), rounds=1, iterations=1)
     record("4-torus, positions and momenta at 1e5 times, compile_evaluator", multiply_adds=multiply_adds)
+
+
+@pytest.mark.skipif(not shutil.which("octave-cli"), reason="no Octave")
+def test_octave(benchmark, record, torus, tmp_path, multiply_adds):
+    path = export(torus, "octave", tmp_path / "four_torus")
+    command = ["octave-cli", "--norc", "--path", str(tmp_path), "--eval", f"[Q, P] = four_torus(0:{TIMES - 1});"]
+    benchmark.pedantic(subprocess.run, (command,), {"check": True, "capture_output": True}, rounds=1, iterations=1)
+    record("4-torus, Q and P at 1e5 times, Octave", multiply_adds=multiply_adds, note=f"{path.stat().st_size / 1e6:.1f} MB of source")
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no C compiler")
+@pytest.mark.parametrize("form", ["statements", "tables"])
+@pytest.mark.parametrize("order", [2, 3, 4, 6])
+def test_series_in_c(benchmark, record, order, form, tmp_path, monkeypatch):
+    """Where straight-line code ends and tables begin: 2-torus of Fig. 1 with free amplitudes."""
+    monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", 10**9 if form == "statements" else 0)
+    series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies, order)
+    path = export(series, "c", tmp_path / "free")
+    start = time.perf_counter()
+    command = ["gcc", "-std=c99", "-O2", "-shared", "-fPIC", str(path), "-o", str(tmp_path / "free.so"), "-lm"]
+    subprocess.run(command, check=True)
+    compiled = time.perf_counter() - start
+    function = ctypes.CDLL(str(tmp_path / "free.so")).free_orbit
+    t, A, Q, P = np.arange(float(TIMES)), np.array([0.3, 0.2]), np.empty((TIMES, 15)), np.empty((TIMES, 15))
+
+    def call(count):
+        pointers = [ctypes.c_void_p(x.ctypes.data) for x in (t, A)]
+        function(ctypes.c_size_t(count), *pointers, None, None, ctypes.c_void_p(Q.ctypes.data), ctypes.c_void_p(P.ctypes.data))
+
+    start = time.perf_counter()
+    for _ in range(1000):
+        call(1)
+    one = time.perf_counter() - start
+    benchmark.pedantic(call, (TIMES,), rounds=5, iterations=1)
+    operations = series_program(series, "free", {}).straight
+    size = "" if operations is None else f"{operations.operations} operations, "
+    record(f"series of order {order}, 1e5 times, C, {form}", note=f"{size}compiled in {compiled:.2f} s, one time {one * 1e3:.1f} us")

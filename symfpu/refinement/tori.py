@@ -1,0 +1,277 @@
+"""q-tori by Newton's method: tori that solve the equations of motion to rounding, where their series only approximate them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from symfpu.arithmetic import text
+from symfpu.chain import Chain
+from symfpu.errors import InputError, SymfpuError
+from symfpu.exact import Number, exact
+from symfpu.fourier import QuasiPeriodic
+from symfpu.refinement.conditions import Amplitude, Condition, Energy, FrequencyShift, ratio_conditions
+from symfpu.refinement.invariance import DIGITS, OVERSAMPLING, Floats, Ints, InvarianceEquation, long, rational
+from symfpu.refinement.newton import Iterate, NewtonStep, Report, newton
+
+TOLERANCE = 1e-13  # residual of the equations of motion, relative to the largest acceleration, that ends the search for harmonics
+KEPT = 1e-18  # of the largest coefficient: smaller ones of a guess are left out
+MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
+LARGEST_GRID = 60_000_000  # values of half of the bonds; arrays of 480 MB
+MOST_HARMONICS = 40_000
+ROUNDS = 8  # choices of harmonics
+SHOWN_DIVISORS = 10
+
+
+@dataclass(frozen=True)
+class NearResonance:
+    """A small divisor (nu.omega)^2 - Omega_q^2 of a torus, and the coefficient c_q[nu] it stands under."""
+
+    mode: int
+    harmonic: tuple[int, ...]
+    divisor: float
+    coefficient: float
+
+    def __repr__(self) -> str:
+        return f"{self.divisor:.2g} at mode {self.mode}, harmonic ({','.join(map(str, self.harmonic))}), coefficient {self.coefficient:.2g}"
+
+
+@dataclass(frozen=True, eq=False)
+class RefinedTorus(QuasiPeriodic):
+    """A torus found by Newton's method, Q_q(t) = sum c_q[nu] cos(nu.(omega t + phi)).
+
+    Made by `refine`, `refined_torus`. harmonics (H, s), cosines (H, N-1) in doubles. amplitudes : by seed, of cos(theta_q) in Q_q;
+    phases : by seed. steps : of Newton's method with the final harmonics. near_resonances : the smallest divisors. warnings :
+    reasons to doubt it.
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...]
+    amplitudes: Mapping[int, float]
+    phases: Mapping[int, float]
+    harmonics: Ints = field(repr=False)
+    cosines: Floats = field(repr=False)
+    steps: tuple[NewtonStep, ...] = field(repr=False)
+    near_resonances: tuple[NearResonance, ...] = field(repr=False)
+    warnings: tuple[str, ...] = ()
+    digits: int | None = None
+
+    def __repr__(self) -> str:
+        amplitudes = ", ".join(f"A_{q}={a:.13g}" for q, a in self.amplitudes.items())
+        rates = ", ".join(f"omega_{q}={float(w):.16g}" for q, w in zip(self.seeds, self.frequencies, strict=True))
+        doubts = "".join(f"; {warning}" for warning in self.warnings)
+        nearest = f", smallest divisor {self.near_resonances[0]}" if self.near_resonances else ""
+        return (
+            f"RefinedTorus({repr(self.chain)[6:-1]}, {rates}, {amplitudes}, H={float(self.energy()):.12g}, "
+            f"{len(self.harmonics)} harmonics, residual {self.residual():.2g}{nearest}{doubts})"
+        )
+
+
+class NoTorus(SymfpuError):
+    """Newton's method found no torus; carries the best iterate as a RefinedTorus, its residual and the reason."""
+
+    def __init__(self, reason: str, iterate: RefinedTorus, residual: float) -> None:
+        self.reason, self.iterate, self.residual = reason, iterate, residual
+        super().__init__(
+            f"no torus of the seeds {iterate.seeds}: {reason}; the best iterate leaves {residual:.2g} of the largest acceleration; "
+            f"start from a torus nearer to it, such as one of less energy"
+        )
+
+
+def refine(torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, report: Report = lambda _: None) -> RefinedTorus:
+    """The torus with the same frequencies that solves the equations of motion, with a given one as the guess.
+
+    torus : of a series, resummed, or any other; its phases are kept. tolerance : of the residual of the equations of motion,
+    relative to the largest acceleration; harmonics are added until it is reached. report : called with a line on every step.
+    Raises InputError, and NoTorus with the best iterate.
+
+    >>> from symfpu.amplitudes import solve_amplitudes
+    >>> from symfpu.lindstedt import lindstedt
+    >>> breather = refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
+    >>> breather.residual() < 1e-13
+    True
+    """
+    conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
+    refined = refined_torus(torus, conditions, tolerance=tolerance, report=report)
+    return replace(refined, frequencies=tuple(torus.frequencies))
+
+
+def refine_at_amplitudes(
+    torus: QuasiPeriodic, amplitudes: Mapping[int, Number], *, tolerance: float = TOLERANCE, report: Report = lambda _: None
+) -> RefinedTorus:
+    """The torus with the given amplitude of every seed; its frequencies are found. Arguments and errors as those of `refine`."""
+    if set(amplitudes) != set(torus.seeds):
+        raise InputError("amplitudes", dict(amplitudes), f"a number for each of the seeds {torus.seeds}", "complete it")
+    values = [long(exact(amplitudes[q], f"amplitudes, A_{q}")) for q in torus.seeds]
+    if not all(values):
+        raise InputError("amplitudes", dict(amplitudes), "numbers that are not 0", "leave out a seed that is at rest")
+    return refined_torus(torus, [Amplitude(i, a) for i, a in enumerate(values)], tolerance=tolerance, report=report)
+
+
+def refine_at_energy(
+    torus: QuasiPeriodic,
+    energy: Number,
+    *,
+    harmonic: bool,
+    amplitude_ratio: Mapping[int, Number] | None = None,
+    energy_ratio: Mapping[int, Number] | None = None,
+    tolerance: float = TOLERANCE,
+    report: Report = lambda _: None,
+) -> RefinedTorus:
+    """The torus with the given energy and ratio of amplitudes or of averaged mode energies; its frequencies are found.
+
+    harmonic : False for the total energy H, True for the harmonic energy sum E_q, both at the angles zero. The ratio is given by
+    seed; left out, the amplitudes keep the ratio they have in `torus`. Other arguments and errors as those of `refine`.
+    """
+    value = exact(energy, "energy")
+    if value <= 0:
+        raise InputError("energy", energy, "a positive number", "take one near the energy of the torus")
+    if amplitude_ratio is not None and energy_ratio is not None:
+        raise InputError("energy_ratio", dict(energy_ratio), "only one of amplitude_ratio and energy_ratio", "leave one out")
+    ratio = amplitude_ratio or energy_ratio or dict(zip(torus.seeds, _seed_amplitudes(torus), strict=True))
+    if set(ratio) != set(torus.seeds) or not all(exact(x, "ratio") for x in ratio.values()):
+        raise InputError("ratio", dict(ratio), f"a number that is not 0 for each of the seeds {torus.seeds}", "complete it")
+    numbers = {q: float(exact(x, "ratio")) for q, x in ratio.items()}
+    conditions = [Energy(long(value), harmonic), *ratio_conditions(torus.seeds, numbers, energies=energy_ratio is not None)]
+    return refined_torus(torus, conditions, tolerance=tolerance, report=report)
+
+
+def _seed_amplitudes(torus: QuasiPeriodic) -> list[float]:
+    rows = {nu: i for i, nu in enumerate(map(tuple, torus.harmonics.tolist()))}
+    units = [tuple(int(i == j) for j in range(len(torus.seeds))) for i in range(len(torus.seeds))]
+    return [float(torus.cosines[rows[e], q - 1]) for e, q in zip(units, torus.seeds, strict=True)]
+
+
+def refined_torus(
+    torus: QuasiPeriodic, conditions: Sequence[Condition], *, tolerance: float = TOLERANCE, report: Report = lambda _: None
+) -> RefinedTorus:
+    """The torus near a guess that meets as many conditions as it has angles, with as many harmonics as the tolerance needs."""
+    if not 0 < tolerance < 1:
+        raise InputError("tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more")
+    chain, seeds = torus.chain, torus.seeds
+    known = _rows(torus.harmonics, torus.cosines.astype(float))
+    shifts = shifts_of(torus)
+    before = np.inf
+    for attempt in range(ROUNDS):
+        harmonics, full = chosen_harmonics(known, chain, len(seeds), tolerance * MARGIN / 10**attempt)
+        equation = InvarianceEquation(chain, seeds, harmonics)
+        cosines = np.array([known.get(nu, np.zeros(chain.N - 1)) for nu in map(tuple, harmonics.tolist())], dtype=np.longdouble)
+        report(f"{len(harmonics)} harmonics, {equation.grid.points} points")
+        found = newton(equation, conditions, np.where(equation.mask, cosines, 0), shifts, report)
+        refined = _result(torus, equation, found)
+        residual = refined.residual()
+        if found.failure:
+            raise NoTorus(found.failure, refined, residual)
+        report(f"residual {residual:.1e} between the grid points")
+        if residual <= tolerance or full or residual > before / 2:
+            reason = "as many harmonics as fit" if full else "more harmonics change nothing"
+            warning = f"{reason} leave a residual of {residual:.1e}, above the tolerance {tolerance:.0e}"
+            return refined if residual <= tolerance else replace(refined, warnings=(warning,))
+        before, shifts = residual, found.shifts
+        known = _rows(harmonics, np.asarray(found.cosines))
+    return replace(refined, warnings=(f"the residual is {residual:.1e} after {ROUNDS} choices of harmonics",))
+
+
+def shifts_of(torus: QuasiPeriodic) -> Floats:
+    """omega - Omega of the seeds in long doubles; shape (s,)."""
+    with mpmath.workdps(2 * DIGITS):
+        linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
+        exact_ = [mpmath.mpf(w.numerator) / w.denominator - x for w, x in zip(torus.frequencies, linear, strict=True)]
+    return np.array([long(x) for x in exact_])
+
+
+def _rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats]:
+    """Coefficients by harmonic, the first number that is not 0 positive; a small part left out."""
+    largest = np.abs(cosines).max()
+    rows: dict[tuple[int, ...], Floats] = {}
+    for nu, row in zip(harmonics.tolist(), cosines, strict=True):
+        if np.abs(row).max() > KEPT * largest:
+            sign = -1 if next((n for n in nu if n), 1) < 0 else 1
+            rows[tuple(sign * n for n in nu)] = row
+    return rows
+
+
+def chosen_harmonics(known: Mapping[tuple[int, ...], Floats], chain: Chain, s: int, tolerance: float) -> tuple[Ints, bool]:
+    """Harmonics whose coefficients are expected above the tolerance, relative; and whether more would not fit.
+
+    ln |c[nu]| is fitted by a - sum w_i |nu_i|; all harmonics within the reach of the fit are taken, one of each pair +-nu.
+    """
+    size = {nu: float(np.abs(row).max()) for nu, row in known.items()}
+    largest = max(size.values())
+    used = {nu: x for nu, x in size.items() if x > 1e-16 * largest}
+    table = np.array([[1, *(-abs(n) for n in nu)] for nu in used], dtype=float)
+    heights = np.log([x / largest for x in used.values()])
+    solution = np.linalg.lstsq(table, heights, rcond=None)[0] if len(used) > s + 1 else np.full(s + 1, 3.0)
+    weights = np.clip(solution[1:], 0.2, 12.0)
+    offset = float(np.quantile(heights - table[:, 1:] @ weights, 0.98)) if len(used) > s + 1 else 0.0
+    reach, full = max(-np.log(tolerance) + max(offset, 0.0), 3.5 * weights.max()), False
+    while not _fits(weights, reach, chain):
+        reach, full = 0.95 * reach, True
+    inside = list(_inside(tuple(weights.tolist()), reach))
+    units = [tuple(int(i == j) for j in range(s)) for i in range(s)]
+    return np.array(sorted({*inside, *units}), dtype=np.int64), full
+
+
+def _fits(weights: Floats, reach: float, chain: Chain) -> bool:
+    """Whether half of the bonds on the points of a lattice, about twice the cross-polytope of harmonics, and the harmonics fit."""
+    s = len(weights)
+    polytope = float(np.prod(2 * reach / weights + 1)) / math.factorial(s)
+    points = 1.2 * OVERSAMPLING**s / 2**s * polytope
+    return bool(points * ((chain.N + 1) // 2) <= LARGEST_GRID and polytope / 2 <= MOST_HARMONICS)
+
+
+def _inside(weights: tuple[float, ...], reach: float, *, positive: bool = True) -> Iterator[tuple[int, ...]]:
+    """All harmonics with sum w_i |nu_i| <= reach, of which the first number that is not 0 is positive."""
+    top = int(reach / weights[0])
+    for n in range(0 if positive else -top, top + 1):
+        rest = reach - weights[0] * abs(n)
+        if len(weights) == 1:
+            yield (n,)
+        else:
+            yield from ((n, *others) for others in _inside(weights[1:], rest, positive=positive and n == 0))
+
+
+def _result(torus: QuasiPeriodic, equation: InvarianceEquation, found: Iterate) -> RefinedTorus:
+    with mpmath.workdps(2 * DIGITS):
+        linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
+        frequencies = [_fraction(w + _mpf(shift)) for w, shift in zip(linear, found.shifts, strict=True)]
+    amplitudes = found.cosines[equation.seed_rows, equation.seed_columns]
+    return RefinedTorus(
+        chain=torus.chain,
+        seeds=torus.seeds,
+        frequencies=tuple(frequencies),
+        amplitudes=dict(zip(torus.seeds, map(float, amplitudes), strict=True)),
+        phases={q: float(phi) for q, phi in torus.phases.items()},
+        harmonics=equation.harmonics,
+        cosines=found.cosines.astype(float),
+        steps=found.steps,
+        near_resonances=_near_resonances(equation, found),
+    )
+
+
+def _mpf(value: np.longdouble) -> Any:
+    number = rational(value)
+    return mpmath.mpf(number.numerator) / number.denominator
+
+
+def _fraction(value: Any) -> Fraction:
+    return Fraction(text(value, 25))
+
+
+def _near_resonances(equation: InvarianceEquation, found: Iterate) -> tuple[NearResonance, ...]:
+    divisors = np.where(equation.mask, equation.divisors(found.shifts).astype(float), np.inf)
+    divisors[equation.seed_rows, equation.seed_columns] = np.inf
+    order = np.argsort(np.abs(divisors), axis=None)[:SHOWN_DIVISORS]
+    rows, columns = np.unravel_index(order, divisors.shape)
+    return tuple(
+        NearResonance(int(q) + 1, tuple(equation.harmonics[r].tolist()), float(divisors[r, q]), float(found.cosines[r, q]))
+        for r, q in zip(rows, columns, strict=True)
+        if np.isfinite(divisors[r, q])
+    )
