@@ -30,6 +30,7 @@ from symfpu.torus import QTorus
 GUESS_ORDER = 2  # of the series that begins a family
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
 EASY, FACTOR = 4, 1.3  # Newton steps up to which the next step along the way is longer, and by how much
+KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
 ASTRAY = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
 SIGNIFICANT = 1e-11  # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
 LOCATED, LOCATIONS = 1e-7, 8  # relative change of the place of an event that is enough, and the most members spent on it
@@ -124,10 +125,26 @@ class Way:
     """The last two tori of a family, and steps from them."""
 
     def __init__(
-        self, ratio: Mapping[int, float], *, energies: bool, tolerance: float, report: Report, tori: Sequence[RefinedTorus], step: float
+        self,
+        ratio: Mapping[int, float],
+        *,
+        energies: bool,
+        tolerance: float,
+        report: Report,
+        tori: Sequence[RefinedTorus],
+        step: float,
+        largest: float = 0.0,
     ) -> None:
         self.ratio, self.energies, self.tolerance, self.report = ratio, energies, tolerance, report
         self.tori, self.step = list(tori), step
+        self.largest = largest  # relative shift so far
+
+    def scales(self) -> Floats:
+        """A size for the shifts of all seeds that vanishes with none of them: the largest relative one, not far below any before."""
+        linear = self.tori[0].chain.frequencies()[np.array(self.tori[0].seeds) - 1]
+        relative = [float(np.max(np.abs(shifts_of(torus)).astype(float) / linear)) for torus in self.tori[-2:]]
+        self.largest = max(self.largest, *relative)
+        return np.asarray(max(relative[-1], KEPT_SCALE * self.largest) * linear)
 
     def _conditions(self, plane: Plane) -> list[Condition]:
         return [plane, *ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)]
@@ -139,7 +156,7 @@ class Way:
     def at(self, distance: float) -> RefinedTorus:
         """The torus whose way from the last one, along the secant, has this length; raises NoTorus."""
         last, before = self.tori[-1], self.tori[-2]
-        scales = np.maximum(np.abs(shifts_of(last)), 0.1 * np.max([np.abs(shifts_of(t)) for t in self.tori], axis=0)).astype(float)
+        scales = self.scales()
         x, difference = self._variables(last, scales), self._variables(last, scales) - self._variables(before, scales)
         length = float(np.linalg.norm(difference.astype(float)))
         tangent = (difference / length).astype(float)
@@ -220,8 +237,16 @@ def folds(way: Way, after: int) -> Iterator[Event]:
 def _fold(way: Way, name: str, after: int) -> Event:
     """Newton tori between the last three, at the vertex of the parabola through the best three of all."""
     first, middle, last = way.tori[-3:]
-    local = Way(way.ratio, energies=way.energies, tolerance=way.tolerance, report=way.report, tori=[first, middle], step=way.step)
-    scales = np.maximum(np.abs(shifts_of(middle)), 1e-300).astype(float)
+    local = Way(
+        way.ratio,
+        energies=way.energies,
+        tolerance=way.tolerance,
+        report=way.report,
+        tori=[first, middle],
+        step=way.step,
+        largest=way.largest,
+    )
+    scales = local.scales()
     x = [local._variables(torus, scales).astype(float) for torus in (first, middle, last)]
     direction = (x[1] - x[0]) / np.linalg.norm(x[1] - x[0])
     known = {float((y - x[1]) @ direction): torus for y, torus in zip(x, (first, middle, last), strict=True)}
@@ -252,8 +277,16 @@ def stability_change(way: Way, first: Member, second: Member, after: int) -> Eve
     if first.multipliers is None or second.multipliers is None or first.multipliers.stable == second.multipliers.stable:
         return None
     before, last = way.tori[-2], way.tori[-1]
-    local = Way(way.ratio, energies=way.energies, tolerance=way.tolerance, report=way.report, tori=[last, before], step=way.step)
-    scales = np.maximum(np.abs(shifts_of(before)), 1e-300).astype(float)
+    local = Way(
+        way.ratio,
+        energies=way.energies,
+        tolerance=way.tolerance,
+        report=way.report,
+        tori=[last, before],
+        step=way.step,
+        largest=way.largest,
+    )
+    scales = local.scales()
     length = float(np.linalg.norm((local._variables(last, scales) - local._variables(before, scales)).astype(float)))
     low, high, energy = 0.0, -length, first.energy
     for _ in range(LOCATIONS):

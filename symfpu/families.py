@@ -1,0 +1,310 @@
+"""Families of tori in energy: followed from the linear limit, kept member by member, gone on with where they were left."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from symfpu.bundle import load, save
+from symfpu.certificates import write_text
+from symfpu.chain import Chain, decimal
+from symfpu.errors import InputError, SymfpuError
+from symfpu.exact import Number, exact, integer, seed_modes
+from symfpu.refinement.appendix_a import AppendixAMember, NoFurtherMember, appendix_a_members
+from symfpu.refinement.continuation import FIRST_STEP, Event, Member, Way, continued, first_torus, member
+from symfpu.refinement.tori import TOLERANCE, NoTorus, RefinedTorus, refine_at_energy
+from symfpu.torus import QTorus
+
+Json = dict[str, Any]
+Progress = Callable[[str, float], None]
+
+BEGINNING = "1/1000"  # of the energy asked for, where a family begins by default
+SECOND = 1.1  # ratio of the amplitudes of the second member and the first
+MEMBERS = 200
+RECORD = "family.json"
+APPENDIX_A = "appendix-a"
+METHODS = ("arclength", APPENDIX_A)
+APPENDIX_BEGINNING, APPENDIX_MEMBERS = "1/10", 20  # of the energy asked for, and about how many steps lead from there to it
+
+
+class NotInFamily(SymfpuError):
+    """An energy that no member of a family has; carries the range that was reached and why the family ended."""
+
+    def __init__(self, energy: float, reached: tuple[float, float], ending: str) -> None:
+        self.energy, self.reached, self.ending = energy, reached, ending
+        super().__init__(
+            f"no member has the energy {energy:.10g}: the family goes from {reached[0]:.10g} to {reached[1]:.10g} and {ending}; "
+            f"take an energy in this range, or follow the family further"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Tori of growing energy with one ratio of amplitudes or mode energies, and what happens on the way.
+
+    Made by `family`. members : in order of the way. events : folds, resonances and changes of stability, between members.
+    ending : why the family was not followed further. harmonic : whether its goal was a harmonic energy.
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    members: tuple[Member, ...] = field(repr=False)
+    events: tuple[Event, ...]
+    ending: str
+    harmonic: bool = False
+
+    def __repr__(self) -> str:
+        energies = [m.energy for m in self.members]
+        doubtful = sum(m.verdict != "torus" for m in self.members)
+        doubts = f", {doubtful} of them doubtful" if doubtful else ""
+        kinds = {kind: sum(e.kind == kind for e in self.events) for kind in ("fold", "resonance", "stability")}
+        events = ", ".join(f"{n} {kind}s" if kind != "stability" else f"{n} changes of stability" for kind, n in kinds.items() if n)
+        return (
+            f"Family({repr(self.chain)[6:-1]}, seeds={','.join(map(str, self.seeds))}, {len(self.members)} members{doubts}, "
+            f"H = {min(energies):.6g} .. {max(energies):.6g}, {events or 'no events'}; it {self.ending})"
+        )
+
+    def at_energy(self, energy: Number, *, harmonic: bool) -> RefinedTorus:
+        """The torus of this energy, H or with `harmonic` sum E_q, from the nearest member; its amplitudes keep the family's ratio.
+
+        Raises NotInFamily beyond the range of the members, NoTorus as `refine_at_energy` does.
+        """
+        value = float(exact(energy, "energy"))
+        known = np.array([m.harmonic_energy if harmonic else m.energy for m in self.members])
+        if not known.min() <= value <= known.max():
+            raise NotInFamily(value, (float(known.min()), float(known.max())), self.ending)
+        nearest = self.members[int(np.argmin(np.abs(np.log(known / value))))]
+        return refine_at_energy(nearest.torus, energy, harmonic=harmonic)
+
+
+def family(
+    chain: Chain,
+    seeds: tuple[int, ...],
+    to_energy: Number,
+    *,
+    harmonic: bool = False,
+    amplitude_ratio: Mapping[int, Number] | None = None,
+    energy_ratio: Mapping[int, Number] | None = None,
+    from_energy: Number | None = None,
+    members: int = MEMBERS,
+    multipliers: bool = False,
+    tolerance: float = TOLERANCE,
+    method: str = "arclength",
+    order: int | None = None,
+    folder: Path | str | None = None,
+    progress: Progress | None = None,
+) -> Family:
+    """The family of tori of these seeds from small energy to `to_energy`.
+
+    method : 'arclength', Newton's method and pseudo-arclength continuation; or 'appendix-a', the algorithm of the paper's Appendix A,
+    corrected, whose members are truncated series of `order` and whose mode energies grow alike (no ratio is kept).
+
+    harmonic : whether energies are sum E_q at the angles zero instead of H. amplitude_ratio or energy_ratio (of mode energies
+    averaged over the torus) : by seed, default equal mode energies. from_energy : where it begins, by the linear estimate; default a
+    thousandth of the goal. members : the most. multipliers : of breathers, with changes of stability. folder : every member is kept
+    there as a file at once; an interrupted family goes on from it, with other goals too. progress : called as (label, fraction done).
+
+    A family that cannot be followed to its goal is returned as far as it went; `ending` says why it ended.
+    Raises InputError for arguments out of range and for a folder that holds another family, NoTorus if there is no first member.
+    """
+    if method not in METHODS:
+        raise InputError("method", method, f"one of {', '.join(METHODS)}", "name one of these")
+    if (method == APPENDIX_A) != (order is not None):
+        raise InputError("order", order, f"an order with method = {APPENDIX_A!r}, none with others", "give both or neither")
+    plan = _plan(chain, seeds, to_energy, harmonic, amplitude_ratio, energy_ratio, from_energy, members, multipliers, tolerance, order)
+    kept = _Kept(plan, None if folder is None else Path(folder))
+    tell = progress or (lambda label, done: None)
+
+    def report(line: str) -> None:
+        tell(f"member {len(kept.members) + 1}: {line}", plan.done(kept.members))
+
+    if order is not None:
+        return _by_appendix_a(plan, order, kept, tell)
+    while len(kept.members) < min(2, plan.most):
+        amplitudes = {q: a * SECOND ** len(kept.members) for q, a in plan.start.items()}
+        kept.add(member(first_torus(chain, amplitudes, tolerance=tolerance, report=report), multipliers=multipliers), [])
+    ending = "reached the energy asked for"
+
+    def finished(last: Member) -> bool:
+        return plan.done([last]) >= 1 or len(kept.members) >= plan.most
+
+    tori = [m.torus for m in kept.members[-3:] if isinstance(m.torus, RefinedTorus)]
+    way = Way(plan.ratio, energies=plan.energies, tolerance=tolerance, report=report, tori=tori, step=kept.step, largest=kept.largest)
+    try:
+        if not finished(kept.members[-1]):
+            steps = continued(way, len(kept.members) - 1, multipliers=multipliers, last=kept.members[-1], finished=finished)
+            for found, events in steps:
+                kept.step, kept.largest = way.step, way.largest
+                kept.add(found, events)
+        if plan.done([kept.members[-1]]) < 1:
+            ending = f"was left after {len(kept.members)} members, the most asked for"
+    except NoTorus as end:
+        ending = f"ended: {end.reason}, with steps along the way down to {way.step:.1g}"
+    return Family(chain, plan.seeds, tuple(kept.members), tuple(kept.events), ending, harmonic)
+
+
+def _by_appendix_a(plan: _Plan, order: int, kept: _Kept, tell: Progress) -> Family:
+    """The same by the algorithm of Appendix A, gone on with from the members there are."""
+    first = sum((float(plan.chain.frequencies()[q - 1]) * a) ** 2 / 2 for q, a in plan.start.items())
+    increment = (plan.goal - first) / plan.chain.N / APPENDIX_MEMBERS
+    known = [AppendixAMember(m.torus, increment) for m in kept.members if isinstance(m.torus, QTorus)]
+    after = (known[-2], known[-1]) if len(known) > 1 else None
+    del kept.members[len(known) if after else 0 :]
+    ending = "reached the energy asked for"
+    try:
+        for found in appendix_a_members(plan.chain, plan.seeds, plan.start, order, increment=increment, after=after):
+            torus = found.torus
+            amplitudes = {q: float(a) for q, a in torus.amplitudes.items()}
+            kept.add(Member(torus, amplitudes, found.energy, found.harmonic_energy, torus.residual(), torus.warnings), [])
+            tell(f"member {len(kept.members)}", plan.done(kept.members))
+            if plan.done(kept.members) >= 1:
+                break
+            if len(kept.members) >= plan.most:
+                ending = f"was left after {len(kept.members)} members, the most asked for"
+                break
+    except NoFurtherMember as end:
+        ending = f"ended: {end}"
+    if not kept.members:
+        raise SymfpuError(f"no first member: the family {ending}")
+    return Family(plan.chain, plan.seeds, tuple(kept.members), (), ending, plan.harmonic)
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """Checked arguments. start : amplitudes of the first member."""
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    goal: float
+    harmonic: bool
+    ratio: dict[int, float]
+    energies: bool
+    start: dict[int, float]
+    most: int
+    multipliers: bool
+    tolerance: float
+    order: int | None
+
+    def done(self, members: list[Member]) -> float:
+        """How far towards the goal, by the logarithm of the energy."""
+        if not members:
+            return 0.0
+        energy = members[-1].harmonic_energy if self.harmonic else members[-1].energy
+        linear = self.chain.frequencies()
+        first = sum((float(linear[q - 1]) * a) ** 2 / 2 for q, a in self.start.items())
+        return math.log(energy / first) / math.log(self.goal / first) if energy > 0 else 0.0
+
+    def described(self) -> Json:
+        """What two runs of one family have in common."""
+        return {
+            "N": self.chain.N,
+            "alpha": decimal(self.chain.alpha),
+            "beta": decimal(self.chain.beta),
+            "seeds": list(self.seeds),
+            "ratio": {str(q): repr(x) for q, x in self.ratio.items()},
+            "ratio_of": "mode energies" if self.energies else "amplitudes",
+            "start": {str(q): repr(a) for q, a in self.start.items()},
+            "order": self.order,
+            "multipliers": self.multipliers,
+            "tolerance": repr(self.tolerance),
+        }
+
+
+def _plan(
+    chain: Chain,
+    seeds: tuple[int, ...],
+    to_energy: Number,
+    harmonic: bool,
+    amplitude_ratio: Mapping[int, Number] | None,
+    energy_ratio: Mapping[int, Number] | None,
+    from_energy: Number | None,
+    members: int,
+    multipliers: bool,
+    tolerance: float,
+    order: int | None,
+) -> _Plan:
+    chosen = tuple(sorted(seed_modes(seeds, chain.N)))
+    goal = exact(to_energy, "to_energy")
+    first = (
+        goal * exact(BEGINNING if order is None else APPENDIX_BEGINNING, "") if from_energy is None else exact(from_energy, "from_energy")
+    )
+    if goal <= 0 or not 0 < first < goal:
+        argument, value = ("to_energy", to_energy) if goal <= 0 else ("from_energy", from_energy)
+        raise InputError(argument, value, "0 < from_energy < to_energy", "choose energies in this order")
+    if amplitude_ratio is not None and energy_ratio is not None:
+        raise InputError("energy_ratio", dict(energy_ratio), "only one of amplitude_ratio and energy_ratio", "leave one out")
+    if multipliers and len(chosen) > 1:
+        raise InputError("multipliers", multipliers, "False for more than one seed", "only periodic orbits have multipliers")
+    given = amplitude_ratio or energy_ratio or dict.fromkeys(chosen, 1)
+    if set(given) != set(chosen) or not all(exact(x, "ratio") > 0 for x in given.values()):
+        raise InputError("ratio", dict(given), f"a positive number for each of the seeds {chosen}", "complete it")
+    ratio, linear = {q: float(exact(given[q], "ratio")) for q in chosen}, chain.frequencies()
+    weights = {q: x if amplitude_ratio is not None else math.sqrt(x) / float(linear[q - 1]) for q, x in ratio.items()}
+    energy = sum((float(linear[q - 1]) * w) ** 2 / 2 for q, w in weights.items())
+    start = {q: w * math.sqrt(float(first) / energy) for q, w in weights.items()}
+    most = integer(members, "members", 1)
+    return _Plan(chain, chosen, float(goal), harmonic, ratio, amplitude_ratio is None, start, most, multipliers, tolerance, order)
+
+
+class _Kept:
+    """Members and events so far, in memory and, if there is a folder, on disk after every member."""
+
+    def __init__(self, plan: _Plan, folder: Path | None) -> None:
+        self.plan, self.folder = plan, folder
+        self.members: list[Member] = []
+        self.events: list[Event] = []
+        self.step, self.largest = FIRST_STEP, 0.0
+        if folder is not None:
+            self._read(folder)
+
+    def _read(self, folder: Path) -> None:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError("folder", str(folder), "a folder that can be written", f"choose another ({error.strerror})") from error
+        if not (folder / RECORD).exists():
+            return
+        try:
+            record = json.loads((folder / RECORD).read_text())
+            plan, events, count = record["plan"], record["events"], int(record["members"])
+            self.step, self.largest = float(record["step"]), float(record["largest"])
+        except (ValueError, KeyError, TypeError) as error:
+            raise InputError("folder", str(folder), "a family that symfpu wrote", f"{RECORD} is damaged; choose another folder") from error
+        different = [key for key, value in self.plan.described().items() if plan.get(key) != value]
+        if different:
+            raise InputError("folder", str(folder), f"the same family (its {different[0]} differs)", "choose another folder")
+        self.events = [Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in events]
+        for k in range(count):
+            torus = load(self._file(k)).torus
+            if isinstance(torus, RefinedTorus):
+                self.members.append(member(torus, multipliers=self.plan.multipliers))
+            elif torus is not None:
+                amplitudes, energy = {q: float(a) for q, a in torus.amplitudes.items()}, float(torus.energy())
+                harmonic = float(torus.harmonic_energies().sum())
+                self.members.append(Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings))
+
+    def _file(self, index: int) -> Path:
+        assert self.folder is not None
+        return self.folder / f"member-{index:04d}.symfpu"
+
+    def add(self, found: Member, events: list[Event]) -> None:
+        """The member first, then the record that counts it: a run may be stopped at any time."""
+        if self.folder is not None and isinstance(found.torus, (RefinedTorus, QTorus)):
+            save(self._file(len(self.members)), found.torus, verdict={"verdict": found.verdict, "reasons": list(found.warnings)})
+        self.members.append(found)
+        self.events += events
+        if self.folder is not None:
+            record = {
+                "plan": self.plan.described(),
+                "members": len(self.members),
+                "step": self.step,
+                "largest": self.largest,
+                "events": [asdict(event) for event in self.events],
+            }
+            write_text(self.folder / RECORD, json.dumps(record, indent=1) + "\n")
