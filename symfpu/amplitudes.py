@@ -72,7 +72,7 @@ def amplitude_history(series: LindstedtSeries) -> AmplitudeHistory:
     squares = np.abs(_lowest_order(series)) if orders else np.zeros(len(series.seeds))
     for K in orders:
         try:
-            root, _ = _root(series, K, squares)
+            root, _ = root_squares(series, K, squares)
             found[K] = _square_roots(series, root)
             squares = root
         except (NoRealAmplitude, DidNotConverge) as failure:
@@ -107,7 +107,7 @@ def solve_amplitudes(
     _refuse_commensurable(series)
     K = order_argument("frequency_order", frequency_order, series)
     coordinate_order = order_argument("order", order, series)
-    angles = dict.fromkeys(series.seeds, 0.0) | _by_seed("phases", phases, series)
+    angles = dict.fromkeys(series.seeds, 0.0) | by_seed("phases", phases, series)
     orders = [k for k in frequency_orders(series) if k <= K]
     if not orders:
         first = 2 // series.chain.degree_step
@@ -115,7 +115,7 @@ def solve_amplitudes(
         raise InputError("frequency_order", K, f"{first} or more, the order of the first frequency correction", advice)
     history = amplitude_history(series)
     start = _start(series, orders, history, guess)
-    squares, residual = _root(series, orders[-1], start)
+    squares, residual = root_squares(series, orders[-1], start)
     amplitudes = _square_roots(series, squares)
     torus = QTorus(
         series=series,
@@ -127,7 +127,7 @@ def solve_amplitudes(
         root_residual=residual,
         certificate=certify_root(series, list(squares), K) if series.digits else None,
     )
-    return torus.doubted((*_order_doubts(amplitudes, orders, history), *_residual_doubts(torus)))
+    return torus.doubted((*order_doubts(amplitudes, orders, history), *residual_doubts(torus)))
 
 
 def _square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:
@@ -162,7 +162,8 @@ def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int
     return int(value)
 
 
-def _by_seed(name: str, values: Mapping[int, Any] | None, series: LindstedtSeries) -> dict[int, Any]:
+def by_seed(name: str, values: Mapping[int, Any] | None, series: LindstedtSeries) -> dict[int, Any]:
+    """Numbers by seed in the arithmetic of the series; InputError naming the argument for other keys or values."""
     if values is not None and not isinstance(values, Mapping):
         raise InputError(name, values, f"a mapping from the seeds {series.seeds} to numbers", "write it as {seed: number}")
     for q in values or {}:
@@ -174,7 +175,7 @@ def _by_seed(name: str, values: Mapping[int, Any] | None, series: LindstedtSerie
 
 def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory, guess: Mapping[int, float] | None) -> Numbers:
     if guess is not None:
-        given = _by_seed("guess", guess, series)
+        given = by_seed("guess", guess, series)
         if set(given) != set(series.seeds):
             raise InputError("guess", dict(guess), f"an amplitude for each of the seeds {series.seeds}", "complete it or leave it out")
         if not all(0 < abs(a) < LARGEST_GUESS for a in given.values()):
@@ -207,7 +208,7 @@ def _lowest_order(series: LindstedtSeries) -> Floats:
     return np.asarray(np.linalg.solve(matrix, shifts(series).astype(float)))
 
 
-def _root(series: LindstedtSeries, K: int, start: Numbers) -> tuple[Numbers, float]:
+def root_squares(series: LindstedtSeries, K: int, start: Numbers) -> tuple[Numbers, float]:
     """A^2 that solves the equations truncated at order K, and the residual it leaves."""
     from scipy.optimize import root
 
@@ -260,7 +261,7 @@ def _polished(equations: Callable[[Numbers], tuple[Numbers, Numbers]], near: Flo
     return np.array(list(found), dtype=object)
 
 
-def _order_doubts(amplitudes: tuple[Any, ...], orders: list[int], history: AmplitudeHistory) -> tuple[str, ...]:
+def order_doubts(amplitudes: tuple[Any, ...], orders: list[int], history: AmplitudeHistory) -> tuple[str, ...]:
     """Why the root may be one of the truncated polynomial only."""
     K = orders[-1]
     if len(orders) == 1:
@@ -280,7 +281,7 @@ def _order_doubts(amplitudes: tuple[Any, ...], orders: list[int], history: Ampli
     return tuple(doubts)
 
 
-def _residual_doubts(torus: QTorus) -> tuple[str, ...]:
+def residual_doubts(torus: QTorus) -> tuple[str, ...]:
     """Whether the residual of the equations of motion is large, or grew with the last two orders of the coordinates."""
     points = None if torus.digits else max(3, round(RESIDUAL_POINTS ** (1 / len(torus.seeds))))
     residual, before = torus.residual(points), torus.order - 2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib.resources import as_file, files
 from pathlib import Path
@@ -12,10 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.convergence import BreatherStudy, CancellationStudy
+from symfpu.corrected import CorrectedRow, ScalingStudy
 from symfpu.reproduction import Figure1, Figure6
 
 Floats = NDArray[np.float64]
 Axes = Any
+
+ORDERS_SHOWN = 62  # of a series beside its exact torus; the longest one goes on in the same way, in the CSV
 
 
 def plot_spectrum(spectrum: Floats, ax: Axes, *, label: str = "", marker: str = "o") -> Axes:
@@ -125,6 +128,48 @@ def draw_convergence(cancellation: CancellationStudy, breather: BreatherStudy, f
         ),
         "convergence-d": ("The breather of E = 0.014915", lambda ax: plot_breather_roots(breather, ax)),
     }
+    return [path for name, (title, panel) in panels.items() for path in save_panel(panel, title, folder / name)]
+
+
+def plot_error_by_order(errors: Mapping[str, Mapping[int, float]], ax: Axes) -> Axes:
+    """Errors of several series against their exact tori, by name and order, on a logarithmic scale; up to order ORDERS_SHOWN."""
+    for i, (name, values) in enumerate(errors.items()):
+        style = {"marker": "osD^v<>*P"[i % 9], "ls": "-" if i < 5 else "--", "color": f"C{i}"}
+        ax.semilogy(list(values), list(values.values()), ms=4, lw=1, mfc="none", label=name, **style)
+    ax.set_xlim(0, ORDERS_SHOWN)
+    ax.set_ylim(bottom=1e-16)
+    ax.set_xlabel(r"order $K$ of coordinates and frequencies")
+    ax.set_ylabel(r"$\max\,\Omega_q |c_q^{(K)}[\nu] - c_q[\nu]| \,/\, \max\,\Omega_q |c_q[\nu]|$")
+    ax.legend(loc="center right")
+    return ax
+
+
+def plot_scaling(study: ScalingStudy, ax: Axes) -> Axes:
+    """Errors of each order against the scale of mu A, beside lines of slope K + 1 through the last ones."""
+    scales = np.array(study.scales)
+    for i, (K, errors) in enumerate(study.given.items()):
+        ax.loglog(scales, errors, marker="osD^"[i % 4], ls="none", color=f"C{i}", label=rf"$K = {K}$")
+        ax.loglog(scales, errors[-1] * (scales / scales[-1]) ** (K + 1), color=f"C{i}", lw=1, label=rf"$\mu^{{{K + 1}}}$")
+    for i, (K, errors) in enumerate(study.solved.items()):
+        ax.loglog(scales, errors, marker="x", ls=":", color=f"C{list(study.given).index(K)}", label="$A(K)$ instead" if not i else None)
+    ax.set_xlabel(r"$\mu A$, relative to the printed torus")
+    ax.set_ylabel("error of the coefficients, relative")
+    ax.legend(ncols=2)
+    return ax
+
+
+def draw_corrected(rows: Sequence[CorrectedRow], studies: Sequence[ScalingStudy], folder: Path) -> list[Path]:
+    """Write the pictures of the corrected table as PNG and PDF: errors by order, and against mu; returns the paths."""
+    known = [row for row in rows if row.errors is not None]
+    solved = {row.printed.label: row.errors.solved for row in known if row.errors is not None}
+    given = {row.printed.label: row.errors.given for row in known if row.errors is not None}
+    panels: dict[str, tuple[str, Callable[[Axes], Axes]]] = {
+        "corrected-a": ("Series against exact tori, amplitudes of order K", lambda ax: plot_error_by_order(solved, ax)),
+        "corrected-b": ("Series against exact tori, exact amplitudes", lambda ax: plot_error_by_order(given, ax)),
+    }
+    for letter, study in zip("cdef", studies, strict=False):
+        title = f"Error of order K against mu, {study.label} and scaled tori"
+        panels[f"corrected-{letter}"] = (title, partial(plot_scaling, study))
     return [path for name, (title, panel) in panels.items() for path in save_panel(panel, title, folder / name)]
 
 

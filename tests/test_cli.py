@@ -11,7 +11,7 @@ from symfpu.amplitudes import solve_amplitudes
 from symfpu.chain import Chain
 from symfpu.cli import main
 from symfpu.lindstedt import lindstedt
-from symfpu.paper import APPENDIX_F
+from symfpu.paper import APPENDIX_F, TWO_TORUS
 from tests.reference import TWO_TORUS as REFERENCE
 from tests.tolerances import AMPLITUDE
 
@@ -213,6 +213,7 @@ BAD_INPUT = {
     "unknown option": ([*arguments("solve", SOLVE), "--colour", "red"], "--colour"),
     "missing option": (arguments("solve", SOLVE, omega=None), "--omega"),
     "unknown verb": (["conquer"], "conquer"),
+    "nothing with more to it": (["reproduce", "fig6", "--full"], "full"),
     "unknown target": (["reproduce", "fig99"], "fig99"),
     "no target": (["reproduce"], "TARGET"),
 }
@@ -279,8 +280,10 @@ def test_help_names_every_verb(capsys):
 
 
 def small_rows(monkeypatch):
-    """Two cheap rows in place of the paper's nine: one that is met at order 22, and a breather that is met nowhere."""
+    """Two cheap rows in place of the paper's nine: one that is met at order 22, and a breather that is met nowhere; the first is
+    one of those that only --full refines."""
     monkeypatch.setattr("symfpu.reproduction.APPENDIX_F", tuple(row for row in APPENDIX_F if row.label == "Fig. 8"))
+    monkeypatch.setattr("symfpu.corrected.HEAVY", ("Fig. 1",))
 
 
 def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
@@ -288,12 +291,28 @@ def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
     folder = tmp_path / "new" / "out"
     code, out, err = run(capsys, "reproduce", "table", "-o", str(folder))
     assert (code, err) == (0, "")
-    assert sorted(path.name for path in folder.iterdir()) == ["report.json", "report.md"]
+    pictures = {f"corrected-{panel}.{suffix}" for panel in "ab" for suffix in ("png", "pdf", "csv")}
+    assert {path.name for path in folder.iterdir()} == {"report.json", "report.md"} | pictures
     assert "Fig. 8" in out
+    assert "not refined: takes minutes; computed with --full" in out
+    assert "exact torus: A_25 = 0.0512121591740, H = 0.00464999936113, residual" in out
+    assert "corrected-a..b as PNG, PDF and CSV" in out
     assert "amplitudes met at frequency order 22" in out
     assert "amplitudes met at no frequency order" in out
     assert [row["label"] for row in json.loads((folder / "report.json").read_text())["table"]] == ["Fig. 1", "Fig. 8"]
     assert "met at no frequency order" in (folder / "report.md").read_text()
+
+
+def test_reproduce_full_refines_every_row(capsys, monkeypatch, tmp_path):
+    small_rows(monkeypatch)
+    monkeypatch.setattr("symfpu.targets.SCALED", ("Fig. 8",))
+    monkeypatch.setattr("symfpu.corrected.HALVINGS", 1)
+    assert run(capsys, "reproduce", "table", "--full", "-o", str(tmp_path))[0] == 0
+    rows = json.loads((tmp_path / "report.json").read_text())["table"]
+    assert [row["corrected"]["refined"] for row in rows] == [True, True]
+    assert rows[0]["corrected"]["exponents_of_mu"] is None
+    assert list(rows[1]["corrected"]["exponents_of_mu"]) == ["1", "2", "3", "4"]
+    assert (tmp_path / "corrected-c.png").is_file()
 
 
 def test_reproduce_fig1_writes_pictures_and_data(capsys, tmp_path):
@@ -306,8 +325,9 @@ def test_reproduce_fig1_writes_pictures_and_data(capsys, tmp_path):
     assert set(json.loads(out)["fig1"]["claims"]) == {"best_difference", "cancellation", "term_size", "harmonic_error", "energy_error"}
 
 
-def test_reproduce_table_meets_five_rows_to_ten_digits(capsys, tmp_path):
-    """The whole table, nothing replaced."""
+def test_reproduce_table_meets_five_rows_to_ten_digits(capsys, monkeypatch, tmp_path):
+    """The whole table; exact tori of a breather alone, the others take minutes."""
+    monkeypatch.setattr("symfpu.corrected.HEAVY", tuple(row.label for row in (TWO_TORUS, *APPENDIX_F) if row.label != "Fig. 7"))
     code, out, err = run(capsys, "reproduce", "table", "-o", str(tmp_path), "--json")
     rows = {row["label"]: row for row in json.loads(out)["table"]}
     assert (code, err) == (0, "")

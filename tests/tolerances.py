@@ -85,3 +85,16 @@ ALIKE = 1e-3
 
 # Domb and Sykes' fit to ratios of doubles at order 150.
 SINGULARITY = 2e-6
+
+# Amplitudes to frequencies and back: both are solved to some hundred EPS of the shift, and the matrix between shifts and A^2 has
+# a condition of up to some ten.
+THERE_AND_BACK = 1e-12
+
+# What a torus of a given energy promises, with some rounding of H.
+FIXED_ENERGY = 1e-12
+
+# Amplitudes and energies of one exact torus by two solvers, or with two sets of harmonics: the twelve digits that are promised.
+CONVERGED_DIGITS = 5e-13
+
+# The slope between the last two of tori whose amplitudes are halved: the next order changes it by some mu A / 16.
+RATE_OF_MU = 0.01

@@ -8,6 +8,7 @@ change of sign is half a period of the family: only c with q - n seed even (and 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -21,6 +22,7 @@ from symfpu.exact import Number, exact, seed_modes
 from symfpu.frequency_shift import frequency_shift
 
 Floats = NDArray[np.float64]
+Condition = Callable[[Floats], tuple[float, Floats]]  # of z: what has to vanish, relative to what it is made of, and its derivatives
 
 LARGEST_SYSTEM = 8192  # unknowns; a matrix of 512 MB
 TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonics may reach
@@ -99,13 +101,19 @@ class PeriodicOrbit:
         return np.asarray((self._rates**2 @ squares + self.chain.frequencies() ** 2 * squares.sum(axis=0)) / 2)
 
 
+def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Harmonics n and places q - 1 of the coefficients that the symmetry allows, in the order of the vectors z."""
+    n, q = np.indices((harmonics + 1, chain.N - 1))
+    places = np.nonzero(((q + 1 - n * seed) % 2 == 0) & ((n % 2 == 1) | (chain.alpha != 0)))
+    return places[0], places[1]
+
+
 class Balance:
     """The equations n^2 omega^2 c + force = 0 up to a number of harmonics, for vectors z = (the c that are unknowns, sigma)."""
 
     def __init__(self, chain: Chain, seed: int, harmonics: int) -> None:
         self.chain, self.seed, self.harmonics = chain, seed, harmonics
-        n, q = np.indices((harmonics + 1, chain.N - 1))
-        self.n, self.q = np.nonzero(((q + 1 - n * seed) % 2 == 0) & ((n % 2 == 1) | (chain.alpha != 0)))
+        self.n, self.q = unknowns(chain, seed, harmonics)
         linear = chain.frequencies()
         self.detuning = self.n**2 * linear[seed - 1] ** 2 - linear[self.q] ** 2
         self.first = int(np.flatnonzero((self.n == 1) & (self.q == seed - 1))[0])
@@ -142,15 +150,18 @@ class Balance:
         J = -stiffness[abs(n - self.n), q, self.q] - np.where(n > 0, stiffness[n + self.n, q, self.q], 0.0) + np.diag(diagonal)
         return diagonal * z[:-1] + force[self.n, self.q], np.column_stack([J, self.n**2 * z[:-1]])
 
-    def newton(self, z: Floats, given: int) -> tuple[Floats, int]:
-        """The solution with the same z[given], and the number of steps; raises NoPeriodicOrbit."""
-        free = np.delete(np.arange(len(z)), given)
+    def newton(self, z: Floats, given: int | Condition) -> tuple[Floats, int]:
+        """The solution with the same z[given], or that meets a condition, and the number of steps; raises NoPeriodicOrbit."""
+        free = np.arange(len(z)) if callable(given) else np.delete(np.arange(len(z)), given)
         best, least, before, size = z, np.inf, np.inf, float(np.max(np.abs(z[:-1])))
         for iteration in range(1, ITERATIONS + 1):
             equations, jacobian = self.system(z)
             imbalance = float(np.max(np.abs(equations)) / np.max(np.abs(z[:-1])))
             if imbalance < least:
                 best, least = z, imbalance
+            if callable(given):
+                value, row = given(z)
+                equations, jacobian = np.append(equations, value), np.vstack([jacobian, row])
             try:
                 step = np.linalg.solve(jacobian[:, free], equations)
             except np.linalg.LinAlgError:
@@ -165,6 +176,16 @@ class Balance:
                 return z, iteration
             before = relative
         raise NoPeriodicOrbit(self, f"no convergence in {ITERATIONS} steps", best)
+
+
+def held_frequency(balance: Balance) -> int:
+    """The place of sigma in the vectors of a balance."""
+    return len(balance.n)
+
+
+def held_amplitude(balance: Balance) -> int:
+    """The place of A in the vectors of a balance."""
+    return balance.first
 
 
 def residual(chain: Chain, omega: float, cosines: Floats) -> float:
@@ -187,22 +208,38 @@ def periodic_orbit(chain: Chain, seed: int, frequency: Number, guess: ArrayLike 
     >>> round(periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537").energy, 12)
     0.004649999361
     """
-    (seed,), omega = seed_modes((seed,), chain.N), exact(frequency, "frequency")
+    (seed,), omega = seed_modes((seed,), chain.N), positive_frequency(frequency)
+    shift, sigma = detuning(chain, seed, omega)
+    if guess is not None:
+        orbit = orbit_near(chain, seed, _cosines(chain, seed, guess), sigma, held_frequency)
+    else:
+        orbit = _walk(chain, seed, lowest_amplitude(chain, seed, shift), sigma, by_amplitude=False)
+    return replace(orbit, frequency=omega)
+
+
+def positive_frequency(frequency: Number) -> Fraction:
+    """The exact number that a frequency denotes; raises InputError."""
+    omega = exact(frequency, "frequency")
     if omega <= 0:
         raise InputError("frequency", frequency, "a positive number", "take one near the linear frequency")
+    return omega
+
+
+def detuning(chain: Chain, seed: int, omega: Fraction) -> tuple[float, float]:
+    """omega - Omega_seed and sigma = omega^2 - Omega_seed^2, without loss of digits."""
     with mpmath.workdps(50):
         linear, target = chain.linear_frequency(seed), mpmath.mpf(omega.numerator) / omega.denominator
-        shift, sigma = float(target - linear), float((target - linear) * (target + linear))
-    if guess is not None:
-        orbit = _solve(chain, seed, _cosines(chain, seed, guess), sigma, by_amplitude=False)
-    else:
-        coefficient, order = frequency_shift(chain, {seed: 1.0})[seed], 2 // chain.degree_step
-        if coefficient == 0:
-            raise UndeterminedAmplitudes((seed,), order)
-        if shift / coefficient <= 0:
-            raise NoRealAmplitude(seed, shift / coefficient, order)
-        orbit = _walk(chain, seed, (shift / coefficient) ** 0.5, sigma, by_amplitude=False)
-    return replace(orbit, frequency=omega)
+        return float(target - linear), float((target - linear) * (target + linear))
+
+
+def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
+    """A > 0 whose lowest frequency correction is omega - Omega = shift; raises NoRealAmplitude or UndeterminedAmplitudes."""
+    coefficient, order = frequency_shift(chain, {seed: 1.0})[seed], 2 // chain.degree_step
+    if coefficient == 0:
+        raise UndeterminedAmplitudes((seed,), order)
+    if shift / coefficient <= 0:
+        raise NoRealAmplitude(seed, shift / coefficient, order)
+    return float((shift / coefficient) ** 0.5)
 
 
 def breather_at_amplitude(chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | None = None) -> PeriodicOrbit:
@@ -222,7 +259,7 @@ def breather_at_amplitude(chain: Chain, seed: int, amplitude: Number, guess: Arr
     balance = Balance(chain, seed, len(cosines) - 1)
     z = balance.vector(cosines, 0.0)
     sigma = float(-balance.system(z)[0][balance.first] / A)  # balances cos(omega t) of the seed
-    return _solve(chain, seed, cosines, sigma, by_amplitude=True)
+    return orbit_near(chain, seed, cosines, sigma, held_amplitude)
 
 
 def _cosines(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
@@ -239,15 +276,23 @@ def _cosines(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
 
 
 @np.errstate(over="ignore", invalid="ignore")  # iterates that run away are refused by their size
-def _solve(chain: Chain, seed: int, cosines: Floats, sigma: float, *, by_amplitude: bool, reach: float = GROWTH) -> PeriodicOrbit:
-    """The orbit with the same A or the same sigma, with as many harmonics as it needs, none changed by more than reach."""
+def orbit_near(
+    chain: Chain, seed: int, cosines: Floats, sigma: float, given: Callable[[Balance], int | Condition], reach: float = GROWTH
+) -> PeriodicOrbit:
+    """The orbit near cosines and sigma, with as many harmonics as it needs, none of them changed by more than reach.
+
+    given : of a balance, the place of what keeps its value, or the condition to meet. reach : relative to the largest coefficient.
+    Raises NoPeriodicOrbit.
+    """
     guess, harmonics, iterations = cosines, max(8, len(cosines) - 1), 0
     if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
         raise InputError("N, harmonics", (chain.N, harmonics), f"at most {2 * LARGEST_SYSTEM} as their product", "cut the guess")
     while True:
         balance = Balance(chain, seed, harmonics)
-        z, steps = balance.newton(balance.vector(cosines, sigma), balance.first if by_amplitude else len(balance.n))
+        z, steps = balance.newton(balance.vector(cosines, sigma), given(balance))
         cosines, sigma, iterations = balance.cosines(z), float(z[-1]), iterations + steps
+        if balance.frequency(z) <= 0:
+            raise NoPeriodicOrbit(balance, f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2", z)
         heights = np.max(np.abs(cosines), axis=1) / np.max(np.abs(cosines))
         if np.max(heights[-max(2, harmonics // 8) :]) <= TAIL:
             break
@@ -266,13 +311,14 @@ def _walk(chain: Chain, seed: int, amplitude: float, sigma: float, *, by_amplitu
     gone, step, iterations = 0.0, 1.0, 0
     scale, cosines = 1.0, np.zeros((2, chain.N - 1))  # the guess is cosines, a member or the linear mode, scaled to the next part
     cosines[1, seed - 1] = amplitude
+    given = held_amplitude if by_amplitude else held_frequency
     while True:
         part = min(1.0, gone + step)
         guess = cosines * (part / scale)
         if by_amplitude:
             guess[1, seed - 1] = amplitude * part
         try:
-            orbit = _solve(chain, seed, guess, sigma * (part / scale) ** 2, by_amplitude=by_amplitude, reach=REACH)
+            orbit = orbit_near(chain, seed, guess, sigma * (part / scale) ** 2, given, REACH)
         except NoPeriodicOrbit:
             step /= 2
             if step < SMALLEST_PART:

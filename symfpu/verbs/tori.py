@@ -15,7 +15,9 @@ from symfpu.chain import Chain
 from symfpu.codegen.export import LANGUAGES
 from symfpu.codegen.export import export as export_source
 from symfpu.errors import InputError
+from symfpu.family_report import refined_record, refined_text
 from symfpu.lindstedt import lindstedt
+from symfpu.refinement.tori import RefinedTorus
 from symfpu.report import assessment_text, output_file, torus_record
 from symfpu.torus import QTorus
 from symfpu.verbs.terminal import (
@@ -105,21 +107,25 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
 
 @app.command(epilog="Example: symfpu show torus.symfpu")
 def show(
-    file: Annotated[Path, typer.Argument(help="A file written by symfpu solve -o.", metavar="FILE")],
+    file: Annotated[Path, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")],
     as_json: JsonOption = False,
 ) -> None:
     """What a result file holds: series, torus, verdict, and what made it."""
     bundle = load(file)
-    record = {} if bundle.torus is None else torus_record(bundle.torus)
+    refined = bundle.torus if isinstance(bundle.torus, RefinedTorus) else None
+    torus = bundle.torus if isinstance(bundle.torus, QTorus) else None
+    record = refined_record(refined) if refined else torus_record(torus) if torus else {}
     if as_json:
         print_json(record | {"provenance": dict(bundle.provenance), "assessment": bundle.verdict, "test_vectors": bundle.test_vectors})
         return
-    if bundle.verdict:
+    if bundle.verdict and not refined:
         print(f"verdict: {bundle.verdict.get('verdict')}")
-    if bundle.torus is None:
-        print(bundle.series)
+    if refined:
+        print(refined_text(refined))
+    elif torus:
+        _print_torus(torus, record)
     else:
-        _print_torus(bundle.torus, record)
+        print(bundle.series)
     for reason in (bundle.verdict or {}).get("reasons", []):
         print(f"  {reason}")
     for key, value in bundle.provenance.items():
@@ -139,12 +145,14 @@ def export(
 ) -> None:
     """Source code that needs nothing of symfpu and tests itself: a torus, Q(t), P(t), E_q(t), H(t), or a series with free amplitudes."""
     bundle = load(file)
-    if bundle.torus is None and not series:
-        raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o, or export the --series")
+    solution = bundle.series if series else bundle.torus
+    if solution is None:
+        wanted, advice = ("series", "leave out --series") if series else ("torus", "write one with symfpu solve -o, or export the --series")
+        raise InputError("FILE", str(file), f"a file with a {wanted} in it", advice)
     with progress_bar() as advance:
         advance("source code", None)
         written = export_source(
-            bundle.series if series or bundle.torus is None else bundle.torus,
+            solution,
             language,
             output,
             order=optional("order", order),

@@ -1,0 +1,98 @@
+"""Refinement of tori: seconds, memory and products beside one transform there and back of all bonds. Measured, not asserted.
+
+Allowed: 5 s for the 2-torus of Fig. 1 with its series, 300 s and 4 GB for the 4-torus of Fig. 2.
+"""
+
+import json
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+from symfpu.amplitudes import solve_amplitudes
+from symfpu.lindstedt import lindstedt
+from symfpu.paper import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
+from symfpu.refinement.breathers import periodic_orbit
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.tori import refine
+
+
+def guess_of(torus, order):
+    return solve_amplitudes(lindstedt(torus.chain, torus.seeds, torus.frequencies, order))
+
+
+def transform_pair(refined):
+    """Seconds of one transform of half of the bonds to the angles of the final harmonics and back, the best of three; and the lattice."""
+    equation = InvarianceEquation(refined.chain, refined.seeds, refined.harmonics)
+    bonds = (refined.chain.N + 1) // 2
+    columns = np.random.default_rng(1).normal(size=(len(refined.harmonics), bonds))
+    seconds = []
+    for _ in range(3):
+        start = time.perf_counter()
+        equation.grid.coefficients(equation.grid.values(columns))
+        seconds.append(time.perf_counter() - start)
+    return min(seconds), f"{bonds} bonds x {equation.grid.points} points"
+
+
+def summary(refined):
+    """Of the final harmonics, what the line says."""
+    pair, lattice = transform_pair(refined)
+    products = [step.krylov for step in refined.steps]
+    return {
+        "text": f"{len(refined.harmonics)} harmonics, residual {refined.residual():.1e}, {len(products)} last steps, products {products}",
+        "lattice": lattice,
+        "pair": pair,
+    }
+
+
+def note_of(made, seconds):
+    return f"{made['text']}; = {seconds / made['pair']:.0f} transforms there and back ({made['pair']:.4f} s, {made['lattice']})"
+
+
+def test_two_torus(benchmark, record):
+    """Series of order 12, its amplitudes, and Newton's method; allowed 5 s."""
+    refine(guess_of(TWO_TORUS, 4), tolerance=1e-6)  # kernels
+    refined = benchmark.pedantic(lambda: refine(guess_of(TWO_TORUS, 12)), rounds=3, iterations=1)
+    record("2-torus of Fig. 1, series of order 12 and refinement", note=note_of(summary(refined), benchmark.stats.stats.median))
+
+
+def test_four_torus(benchmark, record):
+    """In a process of its own, whose peak memory counts; allowed 300 s and 4 GB."""
+    code = (
+        "import json, resource, time\n"
+        "from symfpu.paper import APPENDIX_F\n"
+        "from tests.benchmarks.test_refine_speed import guess_of, refine, summary\n"
+        "guess = guess_of(APPENDIX_F[0], 6)\n"
+        "start = time.perf_counter()\n"
+        "refined = refine(guess)\n"
+        "seconds = time.perf_counter() - start\n"
+        "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "print(json.dumps(summary(refined) | {'seconds': seconds, 'peak': peak, 'warnings': refined.warnings}))"
+    )
+    run = benchmark.pedantic(
+        subprocess.run, ([sys.executable, "-c", code],), {"check": True, "capture_output": True, "text": True}, rounds=1, iterations=1
+    )
+    made = json.loads(run.stdout)
+    doubts = "".join(f"; {warning}" for warning in made["warnings"])
+    note = f"refinement alone {made['seconds']:.1f} s, peak memory {made['peak'] / 2**20:.2f} GB; {note_of(made, made['seconds'])}{doubts}"
+    record(f"4-torus of {APPENDIX_F[0].label}, series of order 6 and refinement", note=note)
+
+
+def test_breather(benchmark, record):
+    """The one of Fig. 7, beside the method for breathers alone."""
+    torus = APPENDIX_F[5]
+    guess = guess_of(torus, 20)
+    refined = benchmark.pedantic(refine, (guess,), rounds=3, iterations=1, warmup_rounds=1)
+    start = time.perf_counter()
+    periodic_orbit(torus.chain, torus.seeds[0], torus.frequencies[0])
+    alone = time.perf_counter() - start
+    note = f"{note_of(summary(refined), benchmark.stats.stats.median)}; periodic_orbit {alone:.3f} s"
+    record(f"breather N = 32 of {torus.label}, from order 20", note=note)
+
+
+def test_large_breather(benchmark, record):
+    """The one of Fig. 9, of which low orders of the series are far."""
+    guess = guess_of(FIG9_BREATHER, 60)
+    refined = benchmark.pedantic(refine, (guess,), rounds=3, iterations=1, warmup_rounds=1)
+    record(f"breather N = 32 of {FIG9_BREATHER.label}, from order 60", note=note_of(summary(refined), benchmark.stats.stats.median))
