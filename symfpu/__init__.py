@@ -1,37 +1,184 @@
-"""Poincare-Lindstedt series of q-tori and q-breathers in Fermi-Pasta-Ulam chains, symbolic first."""
+"""Poincare-Lindstedt series of q-tori and q-breathers in Fermi-Pasta-Ulam chains, symbolic first.
 
-from symfpu.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
-from symfpu.archive import BundleError
-from symfpu.bundle import Bundle, load, save
-from symfpu.certificates import PropagationProof, prove_propagation
-from symfpu.chain import Chain
-from symfpu.codegen.evaluator import Evaluator, compile_evaluator
-from symfpu.codegen.export import export
-from symfpu.commensurability import frequency_rank
-from symfpu.errors import (
-    DidNotConverge,
-    InputError,
-    NoRealAmplitude,
-    ResonantDivisor,
-    SymfpuError,
-    TooLarge,
-    UndeterminedAmplitudes,
-)
-from symfpu.fourier import FourierTorus
-from symfpu.frequency_shift import frequency_shift, frequency_shift_formula
-from symfpu.leading import leading_term, lemma_holds
+Public names are loaded when they are first used, so that importing the package takes no time.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from symfpu.frequency_shift import frequency_shift, frequency_shift_formula  # at once: a module has the name of its function
 from symfpu.lindstedt import lindstedt
 from symfpu.notebook import init_printing
-from symfpu.propagation import coupling_sequence, excitation_sequence, reachable_modes
-from symfpu.resummation import PadeSum, ResummedTorus, pade_amplitudes, pade_frequencies, pade_poles, resum
-from symfpu.series import LindstedtSeries
-from symfpu.sweeps import Sweep, sweep_propagation
-from symfpu.torus import QTorus, RootCertificate
-from symfpu.verdict import Assessment, assess
+
+if TYPE_CHECKING:
+    from symfpu.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
+    from symfpu.archive import BundleError
+    from symfpu.bundle import Bundle, load, save
+    from symfpu.certificates import PropagationProof, prove_propagation
+    from symfpu.chain import Chain
+    from symfpu.codegen.evaluator import Evaluator, compile_evaluator
+    from symfpu.codegen.export import export
+    from symfpu.commensurability import frequency_rank
+    from symfpu.errors import (
+        DidNotConverge,
+        InputError,
+        NoRealAmplitude,
+        ResonantDivisor,
+        SymfpuError,
+        TooLarge,
+        UndeterminedAmplitudes,
+    )
+    from symfpu.families import Family, NotInFamily, family
+    from symfpu.fixed_energy import NoTorusAtEnergy, torus_at_energy
+    from symfpu.fourier import FourierTorus
+    from symfpu.leading import leading_term, lemma_holds
+    from symfpu.propagation import coupling_sequence, excitation_sequence, reachable_modes
+    from symfpu.refinement.breather_digits import PreciseOrbit, periodic_orbit_digits
+    from symfpu.refinement.breather_energy import NoBreatherAtEnergy, breather_at_energy
+    from symfpu.refinement.breathers import NoPeriodicOrbit, PeriodicOrbit, breather_at_amplitude, periodic_orbit
+    from symfpu.refinement.continuation import Event, Member
+    from symfpu.refinement.floquet import Floquet, floquet
+    from symfpu.refinement.shooting import ShootingFailed, ShotOrbit, shoot
+    from symfpu.refinement.tori import NoTorus, RefinedTorus, refine, refine_at_amplitudes, refine_at_energy
+    from symfpu.resummation import PadeSum, ResummedTorus, pade_amplitudes, pade_frequencies, pade_poles, resum
+    from symfpu.self_consistent import NoSelfConsistentFrequencies, torus_at_amplitudes
+    from symfpu.series import LindstedtSeries
+    from symfpu.sweeps import Sweep, sweep_propagation
+    from symfpu.torus import QTorus, RootCertificate
+    from symfpu.verdict import Assessment, assess
 
 __version__ = "0.1.0"
 
 init_printing()
+
+_DEFINED = {
+    "symfpu.amplitudes": (
+        "AmplitudeHistory",
+        "amplitude_history",
+        "solve_amplitudes",
+    ),
+    "symfpu.archive": ("BundleError",),
+    "symfpu.bundle": (
+        "Bundle",
+        "load",
+        "save",
+    ),
+    "symfpu.certificates": (
+        "PropagationProof",
+        "prove_propagation",
+    ),
+    "symfpu.chain": ("Chain",),
+    "symfpu.codegen.evaluator": (
+        "Evaluator",
+        "compile_evaluator",
+    ),
+    "symfpu.codegen.export": ("export",),
+    "symfpu.commensurability": ("frequency_rank",),
+    "symfpu.errors": (
+        "DidNotConverge",
+        "InputError",
+        "NoRealAmplitude",
+        "ResonantDivisor",
+        "SymfpuError",
+        "TooLarge",
+        "UndeterminedAmplitudes",
+    ),
+    "symfpu.families": (
+        "Family",
+        "NotInFamily",
+        "family",
+    ),
+    "symfpu.fixed_energy": (
+        "NoTorusAtEnergy",
+        "torus_at_energy",
+    ),
+    "symfpu.fourier": ("FourierTorus",),
+    "symfpu.frequency_shift": (
+        "frequency_shift",
+        "frequency_shift_formula",
+    ),
+    "symfpu.leading": (
+        "leading_term",
+        "lemma_holds",
+    ),
+    "symfpu.propagation": (
+        "coupling_sequence",
+        "excitation_sequence",
+        "reachable_modes",
+    ),
+    "symfpu.refinement.breather_digits": (
+        "PreciseOrbit",
+        "periodic_orbit_digits",
+    ),
+    "symfpu.refinement.breather_energy": (
+        "NoBreatherAtEnergy",
+        "breather_at_energy",
+    ),
+    "symfpu.refinement.breathers": (
+        "NoPeriodicOrbit",
+        "PeriodicOrbit",
+        "breather_at_amplitude",
+        "periodic_orbit",
+    ),
+    "symfpu.refinement.continuation": (
+        "Event",
+        "Member",
+    ),
+    "symfpu.refinement.floquet": (
+        "Floquet",
+        "floquet",
+    ),
+    "symfpu.refinement.shooting": (
+        "ShootingFailed",
+        "ShotOrbit",
+        "shoot",
+    ),
+    "symfpu.refinement.tori": (
+        "NoTorus",
+        "RefinedTorus",
+        "refine",
+        "refine_at_amplitudes",
+        "refine_at_energy",
+    ),
+    "symfpu.resummation": (
+        "PadeSum",
+        "ResummedTorus",
+        "pade_amplitudes",
+        "pade_frequencies",
+        "pade_poles",
+        "resum",
+    ),
+    "symfpu.self_consistent": (
+        "NoSelfConsistentFrequencies",
+        "torus_at_amplitudes",
+    ),
+    "symfpu.series": ("LindstedtSeries",),
+    "symfpu.sweeps": (
+        "Sweep",
+        "sweep_propagation",
+    ),
+    "symfpu.torus": (
+        "QTorus",
+        "RootCertificate",
+    ),
+    "symfpu.verdict": (
+        "Assessment",
+        "assess",
+    ),
+}
+_HOME = {name: module for module, names in _DEFINED.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(_HOME[name]), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
 
 __all__ = [
     "AmplitudeHistory",
@@ -41,26 +188,45 @@ __all__ = [
     "Chain",
     "DidNotConverge",
     "Evaluator",
+    "Event",
+    "Family",
+    "Floquet",
     "FourierTorus",
     "InputError",
     "LindstedtSeries",
+    "Member",
+    "NoBreatherAtEnergy",
+    "NoPeriodicOrbit",
     "NoRealAmplitude",
+    "NoSelfConsistentFrequencies",
+    "NoTorus",
+    "NoTorusAtEnergy",
+    "NotInFamily",
     "PadeSum",
+    "PeriodicOrbit",
+    "PreciseOrbit",
     "PropagationProof",
     "QTorus",
+    "RefinedTorus",
     "ResonantDivisor",
     "ResummedTorus",
     "RootCertificate",
+    "ShootingFailed",
+    "ShotOrbit",
     "Sweep",
     "SymfpuError",
     "TooLarge",
     "UndeterminedAmplitudes",
     "amplitude_history",
     "assess",
+    "breather_at_amplitude",
+    "breather_at_energy",
     "compile_evaluator",
     "coupling_sequence",
     "excitation_sequence",
     "export",
+    "family",
+    "floquet",
     "frequency_rank",
     "frequency_shift",
     "frequency_shift_formula",
@@ -72,10 +238,18 @@ __all__ = [
     "pade_amplitudes",
     "pade_frequencies",
     "pade_poles",
+    "periodic_orbit",
+    "periodic_orbit_digits",
     "prove_propagation",
     "reachable_modes",
+    "refine",
+    "refine_at_amplitudes",
+    "refine_at_energy",
     "resum",
     "save",
+    "shoot",
     "solve_amplitudes",
     "sweep_propagation",
+    "torus_at_amplitudes",
+    "torus_at_energy",
 ]

@@ -70,11 +70,11 @@ def plot_multipliers(found: Family, ax: Axes) -> Axes:
 
 def plot_spectra(found: Family, ax: Axes) -> Axes:
     """Average spectra of some members, normalised."""
-    chosen = found.members[:: max(1, len(found.members) // SPECTRA)]
-    for i, m in enumerate(chosen):
+    chosen = np.unique(np.linspace(0, len(found.members) - 1, SPECTRA).round().astype(int))
+    for i, m in enumerate(found.members[k] for k in chosen):
         spectrum = np.asarray(m.torus.average_spectrum(), dtype=float)
         q = np.flatnonzero(spectrum > 0)
-        ax.semilogy(q + 1, spectrum[q] / spectrum.sum(), marker=".", color=f"C{i}", label=rf"$H = {m.energy:.2g}$")
+        ax.semilogy(q + 1, spectrum[q] / spectrum.sum(), marker=".", color=f"C{i}", label=f"$H$ = {m.energy:.2g}")
     ax.set_xlabel(r"$q$")
     ax.set_ylabel(r"$\overline{E}_q / E$")
     ax.legend(fontsize="small")

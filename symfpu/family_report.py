@@ -120,7 +120,7 @@ def family_table(found: Family) -> list[list[str]]:
 def family_text(found: Family) -> Iterator[str]:
     """A family for a reader, in lines."""
     yield repr(found)
-    for m in found.members[:: max(1, len(found.members) // 8)]:
+    for m in found.members[:: max(1, (len(found.members) - 1) // 8)]:
         yield f"  {m!r}"
     events = sorted(found.events, key=_weight, reverse=True)[:SHOWN_EVENTS]
     for event in sorted(events, key=lambda e: e.after):

@@ -4,6 +4,8 @@ import inspect
 import subprocess
 import sys
 
+import pytest
+
 import symfpu
 
 HEAVY = ("numba", "matplotlib", "scipy")
@@ -13,6 +15,15 @@ def test_importing_the_package_loads_nothing_heavy():
     code = f"import sys, symfpu; print([name for name in {HEAVY} if name in sys.modules])"
     finished = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert finished.stdout.strip() == "[]"
+
+
+def test_no_public_name_is_hidden_by_a_module_of_the_same_name():
+    code = "import symfpu, types; print([n for n in symfpu.__all__ if isinstance(getattr(symfpu, n), types.ModuleType)], dir(symfpu)[0])"
+    finished = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert finished.stdout.split()[0] == "[]"
+    assert symfpu.__all__ == sorted(set(symfpu.__all__), key=lambda name: (not name[0].isupper(), name))
+    with pytest.raises(AttributeError, match="no attribute 'lindsted'"):
+        _ = symfpu.lindsted
 
 
 def test_every_public_name_has_a_docstring():

@@ -17,7 +17,6 @@ from typing import Any
 import mpmath
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft, sparse
 
 from symfpu.chain import Chain
 
@@ -69,11 +68,17 @@ class Lattice:
 
     def entries(self, harmonics: Ints) -> Ints:
         """Places of any harmonics in the spectrum; shape (...) of (..., s)."""
-        folded = harmonics @ self.generator % self.period
-        return np.asarray(np.minimum(folded, self.period - folded))
+        return self.folded(harmonics @ self.generator)
+
+    def folded(self, numbers: Ints) -> Ints:
+        """Places of nu.g."""
+        place = numbers % self.period
+        return np.asarray(np.minimum(place, self.period - place))
 
     def values(self, coefficients: Floats) -> Floats:
         """Values (m, points) of m functions given by coefficients (H, m) of cosines."""
+        from scipy import fft
+
         spectrum = np.zeros((coefficients.shape[1], self.points), dtype=coefficients.dtype)
         spectrum[:, self._place] = (coefficients * self._weight[:, None]).T
         return np.asarray(fft.dct(spectrum, type=1, workers=WORKERS, overwrite_x=True))
@@ -84,6 +89,8 @@ class Lattice:
 
     def spectrum(self, values: Floats) -> Floats:
         """Coefficients of exp(i nu.theta), by place; shape (m, points)."""
+        from scipy import fft
+
         return np.asarray(fft.dct(values, type=1, workers=WORKERS) / self.period)
 
 
@@ -103,6 +110,8 @@ def dilated(harmonics: Ints, factor: float) -> Ints:
 
 @lru_cache(maxsize=8)
 def _known_lattice(content: bytes, s: int) -> tuple[int, tuple[int, ...]]:
+    from scipy import fft
+
     harmonics = np.frombuffer(content, dtype=np.int64).reshape(-1, s)
     draw = np.random.default_rng(0)  # any will do; the same every time
     few = harmonics[draw.permutation(len(harmonics))[:FEW]]
@@ -214,19 +223,24 @@ class InvarianceEquation:
 
         Of a unit of cos(nu'.theta) the coefficient at nu is slope[nu - nu'] + slope[nu + nu'], without the second for nu = 0.
         """
-        spectrum = np.concatenate([self.grid.spectrum(slopes[part]) for part in self._portions()])
+        spectrum = np.concatenate([self.grid.spectrum(slopes[part]) for part in self._portions()]).T.copy()
         nu, still = self.harmonics[rows], (self.harmonics[rows] == 0).all(axis=1)
         out, back = self._stretch.astype(float)[columns], self._back.astype(float)[columns]
+        along = nu @ self.grid.generator
         matrix = np.empty((len(rows), len(rows)))
         for a in range(len(rows)):
-            both = spectrum[:, self.grid.entries(nu[a] - nu)]
+            both = spectrum[self.grid.folded(along[a] - along)]
             if not still[a]:
-                both = both + spectrum[:, self.grid.entries(nu[a] + nu)]
-            matrix[a] = np.einsum("jb,bj,j->b", both, out, back[a], optimize=True)
+                both += spectrum[self.grid.folded(along[a] + along)]
+            both *= out
+            matrix[a] = both @ back[a]
         return matrix
 
-    def sparse_derivative(self, slopes: Floats) -> sparse.csr_matrix:
-        """The derivative of the force by the largest harmonics of the slopes alone, between all unknowns (in the order of the mask)."""
+    def sparse_derivative(self, slopes: Floats) -> Any:
+        """The derivative of the force by the largest harmonics of the slopes alone, as a sparse matrix between all unknowns (in the
+        order of the mask)."""
+        from scipy import sparse
+
         spectrum = np.concatenate([self.grid.spectrum(slopes[part]) for part in self._portions()])
         heights = np.abs(spectrum).max(axis=0)
         nu = self.harmonics

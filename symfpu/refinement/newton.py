@@ -12,8 +12,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy import linalg, sparse
-from scipy.sparse.linalg import LinearOperator, gmres
 
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.invariance import Floats, InvarianceEquation
@@ -91,6 +89,8 @@ class _Preconditioner:
     """The inverse of the system with divisors alone outside its block, and the largest couplings to and from it."""
 
     def __init__(self, system: _System) -> None:
+        from scipy import linalg, sparse
+
         mask, linear = system.mask, system.equation.linear.astype(float)
         weights = np.where(mask, np.abs(system.diagonal) / linear**2, np.inf)
         weights[system.equation.seed_rows, system.equation.seed_columns] = 0
@@ -118,6 +118,8 @@ class _Preconditioner:
         self.factors = linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
 
     def __call__(self, vector: Floats) -> Floats:
+        from scipy import linalg
+
         result = np.empty_like(vector)
         if self.whole:
             result[self.inside] = linalg.lu_solve(self.factors, vector[self.inside], check_finite=False)
@@ -146,7 +148,7 @@ def newton(
             best = (residual + violation, cosines, shifts)
         try:
             change, products = _solved(system)
-        except (linalg.LinAlgError, ValueError) as error:
+        except (np.linalg.LinAlgError, ValueError) as error:
             return failed(f"the matrix of Newton's method is singular ({error})")
         moved = np.zeros(cosines.shape)
         moved[equation.mask] = change[: -len(shifts)]
@@ -165,6 +167,8 @@ def newton(
 
 def _solved(system: _System) -> tuple[Floats, int]:
     """Newton's step and the number of products it took."""
+    from scipy.sparse.linalg import LinearOperator, gmres
+
     preconditioner, count = _Preconditioner(system), 0
     if preconditioner.whole:
         return preconditioner(system.right), 0
@@ -177,5 +181,5 @@ def _solved(system: _System) -> tuple[Floats, int]:
     operator = LinearOperator((len(system.right),) * 2, matvec=preconditioned, dtype=float)
     solution, info = gmres(operator, system.right, rtol=ACCURACY, atol=0.0, restart=KRYLOV, maxiter=RESTARTS)
     if info and float(np.linalg.norm(operator @ solution - system.right)) > 0.5 * float(np.linalg.norm(system.right)):
-        raise linalg.LinAlgError(f"{count} products leave more than half of the right-hand side")
+        raise np.linalg.LinAlgError(f"{count} products leave more than half of the right-hand side")
     return preconditioner(solution), count
