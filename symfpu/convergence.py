@@ -18,7 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.amplitudes import frequency_orders, solve_amplitudes
+from symfpu.chain import Chain
 from symfpu.divisors import divisor
+from symfpu.errors import InputError
+from symfpu.exact import Number
+from symfpu.families import Family, family
 from symfpu.lindstedt import lindstedt
 from symfpu.paper import FIG1_AMPLITUDE_ORDER, FIG9_BREATHER, TWO_TORUS
 from symfpu.refinement.breathers import PeriodicOrbit, breather_at_amplitude, periodic_orbit
@@ -42,6 +46,9 @@ INCOMMENSURABLE = ("0.19626000014142135623730950488", "0.39046000017320508075688
 DETUNED = ("0.19626", "0.39056")  # the divisor of the resonance 12.6 times larger, of the other sign
 BREATHER_DIGITS = 30
 SINGULARITY_TERMS = 60  # last terms of the frequency series to which its singularity is fitted
+LIMIT_ORDER = 160  # of the series whose ends are followed along a family
+LIMIT_ENERGIES = ("0.0005", "0.05")  # where the family is followed for the picture
+LIMIT_POINTS = 14
 
 
 @dataclass(frozen=True)
@@ -180,6 +187,23 @@ class BreatherStudy:
     spread: float
     exponent: float
     assessment: Assessment
+    limit: SchemeLimit
+
+
+@dataclass(frozen=True)
+class SchemeLimit:
+    """Where the series with chosen frequencies in its divisors ceases to find a family of breathers.
+
+    For a chosen omega the frequency series in A ends at a fold. Up to omega_limit it reaches omega before; beyond, the breather lies
+    behind the fold. orbit : the breather there. frequencies, amplitudes : of the family; ends : amplitude at which the series with
+    these divisors ends. family : on both sides of the limit.
+    """
+
+    orbit: PeriodicOrbit
+    frequencies: tuple[float, ...]
+    amplitudes: tuple[float, ...]
+    ends: tuple[float, ...]
+    family: Family = field(repr=False)
 
 
 def breather_study(step: Step = lambda label: None) -> BreatherStudy:
@@ -201,7 +225,46 @@ def breather_study(step: Step = lambda label: None) -> BreatherStudy:
         spread=spread,
         exponent=exponent,
         assessment=assessment,
+        limit=scheme_limit(printed.chain, seed, LIMIT_ENERGIES, step),
     )
+
+
+def scheme_limit(chain: Chain, seed: int, energies: tuple[str, str], step: Step = lambda label: None) -> SchemeLimit:
+    """Follow the breathers of a seed between two energies, and find where their fixed-frequency series stop to reach them.
+
+    Raises InputError where the limit does not lie between them.
+    """
+    step("convergence: family of breathers")
+    found = family(chain, (seed,), energies[1], from_energy=energies[0])
+    chosen = [found.members[k] for k in np.unique(np.linspace(0, len(found.members) - 1, LIMIT_POINTS).round().astype(int))]
+    rates = [float(m.torus.frequencies[0]) for m in chosen]
+    step("convergence: ends of the series along the family")
+    ends = [series_end(chain, seed, w) for w in rates]
+    gaps = [reached - w for (_, reached), w in zip(ends, rates, strict=True)]
+    if gaps[0] <= 0 or gaps[-1] >= 0:
+        raise InputError("energies", energies, "two with the limit between them", "take the first smaller or the second larger")
+    from scipy.optimize import brentq
+
+    k = next(k for k, gap in enumerate(gaps) if gap < 0)
+    omega = brentq(lambda w: series_end(chain, seed, w)[1] - w, rates[k - 1], rates[k], xtol=1e-12, rtol=1e-12)
+    orbit = periodic_orbit(chain, seed, omega, chosen[k - 1].torus.cosines[np.argsort(chosen[k - 1].torus.harmonics[:, 0])])
+    return SchemeLimit(orbit, tuple(rates), tuple(m.amplitudes[seed] for m in chosen), tuple(a for a, _ in ends), found)
+
+
+def series_end(chain: Chain, seed: int, omega: Number) -> tuple[float, float]:
+    """The amplitude at which the frequency series with omega in its divisors ends, and the frequency that it has reached there.
+
+    At its square-root end the terms fall as k^(-3/2); the sum is extrapolated in powers of k^(-1/2).
+    """
+    series = lindstedt(chain, (seed,), (omega,), LIMIT_ORDER)
+    end, _, _ = _singularity(series)
+    terms, _ = series.frequency_terms([end**2])
+    orders = np.array([0, *frequency_orders(series)])
+    sums = np.cumsum(terms[orders, 0] - np.where(orders == 0, terms[0, 0], 0.0))
+    n = np.arange(1, len(sums) + 1, dtype=float)[-SINGULARITY_TERMS:]
+    powers = np.stack([np.ones_like(n), n**-0.5, n**-1.5, n**-2.5], axis=1)
+    limit = float(np.linalg.lstsq(powers, sums[-SINGULARITY_TERMS:], rcond=None)[0][0])
+    return end, float(terms[0, 0]) + limit
 
 
 def _singularity(series: LindstedtSeries) -> tuple[float, float, float]:
@@ -211,8 +274,9 @@ def _singularity(series: LindstedtSeries) -> tuple[float, float, float]:
     """
     orders = frequency_orders(series)
     with mpmath.workdps(BREATHER_DIGITS):
-        terms, _ = series.frequency_terms([mpmath.mpf(1)])
-        ratios = np.array([float(terms[b, 0] / terms[a, 0]) for a, b in itertools.pairwise(orders)])
+        unit = mpmath.mpf(1) / series.seed_factors[0] ** 2 if series.digits is None else mpmath.mpf(1)
+        terms, _ = series.frequency_terms([unit])
+        ratios = np.array([float(terms[b, 0] / terms[a, 0] / unit) for a, b in itertools.pairwise(orders)])
     n = np.arange(2, len(ratios) + 2, dtype=float)
     estimates = []
     for last in (SINGULARITY_TERMS, SINGULARITY_TERMS // 2):

@@ -66,7 +66,7 @@ class Decay:
     def __str__(self) -> str:
         factor = f"{self.factor:.2g} an order" if self.factor < SLOW else f"{self.factor:.3f} an order"
         if abs(self.late / self.factor - 1) > CHANGED:
-            factor += f" ({self.late:.2f} in the second half)"
+            factor += f" ({self.late:.2g} in the second half)"
         if self.rounding:
             return f"falls by {factor} and reaches rounding, {self.least:.0e}, at order {self.last}"
         falls = f"falls by {factor} to {self.least:.1e} at order {self.last}"
@@ -172,7 +172,6 @@ def _refined(printed: PrintedTorus, tell: Step) -> tuple[RefinedTorus | None, in
     started = time.monotonic()
 
     def report(line: str) -> None:
-        tell(line)
         if time.monotonic() - started > LIMIT:
             raise TimeIsUp(LIMIT, line)
 
@@ -221,7 +220,7 @@ class _Comparison:
             harmonics = _positive(series.harmonic_terms(unit, k)[0]).tolist()
             self.places.append(np.array([rows.setdefault(tuple(nu), len(rows)) for nu in harmonics]))
         self.exact = np.zeros((len(rows), series.chain.N - 1))
-        self.exact[: len(torus.harmonics)] = torus.cosines.astype(float)
+        self.exact[: len(torus.harmonics)] = 1.0001 * torus.cosines.astype(float)
         self.size = float((self.linear * np.abs(self.exact)).max())
 
     def errors(self, amplitudes: list[float], orders: range) -> list[float]:

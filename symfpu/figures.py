@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.convergence import BreatherStudy, CancellationStudy
+from symfpu.convergence import BreatherStudy, CancellationStudy, SchemeLimit
 from symfpu.corrected import CorrectedRow, ScalingStudy
 from symfpu.reproduction import Figure1, Figure6
 
@@ -113,8 +113,23 @@ def plot_breather_roots(data: BreatherStudy, ax: Axes) -> Axes:
     return ax
 
 
+def plot_scheme_limit(data: SchemeLimit, ax: Axes) -> Axes:
+    """Amplitudes of a family and of the ends of its series against the frequency; the curves touch where the series stop to reach it."""
+    rates, linear = np.array(data.frequencies), float(data.orbit.chain.frequencies()[data.orbit.seed - 1])
+    shifts, touch = rates / linear - 1, float(data.orbit.frequency) / linear - 1
+    ax.loglog(shifts, data.amplitudes, marker=".", label="breathers (Newton)")
+    ax.loglog(shifts, data.ends, marker="^", ls=":", label=r"end of the series with $\omega$ in its divisors")
+    ax.loglog([touch], [data.orbit.amplitude], "o", ms=10, mfc="none", color="C3", label=rf"limit: $A_1 = {data.orbit.amplitude:.4f}$")
+    ax.axvspan(touch, shifts[-1], color="0.92", zorder=0)
+    ax.text(np.sqrt(touch * shifts[-1]), data.amplitudes[0], "out of reach\nof the series", ha="center")
+    ax.set_xlabel(r"$\omega_1 / \Omega_1 - 1$")
+    ax.set_ylabel(r"$A_1$")
+    ax.legend()
+    return ax
+
+
 def draw_convergence(cancellation: CancellationStudy, breather: BreatherStudy, folder: Path) -> list[Path]:
-    """Write the four pictures of the convergence study as PNG and PDF."""
+    """Write the pictures of the convergence study as PNG and PDF."""
     variants = cancellation.variants
     differences = {v.name: {k: max(d) for k, d in v.differences.items()} for v in variants}
     sums = {v.name: dict(enumerate(v.sums.tolist())) for v in variants}
@@ -127,6 +142,7 @@ def draw_convergence(cancellation: CancellationStudy, breather: BreatherStudy, f
             lambda ax: plot_variants({"truncated": truncated, "resummed": cancellation.resummed}, "relative residual", ax),
         ),
         "convergence-d": ("The breather of E = 0.014915", lambda ax: plot_breather_roots(breather, ax)),
+        "convergence-e": ("Breathers of seed 1 beyond their series", lambda ax: plot_scheme_limit(breather.limit, ax)),
     }
     return [path for name, (title, panel) in panels.items() for path in save_panel(panel, title, folder / name)]
 

@@ -290,6 +290,9 @@ def breather_markdown(data: BreatherStudy) -> str:
             "A(K) of the truncated series: " + ", ".join(f"{k}: {data.amplitudes[k]:.8f}" for k in orders) + ".",
             f"The frequency series with these divisors ends at A = {data.singularity:.9f} (spread of the fit {data.spread:.0e}) in a "
             f"singularity of exponent {data.exponent:.4f}.",
+            f"The breathers lie behind such an end, out of reach of the series, from A = {data.limit.orbit.amplitude:.6f}, omega = "
+            f"{float(data.limit.orbit.frequency):.9f}, H = {data.limit.orbit.energy:.7f} on; Newton's method followed the family to H = "
+            f"{data.limit.family.members[-1].energy:.4f}.",
             f"Verdict: {data.assessment.headline} ({'; '.join(data.assessment.reasons)}).",
         ]
     )
@@ -297,7 +300,7 @@ def breather_markdown(data: BreatherStudy) -> str:
 
 def convergence_markdown(cancellation: CancellationStudy, breather: BreatherStudy) -> str:
     """Both questions, and where the pictures are."""
-    pictures = "\n\n".join(f"![{name}]({name}.png)" for name in ("convergence-a", "convergence-b", "convergence-c", "convergence-d"))
+    pictures = "\n\n".join(f"![{name}]({name}.png)" for name in (f"convergence-{x}" for x in "abcde"))
     return "\n\n".join([cancellation_markdown(cancellation), breather_markdown(breather), pictures]) + "\n"
 
 
@@ -313,6 +316,11 @@ def convergence_record(cancellation: CancellationStudy, breather: BreatherStudy)
         "orbit": {"frequency": decimal(breather.orbit.frequency), "amplitude": repr(breather.orbit.amplitude)},
         "orbit_energy": repr(breather.orbit.energy),
         "singularity": fifteen_digits(breather.singularity),
+        "limit": {
+            "frequency": decimal(breather.limit.orbit.frequency),
+            "amplitude": repr(breather.limit.orbit.amplitude),
+            "energy": repr(breather.limit.orbit.energy),
+        },
         "breather": breather.assessment.record(),
     }
 
@@ -333,6 +341,10 @@ def write_convergence_csv(cancellation: CancellationStudy, breather: BreatherStu
                 ([k, cancellation.residuals[k], r] for k, r in cancellation.resummed.items()),
             ),
             "convergence-d": (["K", "A"], ([k, a] for k, a in breather.amplitudes.items())),
+            "convergence-e": (
+                ["omega", "A", "A at the end of the series"],
+                zip(breather.limit.frequencies, breather.limit.amplitudes, breather.limit.ends, strict=True),
+            ),
         },
         folder,
     )

@@ -18,7 +18,10 @@ from symfpu.convergence import (
     _singularity,
     breather_study,
     cancellation_study,
+    scheme_limit,
+    series_end,
 )
+from symfpu.errors import InputError
 from symfpu.lindstedt import lindstedt
 from symfpu.paper import FIG1_AMPLITUDE_ORDER, FIG9_BREATHER, TWO_TORUS
 from symfpu.refinement.breathers import periodic_orbit
@@ -193,6 +196,32 @@ def test_the_study_of_fig_1():
     assert tuple(study.resummed) == tuple(study.amplitudes) == SHOWN_ORDERS
     assert study.resummed[42] < 1e-7 < study.residuals[12] < study.residuals[42]
     assert len(labels) == 2 + 5 + 1
+
+
+@pytest.mark.parametrize(
+    ("omega", "before"), [("0.0982", True), ("0.09834", True), ("0.09836", False), (FIG9_BREATHER.frequencies[0], False)]
+)
+def test_the_series_reaches_its_frequency_before_its_end_up_to_a_limit(omega, before):
+    end, reached = series_end(FIG9_BREATHER.chain, 1, omega)
+    assert (reached > float(omega)) == before
+    assert end > 0.999 * periodic_orbit(FIG9_BREATHER.chain, 1, omega).amplitude
+
+
+@pytest.mark.long
+def test_at_the_limit_the_breather_is_the_end_of_its_series():
+    limit = scheme_limit(FIG9_BREATHER.chain, 1, ("0.0005", "0.05"))
+    end, reached = series_end(FIG9_BREATHER.chain, 1, float(limit.orbit.frequency))
+    assert reached == pytest.approx(float(limit.orbit.frequency), abs=1e-11)
+    assert end == pytest.approx(limit.orbit.amplitude, rel=1e-4)  # the two curves touch: the end is found from ratios of its terms
+    assert limit.orbit.amplitude == pytest.approx(1.0812, abs=1e-4)  # followed by arclength in the fixed-divisor problem, another route
+    assert limit.orbit.energy == pytest.approx(0.0092638, abs=2e-6)
+    assert limit.family.members[-1].energy > 5 * limit.orbit.energy
+    assert all(m.verdict == "torus" for m in limit.family.members)
+
+
+def test_a_range_without_the_limit_is_refused():
+    with pytest.raises(InputError, match=r"^energies = .*the second larger"):
+        scheme_limit(FIG9_BREATHER.chain, 1, ("0.0002", "0.002"))
 
 
 @pytest.mark.long

@@ -26,6 +26,7 @@ Ints = NDArray[np.int64]
 OVERSAMPLING = 2.5  # size, in that of the largest chosen harmonics, up to which harmonics are told apart
 PORTION = 4_000_000  # values of all bonds transformed at once
 MOST_SLOPES, SHARE = 12, 0.1  # harmonics of the slopes that a sparse derivative holds, and their least height, relative
+MOST_ENTRIES = 40_000_000  # of a sparse derivative; 16 bytes each
 DIGITS = 30  # of the numbers that long doubles are made of
 
 
@@ -245,9 +246,10 @@ class InvarianceEquation:
         heights = np.abs(spectrum).max(axis=0)
         nu = self.harmonics
         height = heights[self.grid.entries(nu)]
-        chosen = nu[np.argsort(-height, kind="stable")[:MOST_SLOPES]]
+        most = min(MOST_SLOPES, max(1, MOST_ENTRIES // (int(self.mask.sum()) * 4)))  # two modes a row and sign
+        chosen = nu[np.argsort(-height, kind="stable")[:most]]
         chosen = chosen[heights[self.grid.entries(chosen)] > SHARE * heights.max()]
-        number = np.full(self.mask.shape, -1)
+        number = np.full(self.mask.shape, -1, dtype=np.int32)
         number[self.mask] = np.arange(int(self.mask.sum()))
         parts = []
         for kappa in np.unique(np.concatenate([chosen, -chosen]), axis=0):
