@@ -172,6 +172,7 @@ def _refined(printed: PrintedTorus, tell: Step) -> tuple[RefinedTorus | None, in
     started = time.monotonic()
 
     def report(line: str) -> None:
+        tell(line)
         if time.monotonic() - started > LIMIT:
             raise TimeIsUp(LIMIT, line)
 
@@ -220,7 +221,7 @@ class _Comparison:
             harmonics = _positive(series.harmonic_terms(unit, k)[0]).tolist()
             self.places.append(np.array([rows.setdefault(tuple(nu), len(rows)) for nu in harmonics]))
         self.exact = np.zeros((len(rows), series.chain.N - 1))
-        self.exact[: len(torus.harmonics)] = 1.0001 * torus.cosines.astype(float)
+        self.exact[: len(torus.harmonics)] = torus.cosines.astype(float)
         self.size = float((self.linear * np.abs(self.exact)).max())
 
     def errors(self, amplitudes: list[float], orders: range) -> list[float]:

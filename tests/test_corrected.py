@@ -91,6 +91,15 @@ def test_errors_are_those_of_the_truncated_torus(pair):
     assert 1.0 <= apart / size / pair.errors.given[8] < 20  # a sum of coefficients in the place of the largest
 
 
+def test_errors_do_not_depend_on_the_sign_of_a_harmonic(pair):
+    """One of each pair +-nu is listed, whichever."""
+    series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies, 4)
+    signs = np.where(np.arange(len(pair.torus.harmonics)) % 2, -1, 1)[:, None]
+    turned = series_errors(series, replace(pair.torus, harmonics=signs * pair.torus.harmonics))
+    assert turned == series_errors(series, pair.torus)
+    assert turned.given[4] == pytest.approx(pair.errors.given[4], rel=CONVERGED_DIGITS)
+
+
 def test_an_exact_series_has_no_error():
     """Fig. 8 at order 8: the torus is the series, all coefficients to rounding."""
     row = corrected_row(replace(BY_LABEL["Fig. 8"], order=8))
@@ -232,6 +241,7 @@ def test_the_page_has_printed_and_exact_numbers(two_rows, study):
     assert "- Fig. 5b: not refined: more than 5 s." in page
     assert f"- Fig. 7: {row.verdict}." in page
     assert f"| Fig. 7 | 2 | {study.rates[2][0]:.3f} | 3 | {study.rates[2][1]:.3f} | 2 |" in page
+    assert f"| Fig. 7 | 3 | {study.rates[3][0]:.3f} | 4 | {study.rates[3][1]:.3f} | 2 |" in page
     assert f"| Fig. 7 | 1 | {study.rates[1][0]:.3f} | 2 |  |  |" in page
     assert all(page.count(f"![corrected-{c}](corrected-{c}.png)") == 1 for c in "abc")
     assert "nan" not in page
@@ -259,6 +269,8 @@ def test_data_and_pictures_are_written(two_rows, study, tmp_path):
     header, *lines = csv.reader(paths[0].read_text().splitlines())
     assert header == ["K", "Fig. 7"]
     assert {int(K): float(e) for K, e in lines} == two_rows[0].errors.solved
+    _, *lines = csv.reader(paths[1].read_text().splitlines())
+    assert {int(K): float(e) for K, e in lines} == two_rows[0].errors.given
     header, *lines = csv.reader(paths[2].read_text().splitlines())
     assert header == ["scale", *(f"given_{K}" for K in (1, 2, 3, 4)), *(f"solved_{K}" for K in (2, 3, 4))]
     assert [float(line[1]) for line in lines] == list(study.given[1])
@@ -275,8 +287,8 @@ def test_the_series_tend_to_the_exact_tori(label):
     assert row.digits >= 10
     solved, given = row.decays["solved"], row.decays["given"]
     assert given.rounding or given.last >= 0.9 * row.printed.order - 1
-    assert solved.least < 1e-5
-    assert min(row.errors.amplitudes.values()) < 1e-5
+    assert solved.least < 1e-4
+    assert min(row.errors.amplitudes.values()) < 1e-4
 
 
 @pytest.mark.long
