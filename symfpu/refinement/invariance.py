@@ -257,7 +257,7 @@ class InvarianceEquation:
             at, to = np.nonzero(np.abs(coupling) > 1e-3 * np.abs(coupling).max())
             rows, columns = self._shifted(kappa)
             still_row, still_column = (nu[rows] == 0).all(axis=1), (nu[columns] == 0).all(axis=1)
-            weight = np.where(still_row, 0.5, np.where(still_column, 2.0, 1.0))
+            weight = np.where(still_row, 0.5, 1.0) * np.where(still_column, 2.0, 1.0)
             values = weight[:, None] * coupling[at, to]
             i, j = number[rows[:, None], at], number[columns[:, None], to]
             inside = (i >= 0) & (j >= 0)

@@ -130,12 +130,14 @@ class _Preconditioner:
         return result
 
 
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")  # iterates that run away are refused by their size
 def newton(
     equation: InvarianceEquation, conditions: Sequence[Condition], cosines: Floats, shifts: Floats, report: Report = lambda _: None
 ) -> Iterate:
     """The torus near a guess that meets the conditions; an iterate with `failure` where there is none, the best one met."""
     steps: list[NewtonStep] = []
-    size, best = float(np.abs(cosines).max()), (np.inf, cosines, shifts)
+    best = (np.inf, cosines, shifts)
+    sizes = _sizes(equation, cosines)
 
     def failed(reason: str) -> Iterate:
         return Iterate(best[1], best[2], tuple(steps), reason)
@@ -144,6 +146,8 @@ def newton(
         system = _System(equation, conditions, cosines, shifts)
         residual = float(np.abs(system.imbalance).max()) / system.acceleration
         violation = float(np.abs(system.values).max())
+        if not np.isfinite(residual + violation):
+            return failed("the equations or conditions leave the range of numbers")
         if residual + violation < best[0]:
             best = (residual + violation, cosines, shifts)
         try:
@@ -156,13 +160,24 @@ def newton(
         relative = float(np.abs(moved).max() / np.abs(cosines).max())
         steps.append(NewtonStep(residual, relative, violation, products))
         report(f"step {len(steps)}: residual {residual:.1e}, change {relative:.1e}")
-        if not size / GROWTH < float(np.abs(cosines).max()) < size * GROWTH:
-            return failed(f"the largest coefficient goes from {size:.3g} to {float(np.abs(cosines).max()):.3g}")
+        for name, old, new in zip(_names(equation), sizes, _sizes(equation, cosines), strict=True):
+            if not old / GROWTH < new < old * GROWTH:
+                return failed(f"{name} goes from {old:.3g} to {new:.3g}")
         before = steps[-2].change if len(steps) > 1 else 1.0
         to_come = relative * max(ACCURACY, relative / before)
         if to_come < STEP or before / 2 < relative < ROUNDING_STEP:
             return Iterate(cosines, shifts, tuple(steps))
     return failed(f"no convergence in {ITERATIONS} steps")
+
+
+def _sizes(equation: InvarianceEquation, cosines: Floats) -> list[float]:
+    """What must not run away or vanish: the largest coefficient, and the amplitude of every seed."""
+    amplitudes = cosines[equation.seed_rows, equation.seed_columns]
+    return [float(np.abs(cosines).max()), *(float(abs(a)) for a in amplitudes)]
+
+
+def _names(equation: InvarianceEquation) -> list[str]:
+    return ["the largest coefficient", *(f"A_{q}" for q in equation.seeds)]
 
 
 def _solved(system: _System) -> tuple[Floats, int]:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from numbers import Real
 from typing import Any
 
 import mpmath
@@ -27,6 +28,7 @@ LARGEST_GRID = 60_000_000  # values of half of the bonds; arrays of 480 MB
 MOST_HARMONICS = 40_000
 ROUNDS = 8  # choices of harmonics
 SHOWN_DIVISORS = 10
+LEAST = Fraction(1, 10**40)  # of amplitudes and coefficients
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,7 @@ def refine(torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, report: Report
     >>> breather.residual() < 1e-13
     True
     """
+    _require_torus(torus)
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
     refined = refined_torus(torus, conditions, tolerance=tolerance, report=report)
     return replace(refined, frequencies=tuple(torus.frequencies))
@@ -107,11 +110,8 @@ def refine_at_amplitudes(
     torus: QuasiPeriodic, amplitudes: Mapping[int, Number], *, tolerance: float = TOLERANCE, report: Report = lambda _: None
 ) -> RefinedTorus:
     """The torus with the given amplitude of every seed; its frequencies are found. Arguments and errors as those of `refine`."""
-    if set(amplitudes) != set(torus.seeds):
-        raise InputError("amplitudes", dict(amplitudes), f"a number for each of the seeds {torus.seeds}", "complete it")
-    values = [long(exact(amplitudes[q], f"amplitudes, A_{q}")) for q in torus.seeds]
-    if not all(values):
-        raise InputError("amplitudes", dict(amplitudes), "numbers that are not 0", "leave out a seed that is at rest")
+    _require_torus(torus)
+    values = [long(a) for a in _by_seed("amplitudes", amplitudes, torus, signed=True).values()]
     return refined_torus(torus, [Amplitude(i, a) for i, a in enumerate(values)], tolerance=tolerance, report=report)
 
 
@@ -130,17 +130,39 @@ def refine_at_energy(
     harmonic : False for the total energy H, True for the harmonic energy sum E_q, both at the angles zero. The ratio is given by
     seed; left out, the amplitudes keep the ratio they have in `torus`. Other arguments and errors as those of `refine`.
     """
+    _require_torus(torus)
     value = exact(energy, "energy")
     if value <= 0:
         raise InputError("energy", energy, "a positive number", "take one near the energy of the torus")
+    if not isinstance(harmonic, (bool, np.bool_)):
+        raise InputError("harmonic", harmonic, "True for sum E_q, False for H", "say which energy is meant")
     if amplitude_ratio is not None and energy_ratio is not None:
-        raise InputError("energy_ratio", dict(energy_ratio), "only one of amplitude_ratio and energy_ratio", "leave one out")
-    ratio = amplitude_ratio or energy_ratio or dict(zip(torus.seeds, _seed_amplitudes(torus), strict=True))
-    if set(ratio) != set(torus.seeds) or not all(exact(x, "ratio") for x in ratio.values()):
-        raise InputError("ratio", dict(ratio), f"a number that is not 0 for each of the seeds {torus.seeds}", "complete it")
-    numbers = {q: float(exact(x, "ratio")) for q, x in ratio.items()}
-    conditions = [Energy(long(value), harmonic), *ratio_conditions(torus.seeds, numbers, energies=energy_ratio is not None)]
+        raise InputError("energy_ratio", energy_ratio, "only one of amplitude_ratio and energy_ratio", "leave one out")
+    if energy_ratio is not None:
+        ratio = _by_seed("energy_ratio", energy_ratio, torus, signed=False)
+    elif amplitude_ratio is not None:
+        ratio = _by_seed("amplitude_ratio", amplitude_ratio, torus, signed=True)
+    else:
+        ratio = {q: exact(a, "amplitude") for q, a in zip(torus.seeds, _seed_amplitudes(torus), strict=True)}
+    numbers = {q: float(x) for q, x in ratio.items()}
+    conditions = [Energy(long(value), bool(harmonic)), *ratio_conditions(torus.seeds, numbers, energies=energy_ratio is not None)]
     return refined_torus(torus, conditions, tolerance=tolerance, report=report)
+
+
+def _require_torus(torus: object) -> None:
+    if not isinstance(torus, QuasiPeriodic):
+        raise InputError("torus", type(torus).__name__, "a torus", "pass what solve_amplitudes, resum or refine gave")
+
+
+def _by_seed(argument: str, values: object, torus: QuasiPeriodic, *, signed: bool) -> dict[int, Fraction]:
+    """A number for each seed, not 0 and not beyond doubles; positive unless signed."""
+    allowed = f"a {'number that is not 0' if signed else 'positive number'} for each of the seeds {torus.seeds}, by seed"
+    if not isinstance(values, Mapping) or set(values) != set(torus.seeds):
+        raise InputError(argument, values, allowed, "write it as {seed: number} and name every seed")
+    numbers = {q: exact(values[q], f"{argument}, {q}") for q in torus.seeds}
+    if not all(LEAST < (abs(x) if signed else x) < 1 / LEAST for x in numbers.values()):
+        raise InputError(argument, dict(values), f"{allowed}, of moderate size", "leave out a seed that is at rest")
+    return numbers
 
 
 def _seed_amplitudes(torus: QuasiPeriodic) -> list[float]:
@@ -153,10 +175,16 @@ def refined_torus(
     torus: QuasiPeriodic, conditions: Sequence[Condition], *, tolerance: float = TOLERANCE, report: Report = lambda _: None
 ) -> RefinedTorus:
     """The torus near a guess that meets as many conditions as it has angles, with as many harmonics as the tolerance needs."""
-    if not 0 < tolerance < 1:
+    _require_torus(torus)
+    if not isinstance(tolerance, Real) or not 0 < tolerance < 1:
         raise InputError("tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more")
     chain, seeds = torus.chain, torus.seeds
-    known = _rows(torus.harmonics, torus.cosines.astype(float))
+    with np.errstate(over="ignore"):
+        coefficients = torus.cosines.astype(float)
+    largest = float(np.abs(coefficients).max(initial=0))
+    if not LEAST < largest < 1 / LEAST:  # also where it is not a number
+        raise InputError("torus", f"coefficients up to {largest:.3g}", "coefficients not all 0 and of moderate size", "take another guess")
+    known = _rows(torus.harmonics, coefficients)
     shifts = shifts_of(torus)
     before = np.inf
     for attempt in range(ROUNDS):
