@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ Progress = Callable[[str, float], None]
 BEGINNING = "1/1000"  # of the energy asked for, where a family begins by default
 SECOND = 1.1  # ratio of the amplitudes of the second member and the first
 MEMBERS = 200
+SMALLEST, LARGEST = Fraction(1, 10**300), 10**300  # energies whose doubles are neither 0 nor infinite
 RECORD = "family.json"
 APPENDIX_A = "appendix-a"
 METHODS = ("arclength", APPENDIX_A)
@@ -49,7 +51,8 @@ class Family:
     """Tori of growing energy with one ratio of amplitudes or mode energies, and what happens on the way.
 
     Made by `family`. members : in order of the way. events : folds, resonances and changes of stability, between members.
-    ending : why the family was not followed further. harmonic : whether its goal was a harmonic energy.
+    ending : why the family was not followed further. harmonic : whether its goal was a harmonic energy. energy_ratio : of the averaged
+    mode energies by seed, where it is these that keep their ratio.
     """
 
     chain: Chain
@@ -58,21 +61,23 @@ class Family:
     events: tuple[Event, ...]
     ending: str
     harmonic: bool = False
+    energy_ratio: Mapping[int, float] | None = field(repr=False, default=None)
 
     def __repr__(self) -> str:
         energies = [m.energy for m in self.members]
         doubtful = sum(m.verdict != "torus" for m in self.members)
         doubts = f", {doubtful} of them doubtful" if doubtful else ""
         kinds = {kind: sum(e.kind == kind for e in self.events) for kind in ("fold", "resonance", "stability")}
-        events = ", ".join(f"{n} {kind}s" if kind != "stability" else f"{n} changes of stability" for kind, n in kinds.items() if n)
+        events = ", ".join(_counted(n, kind) for kind, n in kinds.items() if n)
         return (
             f"Family({repr(self.chain)[6:-1]}, seeds={','.join(map(str, self.seeds))}, {len(self.members)} members{doubts}, "
             f"H = {min(energies):.6g} .. {max(energies):.6g}, {events or 'no events'}; it {self.ending})"
         )
 
     def at_energy(self, energy: Number, *, harmonic: bool) -> RefinedTorus:
-        """The torus of this energy, H or with `harmonic` sum E_q, from the nearest member; its amplitudes keep the family's ratio.
+        """The torus of this energy, H or with `harmonic` sum E_q, from the nearest member; it keeps the ratio that the family keeps.
 
+        A family by Appendix A keeps none: there the amplitudes have the ratio of the nearest member.
         Raises NotInFamily beyond the range of the members, NoTorus as `refine_at_energy` does.
         """
         value = float(exact(energy, "energy"))
@@ -80,7 +85,13 @@ class Family:
         if not known.min() <= value <= known.max():
             raise NotInFamily(value, (float(known.min()), float(known.max())), self.ending)
         nearest = self.members[int(np.argmin(np.abs(np.log(known / value))))]
-        return refine_at_energy(nearest.torus, energy, harmonic=harmonic)
+        return refine_at_energy(nearest.torus, energy, harmonic=harmonic, energy_ratio=self.energy_ratio)
+
+
+def _counted(n: int, kind: str) -> str:
+    if kind == "stability":
+        return f"{n} change{'s' * (n > 1)} of stability"
+    return f"{n} {kind}{'s' * (n > 1)}"
 
 
 def family(
@@ -107,9 +118,11 @@ def family(
 
     harmonic : whether energies are sum E_q at the angles zero instead of H. amplitude_ratio or energy_ratio (of mode energies
     averaged over the torus) : by seed, default equal mode energies. from_energy : where it begins, by the linear estimate; default a
-    thousandth of the goal. members : the most. multipliers : of breathers, with changes of stability. folder : every member is kept
-    there as a file at once; an interrupted family goes on from it, with other goals too. progress : called as (label, fraction done).
+    thousandth of the goal, a tenth with 'appendix-a', or where the family in the folder began. members : the most. multipliers : of
+    breathers, with changes of stability. tolerance : as for `refine`; both only with 'arclength'. folder : every member is kept there
+    as a file at once; an interrupted family goes on from it, with other goals too. progress : called as (label, fraction done).
 
+    The last member is the first one beyond the goal; `Family.at_energy` gives the torus at it.
     A family that cannot be followed to its goal is returned as far as it went; `ending` says why it ended.
     Raises InputError for arguments out of range and for a folder that holds another family, NoTorus if there is no first member.
     """
@@ -117,8 +130,11 @@ def family(
         raise InputError("method", method, f"one of {', '.join(METHODS)}", "name one of these")
     if (method == APPENDIX_A) != (order is not None):
         raise InputError("order", order, f"an order with method = {APPENDIX_A!r}, none with others", "give both or neither")
+    if order is not None and multipliers:
+        raise InputError("multipliers", multipliers, f"False with method = {APPENDIX_A!r}", "its members are series: leave it out")
     plan = _plan(chain, seeds, to_energy, harmonic, amplitude_ratio, energy_ratio, from_energy, members, multipliers, tolerance, order)
     kept = _Kept(plan, None if folder is None else Path(folder))
+    plan = kept.plan
     tell = progress or (lambda label, done: None)
 
     def report(line: str) -> None:
@@ -128,7 +144,8 @@ def family(
         return _by_appendix_a(plan, order, kept, tell)
     while len(kept.members) < min(2, plan.most):
         amplitudes = {q: a * SECOND ** len(kept.members) for q, a in plan.start.items()}
-        kept.add(member(first_torus(chain, amplitudes, tolerance=tolerance, report=report), multipliers=multipliers), [])
+        torus = first_torus(chain, amplitudes, energy_ratio=plan.ratio if plan.energies else None, tolerance=tolerance, report=report)
+        kept.add(member(torus, multipliers=multipliers), [])
     ending = "reached the energy asked for"
 
     def finished(last: Member) -> bool:
@@ -146,7 +163,7 @@ def family(
             ending = f"was left after {len(kept.members)} members, the most asked for"
     except NoTorus as end:
         ending = f"ended: {end.reason}, with steps along the way down to {way.step:.1g}"
-    return Family(chain, plan.seeds, tuple(kept.members), tuple(kept.events), ending, harmonic)
+    return Family(chain, plan.seeds, tuple(kept.members), tuple(kept.events), ending, harmonic, plan.ratio if plan.energies else None)
 
 
 def _by_appendix_a(plan: _Plan, order: int, kept: _Kept, tell: Progress) -> Family:
@@ -157,6 +174,11 @@ def _by_appendix_a(plan: _Plan, order: int, kept: _Kept, tell: Progress) -> Fami
     after = (known[-2], known[-1]) if len(known) > 1 else None
     del kept.members[len(known) if after else 0 :]
     ending = "reached the energy asked for"
+    if plan.done(kept.members) >= 1:
+        return Family(plan.chain, plan.seeds, tuple(kept.members), (), ending, plan.harmonic)
+    if len(kept.members) >= plan.most:
+        ending = f"was left after {len(kept.members)} members, the most asked for"
+        return Family(plan.chain, plan.seeds, tuple(kept.members), (), ending, plan.harmonic)
     try:
         for found in appendix_a_members(plan.chain, plan.seeds, plan.start, order, increment=increment, after=after):
             torus = found.torus
@@ -177,7 +199,7 @@ def _by_appendix_a(plan: _Plan, order: int, kept: _Kept, tell: Progress) -> Fami
 
 @dataclass(frozen=True)
 class _Plan:
-    """Checked arguments. start : amplitudes of the first member."""
+    """Checked arguments. start : amplitudes of the first member; chosen : by from_energy, not from the goal."""
 
     chain: Chain
     seeds: tuple[int, ...]
@@ -190,6 +212,7 @@ class _Plan:
     multipliers: bool
     tolerance: float
     order: int | None
+    chosen: bool
 
     def done(self, members: list[Member]) -> float:
         """How far towards the goal, by the logarithm of the energy."""
@@ -198,7 +221,9 @@ class _Plan:
         energy = members[-1].harmonic_energy if self.harmonic else members[-1].energy
         linear = self.chain.frequencies()
         first = sum((float(linear[q - 1]) * a) ** 2 / 2 for q, a in self.start.items())
-        return math.log(energy / first) / math.log(self.goal / first) if energy > 0 else 0.0
+        if energy >= self.goal:
+            return 1.0
+        return math.log(energy / first) / math.log(self.goal / first) if 0 < first < self.goal and energy > 0 else 0.0
 
     def described(self) -> Json:
         """What two runs of one family have in common."""
@@ -234,22 +259,39 @@ def _plan(
     first = (
         goal * exact(BEGINNING if order is None else APPENDIX_BEGINNING, "") if from_energy is None else exact(from_energy, "from_energy")
     )
-    if goal <= 0 or not 0 < first < goal:
-        argument, value = ("to_energy", to_energy) if goal <= 0 else ("from_energy", from_energy)
-        raise InputError(argument, value, "0 < from_energy < to_energy", "choose energies in this order")
+    if not 0 < goal < LARGEST or not SMALLEST < first < goal:
+        argument, value = ("from_energy", from_energy) if from_energy is not None and 0 < goal < LARGEST else ("to_energy", to_energy)
+        raise InputError(argument, value, "0 < from_energy < to_energy, in the range of doubles", "choose energies in this order")
     if amplitude_ratio is not None and energy_ratio is not None:
         raise InputError("energy_ratio", dict(energy_ratio), "only one of amplitude_ratio and energy_ratio", "leave one out")
     if multipliers and len(chosen) > 1:
         raise InputError("multipliers", multipliers, "False for more than one seed", "only periodic orbits have multipliers")
-    given = amplitude_ratio or energy_ratio or dict.fromkeys(chosen, 1)
-    if set(given) != set(chosen) or not all(exact(x, "ratio") > 0 for x in given.values()):
-        raise InputError("ratio", dict(given), f"a positive number for each of the seeds {chosen}", "complete it")
-    ratio, linear = {q: float(exact(given[q], "ratio")) for q in chosen}, chain.frequencies()
+    name = "energy_ratio" if amplitude_ratio is None else "amplitude_ratio"
+    given = next((x for x in (amplitude_ratio, energy_ratio) if x is not None), dict.fromkeys(chosen, 1))
+    if not hasattr(given, "values") or set(given) != set(chosen) or not all(exact(x, name) > 0 for x in given.values()):
+        raise InputError(name, given, f"a positive number for each of the seeds {chosen}", "complete it")
+    ratio, linear = {q: float(exact(given[q], name)) for q in chosen}, chain.frequencies()
     weights = {q: x if amplitude_ratio is not None else math.sqrt(x) / float(linear[q - 1]) for q, x in ratio.items()}
     energy = sum((float(linear[q - 1]) * w) ** 2 / 2 for q, w in weights.items())
     start = {q: w * math.sqrt(float(first) / energy) for q, w in weights.items()}
-    most = integer(members, "members", 1)
-    return _Plan(chain, chosen, float(goal), harmonic, ratio, amplitude_ratio is None, start, most, multipliers, tolerance, order)
+    return _Plan(
+        chain=chain,
+        seeds=chosen,
+        goal=float(goal),
+        harmonic=harmonic,
+        ratio=ratio,
+        energies=amplitude_ratio is None,
+        start=start,
+        most=integer(members, "members", 1),
+        multipliers=multipliers,
+        tolerance=tolerance,
+        order=order,
+        chosen=from_energy is not None,
+    )
+
+
+def _seeds(described: Json) -> tuple[int, ...]:
+    return tuple(int(q) for q in described["seeds"])
 
 
 class _Kept:
@@ -274,20 +316,35 @@ class _Kept:
             record = json.loads((folder / RECORD).read_text())
             plan, events, count = record["plan"], record["events"], int(record["members"])
             self.step, self.largest = float(record["step"]), float(record["largest"])
-        except (ValueError, KeyError, TypeError) as error:
+            start = {q: float(plan["start"][str(q)]) for q in self.plan.seeds} if _seeds(plan) == self.plan.seeds else self.plan.start
+            self.events = [Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in events]
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise InputError("folder", str(folder), "a family that symfpu wrote", f"{RECORD} is damaged; choose another folder") from error
+        if not self.plan.chosen:
+            self.plan = replace(self.plan, start=start)
         different = [key for key, value in self.plan.described().items() if plan.get(key) != value]
         if different:
             raise InputError("folder", str(folder), f"the same family (its {different[0]} differs)", "choose another folder")
-        self.events = [Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in events]
         for k in range(count):
-            torus = load(self._file(k)).torus
+            torus = self._torus(k)
             if isinstance(torus, RefinedTorus):
                 self.members.append(member(torus, multipliers=self.plan.multipliers))
-            elif torus is not None:
+            else:
                 amplitudes, energy = {q: float(a) for q, a in torus.amplitudes.items()}, float(torus.energy())
                 harmonic = float(torus.harmonic_energies().sum())
                 self.members.append(Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings))
+
+    def _torus(self, index: int) -> RefinedTorus | QTorus:
+        """A member that the record counts; InputError where its file is not there, BundleError where it is damaged."""
+        try:
+            torus = load(self._file(index)).torus
+        except FileNotFoundError as error:
+            allowed, advice = f"all {index + 1} members or more", f"restore {self._file(index).name}, or choose another folder"
+            raise InputError("folder", str(self.folder), allowed, advice) from error
+        if torus is None or (torus.chain, tuple(torus.seeds)) != (self.plan.chain, self.plan.seeds):
+            advice = f"{self._file(index).name} is another torus; choose another folder"
+            raise InputError("folder", str(self.folder), "members of one family", advice)
+        return torus
 
     def _file(self, index: int) -> Path:
         assert self.folder is not None

@@ -13,19 +13,24 @@ from symfpu.figures import save_panel
 from symfpu.refinement.floquet import ELLIPTIC, TRIVIAL
 
 Axes = Any
-SPECTRA = 6
+FOLDED = 0.01  # of the smallest of the largest shifts, below which a scale with folds is linear
+ROUNDING = 1e-15  # of a relative shift in doubles
+SPECTRA = 5  # as many as the style has colours
 
 
 def plot_shifts(found: Family, ax: Axes) -> Axes:
-    """H against omega_q - Omega_q of every seed, folds marked."""
+    """H against omega_q / Omega_q - 1 of every seed, in powers of ten on both sides of zero; folds as lines."""
     energies = np.array([m.energy for m in found.members])
-    linear = found.chain.frequencies()
+    linear, smallest = found.chain.frequencies(), np.inf
     for i, q in enumerate(found.seeds):
         shifts = np.array([float(m.torus.frequencies[i]) for m in found.members]) - linear[q - 1]
         ax.plot(shifts / linear[q - 1], energies, marker=".", label=rf"$q = {q}$")
-    for event in found.events:
-        if event.kind == "fold":
-            ax.axhline(event.energy, color="0.7", lw=0.8, zorder=0)
+        smallest = min(smallest, float(np.abs(shifts / linear[q - 1]).max()))
+    folds = [event.energy for event in found.events if event.kind == "fold"]
+    for i, energy in enumerate(folds):
+        ax.axhline(energy, color="0.7", lw=0.8, zorder=0, label=None if i else "fold")
+    if folds:
+        ax.set_xscale("symlog", linthresh=max(FOLDED * smallest, ROUNDING))
     ax.set_yscale("log")
     ax.set_xlabel(r"$\omega_q / \Omega_q - 1$")
     ax.set_ylabel(r"$H$")
@@ -38,11 +43,10 @@ def plot_amplitudes(found: Family, ax: Axes) -> Axes:
     energies = [m.energy for m in found.members]
     for q in found.seeds:
         ax.loglog(energies, [abs(m.amplitudes[q]) for m in found.members], marker=".", label=rf"$A_{{{q}}}$")
-    for event in found.events:
-        if event.kind == "resonance":
-            ax.axvline(event.energy, ymax=0.04, color="C3", lw=1)
-        elif event.kind == "stability":
-            ax.axvline(event.energy, color="0.5", ls=":", lw=1)
+    for i, event in enumerate(e for e in found.events if e.kind == "resonance"):
+        ax.axvline(event.energy, ymax=0.04, color="C3", lw=1, label=None if i else "resonance")
+    for i, event in enumerate(e for e in found.events if e.kind == "stability"):
+        ax.axvline(event.energy, color="0.5", ls=":", lw=1, label=None if i else "change of stability")
     ax.set_xlabel(r"$H$")
     ax.set_ylabel(r"$A_q$")
     ax.legend()
@@ -64,6 +68,7 @@ def plot_multipliers(found: Family, ax: Axes) -> Axes:
     if off:
         right = ax.twinx()
         right.plot(*zip(*off, strict=True), "x", color="C3", ms=4)
+        right.set_ylim(bottom=1)
         right.set_ylabel(r"$|\lambda|$ off the circle", color="C3")
     return ax
 
@@ -85,12 +90,12 @@ def draw_family(found: Family, folder: Path, stem: str = "family") -> list[Path]
     """The panels as PNG and PDF, multipliers only where they are known; returns the paths."""
     panels = {
         "shifts": ("Energy against relative frequency shift", plot_shifts),
-        "amplitudes": ("Amplitudes; ticks: resonances", plot_amplitudes),
+        "amplitudes": ("Amplitudes", plot_amplitudes),
         "spectra": ("Average spectra", plot_spectra),
     }
     if any(m.multipliers is not None for m in found.members):
         panels["multipliers"] = ("Floquet multipliers", plot_multipliers)
-    name = f"{repr(found.chain)[6:-1]}, seeds {', '.join(map(str, found.seeds))}"
+    name = f"{repr(found.chain)[6:-1]}, {'seed' if len(found.seeds) == 1 else 'seeds'} {', '.join(map(str, found.seeds))}"
     drawn = []
     for panel, (title, draw) in panels.items():
         drawn += save_panel(partial(draw, found), f"{title} ({name})", folder / f"{stem}-{panel}")

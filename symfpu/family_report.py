@@ -14,6 +14,7 @@ from symfpu.refinement.tori import RefinedTorus
 from symfpu.report import fifteen_digits
 
 SHOWN_EVENTS = 12
+SHOWN_MEMBERS = 8  # besides the first; the last one is among them
 
 
 def refined_record(torus: RefinedTorus) -> dict[str, Any]:
@@ -120,8 +121,9 @@ def family_table(found: Family) -> list[list[str]]:
 def family_text(found: Family) -> Iterator[str]:
     """A family for a reader, in lines."""
     yield repr(found)
-    for m in found.members[:: max(1, (len(found.members) - 1) // 8)]:
-        yield f"  {m!r}"
+    last = len(found.members) - 1
+    for k in sorted({round(i * last / SHOWN_MEMBERS) for i in range(SHOWN_MEMBERS + 1)}):
+        yield f"  {found.members[k]!r}"
     events = sorted(found.events, key=_weight, reverse=True)[:SHOWN_EVENTS]
     for event in sorted(events, key=lambda e: e.after):
         yield f"  {event!r}"

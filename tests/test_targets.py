@@ -5,6 +5,7 @@ import json
 import math
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,16 +13,18 @@ import pytest
 from symfpu.amplitudes import solve_amplitudes
 from symfpu.chain import Chain
 from symfpu.cli import main
-from symfpu.convergence import BreatherStudy, CancellationStudy, Variant
+from symfpu.convergence import BreatherStudy, CancellationStudy, SchemeLimit, Variant
+from symfpu.families import Family
 from symfpu.figures import draw_convergence
 from symfpu.lindstedt import lindstedt
 from symfpu.refinement.breathers import PeriodicOrbit
+from symfpu.refinement.continuation import Member
 from symfpu.report import breather_markdown, cancellation_markdown, convergence_markdown, convergence_record, write_convergence_csv
 from symfpu.targets import TARGETS
 from symfpu.verdict import assess
 
 NAMES = ("doubles", "40 digits", "other frequencies")
-FILES = [f"convergence-{panel}" for panel in "abcd"]
+FILES = [f"convergence-{panel}" for panel in "abcde"]
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +73,15 @@ def breather(assessment):
         spread=2e-8,
         exponent=0.5,
         assessment=assessment,
+        limit=SchemeLimit(orbit("0.392", 1.0), (0.391, 0.393), (0.75, 1.125), (0.875, 1.25), one_member()),
     )
+
+
+def one_member():
+    """A family as far as the report asks: the energy of its last member."""
+    torus = SimpleNamespace(seeds=(1,), frequencies=(Fraction("0.393"),))
+    member = Member(torus, {1: 1.125}, energy=0.25, harmonic_energy=0.24, residual=1e-14)
+    return Family(Chain(8, alpha="0.3"), (1,), (member,), (), "reached the energy asked for")
 
 
 def rows_of(path):
@@ -90,6 +101,7 @@ def test_data_files_hold_what_the_pictures_show(cancellation, breather, tmp_path
         [k, *(0.5**k * scale for scale in (1, 2, 3))] for k in range(31)
     ]
     assert tables["convergence-c"] == [["order", "truncated", "resummed"], ["12", str(0.5**12), "1e-05"], ["30", str(0.5**30), "2e-07"]]
+    assert tables["convergence-e"] == [["omega", "A", "A at the end of the series"], ["0.391", "0.75", "0.875"], ["0.393", "1.125", "1.25"]]
     assert tables["convergence-d"] == [["K", "A"], ["2", "1.5"], ["4", "1.4375"], ["10", "1.40625"], ["37", "1.3125"]]
 
 

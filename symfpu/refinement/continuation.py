@@ -20,7 +20,7 @@ from symfpu.fourier import FourierTorus, QuasiPeriodic
 from symfpu.frequency_shift import frequency_shift
 from symfpu.lindstedt import lindstedt
 from symfpu.refinement.breathers import PeriodicOrbit
-from symfpu.refinement.conditions import Condition, Plane, ratio_conditions
+from symfpu.refinement.conditions import Amplitude, Condition, Plane, ratio_conditions
 from symfpu.refinement.floquet import Floquet, floquet
 from symfpu.refinement.invariance import DIGITS, Floats
 from symfpu.refinement.newton import Report
@@ -33,6 +33,7 @@ EASY, FACTOR = 4, 1.3  # Newton steps up to which the next step along the way is
 KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
 ASTRAY = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
 SIGNIFICANT = 1e-11  # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
+UNRESOLVED = 1e-6  # residual beyond which a torus is no member
 LOCATED, LOCATIONS = 1e-7, 8  # relative change of the place of an event that is enough, and the most members spent on it
 
 
@@ -86,15 +87,27 @@ class Event:
 
 
 def first_torus(
-    chain: Chain, amplitudes: Mapping[int, float], *, tolerance: float = TOLERANCE, report: Report = lambda _: None
+    chain: Chain,
+    amplitudes: Mapping[int, float],
+    *,
+    energy_ratio: Mapping[int, float] | None = None,
+    tolerance: float = TOLERANCE,
+    report: Report = lambda _: None,
 ) -> RefinedTorus:
-    """The torus with these small amplitudes, from a short series about the lowest frequency shift."""
+    """The torus with these small amplitudes, from a short series about the lowest frequency shift.
+
+    energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed is as given.
+    """
     shifts = frequency_shift(chain, amplitudes)
     with mpmath.workdps(DIGITS):
         omega = [Fraction(text(chain.linear_frequency(q) + mpmath.mpf(shifts[q]), 25)) for q in amplitudes]
     series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
     guess = QTorus(series, dict(amplitudes), dict.fromkeys(amplitudes, 0.0), 0, GUESS_ORDER)
-    return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance, report=report)
+    if energy_ratio is None:
+        return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance, report=report)
+    first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
+    conditions = [first, *ratio_conditions(tuple(amplitudes), energy_ratio, energies=True)]
+    return refined_torus(guess, conditions, tolerance=tolerance, report=report)
 
 
 def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
@@ -164,6 +177,10 @@ class Way:
         found = refined_torus(
             extrapolated(before, last, distance / length), self._conditions(plane), tolerance=self.tolerance, report=self.report
         )
+        if min(found.frequencies) <= 0:  # the mirror image of the family behind a saddle
+            raise NoTorus("a frequency passes zero", found, found.residual())
+        if found.warnings and (residual := found.residual()) > UNRESOLVED:
+            raise NoTorus(f"{len(found.harmonics)} harmonics do not resolve it", found, residual)
         off = float(np.linalg.norm((self._variables(found, scales) - x).astype(float) - distance * tangent))
         if off > ASTRAY * max(abs(distance), SMALLEST_STEP):
             raise NoTorus(f"the torus found is {off / abs(distance):.2g} steps off the way", found, found.residual())
@@ -230,7 +247,8 @@ def folds(way: Way, after: int) -> Iterator[Event]:
     values = [quantities(torus) for torus in three]
     for name in values[0]:
         a, b, c = (v[name] for v in values)
-        if (b - a) * (c - b) < 0:
+        noise = way.tolerance * max(abs(a), abs(b), abs(c))
+        if (b - a) * (c - b) < 0 and min(abs(b - a), abs(c - b)) > noise:
             yield _fold(way, name, after)
 
 
@@ -264,7 +282,7 @@ def _fold(way: Way, name: str, after: int) -> Event:
     value = quantities(torus)[name]
     if name.startswith("omega"):
         value = float(torus.frequencies[torus.seeds.index(int(name.split("_")[1]))])
-    return Event("fold", name, after, float(torus.energy()), value)
+    return Event("fold", name, after + (place > 0), float(torus.energy()), value)
 
 
 def _vertex(s: Sequence[float], y: Sequence[float]) -> float:
