@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from collections.abc import Callable, Mapping
@@ -10,6 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import mpmath
 import numpy as np
 
 from symfpu.bundle import load, save
@@ -18,8 +20,10 @@ from symfpu.chain import Chain, decimal
 from symfpu.errors import InputError, SymfpuError
 from symfpu.exact import Number, exact, integer, seed_modes
 from symfpu.refinement.appendix_a import AppendixAMember, NoFurtherMember, appendix_a_members
-from symfpu.refinement.continuation import FIRST_STEP, Event, Member, Way, continued, first_torus, member
-from symfpu.refinement.tori import TOLERANCE, NoTorus, RefinedTorus, refine_at_energy
+from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
+from symfpu.refinement.continuation import FIRST_STEP, Event, Member, Way, continued, extrapolated, first_torus, member
+from symfpu.refinement.invariance import DIGITS, long
+from symfpu.refinement.tori import TOLERANCE, NoTorus, RefinedTorus, refine_at_energy, refined_torus
 from symfpu.torus import QTorus
 
 Json = dict[str, Any]
@@ -36,13 +40,13 @@ APPENDIX_BEGINNING, APPENDIX_MEMBERS = "1/10", 20  # of the energy asked for, an
 
 
 class NotInFamily(SymfpuError):
-    """An energy that no member of a family has; carries the range that was reached and why the family ended."""
+    """An energy or a frequency that no member of a family has; carries the range that was reached and why the family ended."""
 
-    def __init__(self, energy: float, reached: tuple[float, float], ending: str) -> None:
-        self.energy, self.reached, self.ending = energy, reached, ending
+    def __init__(self, quantity: str, value: float, reached: tuple[float, float], ending: str) -> None:
+        self.quantity, self.value, self.reached, self.ending = quantity, value, reached, ending
         super().__init__(
-            f"no member has the energy {energy:.10g}: the family goes from {reached[0]:.10g} to {reached[1]:.10g} and {ending}; "
-            f"take an energy in this range, or follow the family further"
+            f"no member has {quantity} = {value:.10g}: the family goes from {reached[0]:.10g} to {reached[1]:.10g} and {ending}; "
+            f"take a value in this range, or follow the family further"
         )
 
 
@@ -83,9 +87,32 @@ class Family:
         value = float(exact(energy, "energy"))
         known = np.array([m.harmonic_energy if harmonic else m.energy for m in self.members])
         if not known.min() <= value <= known.max():
-            raise NotInFamily(value, (float(known.min()), float(known.max())), self.ending)
+            raise NotInFamily("sum E_q" if harmonic else "H", value, (float(known.min()), float(known.max())), self.ending)
         nearest = self.members[int(np.argmin(np.abs(np.log(known / value))))]
         return refine_at_energy(nearest.torus, energy, harmonic=harmonic, energy_ratio=self.energy_ratio)
+
+    def at_frequency(self, seed: int, frequency: Number) -> tuple[RefinedTorus, ...]:
+        """The tori on which this seed has this frequency, one for every pair of neighbouring members with it between them.
+
+        They keep the ratio that the family keeps. Raises NotInFamily beyond the range of the members, NoTorus as `refine` does.
+        """
+        if seed not in self.seeds:
+            raise InputError("seed", seed, f"one of the seeds {self.seeds}", "name a seed")
+        place, omega = self.seeds.index(seed), exact(frequency, "frequency")
+        known = [m.torus.frequencies[place] for m in self.members]
+        if not min(known) <= omega <= max(known):
+            raise NotInFamily(f"omega_{seed}", float(omega), (float(min(known)), float(max(known))), self.ending)
+        with mpmath.workdps(2 * DIGITS):
+            shift = long(mpmath.mpf(omega.numerator) / omega.denominator - self.chain.linear_frequency(seed))
+        found = []
+        for k, (before, after) in enumerate(itertools.pairwise(known)):
+            if (before - omega) * (after - omega) < 0 or omega == before:
+                first, second = (m.torus.in_doubles() for m in self.members[k : k + 2])
+                ratio = self.energy_ratio or self.members[k].amplitudes
+                conditions = [FrequencyShift(place, shift), *ratio_conditions(self.seeds, ratio, energies=self.energy_ratio is not None)]
+                part = float((omega - before) / (after - before)) if after != before else 0.0
+                found.append(refined_torus(extrapolated(first, second, part - 1), conditions))
+        return tuple(found)
 
 
 def _counted(n: int, kind: str) -> str:

@@ -279,11 +279,37 @@ def test_at_energy_is_on_the_family():
 def test_an_energy_beyond_reach_is_not_in_the_family(energy):
     with pytest.raises(NotInFamily) as failure:
         breathers().at_energy(energy, harmonic=False)
-    assert failure.value.energy == float(energy)
+    assert (failure.value.quantity, failure.value.value) == ("H", float(energy))
     assert failure.value.reached == (energies(breathers()).min(), energies(breathers()).max())
     assert type(failure.value.reached[0]) is float
     assert failure.value.ending == "reached the energy asked for"
     assert "follow the family further" in str(failure.value)
+
+
+def test_a_frequency_may_have_several_members():
+    """omega_2 of the folded family falls and rises again: two tori have one omega_2, with one ratio of the mode energies."""
+    family_ = folded()
+    lowest = min(float(m.torus.frequencies[1]) for m in family_.members)
+    first = float(family_.members[0].torus.frequencies[1])
+    wanted = repr((first + lowest) / 2)
+    tori = family_.at_frequency(2, wanted)
+    assert len(tori) == 2
+    for torus in tori:
+        assert float(torus.frequencies[1]) == pytest.approx(float(wanted), abs=1e-15)
+        averages = torus.average_spectrum()
+        assert torus.residual() < 1e-12
+        assert averages[1] / averages[0] == pytest.approx(1, rel=RATIO)
+    assert tori[0].energy() < tori[1].energy()
+    assert len(breathers().at_frequency(3, breathers().members[2].torus.frequencies[0])) == 1
+
+
+def test_a_frequency_beyond_reach_is_not_in_the_family():
+    with pytest.raises(NotInFamily, match=r"no member has omega_3 = 9: the family goes from .* follow the family further") as failure:
+        breathers().at_frequency(3, 9)
+    assert failure.value.quantity == "omega_3"
+    assert failure.value.reached[0] < failure.value.reached[1] < 9
+    with pytest.raises(InputError, match=r"^seed = 5"):
+        breathers().at_frequency(5, 1)
 
 
 # folders

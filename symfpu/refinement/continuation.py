@@ -202,7 +202,7 @@ class Way:
         return found
 
 
-def extrapolated(before: RefinedTorus, last: RefinedTorus, ratio: float) -> FourierTorus:
+def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> FourierTorus:
     """The guess on the line through two tori, `ratio` of their distance beyond the second."""
     rows = {tuple(nu): i for i, nu in enumerate(before.harmonics.tolist())}
     earlier = np.array([before.cosines[rows[nu]] if nu in rows else 0 * last.cosines[0] for nu in map(tuple, last.harmonics.tolist())])
