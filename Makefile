@@ -2,6 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
+ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 # workers of pytest share the cores
 
 .PHONY: install reproduce test bench sweeps long generated clean
 
@@ -20,7 +21,7 @@ test: install  ## lint, types, floors, tests
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/python -m pytest
+	$(ONE_THREAD) $(BIN)/python -m pytest -n auto --dist loadfile
 
 sweeps: install  ## decide the propagation rule for all seed sets: N <= 12, up to 3 seeds, both models
 	mkdir -p $(OUT)

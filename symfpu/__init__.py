@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from symfpu.codegen.evaluator import Evaluator, compile_evaluator
     from symfpu.codegen.export import export
     from symfpu.commensurability import frequency_rank
+    from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices
+    from symfpu.dynamics.orbits import Orbit, integrate
+    from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep
     from symfpu.errors import (
         DidNotConverge,
         InputError,
@@ -74,6 +77,9 @@ _DEFINED = {
     ),
     "symfpu.codegen.export": ("export",),
     "symfpu.commensurability": ("frequency_rank",),
+    "symfpu.dynamics.alignment": ("AlignmentIndices", "alignment_indices"),
+    "symfpu.dynamics.orbits": ("Orbit", "integrate"),
+    "symfpu.dynamics.stopping": ("EscapedOrbit", "OrbitStopped", "UnstableStep"),
     "symfpu.errors": (
         "DidNotConverge",
         "InputError",
@@ -181,12 +187,14 @@ def __dir__() -> list[str]:
 
 
 __all__ = [
+    "AlignmentIndices",
     "AmplitudeHistory",
     "Assessment",
     "Bundle",
     "BundleError",
     "Chain",
     "DidNotConverge",
+    "EscapedOrbit",
     "Evaluator",
     "Event",
     "Family",
@@ -202,6 +210,8 @@ __all__ = [
     "NoTorus",
     "NoTorusAtEnergy",
     "NotInFamily",
+    "Orbit",
+    "OrbitStopped",
     "PadeSum",
     "PeriodicOrbit",
     "PreciseOrbit",
@@ -217,6 +227,8 @@ __all__ = [
     "SymfpuError",
     "TooLarge",
     "UndeterminedAmplitudes",
+    "UnstableStep",
+    "alignment_indices",
     "amplitude_history",
     "assess",
     "breather_at_amplitude",
@@ -231,6 +243,7 @@ __all__ = [
     "frequency_shift",
     "frequency_shift_formula",
     "init_printing",
+    "integrate",
     "leading_term",
     "lemma_holds",
     "lindstedt",

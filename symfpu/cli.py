@@ -13,10 +13,10 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.errors import InputError, SymfpuError
-from symfpu.verbs import exact, families, paper, tori
+from symfpu.verbs import alignment, dynamics, exact, families, paper, tori
 from symfpu.verbs.terminal import app
 
-VERBS = (exact, tori, families, paper)  # importing them has registered their verbs, in the order in which help lists them
+VERBS = (exact, tori, families, dynamics, alignment, paper)  # importing them has registered their verbs, in the order of the help
 
 UsageProblem: Any = typer.BadParameter.__mro__[2]  # click's ClickException, which typer may carry inside itself
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import Chain
+from symfpu.dynamics.scheme import Scheme
 from symfpu.errors import InputError
 from symfpu.exact import integer
 
@@ -38,6 +39,14 @@ DRIFTS = (
 )  # after each kick; the last leads into the next step
 
 ORDER = 8
+KAHAN_LI8 = Scheme(
+    name="kahan_li8",
+    order=ORDER,
+    splitting="T + V",
+    source="W. Kahan and R.-C. Li, Math. Comp. 66 (1997) 1089, s17odr8a",
+    drifts=(ENTRY, *DRIFTS[:-1], ENTRY),
+    kicks=KICKS,
+)
 TABLE = 4_000_000  # entries of a table of stretches held at once
 
 

@@ -1,0 +1,251 @@
+"""Alignment indices GALI_k of an orbit, all k at once and in logarithms, its maximal Lyapunov exponent, the dimension of its torus.
+
+GALI_k is the k-volume of k unit deviation vectors (Skokos, Bountis, Antonopoulos, Physica D 231 (2007) 30; Eur. Phys. J. Special
+Topics 165 (2008) 5). On a torus of dimension s in a phase space of dimension 2n, n = N - 1, it goes as
+    t^0 for k <= s,    t^-(k-s) for s < k <= 2n - s,    t^-2(k-n) for k > 2n - s,
+on a chaotic orbit as exp(-t sum_{j<=k} (chi_1 - chi_j)). Logarithms are to base 10, as in the captions of the paper.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from numbers import Real
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.chain import Chain
+from symfpu.dynamics.tangent import MovingFrame, moving_frame, step_length
+from symfpu.errors import InputError, SymfpuError
+from symfpu.exact import integer
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Progress = Callable[[str, float], None]
+
+STEP, SAMPLES, VECTORS, BLOCK = 0.25, 400, 7, 64
+MOST_VECTORS = 64
+PORTION = 200_000  # steps between two reports of progress
+DECADES = 1.5  # of time, the last ones, in which slopes are fitted
+PARTS = 8  # of that range, left out one at a time for the uncertainty of a slope
+FEWEST = 4 * PARTS  # samples in it
+FEWEST_SAMPLES = 2 * FEWEST  # in all: rounding to steps unites some of the first
+SHORTEST = 100  # time, and steps
+FLOOR = 0.1  # least uncertainty of a slope in the choice of a dimension: transients and log-periodic waves that one window cannot show
+ODD = 1 / 3  # a slope so far from every integer it should be decides nothing
+SURE = 0.95  # weight of a dimension that is called decided
+CHAOTIC_GROWTH = 3.0  # d log |v| / d log t: 1 on a torus, lambda t on a chaotic orbit
+
+
+class OrbitLost(SymfpuError):
+    """An orbit that went to infinity, as orbits of the alpha model over its barrier do, or a step too long."""
+
+    def __init__(self, time: float, step: float) -> None:
+        self.time, self.step = time, step
+        super().__init__(f"the orbit is lost before t = {time:.6g} with steps of {step:g}; take less energy or a shorter step")
+
+
+@dataclass(frozen=True)
+class Slope:
+    """d log GALI_k / d log t with its uncertainty."""
+
+    k: int
+    value: float
+    error: float
+
+    def __repr__(self) -> str:
+        return f"GALI_{self.k}: {self.value:.2f} +- {self.error:.2f}"
+
+
+@dataclass(frozen=True)
+class TorusDimension:
+    """What the slopes say of the torus under an orbit.
+
+    verdict : 'regular, dimension s', 'regular, dimension s or more' if no index falls, 'chaotic' or 'undecided'. value : the best
+    supported s, None for a chaotic orbit; error : the standard deviation of s over the weights; weights : of each s, normalised.
+    reason : the numbers behind the verdict.
+    """
+
+    verdict: str
+    value: int | None
+    error: float
+    weights: Mapping[int, float] = field(repr=False)
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class AlignmentIndices:
+    """log10 GALI_k and Lyapunov exponent of an orbit in time.
+
+    Made by `alignment_indices`. times (S,), spaced evenly in log t; log10_gali (S, vectors-1) for k = 2 .. vectors; lyapunov (S,):
+    log |v_1| / t of the first vector. energy_error : |H(T) - H(0)| / H(0) of the orbit.
+    """
+
+    chain: Chain
+    times: Floats
+    log10_gali: Floats
+    lyapunov: Floats
+    step: float
+    energy_error: float
+
+    def __repr__(self) -> str:
+        slopes = ", ".join(f"{s.value:.2f}" for s in self.slopes())
+        return (
+            f"AlignmentIndices({repr(self.chain)[6:-1]}, t = {self.times[-1]:.3g}, {self.dimension().verdict}: slopes of "
+            f"GALI_2..{self.vectors} {slopes}, Lyapunov exponent {self.lyapunov[-1]:.2g}, energy error {self.energy_error:.1g})"
+        )
+
+    @property
+    def vectors(self) -> int:
+        """The number of deviation vectors."""
+        return int(self.log10_gali.shape[1]) + 1
+
+    def slopes(self, decades: float = DECADES) -> tuple[Slope, ...]:
+        """d log GALI_k / d log t over the last decades of time for k = 2 .. vectors.
+
+        The uncertainty is that of the delete-a-block jackknife over PARTS stretches of the window: it sees waves longer than the
+        samples are apart, and bends. decades : of time, cut to what the samples span and widened to FEWEST of them. Raises InputError.
+        """
+        return tuple(Slope(k, *found) for k, found in enumerate(self._fits(self.log10_gali, decades), start=2))
+
+    def dimension(self, decades: float = DECADES) -> TorusDimension:
+        """The dimension s of the torus, from how each further vector changes the slope.
+
+        log GALI_j - log GALI_(j-1) has the slope 0 for j <= s, -1 for s < j <= 2n-s, -2 above. Each s has the weight exp(-chi^2/2)
+        of these differences, whose uncertainties are at least FLOOR and are enlarged where no s fits. The orbit is called chaotic if
+        the first vector grows faster than t^CHAOTIC_GROWTH (by three standard errors) and an index falls faster than a torus allows;
+        undecided if a slope is off its integer by more than ODD, if no s has the weight SURE, or if the first vector does not yet
+        grow as t does: before that time indices stay constant on every torus.
+        """
+        growth, doubt = self._fits((self.lyapunov * self.times / math.log(10))[:, None], decades)[0]
+        steps = np.array(self._fits(np.diff(self.log10_gali, axis=1, prepend=0.0), decades))
+        reason = f"|v| grows as t^{growth:.2f} +- {doubt:.2f}"
+        if growth - 3 * doubt > CHAOTIC_GROWTH and steps[:, 0].min() < -2 - ODD:
+            return TorusDimension("chaotic", None, 0.0, {}, reason)
+        n, errors = self.chain.N - 1, np.maximum(steps[:, 1], FLOOR)
+        offsets = {s: steps[:, 0] - _expected(s, n, self.vectors) for s in range(1, min(self.vectors, n) + 1)}
+        squares = {s: float(np.sum((off / errors) ** 2)) for s, off in offsets.items()}
+        best = min(squares, key=lambda s: squares[s])
+        scale = max(1.0, squares[best] / len(errors))
+        weights = {s: math.exp((squares[best] - square) / (2 * scale)) for s, square in squares.items()}
+        weights = {s: w / sum(weights.values()) for s, w in weights.items()}
+        error = math.sqrt(sum(w * (s - best) ** 2 for s, w in weights.items()))
+        j = int(np.argmax(np.abs(offsets[best])))
+        if abs(growth - 1) > ODD:
+            return TorusDimension("undecided", best, error, weights, f"{reason}, on a torus as t^1 in the end: take a longer time")
+        reason += (
+            f"; log GALI_{j + 2} - log GALI_{j + 1}, the farthest from its integer, has the slope {steps[j, 0]:.2f} +- {steps[j, 1]:.2f}, "
+            f"on a torus of dimension {best} it is {_expected(best, n, self.vectors)[j]}"
+        )
+        if abs(offsets[best][j]) > ODD or weights[best] < SURE:
+            return TorusDimension("undecided", best, error, weights, reason)
+        more = " or more" if best == self.vectors < n else ""
+        return TorusDimension(f"regular, dimension {best}{more}", best, error, weights, reason)
+
+    def _fits(self, values: Floats, decades: float) -> list[tuple[float, float]]:
+        """Slopes of columns against log10 t over the last decades, with jackknife errors."""
+        x = np.log10(self.times)
+        first = min(int(np.searchsorted(x, x[-1] - _span(x, decades) - 1e-9)), max(0, len(x) - FEWEST))
+        x, values = x[first:], values[first:]
+        part = np.arange(len(x)) * PARTS // len(x)
+        whole = np.polyfit(x, values, 1)[0]
+        without = np.array([np.polyfit(x[part != i], values[part != i], 1)[0] for i in range(PARTS)])
+        errors = np.sqrt((PARTS - 1) / PARTS * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
+        return list(zip(whole.tolist(), errors.tolist(), strict=True))
+
+
+def _span(log_time: Floats, decades: float) -> float:
+    if not decades > 0:
+        raise InputError("decades", decades, "a positive number", "take one or two")
+    return min(decades, float(log_time[-1] - log_time[0]))
+
+
+def _expected(s: int, n: int, vectors: int) -> Ints:
+    """Slopes of log GALI_j - log GALI_(j-1), j = 2 .. vectors, on a torus of dimension s in a phase space of dimension 2n."""
+    j = np.arange(2, vectors + 1)
+    return -np.add(j > s, j > 2 * n - s, dtype=np.int64)
+
+
+def alignment_indices(
+    chain: Chain,
+    Q: ArrayLike,
+    P: ArrayLike,
+    T: float,
+    *,
+    vectors: int = VECTORS,
+    step: float = STEP,
+    samples: int = SAMPLES,
+    seed: int = 0,
+    block: int = BLOCK,
+    progress: Progress | None = None,
+) -> AlignmentIndices:
+    """GALI_2 .. GALI_vectors of the orbit of a state up to time T, and its maximal Lyapunov exponent.
+
+    Q, P : the state, (N-1,). vectors : 2 to 2(N-1), orthonormal at random at t = 0, by `seed`. step : of the integrator, ABA864 on
+    T + V. Its orbit lies on tori of the integrator, off those of the chain by a part step^4: near a torus of low dimension it shows
+    this dimension up to some time only, a longer one with a shorter step; the energy error is in the result. samples : times, even
+    in log t from 1 to T; each is a whole number of steps. block : the most steps between two orthonormalisations, halved where the
+    frame is squeezed.
+    progress : called as (label, fraction done). Raises InputError, OrbitLost.
+
+    Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they are, vectors give GALI down to about
+    1e-16 for a direction, and an upper bound after that. So a frame is evolved instead: M_i B_(i-1) = B_i R_i, a QR factorisation
+    after each block, and the vectors are V = B R with R = R_i ... R_1. R is upper triangular, so the first k columns of V span the
+    volume R_11 ... R_kk, and with unit columns
+        log GALI_k = sum_{j<=k} (log R_jj - log |R e_j|),    log |v_1| = log R_11.
+    The diagonal of the product is the product of the diagonals: sums of logarithms, which neither underflow nor cancel. The columns
+    R e_j are propagated as unit vectors with their lengths in logarithms; a column loses entries below 1e-300 of its length, which
+    do not count for its length. Each block's R_jj is right to EPS times the squeeze of the frame in one block, kept above 1e-5.
+    """
+    n = chain.N - 1
+    count = integer(vectors, "vectors", 2)
+    if count > min(2 * n, MOST_VECTORS):
+        raise InputError("vectors", count, f"2 to {min(2 * n, MOST_VECTORS)}", "the phase space holds no more")
+    h = abs(step_length(step))
+    if isinstance(T, bool) or not isinstance(T, Real) or not SHORTEST * max(1.0, h) <= float(T) < math.inf:
+        raise InputError("T", T, f"a finite time from {SHORTEST * max(1.0, h):g} up", "slopes need two decades of time")
+    longest = integer(block, "block", 1)
+    marks = _marks(float(T), h, integer(samples, "samples", FEWEST_SAMPLES))
+    frame = moving_frame(chain, Q, P, *_random_frame(count, n, integer(seed, "seed", 0)), h)
+    if not np.any(frame.x) and not np.any(frame.p):
+        raise InputError("Q, P", 0.0, "a state other than the equilibrium", "start from an orbit")
+    before = float(chain.energy(*frame.orbit()))
+    volumes, growth = _followed(frame, marks, longest, progress or (lambda label, done: None))
+    times = marks * h
+    error = abs(float(chain.energy(*frame.orbit())) - before) / abs(before)
+    return AlignmentIndices(chain, times, np.cumsum(volumes, axis=1)[:, 1:] / math.log(10), growth / times, h, error)
+
+
+def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
+    """Orthonormal vectors of a phase space of dimension 2n as rows."""
+    rows = np.linalg.qr(np.random.default_rng(seed).normal(size=(2 * n, vectors)))[0].T
+    return rows[:, :n], rows[:, n:]
+
+
+def _marks(T: float, h: float, samples: int) -> Ints:
+    """Numbers of steps at which there are samples."""
+    last = math.ceil(T / h - 1e-9)
+    found: Ints = np.unique(np.geomspace(max(1.0, 1 / h), last, samples).round().astype(np.int64))
+    return found
+
+
+def _followed(frame: MovingFrame, marks: Ints, longest: int, tell: Progress) -> tuple[Floats, Floats]:
+    """log(R_jj / |R e_j|) at every mark, (S, vectors), and log R_11, (S,), natural."""
+    from symfpu.dynamics.tangent_loops import carry_frame
+
+    m, block, done = frame.vectors, longest, 0
+    columns, diagonal, norms = np.eye(m), np.zeros(m), np.zeros(m)
+    volumes, growth = np.empty((len(marks), m)), np.empty(len(marks))
+    state = (frame.x, frame.p, frame.dx, frame.dp, *frame.couplings, frame.kicks, frame.drifts)
+    for i, mark in enumerate(marks):
+        while done < mark:
+            steps = min(PORTION, int(mark) - done)
+            block = carry_frame(*state, steps, block, longest, columns, diagonal, norms)
+            done += steps
+            if not np.isfinite(norms).all():
+                raise OrbitLost(float(mark * frame.drifts.sum()), float(frame.drifts.sum()))
+            tell(f"t = {done * frame.drifts.sum():.3g}", done / int(marks[-1]))
+        volumes[i], growth[i] = diagonal - norms, diagonal[0]
+    return volumes, growth

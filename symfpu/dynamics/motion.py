@@ -1,0 +1,54 @@
+"""Many orbits as one array that a compiled loop moves: in the coordinates of the splitting of a scheme."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.chain import Chain
+from symfpu.dynamics.scheme import Scheme
+
+Floats = NDArray[np.float64]
+
+
+class Motion:
+    """Coordinates of M orbits, shape (M, 2, length), and how they move. bounds : of the bond stretches, for each orbit."""
+
+    def __init__(self, chain: Chain, scheme: Scheme, step: float, bounds: Floats) -> None:
+        self.chain, self.scheme, self.bounds = chain, scheme, bounds
+        self.entry, self.kicks, self.drifts = scheme.merged(step)
+        self.couplings = float(chain.alpha), float(chain.beta)
+        self.Omega = np.concatenate([[0.0], chain.frequencies()])
+        self.unit = (2 * chain.N) ** 0.5
+
+    def coordinates(self, Q: Floats, P: Floats) -> Floats:
+        """Of mode coordinates and momenta (M, N-1)."""
+        if self.scheme.in_modes:
+            state = np.zeros((len(Q), 2, self.chain.N))
+            state[:, 0, 1:], state[:, 1, 1:] = self.Omega[1:] * Q / self.unit, P / self.unit
+        else:
+            state = np.zeros((len(Q), 2, self.chain.N + 1))
+            state[:, 0, 1:-1], state[:, 1, 1:-1] = self.chain.positions(Q), self.chain.positions(P)
+        return state
+
+    def modes(self, state: Floats) -> tuple[Floats, Floats]:
+        """Mode coordinates and momenta (M, N-1)."""
+        if self.scheme.in_modes:
+            return state[:, 0, 1:] * self.unit / self.Omega[1:], state[:, 1, 1:] * self.unit
+        return np.asarray(self.chain.modes(state[:, 0, 1:-1])), np.asarray(self.chain.modes(state[:, 1, 1:-1]))
+
+    def advance(self, state: Floats, steps: int, each: Callable[..., Any]) -> list[int]:
+        """Moves all orbits; each : a map, perhaps of several threads. Returns the steps done by each orbit before it had to stop."""
+        return list(each(lambda row, bounds: self.move(row, bounds, steps), state, self.bounds))
+
+    def move(self, row: Floats, bounds: Floats, steps: int) -> int:
+        """Moves one orbit."""
+        from symfpu.dynamics.orbit_loops import move_modes, move_particles  # lazy: numba takes longer to import than all the rest
+
+        rates = (*self.couplings, steps, self.entry, self.kicks, self.drifts)
+        if self.scheme.in_modes:
+            return int(move_modes(row[0], row[1], *rates, self.Omega, 0.5 * float(np.max(np.abs(bounds))) ** 2))
+        return int(move_particles(row[0], row[1], *rates, bounds[0], bounds[1]))

@@ -1,0 +1,130 @@
+"""The compiled loops of orbits: plain arrays in, moved in place. Importing this module imports numba.
+
+No fast-math: what comes out does not depend on how loops are cut into vectors. Indices are unsigned, since an index that may be negative
+costs a comparison. Every step ends with a look at the state: a loop stops
+after the first one with a bond stretch out of bounds or not a number, and returns the number of steps done.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+_ONE = np.uint64(1)
+_compiled = njit(nogil=True, cache=True, error_model="numpy")
+
+
+@_compiled
+def move_particles(
+    x: Any, p: Any, alpha: float, beta: float, steps: int, entry: float, kicks: Any, drifts: Any, least: float, most: float
+) -> int:
+    """Displacements and momenta between walls, shape (N+1,), rows of the walls zero, under the forces of all springs.
+
+    Kick and drift are one pass: the tension of a bond needs both its ends before they move, and is carried to the next particle.
+    """
+    one, bonds = _ONE, np.uint64(x.shape[0] - 1)
+    done = 0
+    for j in range(one, bonds):
+        x[j] += entry * p[j]
+    while done < steps:
+        for i in range(kicks.shape[0]):
+            kick, drift = kicks[i], drifts[i]
+            r = x[one]
+            left = r * (1.0 + r * (alpha + r * beta))
+            for j in range(one, bonds):
+                r = x[j + one] - x[j]
+                right = r * (1.0 + r * (alpha + r * beta))
+                momentum = p[j] + kick * (right - left)
+                p[j] = momentum
+                x[j] += drift * momentum
+                left = right
+        done += 1
+        inside = 0
+        for j in range(bonds):
+            r = x[j + one] - x[j]
+            inside += (r >= least) & (r <= most)
+        if inside < bonds:
+            break
+    for j in range(one, bonds):
+        x[j] -= entry * p[j]
+    return done
+
+
+@_compiled
+def _product(first: Any, wide: Any, out: Any) -> None:
+    """Coefficients of the product of two cosine polynomials sum_k a_k e^(ik theta), a_-k = a_k, at the N bonds, where
+    e^(2iN theta) = -1: first[k], k = 0 .. N-1, a_0 = 0, and the other one extended, wide[k + N] = b_k for k = -N .. 2N.
+
+    Two terms at a time; a polynomial of few modes has few terms.
+    """
+    one, N = _ONE, np.uint64(first.shape[0])
+    for k in range(N):
+        out[k] = 0.0
+    m = one
+    while m < N:
+        a, b = first[m], (first[m + one] if m + one < N else 0.0)
+        if a != 0.0 or b != 0.0:
+            lower, upper = N - m, N + m
+            for k in range(N):
+                out[k] += a * (wide[lower + k] + wide[upper + k]) + b * (wide[lower - one + k] + wide[upper + one + k])
+        m += one + one
+
+
+@_compiled
+def _extend(b: Any, wide: Any) -> None:
+    """b_-k = b_k, b_N = 0, b_(2N-k) = -b_k."""
+    N = b.shape[0]
+    for k in range(N):
+        wide[N + k] = b[k]
+        wide[N - k] = b[k]
+        wide[3 * N - k] = -b[k]
+    wide[0] = 0.0
+    wide[2 * N] = 0.0
+
+
+@_compiled
+def _rotate(v: Any, w: Any, halves: Any, sines: Any) -> None:
+    """Rotation by angles phi as three shears, tan(phi/2), sin(phi), tan(phi/2): each keeps areas exactly, whatever the rounding of
+    its coefficient, where cosines and sines that do not quite have squares of sum 1 would add up to a growth of 1e-16 a drift."""
+    for q in range(v.shape[0]):
+        a = v[q] + halves[q] * w[q]
+        b = w[q] - sines[q] * a
+        v[q] = a + halves[q] * b
+        w[q] = b
+
+
+@_compiled
+def move_modes(
+    v: Any, w: Any, alpha: float, beta: float, steps: int, entry: float, kicks: Any, drifts: Any, Omega: Any, most: float
+) -> int:
+    """v_q = Omega_q Q_q / sqrt(2N) and w_q = P_q / sqrt(2N), shape (N,) with entries 0 for q = 0: the coefficients of the bond stretches
+    are v, those of tensions beyond the harmonic ones g = alpha v v + beta v v v, and dw_q/dt = -Omega_q (v_q + g_q)."""
+    N, stages = v.shape[0], kicks.shape[0]
+    halves, sines = np.empty((stages + 1, N)), np.empty((stages + 1, N))
+    for i in range(stages + 1):
+        drift = entry if i == stages else drifts[i]
+        for q in range(N):
+            halves[i, q], sines[i, q] = np.tan(0.5 * drift * Omega[q]), np.sin(drift * Omega[q])
+    wide, square, cube = np.zeros(3 * N + 2), np.zeros(N), np.zeros(N)
+    done = 0
+    _rotate(v, w, halves[stages], sines[stages])
+    while done < steps:
+        for i in range(stages):
+            _extend(v, wide)
+            _product(v, wide, square)
+            if beta != 0.0:
+                _extend(square, wide)
+                _product(v, wide, cube)
+            for q in range(1, N):
+                w[q] -= kicks[i] * Omega[q] * (alpha * square[q] + beta * cube[q])
+            _rotate(v, w, halves[i], sines[i])
+        done += 1
+        total = 0.0
+        for q in range(1, N):
+            total += v[q] * v[q]
+        if not total <= most:
+            break
+    _rotate(v, w, -halves[stages], -sines[stages])
+    return done

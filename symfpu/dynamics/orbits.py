@@ -1,0 +1,260 @@
+"""Orbits of the chain for long times: many at once, sampled at log-spaced times, with checkpoints from which they go on bitwise."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from numbers import Real
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.archive import BundleError
+from symfpu.chain import Chain, decimal
+from symfpu.dynamics.aba864 import ABA864
+from symfpu.dynamics.aba864_modes import ABA864_MODES
+from symfpu.dynamics.checkpoint import ADVICE, checkpoint_path, digest, read_checkpoint, write_checkpoint
+from symfpu.dynamics.kahan_li8 import KAHAN_LI8
+from symfpu.dynamics.motion import Motion
+from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep, require_stable, stretch_bounds
+from symfpu.dynamics.yoshida4 import YOSHIDA4
+from symfpu.errors import InputError
+from symfpu.exact import integer
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SCHEMES = {scheme.name: scheme for scheme in (YOSHIDA4, ABA864, KAHAN_LI8, ABA864_MODES)}
+BLOCK = 50_000_000  # moves of one particle, or products of two modes, between two looks at the clock: a tenth of a second, about
+MOST_STEPS = 2**52
+WHOLE = 1e-9  # of a step: a time that is a multiple of the step but for rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit:
+    """An orbit, or several, at sampled times. times (S,), multiples of the step, from 0. Q, P : mode coordinates and momenta, shape
+    (S, ..., N-1). energies : total energy H, shape (S, ...). seconds : of this run, without what a checkpoint brought."""
+
+    chain: Chain
+    scheme: Scheme
+    step: float
+    times: Floats = field(repr=False)
+    Q: Floats = field(repr=False)
+    P: Floats = field(repr=False)
+    energies: Floats = field(repr=False)
+    seconds: float = field(repr=False, default=0.0)
+
+    def __repr__(self) -> str:
+        many = f"{math.prod(self.Q.shape[1:-1])} orbits, " if self.Q.ndim > 2 else ""
+        return (
+            f"Orbit({repr(self.chain)[6:-1]}, {many}T={self.times[-1]:.10g}, {self.scheme.name}, step {abs(self.step):.6g}, "
+            f"{len(self.times)} samples, H={np.ravel(self.energies)[0]:.12g}, energy error {self.energy_error:.2g})"
+        )
+
+    @property
+    def energy_error(self) -> float:
+        """Largest relative deviation |H(t)/H(0) - 1| of all samples and orbits; absolute for orbits at rest."""
+        start = np.where(self.energies[0] == 0, 1.0, np.abs(self.energies[0]))
+        return float(np.max(np.abs(self.energies - self.energies[0]) / start))
+
+    def harmonic_energies(self) -> Floats:
+        """E_q of every sample; shape (S, ..., N-1)."""
+        return np.asarray(self.chain.harmonic_energies(self.Q, self.P))
+
+
+def integrate(
+    chain: Chain,
+    Q: ArrayLike,
+    P: ArrayLike,
+    T: float,
+    *,
+    step: float,
+    scheme: str = "kahan_li8",
+    samples: int | ArrayLike = 200,
+    file: str | PathLike[str] | None = None,
+    every: float = 10.0,
+    workers: int = 1,
+    progress: Callable[[int, int], None] | None = None,
+) -> Orbit:
+    """The orbit from mode coordinates Q and momenta P at time 0 to T, sampled at times that are multiples of the step.
+
+    Q, P : shapes (..., N-1), many orbits at once. T : a time, negative for the past. step : its length is cut to a whole number of steps.
+    scheme : kahan_li8, yoshida4, aba864 (T + V), aba864_modes (harmonic + anharmonic). samples : about how many, log-spaced from one step
+    to T with 0 before them; or times between 0 and T, each moved to the nearest step. file : written every so many seconds and at the
+    end, whole or not at all; with the same arguments a killed run goes on from it and ends in the same bits. workers : threads, among
+    which orbits are shared out. progress : called as (steps done, steps).
+
+    Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint; UnstableStep and EscapedOrbit with
+    time, mode and energy.
+
+    >>> integrate(Chain(N=2, beta=1), [0.0], [1.0], 100, step=0.125, samples=4).times
+    array([  0.   ,   0.125,   1.125,  10.75 , 100.   ])
+    """
+    Q, P, T, step = _start(chain, Q, P, T, step)
+    found, workers = _scheme(scheme), integer(workers, "workers", 1)
+    steps = _whole_steps(T, step)
+    run = _Run(chain, found, T, steps, _sample_steps(T, steps, samples), Q, P)
+    if isinstance(every, bool) or not isinstance(every, Real) or not float(every) >= 0:
+        raise InputError("every", every, "seconds, 0 or more", "leave it out")
+    if file is not None:
+        run.keep_in(checkpoint_path(file), float(every))
+    with ThreadPoolExecutor(workers) as pool:
+        run.go(map if workers == 1 or run.orbits == 1 else pool.map, progress or (lambda done, total: None))
+    return run.result()
+
+
+class _Run:
+    """The state of an integration: its coordinates after so many steps, and the samples so far."""
+
+    def __init__(self, chain: Chain, scheme: Scheme, T: float, steps: int, sampled: Ints, Q: Floats, P: Floats) -> None:
+        self.chain, self.scheme, self.T, self.steps, self.sampled, self.shape = chain, scheme, T, steps, sampled, Q.shape
+        self.step = T / steps
+        Q, P = Q.reshape(-1, chain.N - 1), P.reshape(-1, chain.N - 1)
+        self.orbits, self.done, self.begun = len(Q), 0, time.perf_counter()
+        self.path: Path | None = None
+        self.every = math.inf
+        energies = np.asarray(chain.energy(Q, P))
+        for energy in energies:
+            require_stable(chain, scheme, self.step, float(energy))
+        limits = [stretch_bounds(chain, float(energy)) for energy in energies]
+        self.escapes = [limit[2] or energy < 0 for limit, energy in zip(limits, energies, strict=True)]
+        self.start = chain.harmonic_energies(Q, P)
+        bounds = np.array([limit[:2] for limit in limits]).reshape(-1, 2)
+        self.motion = Motion(chain, scheme, self.step, bounds)
+        self.Q, self.P = (np.zeros((len(sampled), self.orbits, chain.N - 1)) for _ in range(2))
+        self.Q[0], self.P[0] = Q, P
+        self.state = self.motion.coordinates(Q, P)
+        stretches = np.asarray(chain.stretches(Q))
+        outside = ((stretches < bounds[:, :1]) | (stretches > bounds[:, 1:])).any(axis=1)
+        if outside.any():
+            self._stop(int(np.argmax(outside)), 0, escaped=True)
+
+    def keep_in(self, path: Path, every: float) -> None:
+        """Goes on from the file, if there is one."""
+        self.path, self.every = path, every
+        chain, scheme = self.chain, self.scheme
+        self.parameters = {
+            "N": chain.N,
+            "alpha": decimal(chain.alpha),
+            "beta": decimal(chain.beta),
+            "scheme": scheme.name,
+            "step": repr(self.step),
+            "steps": self.steps,
+            "shape": list(self.shape),
+            "sampled steps": digest(self.sampled),
+            "start": digest(np.stack([self.Q[0], self.P[0]])),
+        }
+        kept = read_checkpoint(path, self.parameters)
+        if kept is not None:
+            self.done, arrays = kept
+            known = int(np.searchsorted(self.sampled, self.done, side="right"))
+            due = {"Q": self.Q[:known].shape, "P": self.P[:known].shape, "state": self.state.shape}
+            if {name: values.shape for name, values in arrays.items()} != due or self.done > self.steps:
+                raise BundleError(path, "is damaged (its arrays are not those of its parameters)", ADVICE)
+            self.Q[:known], self.P[:known], self.state = arrays["Q"], arrays["P"], arrays["state"]
+
+    def _ends(self) -> Iterator[int]:
+        """Where loops end: at samples and after blocks of steps that depend on the chain and the scheme alone, so that an interrupted run
+        rounds like one that was not."""
+        size = self.chain.N if not self.scheme.in_modes else self.chain.N**2 * (2 if self.chain.beta else 1)
+        block = max(1, BLOCK // (size * self.scheme.stages))
+        while self.done < self.steps:
+            following = int(self.sampled[np.searchsorted(self.sampled, self.done, side="right")])
+            yield min(following, (self.done // block + 1) * block)
+
+    def go(self, each: Callable[..., Any], progress: Callable[[int, int], None]) -> None:
+        saved = time.perf_counter()
+        for end in self._ends():
+            before = self.state.copy()
+            done = self.motion.advance(self.state, end - self.done, each)
+            inside = np.isfinite(self.state).all(axis=(1, 2)) & (np.array(done) == end - self.done)
+            if not inside.all():
+                self._stopped_in_block(before, int(np.argmin(np.where(inside, self.steps, done))), done)
+            self.done = end
+            place = int(np.searchsorted(self.sampled, end))
+            if self.sampled[place] == end:
+                self.Q[place], self.P[place] = self.motion.modes(self.state)
+            if self.path is not None and (end == self.steps or time.perf_counter() - saved >= self.every):
+                known = int(np.searchsorted(self.sampled, end, side="right"))
+                write_checkpoint(self.path, self.parameters, end, {"Q": self.Q[:known], "P": self.P[:known], "state": self.state})
+                saved = time.perf_counter()
+            progress(end, self.steps)
+
+    def _stopped_in_block(self, before: Floats, row: int, done: list[int]) -> None:
+        """Goes to the last step at which all was well, where the numbers are finite, and raises."""
+        self.state[row] = before[row]
+        if done[row] > 1:
+            self.motion.move(self.state[row], self.motion.bounds[row], done[row] - 1)
+        self._stop(row, self.done + done[row] - 1, escaped=self.escapes[row])
+
+    def _stop(self, row: int, steps: int, *, escaped: bool) -> None:
+        Q, P = (part[0] for part in self.motion.modes(self.state[row : row + 1]))
+        growth = np.abs(self.chain.harmonic_energies(Q, P) - (self.start[row] if steps else 0.0))
+        kind: type[OrbitStopped]
+        kind, reason, advice = UnstableStep, f"a step of {abs(self.step):.6g} of {self.scheme.name} loses the energy", "take a shorter step"
+        if escaped:
+            kind, reason, advice = EscapedOrbit, "a bond passes the barrier of its potential", "start from a state of less energy"
+        place = tuple(int(i) for i in np.unravel_index(row, self.shape[:-1])) if len(self.shape) > 1 else ()
+        energy, mode = float(self.chain.energy(Q, P)), int(np.argmax(growth)) + 1
+        raise kind(reason, advice, time=self.T * (steps / self.steps), mode=mode, energy=energy, orbit=place)
+
+    def result(self) -> Orbit:
+        Q, P = (part.reshape(len(self.sampled), *self.shape) for part in (self.Q, self.P))
+        energies = np.asarray(self.chain.energy(Q, P))
+        times = np.asarray(self.T * (self.sampled / self.steps), dtype=np.float64)
+        return Orbit(self.chain, self.scheme, self.step, times, Q, P, energies, time.perf_counter() - self.begun)
+
+
+def _start(chain: Chain, Q: ArrayLike, P: ArrayLike, T: float, step: float) -> tuple[Floats, Floats, float, float]:
+    """The arguments as numbers; raises InputError."""
+    if not isinstance(chain, Chain):
+        raise InputError("chain", type(chain).__name__, "a Chain", "make one with Chain(N, alpha=..., beta=...)")
+    chain.positions(Q), chain.positions(P)  # refuses other shapes
+    Q, P = np.array(Q, dtype=np.float64), np.array(P, dtype=np.float64)
+    if Q.shape != P.shape:
+        raise InputError("P", P.shape, f"the shape of Q, {Q.shape}", "pass one momentum for each coordinate")
+    with np.errstate(over="ignore", invalid="ignore"):
+        if not Q.size or not np.isfinite(chain.energy(Q, P)).all():
+            raise InputError("Q, P", "a state whose energy is not finite" if Q.size else (), "finite numbers", "start from a finite state")
+    for name, value in (("T", T), ("step", step)):
+        if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(float(value)) or value == 0:
+            raise InputError(name, value, "a finite number other than 0", "pass a time")
+    if step < 0:
+        raise InputError("step", step, "a positive number", "for the past take a negative T")
+    return Q, P, float(T), float(step)
+
+
+def _whole_steps(T: float, step: float) -> int:
+    if not abs(T) / step <= MOST_STEPS:
+        raise InputError("step", step, f"at least T / 2^52 = {abs(T) / MOST_STEPS:.3g}", "take a longer one")
+    ratio = abs(T) / step
+    whole = round(ratio) if abs(ratio - round(ratio)) <= max(WHOLE, 4 * np.finfo(float).eps * ratio) else math.ceil(ratio)
+    return max(1, whole)
+
+
+def _scheme(name: object) -> Scheme:
+    if not isinstance(name, str) or name not in SCHEMES:
+        raise InputError("scheme", name, ", ".join(SCHEMES), "choose one of them")
+    return SCHEMES[name]
+
+
+def _sample_steps(T: float, steps: int, samples: object) -> Ints:
+    """Steps after which samples are taken, 0 and the last among them."""
+    if isinstance(samples, (bool, int, np.integer)):
+        count = min(integer(samples, "samples", 1), steps)
+        inner = np.rint(np.geomspace(1, steps, count)) if count > 1 else np.array([steps])
+    else:
+        try:
+            inner = np.rint(np.asarray(samples, dtype=np.float64) / T * steps)
+        except (TypeError, ValueError) as error:
+            raise InputError("samples", samples, "a whole number, or times between 0 and T", "pass one of them") from error
+        if inner.ndim != 1 or not ((inner >= 0) & (inner <= steps)).all():
+            raise InputError("samples", samples, f"a whole number, or times between 0 and T = {T:.10g}", "leave out the others")
+    return np.unique(np.concatenate([[0], inner, [steps]]).astype(np.int64))

@@ -1,0 +1,92 @@
+"""When an orbit is stopped: a step beyond stability, an escape over a barrier of the potential of the bonds, numbers that overflow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.chain import Chain
+from symfpu.dynamics.scheme import Scheme
+from symfpu.errors import SymfpuError
+
+Floats = NDArray[np.float64]
+
+FACTOR = 4.0  # by which the energy of one bond may exceed the total: far beyond the error of any step worth taking
+FURTHEST = 1e100  # bond stretches, where nothing else bounds them: fourth powers do not overflow much before
+BISECTIONS = 60
+
+
+class OrbitStopped(SymfpuError):
+    """An orbit that cannot be followed further: time, mode of the largest (growth of) harmonic energy, total energy; orbit is its place
+    among several, () for one."""
+
+    def __init__(self, reason: str, advice: str, *, time: float, mode: int, energy: float, orbit: tuple[int, ...] = ()) -> None:
+        self.time, self.mode, self.energy, self.orbit = time, mode, energy, orbit
+        place = f" of orbit {orbit}" if orbit else ""
+        super().__init__(f"{reason} at time {time:.10g} in mode {mode}{place}, energy {energy:.6g}; {advice}")
+
+
+class EscapedOrbit(OrbitStopped):
+    """A bond went over a barrier of its potential, beyond which it falls without bound."""
+
+
+class UnstableStep(OrbitStopped):
+    """The step is beyond the stability of the scheme, or so coarse that energy is no longer conserved."""
+
+
+def require_stable(chain: Chain, scheme: Scheme, step: float, energy: float) -> None:
+    """Raises UnstableStep for a step that lets a harmonic mode grow."""
+    Omega = chain.frequencies()
+    if abs(step) * Omega[-1] > scheme.stable_phase:
+        mode = int(np.argmax(abs(step) * Omega > scheme.stable_phase)) + 1
+        largest = scheme.stable_phase / Omega[-1]
+        raise UnstableStep(
+            f"a step of {abs(step):.6g} of {scheme.name} is unstable",
+            f"take a step below {largest:.4g}, and a fraction of it for accuracy",
+            time=0.0,
+            mode=mode,
+            energy=energy,
+        )
+
+
+def potential(chain: Chain, r: float) -> float:
+    """V(r) of one bond."""
+    return r * r * (0.5 + r * (float(chain.alpha) / 3 + r * float(chain.beta) / 4))
+
+
+def stretch_bounds(chain: Chain, energy: float) -> tuple[float, float, bool]:
+    """Stretches that no bond of an orbit of this energy leaves unless it escapes or the step is too coarse; whether it can escape.
+
+    While all bonds are inside their wells each holds no more than the whole energy: it stays where V <= energy. Where that is beyond
+    a barrier, the bond may pass, and has passed for good where V < 0. With beta > 0 there are no such barriers: V is bounded below.
+    """
+    left, right = (_bound(chain, energy, side) for side in (-1.0, 1.0))
+    return -left[0], right[0], left[1] or right[1]
+
+
+def _bound(chain: Chain, energy: float, side: float) -> tuple[float, bool]:
+    def V(distance: float) -> float:
+        return potential(chain, side * distance)
+
+    alpha, beta = side * float(chain.alpha), float(chain.beta)
+    square = alpha * alpha - 4 * beta  # V' = r (1 + alpha r + beta r^2)
+    slopes = [-alpha + sign * math.sqrt(square) for sign in (1, -1)] if square >= 0 else []
+    turns = [2 / slope for slope in slopes if slope > 0]
+    if beta > 0:
+        most = FACTOR * (energy + chain.N * max([0.0, *(-V(turn) for turn in turns)]))
+        return _first(lambda r: V(r) >= most, max(turns, default=0.0), FURTHEST), False
+    top = min([*turns, FURTHEST])
+    if V(top) >= FACTOR * energy:
+        return _first(lambda r: V(r) >= FACTOR * energy, 0.0, top), False
+    return (top, False) if V(top) > energy else (_first(lambda r: V(r) < 0, top, FURTHEST), True)
+
+
+def _first(reached: Callable[[float], bool], low: float, high: float) -> float:
+    """Where a condition begins to hold between low and high, by bisection in the logarithm while the numbers are far apart."""
+    for _ in range(2 * BISECTIONS):
+        middle = math.sqrt(max(low, 1e-200) * high) if high > 2 * low else 0.5 * (low + high)
+        low, high = (low, middle) if reached(middle) else (middle, high)
+    return high

@@ -1,0 +1,153 @@
+"""The compiled loops of orbits with deviation vectors: plain arrays, moved in place. Importing this module imports numba.
+
+x, p : displacements and momenta of one orbit with its two walls, (N+1,), zero at the walls. dx, dp : deviations from it, blocks of
+LANES vectors, (blocks, N+1, LANES), zero at the walls and in lanes that are not used. The lanes are the last axis and their
+number is fixed, so that the loop over them is one or two machine instructions.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+LANES = 8  # deviation vectors moved by one instruction stream
+LENGTHEN, SHORTEN = 1e-3, 1e-5  # least ratio of a diagonal entry of R to its column, above and below which the block changes
+
+_compiled = njit(nogil=True, cache=True, error_model="numpy")
+
+
+@_compiled
+def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, kick: float, drift: float, forces: Any) -> None:
+    """One kick, one drift, and their derivatives: bond j has the tension r + alpha r^2 + beta r^3, its slope 1 + 2 alpha r + 3 beta r^2.
+
+    forces : room for the impulses of the bonds on the orbit (N,) and on the lanes (N * LANES,), for slopes (N, LANES) and (N,). Every
+    loop runs along one flat axis and writes to an array that it reads in the same place only, so that the compiler can vectorise it.
+    """
+    tension, pull, slope, stiffness = forces
+    bonds, last = len(tension), (len(tension) - 1) * LANES
+    ahead = x[1:]
+    for j in range(bonds):
+        r = ahead[j] - x[j]
+        tension[j] = kick * (r * (1 + r * (alpha + r * beta)))
+        stiffness[j] = kick * (1 + r * (2 * alpha + r * (3 * beta)))
+    inner_x, inner_p, after = x[1:], p[1:], tension[1:]
+    for j in range(bonds - 1):
+        inner_p[j] += after[j] - tension[j]
+        inner_x[j] += drift * inner_p[j]
+    for j in range(bonds):
+        for c in range(LANES):
+            slope[j, c] = stiffness[j]
+    slopes = slope.reshape(-1)
+    for b in range(dx.shape[0]):
+        here, right = dx[b].reshape(-1), dx[b, 1:].reshape(-1)
+        for i in range(len(pull)):
+            pull[i] = slopes[i] * (right[i] - here[i])
+        momenta, positions, behind = dp[b, 1:].reshape(-1), dx[b, 1:].reshape(-1), pull[LANES:]
+        for i in range(last):
+            momenta[i] += behind[i] - pull[i]
+            positions[i] += drift * momenta[i]
+
+
+@_compiled
+def advance(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, kicks: Any, drifts: Any, steps: int) -> None:
+    """So many steps of a splitting; kicks (stages,) and drifts (stages + 1,) are lengths of time, drifts that meet are one."""
+    bonds = len(x) - 1
+    forces = (np.empty(bonds), np.empty(bonds * LANES), np.empty((bonds, LANES)), np.empty(bonds))
+    if steps == 0:
+        return
+    x += drifts[0] * p
+    dx += drifts[0] * dp
+    for step in range(steps):
+        for i in range(len(kicks)):
+            drift = drifts[i + 1]
+            if i == len(kicks) - 1 and step < steps - 1:
+                drift += drifts[0]
+            kick_and_drift(x, p, dx, dp, alpha, beta, kicks[i], drift, forces)
+
+
+@_compiled
+def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any) -> float:
+    """Replace the first m vectors by their orthonormal basis, V = basis R; returns the least R_jj / |column j of R|.
+
+    rows : room for the vectors, (m, 2(N-1)). R : upper triangular, positive diagonal, (m, m). Gram-Schmidt with a second pass, after
+    which the basis is orthonormal to rounding.
+    """
+    n, least = dx.shape[1] - 2, 1.0
+    for j in range(len(rows)):
+        v = rows[j]
+        for k in range(n):
+            v[k] = dx[j // LANES, k + 1, j % LANES]
+            v[n + k] = dp[j // LANES, k + 1, j % LANES]
+        R[:, j] = 0.0
+        for _ in range(2):
+            for i in range(j):
+                overlap = 0.0
+                for k in range(2 * n):
+                    overlap += rows[i, k] * v[k]
+                R[i, j] += overlap
+                for k in range(2 * n):
+                    v[k] -= overlap * rows[i, k]
+        R[j, j] = np.sqrt(np.sum(v * v))
+        least = min(least, R[j, j] / np.sqrt(np.sum(R[: j + 1, j] ** 2)))
+        v /= R[j, j]
+        for k in range(n):
+            dx[j // LANES, k + 1, j % LANES] = v[k]
+            dp[j // LANES, k + 1, j % LANES] = v[n + k]
+    return least
+
+
+@_compiled
+def accumulate(R: Any, columns: Any, diagonal: Any, norms: Any) -> None:
+    """Multiply the product of triangular factors by R from the left: columns are unit vectors, norms the logarithms of their lengths.
+
+    diagonal : logarithms of the diagonal of the product.
+    """
+    for j in range(len(R)):
+        diagonal[j] += np.log(R[j, j])
+        column = columns[:, j]
+        for i in range(j + 1):
+            entry = 0.0
+            for k in range(i, j + 1):
+                entry += R[i, k] * column[k]
+            column[i] = entry
+        length = np.sqrt(np.sum(column * column))
+        column /= length
+        norms[j] += np.log(length)
+
+
+@_compiled
+def carry_frame(
+    x: Any,
+    p: Any,
+    dx: Any,
+    dp: Any,
+    alpha: float,
+    beta: float,
+    kicks: Any,
+    drifts: Any,
+    steps: int,
+    block: int,
+    longest: int,
+    columns: Any,
+    diagonal: Any,
+    norms: Any,
+) -> int:
+    """Steps with a frame made orthonormal again after every block; the block is halved where the frame is squeezed too much.
+
+    Returns the block to go on with.
+    """
+    m = len(diagonal)
+    rows, R = np.empty((m, 2 * (len(x) - 2))), np.zeros((m, m))
+    while steps > 0:
+        now = min(block, steps)
+        advance(x, p, dx, dp, alpha, beta, kicks, drifts, now)
+        least = orthonormalise(dx, dp, rows, R)
+        accumulate(R, columns, diagonal, norms)
+        steps -= now
+        if least < SHORTEN and block > 1:
+            block //= 2
+        elif least > LENGTHEN and now == block and 2 * block <= longest:
+            block *= 2
+    return block

@@ -1,0 +1,110 @@
+"""The verb gali: alignment indices of the orbit of a saved torus."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from symfpu.alignment_figures import draw_alignment
+from symfpu.bundle import load
+from symfpu.chain import decimal
+from symfpu.dynamics.alignment import SAMPLES, STEP, VECTORS, AlignmentIndices, alignment_indices
+from symfpu.errors import InputError
+from symfpu.report import fifteen_digits, output_folder
+from symfpu.verbs.terminal import JsonOption, app, print_json, progress_bar, whole
+
+
+@app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
+def gali(
+    file: Annotated[Path, typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE")],
+    time: Annotated[str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")],
+    vectors: Annotated[str, typer.Option(help="Number of deviation vectors: GALI_2 to GALI_M.", metavar="M")] = str(VECTORS),
+    step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(STEP),
+    samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(SAMPLES),
+    seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="Folder for gali.csv and the pictures.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Alignment indices of the orbit that starts on a torus, its Lyapunov exponent, and the dimension they show."""
+    torus = load(file).torus
+    if torus is None:
+        raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
+    folder = output_folder(output) if output else None
+    with progress_bar() as advance:
+        found = alignment_indices(
+            torus.chain,
+            [float(x) for x in torus.positions(0.0)],
+            [float(x) for x in torus.momenta(0.0)],
+            _number("time", time),
+            vectors=whole("vectors", vectors),
+            step=_number("step", step),
+            samples=whole("samples", samples),
+            seed=whole("seed", seed),
+            progress=advance,
+        )
+    if folder is not None:
+        _write_table(found, folder / "gali.csv")
+        draw_alignment(found, folder)
+    if as_json:
+        print_json(_record(found, torus.seeds))
+    else:
+        print("\n".join(_text(found, torus.seeds)))
+        if folder is not None:
+            print(f"written: {folder}: gali.csv, gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf")
+
+
+def _number(argument: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError as error:
+        raise InputError(argument, text, "a number", "write it as 1e6") from error
+
+
+def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
+    """The result for JSON; `dimension` is null for a chaotic orbit, and a best guess where the verdict is 'undecided'."""
+    dimension = found.dimension()
+    return {
+        "N": found.chain.N,
+        "alpha": decimal(found.chain.alpha),
+        "beta": decimal(found.chain.beta),
+        "seeds": list(seeds),
+        "time": fifteen_digits(float(found.times[-1])),
+        "step": fifteen_digits(found.step),
+        "slopes": {str(s.k): {"value": fifteen_digits(s.value), "error": fifteen_digits(s.error)} for s in found.slopes()},
+        "log10_gali": {str(k): fifteen_digits(float(g)) for k, g in enumerate(found.log10_gali[-1], start=2)},
+        "dimension": dimension.value,
+        "dimension_error": fifteen_digits(dimension.error),
+        "verdict": dimension.verdict,
+        "reason": dimension.reason,
+        "lyapunov": fifteen_digits(float(found.lyapunov[-1])),
+        "energy_error": fifteen_digits(found.energy_error),
+    }
+
+
+def _text(found: AlignmentIndices, seeds: tuple[int, ...]) -> list[str]:
+    """The same for a reader."""
+    dimension = found.dimension()
+    value = "none" if dimension.value is None else f"{dimension.value} +- {dimension.error:.1g}"
+    return [
+        f"verdict: {dimension.verdict}",
+        f"dimension          {value}   (the torus has the seeds {', '.join(map(str, seeds))})",
+        f"                   {dimension.reason}",
+        f"Lyapunov exponent  {found.lyapunov[-1]:.3g}   (log|v| / t at t = {found.times[-1]:.6g}; falls as log(t)/t on a torus)",
+        f"energy error       {found.energy_error:.2g}   (relative, at the end; steps of {found.step:g})",
+        *(
+            f"GALI_{s.k:<3} slope {s.value:8.3f} +- {s.error:.3f}   log10 at the end {g:.4g}"
+            for s, g in zip(found.slopes(), found.log10_gali[-1], strict=True)
+        ),
+    ]
+
+
+def _write_table(found: AlignmentIndices, path: Path) -> None:
+    """Time, log10 GALI_k and the Lyapunov estimate of every sample."""
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["t", *(f"log10 GALI_{k}" for k in range(2, found.vectors + 1)), "lyapunov"])
+        for t, values, exponent in zip(found.times, found.log10_gali, found.lyapunov, strict=True):
+            writer.writerow([repr(float(v)) for v in (t, *values, exponent)])

@@ -1,0 +1,85 @@
+"""Orbits: energy error against force evaluations beside DOP853, a long run, and the cost of a step by N. Measured, not asserted.
+
+Allowed on one core: 3 s for N = 32 to T = 1e6 with an energy error below 1e-10, 60 s for N = 512; a cost of a step linear in N up to 4096.
+"""
+
+import time
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from symfpu.amplitudes import solve_amplitudes
+from symfpu.chain import Chain
+from symfpu.dynamics.orbits import SCHEMES, integrate
+from symfpu.lindstedt import lindstedt
+from symfpu.paper import APPENDIX_F
+
+STEPS = {
+    "yoshida4": (0.02, 0.05, 0.1, 0.2),
+    "aba864": (0.05, 0.1, 0.2, 0.4),
+    "kahan_li8": (0.2, 0.4, 0.6),
+    "aba864_modes": (0.25, 0.5, 1.0, 1.4),
+}
+
+
+@pytest.fixture(scope="module")
+def four_torus():
+    """The 4-torus of Fig. 2, N = 32, as its initial conditions."""
+    case = APPENDIX_F[0]
+    torus = solve_amplitudes(lindstedt(case.chain, case.seeds, case.frequencies, 6))
+    return case.chain, torus.positions(0.0), torus.momenta(0.0)
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_energy_error_against_force_evaluations(name, four_torus, benchmark, record):
+    T = 1e4
+    integrate(*four_torus, 10.0, step=0.1, scheme=name)  # kernels
+    made = {}
+    benchmark.pedantic(lambda: made.update({h: integrate(*four_torus, T, step=h, scheme=name) for h in STEPS[name]}), rounds=1)
+    cases = (f"{SCHEMES[name].stages / h:.0f}: {orbit.energy_error:.1e} in {orbit.seconds:.3f} s" for h, orbit in made.items())
+    record(f"{name}, N = 32 to T = 1e4", note=f"force evaluations a unit of time: energy error; {'; '.join(cases)}")
+
+
+def test_dop853(four_torus, benchmark, record):
+    chain, Q, P = four_torus
+    n, T, cases = chain.N - 1, 1e3, []
+
+    def run():
+        for rtol in (1e-8, 1e-10, 1e-12):
+            start = time.perf_counter()
+            found = solve_ivp(
+                lambda t, y: np.append(y[n:], chain.accelerations(y[:n])), (0, T), np.append(Q, P), "DOP853", rtol=rtol, atol=1e-3 * rtol
+            )
+            error = abs(float(chain.energy(found.y[:n, -1], found.y[n:, -1]) / chain.energy(Q, P)) - 1)
+            cases.append(f"{found.nfev / T:.0f}: {error:.1e} in {time.perf_counter() - start:.2f} s")
+
+    benchmark.pedantic(run, rounds=1)
+    record("scipy DOP853, N = 32 to T = 1e3", note="; ".join(cases))
+
+
+@pytest.mark.parametrize(("name", "step"), [("kahan_li8", 0.5), ("aba864_modes", 1.4)])
+def test_the_long_run(name, step, four_torus, benchmark, record):
+    """Allowed 3 s with an energy error below 1e-10."""
+    integrate(*four_torus, 10.0, step=0.1, scheme=name)
+    orbit = benchmark.pedantic(integrate, (*four_torus, 1e6), {"step": step, "scheme": name}, rounds=3, iterations=1)
+    record(f"{name}, N = 32 to T = 1e6, step {step}", note=f"energy error {orbit.energy_error:.1e}")
+
+
+def test_the_long_run_of_a_long_chain(benchmark, record):
+    """Allowed 60 s; ten low modes of N = 512."""
+    chain = Chain(512, alpha="0.33")
+    Q = np.where(np.arange(511) < 10, 1.0, 0.0)
+    integrate(chain, Q, 0 * Q, 10.0, step=0.1)
+    orbit = benchmark.pedantic(integrate, (chain, Q, 0 * Q, 1e6), {"step": 0.5}, rounds=1, iterations=1)
+    record("kahan_li8, N = 512 to T = 1e6, step 0.5", note=f"energy error {orbit.energy_error:.1e}")
+
+
+@pytest.mark.parametrize("N", [32, 128, 512, 1024, 2048, 4096])
+def test_cost_of_a_step(N, benchmark, record):
+    chain, steps = Chain(N, alpha="0.33"), 2**21 // N
+    Q = 1e-3 * np.random.default_rng(1).normal(size=N - 1)
+    integrate(chain, Q, 0 * Q, 1.0, step=0.1)
+    orbit = benchmark.pedantic(integrate, (chain, Q, 0 * Q, 0.1 * steps), {"step": 0.1, "samples": 1}, rounds=5, iterations=1)
+    cost = benchmark.stats.stats.min / steps
+    record(f"kahan_li8, N = {N}, a step", note=f"{1e6 * cost:.2f} us, {1e9 * cost / N / orbit.scheme.stages:.2f} ns a particle and kick")

@@ -1,0 +1,179 @@
+"""Alignment indices: known tori, a chaotic orbit, and the same volumes in a hundred digits."""
+
+from functools import cache
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.amplitudes import solve_amplitudes
+from symfpu.chain import Chain
+from symfpu.dynamics.alignment import _expected, _random_frame, alignment_indices
+from symfpu.dynamics.tangent import tangent_steps
+from symfpu.errors import InputError, SymfpuError
+from symfpu.lindstedt import lindstedt
+from symfpu.refinement.tori import refine
+
+BETA, ALPHA = Chain(8, beta=1), Chain(8, alpha="0.5")
+
+# Slopes over the last decade and a half: waves around a power law, an order of magnitude below one.
+SLOPE = 0.25
+
+# Logarithms of volumes after a thousand blocks, each of whose factors is right to 1e-16 times a squeeze of 1e5 at most.
+SAME_VOLUME = 1e-8
+
+
+@cache
+def two_torus():
+    """Modes 2 and 5 of an alpha chain of eight bonds, exact to rounding; shifts of a part in 300."""
+    linear = ALPHA.frequencies()
+    frequencies = [repr(float(linear[q - 1]) - shift) for q, shift in ((2, 0.003), (5, 0.004))]
+    torus = refine(solve_amplitudes(lindstedt(ALPHA, (2, 5), frequencies, 6)))
+    return torus.positions(0.0), torus.momenta(0.0)
+
+
+@cache
+def found(name):
+    if name == "one mode":  # beta, mode N/2: it excites no other
+        return alignment_indices(BETA, [0, 0, 0, 0.3, 0, 0, 0], np.zeros(7), 1e5)
+    if name == "two modes":
+        return alignment_indices(ALPHA, *two_torus(), 1e5, vectors=14)
+    return alignment_indices(BETA, *chaotic_state(), 1e3)
+
+
+def chaotic_state():
+    random = np.random.default_rng(1)
+    return random.normal(size=7), random.normal(size=7)
+
+
+def test_a_periodic_orbit_has_dimension_one():
+    indices = found("one mode")
+    for k, slope in enumerate(indices.slopes(), start=2):
+        assert slope.k == k
+        assert slope.value == pytest.approx(1 - k, abs=SLOPE)
+        assert slope.error < SLOPE
+    dimension = indices.dimension()
+    assert (dimension.verdict, dimension.value) == ("regular, dimension 1", 1)
+    assert dimension.error < 0.1
+    assert sum(dimension.weights.values()) == pytest.approx(1)
+    assert "dimension 1" in repr(indices)
+
+
+def test_a_two_torus_has_dimension_two_and_all_fourteen_exponents():
+    """Constant for k = 2, then t^-(k-2) up to k = 12 = 2n - s, then t^-2(k-7)."""
+    indices = found("two modes")
+    exponents = [0, *(2 - k for k in range(3, 13)), -12, -14]
+    assert [s.value for s in indices.slopes()] == pytest.approx(exponents, abs=SLOPE)
+    assert (indices.dimension().verdict, indices.dimension().value) == ("regular, dimension 2", 2)
+    assert np.all(np.diff(indices.log10_gali, axis=1) <= 0)
+    assert indices.energy_error < 1e-5
+
+
+def test_the_exponents_are_those_of_the_theory():
+    """Skokos, Bountis, Antonopoulos 2008: t^0, t^-(k-s), t^-2(k-n), summed from the differences."""
+    n = 7
+    for s in range(1, n + 1):
+        sums = np.cumsum(_expected(s, n, 2 * n))
+        theory = [0 if k <= s else s - k if k <= 2 * n - s else -2 * (k - n) for k in range(2, 2 * n + 1)]
+        assert sums.tolist() == theory
+
+
+def test_a_chaotic_orbit_decays_exponentially():
+    """log GALI_k falls with t, not log t; the Lyapunov exponent settles at a positive value; vectors of another seed find it too."""
+    indices = found("chaotic")
+    late = indices.times > 100
+    for values in indices.log10_gali[:, 1:].T:
+        straight, bent = (np.corrcoef(x[late], values[late])[0, 1] for x in (indices.times, np.log(indices.times)))
+        assert straight < -0.98
+        assert straight < bent
+    assert indices.log10_gali[-1, -1] < -100
+    assert 0.05 < indices.lyapunov[-1] < 0.2
+    assert indices.dimension().verdict == "chaotic"
+    other = alignment_indices(BETA, *chaotic_state(), 1e3, seed=5)
+    assert other.lyapunov[-1] == pytest.approx(indices.lyapunov[-1], abs=0.01)
+    regular = found("one mode")
+    assert regular.lyapunov[-1] == pytest.approx(np.log(1e5) / 1e5, rel=0.5)
+
+
+def test_nothing_is_concluded_before_vectors_have_grown():
+    """Before the twist shows indices are constant on every torus; the dimension is not 'two or more'."""
+    indices = alignment_indices(BETA, [0, 0, 0, 0.01, 0, 0, 0], np.zeros(7), 2e3)
+    assert indices.dimension().verdict == "undecided"
+    assert "longer" in indices.dimension().reason
+
+
+def test_volumes_agree_with_a_hundred_digits_where_doubles_underflow_their_accuracy():
+    """The maps of single blocks, multiplied and made into volumes in 100 digits: GALI_9 is 1e-38, beyond any double Gram matrix.
+
+    The time is so short that rounding in the orbit grows by e^10 only.
+    """
+    T, step, steps, vectors = 104.0, 0.25, 16, 9
+    indices = alignment_indices(BETA, *chaotic_state(), T, step=step, samples=64, vectors=vectors)
+    eye, (Q, P) = np.eye(14), chaotic_state()
+    with mpmath.workdps(100):
+        V = mpmath.matrix(np.hstack(_random_frame(vectors, 7, 0)).T.tolist())
+        for _ in range(round(T / step) // steps):
+            Q, P, dQ, dP = tangent_steps(BETA, Q, P, eye[:, :7], eye[:, 7:], step, steps)
+            V = mpmath.matrix(np.hstack([dQ, dP]).T.tolist()) * V
+        for j in range(vectors):
+            length = mpmath.norm(V[:, j])
+            V[:, j] = V[:, j] / length
+        volumes = [mpmath.log10(mpmath.det(V[:, :k].T * V[:, :k])) / 2 for k in range(2, vectors + 1)]
+    assert indices.times[-1] == T
+    assert volumes[-1] < -35
+    assert indices.log10_gali[-1] == pytest.approx([float(v) for v in volumes], abs=SAME_VOLUME)
+
+
+@pytest.mark.parametrize("block", [1, 7, 40])
+def test_the_length_of_blocks_does_not_matter(block):
+    arguments = (BETA, *chaotic_state(), 100.0)
+    one, other = (alignment_indices(*arguments, samples=64, block=b) for b in (16, block))
+    assert other.log10_gali == pytest.approx(one.log10_gali, abs=SAME_VOLUME)
+    assert other.lyapunov == pytest.approx(one.lyapunov, abs=SAME_VOLUME)
+
+
+def test_times_are_whole_steps_even_in_the_logarithm():
+    indices = found("chaotic")
+    assert indices.times / indices.step == pytest.approx(np.round(indices.times / indices.step), abs=1e-9)
+    assert (indices.times[0], indices.times[-1]) == (1.0, 1000.0)
+    late = np.diff(np.log(indices.times[indices.times > 300]))
+    assert late == pytest.approx(late.mean(), rel=0.1)
+
+
+def test_progress_is_told():
+    told = []
+    alignment_indices(BETA, *chaotic_state(), 100.0, samples=64, progress=lambda label, done: told.append(done))
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+
+
+def test_an_orbit_over_the_barrier_of_the_alpha_model_is_lost():
+    with pytest.raises(SymfpuError, match="the orbit is lost before t = "):
+        alignment_indices(Chain(8, alpha=1), [3.0] * 7, [0.0] * 7, 1000.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"T": 10.0}, "T"),
+        ({"T": np.inf}, "T"),
+        ({"T": "100"}, "T"),
+        ({"vectors": 1}, "vectors"),
+        ({"vectors": 15}, "vectors"),
+        ({"step": 0.0}, "step"),
+        ({"samples": 10}, "samples"),
+        ({"seed": -1}, "seed"),
+        ({"block": 0}, "block"),
+        ({"Q": [0.0] * 7}, "Q, P"),
+        ({"Q": [0.1] * 6}, "Q"),
+    ],
+)
+def test_bad_input_is_refused(changes, name):
+    arguments = {"Q": [0.1] * 7, "P": [0.0] * 7, "T": 100.0} | changes
+    with pytest.raises(InputError, match=rf"^{name} = "):
+        alignment_indices(BETA, **arguments)
+
+
+def test_bad_decades_are_refused():
+    with pytest.raises(InputError, match=r"^decades = "):
+        found("chaotic").slopes(0)
