@@ -161,7 +161,7 @@ def test_the_singularity_of_a_binomial_series_is_found(end, exponent):
     """(1 - x / x_c)^g has the ratios (1 - (1 + g) / k) / x_c exactly."""
 
     class Binomial:
-        chain, order = FIG9_BREATHER.chain, 240
+        chain, order, digits = FIG9_BREATHER.chain, 240, 30
 
         def frequency_terms(self, squares):
             terms = np.zeros((self.order + 1, 1))
