@@ -76,7 +76,7 @@ def _convergence(folder: Path, step: Step) -> Page:
     write_convergence_csv(*questions, folder)
     step("convergence: pictures")
     draw_convergence(*questions, folder)
-    return Page(convergence_record(*questions), convergence_markdown(*questions), "convergence-a..d")
+    return Page(convergence_record(*questions), convergence_markdown(*questions), "convergence-a..e")
 
 
 FULL: dict[str, Callable[[Path, Step], Page]] = {"table": partial(_table, full=True)}  # with rows that take many minutes

@@ -80,6 +80,8 @@ def _written(rows):
     ax.loglog(N, [r[1] for r in rows], "o-", label="orbit (harmonic balance, Newton)")
     ax.loglog(N, [r[2] for r in rows], "s-", label="Floquet multipliers")
     ax.loglog(N, [rows[-1][1] * (n / N[-1]) ** 3 for n in N], "k:", lw=0.8, label=r"$N^3$")
+    ax.set_xticks(N, [str(n) for n in N])
+    ax.minorticks_off()
     ax.set_xlabel(r"$N$")
     ax.set_ylabel("seconds")
     ax.legend()
