@@ -28,7 +28,9 @@ TOLERANCES = (1e-10, 1e-13)  # of two refinements with different harmonics: the 
 GUESS_ORDER = 8  # of the series from which Newton's method starts
 MOST_DIGITS, FEW_DIGITS = 12, 8  # shown of an amplitude, at most and where only the first refinement succeeds
 LIMIT = 420.0  # seconds for the refinement of one row, looked at between the steps of Newton's method
-HEAVY = ("Fig. 5d",)  # rows that take many minutes: with --full only
+HEAVY: dict[str, tuple[tuple[float, ...], int]] = {  # rows that take minutes, with --full only: their own tolerances and guess order
+    "Fig. 5d": ((1e-9, 1e-11), 4),
+}
 FLOOR = 1e-12  # relative error of coefficients that doubles may leave: below it a series has arrived
 ARRIVED = 10.0  # times the least error below FLOOR: the first order within has arrived
 LEVEL, GROWN = 1.02, 2.0  # times the least error: no longer falling from the first order within, and growing again
@@ -179,8 +181,9 @@ def _refined(printed: PrintedTorus, tell: Step) -> tuple[RefinedTorus | None, in
     found: list[RefinedTorus] = []
     failed = ""
     try:
-        guess = _guess(printed, report)
-        for tolerance in TOLERANCES:
+        tolerances, order = HEAVY.get(printed.label, (TOLERANCES, GUESS_ORDER))
+        guess = _guess(printed, order, report)
+        for tolerance in tolerances:
             torus = refine(found[-1] if found else guess, tolerance=tolerance, report=report)
             failed = "; ".join(torus.warnings)
             if failed:
@@ -197,7 +200,7 @@ def _refined(printed: PrintedTorus, tell: Step) -> tuple[RefinedTorus | None, in
     return last, min(MOST_DIGITS, int(-np.log10(max(change, 1e-15)))), ""
 
 
-def _guess(printed: PrintedTorus, tell: Step) -> QuasiPeriodic:
+def _guess(printed: PrintedTorus, order: int, tell: Step) -> QuasiPeriodic:
     """Where Newton's method starts: a short series, or for one seed the periodic orbit, which needs none."""
     chain, seeds = printed.chain, printed.seeds
     if len(seeds) == 1:
@@ -206,7 +209,7 @@ def _guess(printed: PrintedTorus, tell: Step) -> QuasiPeriodic:
         nu = np.arange(len(orbit.cosines), dtype=np.int64)[:, None]
         return FourierTorus(chain, seeds, (orbit.frequency,), nu, orbit.cosines, {seeds[0]: 0.0})
     tell("short series")
-    return solve_amplitudes(lindstedt(chain, seeds, printed.frequencies, min(GUESS_ORDER, printed.order)))
+    return solve_amplitudes(lindstedt(chain, seeds, printed.frequencies, min(order, printed.order)))
 
 
 class _Comparison:

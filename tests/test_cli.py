@@ -283,7 +283,7 @@ def small_rows(monkeypatch):
     """Two cheap rows in place of the paper's nine: one that is met at order 22, and a breather that is met nowhere; the first is
     one of those that only --full refines."""
     monkeypatch.setattr("symfpu.reproduction.APPENDIX_F", tuple(row for row in APPENDIX_F if row.label == "Fig. 8"))
-    monkeypatch.setattr("symfpu.corrected.HEAVY", ("Fig. 1",))
+    monkeypatch.setattr("symfpu.corrected.HEAVY", {"Fig. 1": ((1e-8, 1e-9), 4)})
 
 
 def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
@@ -327,7 +327,8 @@ def test_reproduce_fig1_writes_pictures_and_data(capsys, tmp_path):
 
 def test_reproduce_table_meets_five_rows_to_ten_digits(capsys, monkeypatch, tmp_path):
     """The whole table; exact tori of a breather alone, the others take minutes."""
-    monkeypatch.setattr("symfpu.corrected.HEAVY", tuple(row.label for row in (TWO_TORUS, *APPENDIX_F) if row.label != "Fig. 7"))
+    left_out = {row.label: ((1e-9, 1e-11), 4) for row in (TWO_TORUS, *APPENDIX_F) if row.label != "Fig. 7"}
+    monkeypatch.setattr("symfpu.corrected.HEAVY", left_out)
     code, out, err = run(capsys, "reproduce", "table", "-o", str(tmp_path), "--json")
     rows = {row["label"]: row for row in json.loads(out)["table"]}
     assert (code, err) == (0, "")

@@ -48,7 +48,21 @@ class Motion:
         """Moves one orbit."""
         from symfpu.dynamics.orbit_loops import move_modes, move_particles  # lazy: numba takes longer to import than all the rest
 
-        rates = (*self.couplings, steps, self.entry, self.kicks, self.drifts)
+        loop: Any = move_modes if self.scheme.in_modes else move_particles
+        return int(loop(*self._arguments(row, bounds, steps)))
+
+    def look(self, state: Floats, looks: int, stride: int, each: Callable[..., Any]) -> tuple[list[int], Floats, Floats]:
+        """Moves all orbits and looks at them every `stride` steps: steps done, and the Q and P seen, shapes (M, looks, N-1)."""
+        from symfpu.dynamics.orbit_loops import look_at_modes, look_at_particles
+
+        loop: Any = look_at_modes if self.scheme.in_modes else look_at_particles
+        seen = np.zeros((len(state), looks, *state.shape[1:]))
+        done = list(each(lambda row, bounds, rows: int(loop(*self._arguments(row, bounds, stride), rows)), state, self.bounds, seen))
+        Q, P = self.modes(seen.reshape(-1, *state.shape[1:]))
+        return done, Q.reshape(len(state), looks, -1), P.reshape(len(state), looks, -1)
+
+    def _arguments(self, row: Floats, bounds: Floats, steps: int) -> tuple[Any, ...]:
+        rates = (row[0], row[1], *self.couplings, steps, self.entry, self.kicks, self.drifts)
         if self.scheme.in_modes:
-            return int(move_modes(row[0], row[1], *rates, self.Omega, 0.5 * float(np.max(np.abs(bounds))) ** 2))
-        return int(move_particles(row[0], row[1], *rates, bounds[0], bounds[1]))
+            return (*rates, self.Omega, 0.5 * float(np.max(np.abs(bounds))) ** 2)
+        return (*rates, bounds[0], bounds[1])

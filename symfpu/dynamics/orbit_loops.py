@@ -53,6 +53,20 @@ def move_particles(
 
 
 @_compiled
+def look_at_particles(
+    x: Any, p: Any, alpha: float, beta: float, stride: int, entry: float, kicks: Any, drifts: Any, least: float, most: float, seen: Any
+) -> int:
+    """Moves as many times as `seen`, shape (looks, 2, N+1), has rows, by `stride` steps, and copies the state there each time."""
+    for i in range(seen.shape[0]):
+        done = move_particles(x, p, alpha, beta, stride, entry, kicks, drifts, least, most)
+        seen[i, 0] = x
+        seen[i, 1] = p
+        if done < stride:
+            return int(i * stride + done)
+    return int(seen.shape[0] * stride)
+
+
+@_compiled
 def _product(first: Any, wide: Any, out: Any) -> None:
     """Coefficients of the product of two cosine polynomials sum_k a_k e^(ik theta), a_-k = a_k, at the N bonds, where
     e^(2iN theta) = -1: first[k], k = 0 .. N-1, a_0 = 0, and the other one extended, wide[k + N] = b_k for k = -N .. 2N.
@@ -128,3 +142,17 @@ def move_modes(
             break
     _rotate(v, w, -halves[stages], -sines[stages])
     return done
+
+
+@_compiled
+def look_at_modes(
+    v: Any, w: Any, alpha: float, beta: float, stride: int, entry: float, kicks: Any, drifts: Any, Omega: Any, most: float, seen: Any
+) -> int:
+    """The same for modes; seen (looks, 2, N)."""
+    for i in range(seen.shape[0]):
+        done = move_modes(v, w, alpha, beta, stride, entry, kicks, drifts, Omega, most)
+        seen[i, 0] = v
+        seen[i, 1] = w
+        if done < stride:
+            return int(i * stride + done)
+    return int(seen.shape[0] * stride)

@@ -19,6 +19,7 @@ from symfpu.archive import BundleError
 from symfpu.chain import Chain, decimal
 from symfpu.dynamics.aba864 import ABA864
 from symfpu.dynamics.aba864_modes import ABA864_MODES
+from symfpu.dynamics.averages import LOOKS, RunningAverages, steps_between_looks
 from symfpu.dynamics.checkpoint import ADVICE, checkpoint_path, digest, read_checkpoint, write_checkpoint
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
 from symfpu.dynamics.motion import Motion
@@ -40,7 +41,8 @@ WHOLE = 1e-9  # of a step: a time that is a multiple of the step but for roundin
 @dataclass(frozen=True, eq=False)
 class Orbit:
     """An orbit, or several, at sampled times. times (S,), multiples of the step, from 0. Q, P : mode coordinates and momenta, shape
-    (S, ..., N-1). energies : total energy H, shape (S, ...). seconds : of this run, without what a checkpoint brought."""
+    (S, ..., N-1). energies : total energy H, shape (S, ...). averages : time averages of the E_q from 0 to each sample, shape
+    (S, ..., N-1), if asked for. seconds : of this run, without what a checkpoint brought."""
 
     chain: Chain
     scheme: Scheme
@@ -49,6 +51,7 @@ class Orbit:
     Q: Floats = field(repr=False)
     P: Floats = field(repr=False)
     energies: Floats = field(repr=False)
+    averages: Floats | None = field(repr=False, default=None)
     seconds: float = field(repr=False, default=0.0)
 
     def __repr__(self) -> str:
@@ -78,6 +81,7 @@ def integrate(
     step: float,
     scheme: str = "kahan_li8",
     samples: int | ArrayLike = 200,
+    averages: bool = False,
     file: str | PathLike[str] | None = None,
     every: float = 10.0,
     workers: int = 1,
@@ -87,7 +91,8 @@ def integrate(
 
     Q, P : shapes (..., N-1), many orbits at once. T : a time, negative for the past. step : its length is cut to a whole number of steps.
     scheme : kahan_li8, yoshida4, aba864 (T + V), aba864_modes (harmonic + anharmonic). samples : about how many, log-spaced from one step
-    to T with 0 before them; or times between 0 and T, each moved to the nearest step. file : written every so many seconds and at the
+    to T with 0 before them; or times between 0 and T, each moved to the nearest step. averages : of E_q, by the trapezoid rule over looks
+    at every LOOK time units, or every step if longer; samples are then moved to looks. file : written every so many seconds and at the
     end, whole or not at all; with the same arguments a killed run goes on from it and ends in the same bits. workers : threads, among
     which orbits are shared out. progress : called as (steps done, steps).
 
@@ -99,8 +104,13 @@ def integrate(
     """
     Q, P, T, step = _start(chain, Q, P, T, step)
     found, workers = _scheme(scheme), integer(workers, "workers", 1)
-    steps = _whole_steps(T, step)
-    run = _Run(chain, found, T, steps, _sample_steps(T, steps, samples), Q, P)
+    if not isinstance(averages, bool):
+        raise InputError("averages", averages, "True or False", "leave it out")
+    stride = steps_between_looks(step) if averages else 1
+    looks = _whole_steps(T, step * stride)
+    run = _Run(chain, found, T, looks * stride, stride * _sample_steps(T, looks, samples), Q, P)
+    if averages:
+        run.take_averages(stride)
     if isinstance(every, bool) or not isinstance(every, Real) or not float(every) >= 0:
         raise InputError("every", every, "seconds, 0 or more", "leave it out")
     if file is not None:
@@ -119,7 +129,7 @@ class _Run:
         Q, P = Q.reshape(-1, chain.N - 1), P.reshape(-1, chain.N - 1)
         self.orbits, self.done, self.begun = len(Q), 0, time.perf_counter()
         self.path: Path | None = None
-        self.every = math.inf
+        self.every, self.stride = math.inf, 0
         energies = np.asarray(chain.energy(Q, P))
         for energy in energies:
             require_stable(chain, scheme, self.step, float(energy))
@@ -136,6 +146,12 @@ class _Run:
         if outside.any():
             self._stop(int(np.argmax(outside)), 0, escaped=True)
 
+    def take_averages(self, stride: int) -> None:
+        """Looks at the orbits every so many steps."""
+        self.stride, self.running = stride, RunningAverages(self.chain, self.Q[0], self.P[0])
+        self.averages = np.zeros_like(self.Q)
+        self.averages[0] = self.running.start
+
     def keep_in(self, path: Path, every: float) -> None:
         """Goes on from the file, if there is one."""
         self.path, self.every = path, every
@@ -148,6 +164,7 @@ class _Run:
             "step": repr(self.step),
             "steps": self.steps,
             "shape": list(self.shape),
+            "steps between looks": self.stride,
             "sampled steps": digest(self.sampled),
             "start": digest(np.stack([self.Q[0], self.P[0]])),
         }
@@ -155,16 +172,26 @@ class _Run:
         if kept is not None:
             self.done, arrays = kept
             known = int(np.searchsorted(self.sampled, self.done, side="right"))
-            due = {"Q": self.Q[:known].shape, "P": self.P[:known].shape, "state": self.state.shape}
+            due = {name: values.shape for name, values in self._kept(known).items()}
             if {name: values.shape for name, values in arrays.items()} != due or self.done > self.steps:
                 raise BundleError(path, "is damaged (its arrays are not those of its parameters)", ADVICE)
-            self.Q[:known], self.P[:known], self.state = arrays["Q"], arrays["P"], arrays["state"]
+            for name, values in self._kept(known).items():
+                values[...] = arrays[name]
+            if self.stride:
+                self.running.looks = self.done // self.stride
+
+    def _kept(self, known: int) -> dict[str, Floats]:
+        """What a checkpoint holds after so many samples, as views of it."""
+        kept = {"Q": self.Q[:known], "P": self.P[:known], "state": self.state}
+        return kept | {"averages": self.averages[:known], "total": self.running.total} if self.stride else kept
 
     def _ends(self) -> Iterator[int]:
         """Where loops end: at samples and after blocks of steps that depend on the chain and the scheme alone, so that an interrupted run
         rounds like one that was not."""
         size = self.chain.N if not self.scheme.in_modes else self.chain.N**2 * (2 if self.chain.beta else 1)
         block = max(1, BLOCK // (size * self.scheme.stages))
+        if self.stride:
+            block = self.stride * min(LOOKS, max(1, block // self.stride))
         while self.done < self.steps:
             following = int(self.sampled[np.searchsorted(self.sampled, self.done, side="right")])
             yield min(following, (self.done // block + 1) * block)
@@ -173,7 +200,7 @@ class _Run:
         saved = time.perf_counter()
         for end in self._ends():
             before = self.state.copy()
-            done = self.motion.advance(self.state, end - self.done, each)
+            done = self._moved(end - self.done, each)
             inside = np.isfinite(self.state).all(axis=(1, 2)) & (np.array(done) == end - self.done)
             if not inside.all():
                 self._stopped_in_block(before, int(np.argmin(np.where(inside, self.steps, done))), done)
@@ -181,11 +208,22 @@ class _Run:
             place = int(np.searchsorted(self.sampled, end))
             if self.sampled[place] == end:
                 self.Q[place], self.P[place] = self.motion.modes(self.state)
+                if self.stride:
+                    self.averages[place] = self.running.now()
             if self.path is not None and (end == self.steps or time.perf_counter() - saved >= self.every):
                 known = int(np.searchsorted(self.sampled, end, side="right"))
-                write_checkpoint(self.path, self.parameters, end, {"Q": self.Q[:known], "P": self.P[:known], "state": self.state})
+                write_checkpoint(self.path, self.parameters, end, self._kept(known))
                 saved = time.perf_counter()
             progress(end, self.steps)
+
+    def _moved(self, steps: int, each: Callable[..., Any]) -> list[int]:
+        """The steps done by each orbit."""
+        if not self.stride:
+            return self.motion.advance(self.state, steps, each)
+        done, Q, P = self.motion.look(self.state, steps // self.stride, self.stride, each)
+        if min(done) == steps:
+            self.running.add(Q, P)
+        return done
 
     def _stopped_in_block(self, before: Floats, row: int, done: list[int]) -> None:
         """Goes to the last step at which all was well, where the numbers are finite, and raises."""
@@ -209,7 +247,8 @@ class _Run:
         Q, P = (part.reshape(len(self.sampled), *self.shape) for part in (self.Q, self.P))
         energies = np.asarray(self.chain.energy(Q, P))
         times = np.asarray(self.T * (self.sampled / self.steps), dtype=np.float64)
-        return Orbit(self.chain, self.scheme, self.step, times, Q, P, energies, time.perf_counter() - self.begun)
+        averages = self.averages.reshape(Q.shape) if self.stride else None
+        return Orbit(self.chain, self.scheme, self.step, times, Q, P, energies, averages, time.perf_counter() - self.begun)
 
 
 def _start(chain: Chain, Q: ArrayLike, P: ArrayLike, T: float, step: float) -> tuple[Floats, Floats, float, float]:
