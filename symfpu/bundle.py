@@ -29,6 +29,7 @@ from symfpu.archive import FORMAT, SCHEMA, Archive, BundleError, Json, digest_of
 from symfpu.arithmetic import text
 from symfpu.chain import Chain
 from symfpu.divisors import SmallDivisor
+from symfpu.dynamics.checkpoint import KINDS
 from symfpu.errors import InputError
 from symfpu.exact import integer, seed_modes
 from symfpu.exact_text import ExpressionNodes, expressions_of, fraction, fraction_text, number, number_entry
@@ -363,6 +364,9 @@ def _test_vectors(torus: QuasiPeriodic) -> list[OrbitPoint]:
 
 def _bundle(path: Path, archive: Archive) -> Bundle:
     body = archive.body
+    if body.get("kind") in KINDS:
+        kind = KINDS[body["kind"]]
+        raise BundleError(path, f"is a checkpoint of {kind.of}, which holds no torus", f"go on from it with {kind.resume}")
     series = None if body["series"] is None else _series(archive, body["series"])
     torus: QTorus | RefinedTorus | None = None
     if series is None:

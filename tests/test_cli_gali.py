@@ -55,6 +55,33 @@ def test_a_folder_gets_the_table_and_the_pictures(capsys, kept, tmp_path):
     assert all(len(row) == 8 for row in rows)
 
 
+def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, kept, tmp_path):
+    words = ("gali", str(kept), "--samples", "64", "--vectors", "3", "--checkpoint", str(tmp_path / "run"), "--json")
+    first, second = (run(capsys, *words, "--time", "200") for _ in range(2))
+    assert first == second
+    assert first[0] == 0
+    begun = (tmp_path / "run").stat().st_mtime_ns
+    code, out, err = run(capsys, *words, "--time", "300")
+    assert (code, out) == (2, "")
+    assert "a checkpoint of the same alignment indices (steps is 500 in it, 750 here)" in err
+    assert (tmp_path / "run").stat().st_mtime_ns == begun
+    code, out, err = run(capsys, "gali", str(tmp_path / "run"), "--time", "200")
+    assert (code, out) == (1, "")
+    assert "is a checkpoint of alignment indices" in err
+
+
+def test_an_estimate_grows_with_the_time_and_computes_nothing(capsys, kept, tmp_path):
+    words = ("gali", str(kept), "--estimate", "-o", str(tmp_path / "out"))
+    code, out, err = run(capsys, *words, "--time", "1e11")
+    assert (code, err) == (0, "")
+    assert out.startswith("about ")
+    assert "hours" in out
+    short, long = (json.loads(run(capsys, *words, "--json", "--time", time)[1])["seconds"] for time in ("1e6", "1e9"))
+    assert long / short == pytest.approx(1000, rel=0.9)
+    assert not (tmp_path / "out").exists()
+    assert run(capsys, *words, "--time", "5")[0] == 2
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

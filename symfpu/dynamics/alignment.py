@@ -9,25 +9,26 @@ on a chaotic orbit as exp(-t sum_{j<=k} (chi_1 - chi_j)). Logarithms are to base
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from numbers import Real
+from os import PathLike
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import Chain
-from symfpu.dynamics.tangent import MovingFrame, moving_frame, step_length
-from symfpu.errors import InputError, SymfpuError
+from symfpu.dynamics.checkpoint import checkpoint_path, seconds_between
+from symfpu.dynamics.frame_run import FrameRun, Progress, seconds_a_step
+from symfpu.dynamics.tangent import moving_frame, step_length
+from symfpu.errors import InputError
 from symfpu.exact import integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Progress = Callable[[str, float], None]
 
-STEP, SAMPLES, VECTORS, BLOCK = 0.25, 400, 7, 64
+STEP, SAMPLES, VECTORS, BLOCK = 0.4, 400, 7, 40
 MOST_VECTORS = 64
-PORTION = 200_000  # steps between two reports of progress
 DECADES = 1.5  # of time, the last ones, in which slopes are fitted
 PARTS = 8  # of that range, left out one at a time for the uncertainty of a slope
 FEWEST = 4 * PARTS  # samples in it
@@ -37,14 +38,6 @@ FLOOR = 0.1  # least uncertainty of a slope in the choice of a dimension: transi
 ODD = 1 / 3  # a slope so far from every integer it should be decides nothing
 SURE = 0.95  # weight of a dimension that is called decided
 CHAOTIC_GROWTH = 3.0  # d log |v| / d log t: 1 on a torus, lambda t on a chaotic orbit
-
-
-class OrbitLost(SymfpuError):
-    """An orbit that went to infinity, as orbits of the alpha model over its barrier do, or a step too long."""
-
-    def __init__(self, time: float, step: float) -> None:
-        self.time, self.step = time, step
-        super().__init__(f"the orbit is lost before t = {time:.6g} with steps of {step:g}; take less energy or a shorter step")
 
 
 @dataclass(frozen=True)
@@ -179,16 +172,19 @@ def alignment_indices(
     samples: int = SAMPLES,
     seed: int = 0,
     block: int = BLOCK,
+    file: str | PathLike[str] | None = None,
+    every: float = 10.0,
     progress: Progress | None = None,
 ) -> AlignmentIndices:
     """GALI_2 .. GALI_vectors of the orbit of a state up to time T, and its maximal Lyapunov exponent.
 
-    Q, P : the state, (N-1,). vectors : 2 to 2(N-1), orthonormal at random at t = 0, by `seed`. step : of the integrator, ABA864 on
-    T + V. Its orbit lies on tori of the integrator, off those of the chain by a part step^4: near a torus of low dimension it shows
+    Q, P : the state, (N-1,). vectors : 2 to 2(N-1), orthonormal at random at t = 0, by `seed`. step : of the integrator, Blanes-Moan 6
+    on T + V. Its orbit lies on tori of the integrator, off those of the chain by a part step^6: near a torus of low dimension it shows
     this dimension up to some time only, a longer one with a shorter step; the energy error is in the result. samples : times, even
     in log t from 1 to T; each is a whole number of steps. block : the most steps between two orthonormalisations, halved where the
-    frame is squeezed.
-    progress : called as (label, fraction done). Raises InputError, OrbitLost.
+    frame is squeezed. file : written every so many seconds and at the end, whole or not at all; with the same arguments a killed run goes
+    on from it and ends in the same bits; another T has other samples and is another run. progress : called as (label, fraction done).
+    Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint; OrbitLost.
 
     Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they are, vectors give GALI down to about
     1e-16 for a direction, and an upper bound after that. So a frame is evolved instead: M_i B_(i-1) = B_i R_i, a QR factorisation
@@ -199,23 +195,46 @@ def alignment_indices(
     R e_j are propagated as unit vectors with their lengths in logarithms; a column loses entries below 1e-300 of its length, which
     do not count for its length. Each block's R_jj is right to EPS times the squeeze of the frame in one block, kept above 1e-5.
     """
-    n = chain.N - 1
-    count = integer(vectors, "vectors", 2)
-    if count > min(2 * n, MOST_VECTORS):
-        raise InputError("vectors", count, f"2 to {min(2 * n, MOST_VECTORS)}", "the phase space holds no more")
-    h = abs(step_length(step))
-    if isinstance(T, bool) or not isinstance(T, Real) or not SHORTEST * max(1.0, h) <= float(T) < math.inf:
-        raise InputError("T", T, f"a finite time from {SHORTEST * max(1.0, h):g} up", "slopes need two decades of time")
+    n, h = chain.N - 1, abs(step_length(step))
+    count, last = _vectors(n, vectors), _steps(T, h)
     longest = integer(block, "block", 1)
-    marks = _marks(float(T), h, integer(samples, "samples", FEWEST_SAMPLES))
+    marks = _marks(last, h, integer(samples, "samples", FEWEST_SAMPLES))
     frame = moving_frame(chain, Q, P, *_random_frame(count, n, integer(seed, "seed", 0)), h)
     if not np.any(frame.x) and not np.any(frame.p):
         raise InputError("Q, P", 0.0, "a state other than the equilibrium", "start from an orbit")
     before = float(chain.energy(*frame.orbit()))
-    volumes, growth = _followed(frame, marks, longest, progress or (lambda label, done: None))
-    times = marks * h
+    run = FrameRun(frame, marks, h, longest, seconds_between(every))
+    if file is not None:
+        run.keep_in(checkpoint_path(file))
+    run.go(progress or (lambda label, done: None))
+    times, volumes = np.asarray(marks * h, dtype=np.float64), np.cumsum(run.volumes, axis=1)[:, 1:] / math.log(10)
     error = abs(float(chain.energy(*frame.orbit())) - before) / abs(before)
-    return AlignmentIndices(chain, times, np.cumsum(volumes, axis=1)[:, 1:] / math.log(10), growth / times, h, error)
+    return AlignmentIndices(chain, times, volumes, run.growth / times, h, error)
+
+
+def seconds_needed(chain: Chain, T: float, *, vectors: int = VECTORS, step: float = STEP) -> float:
+    """Processor time in seconds that `alignment_indices` of such a chain will take, from a trial of a fraction of a second.
+
+    The trial is a small oscillation: an orbit so chaotic that it squeezes the frame within BLOCK steps takes longer. Raises InputError.
+    """
+    n, h = chain.N - 1, abs(step_length(step))
+    count, last = _vectors(n, vectors), _steps(T, h)
+    small = np.where(np.arange(n) == 0, 1e-3, 0.0)
+    return last * seconds_a_step(moving_frame(chain, small, small, *_random_frame(count, n, 0), h), BLOCK)
+
+
+def _vectors(n: int, vectors: int) -> int:
+    count = integer(vectors, "vectors", 2)
+    if count > min(2 * n, MOST_VECTORS):
+        raise InputError("vectors", count, f"2 to {min(2 * n, MOST_VECTORS)}", "the phase space holds no more")
+    return count
+
+
+def _steps(T: float, h: float) -> int:
+    """Steps to T, the last one perhaps beyond it."""
+    if isinstance(T, bool) or not isinstance(T, Real) or not SHORTEST * max(1.0, h) <= float(T) < math.inf:
+        raise InputError("T", T, f"a finite time from {SHORTEST * max(1.0, h):g} up", "slopes need two decades of time")
+    return math.ceil(float(T) / h - 1e-9)
 
 
 def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
@@ -224,28 +243,7 @@ def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
     return rows[:, :n], rows[:, n:]
 
 
-def _marks(T: float, h: float, samples: int) -> Ints:
+def _marks(last: int, h: float, samples: int) -> Ints:
     """Numbers of steps at which there are samples."""
-    last = math.ceil(T / h - 1e-9)
     found: Ints = np.unique(np.geomspace(max(1.0, 1 / h), last, samples).round().astype(np.int64))
     return found
-
-
-def _followed(frame: MovingFrame, marks: Ints, longest: int, tell: Progress) -> tuple[Floats, Floats]:
-    """log(R_jj / |R e_j|) at every mark, (S, vectors), and log R_11, (S,), natural."""
-    from symfpu.dynamics.tangent_loops import carry_frame
-
-    m, block, done = frame.vectors, longest, 0
-    columns, diagonal, norms = np.eye(m), np.zeros(m), np.zeros(m)
-    volumes, growth = np.empty((len(marks), m)), np.empty(len(marks))
-    state = (frame.x, frame.p, frame.dx, frame.dp, *frame.couplings, frame.kicks, frame.drifts)
-    for i, mark in enumerate(marks):
-        while done < mark:
-            steps = min(PORTION, int(mark) - done)
-            block = carry_frame(*state, steps, block, longest, columns, diagonal, norms)
-            done += steps
-            if not np.isfinite(norms).all():
-                raise OrbitLost(float(mark * frame.drifts.sum()), float(frame.drifts.sum()))
-            tell(f"t = {done * frame.drifts.sum():.3g}", done / int(marks[-1]))
-        volumes[i], growth[i] = diagonal - norms, diagonal[0]
-    return volumes, growth

@@ -1,11 +1,12 @@
-"""An unfinished or finished orbit on disk: one archive, replaced whole, read without trust and only for the same parameters."""
+"""A long run on disk, unfinished or finished: one archive, replaced whole, read without trust and only for the same parameters."""
 
 from __future__ import annotations
 
 import hashlib
 import os
+from numbers import Real
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +17,20 @@ from symfpu.exact import integer
 
 Floats = NDArray[np.float64]
 
-KIND = "orbit"
 ADVICE = "name another file, or remove this one"
+
+
+class Kind(NamedTuple):
+    """What a checkpoint is of: its name in the file, with its article, and what goes on from it."""
+
+    name: str
+    of: str
+    resume: str
+
+
+ORBIT = Kind("orbit", "an orbit", "integrate(..., file=...) or symfpu orbit --checkpoint")
+ALIGNMENT = Kind("alignment indices", "alignment indices", "alignment_indices(..., file=...) or symfpu gali --checkpoint")
+KINDS = {kind.name: kind for kind in (ORBIT, ALIGNMENT)}
 
 
 def digest(values: NDArray[Any]) -> str:
@@ -34,13 +47,20 @@ def checkpoint_path(file: object) -> Path:
     return path
 
 
-def write_checkpoint(path: Path, parameters: Json, steps: int, arrays: dict[str, Floats]) -> None:
+def seconds_between(every: object) -> float:
+    """Seconds from one checkpoint to the next; raises InputError."""
+    if isinstance(every, bool) or not isinstance(every, Real) or not float(every) >= 0:
+        raise InputError("every", every, "seconds, 0 or more", "leave it out")
+    return float(every)
+
+
+def write_checkpoint(path: Path, parameters: Json, steps: int, arrays: dict[str, Floats], kind: Kind = ORBIT) -> None:
     """Replaces the file whole: on a full disk InputError, and what it held is still there."""
     members = {name: np.ascontiguousarray(values, dtype="<f8").reshape(-1) for name, values in arrays.items()}
     body: Json = {
         "format": FORMAT,
         "schema": SCHEMA,
-        "kind": KIND,
+        "kind": kind.name,
         "parameters": parameters,
         "steps": steps,
         "shapes": {name: list(values.shape) for name, values in arrays.items()},
@@ -49,7 +69,7 @@ def write_checkpoint(path: Path, parameters: Json, steps: int, arrays: dict[str,
     write_archive(path, body | {"digest": digest_of(body)}, members)
 
 
-def read_checkpoint(path: Path, parameters: Json) -> tuple[int, dict[str, Floats]] | None:
+def read_checkpoint(path: Path, parameters: Json, kind: Kind = ORBIT) -> tuple[int, dict[str, Floats]] | None:
     """Steps done and the arrays, or None where there is no file. Raises InputError for a checkpoint of other parameters, BundleError
     for a file that is none."""
     if not path.exists():
@@ -59,24 +79,24 @@ def read_checkpoint(path: Path, parameters: Json) -> tuple[int, dict[str, Floats
             if stream.read(4) != b"PK\x03\x04":
                 raise ValueError("it is no archive")
             archive = Archive(path, stream)
-            if archive.body.get("kind") != KIND:
-                raise BundleError(path, "is not a checkpoint of an orbit", ADVICE)
-            _require_same(path, archive.body["parameters"], parameters)
+            if archive.body.get("kind") != kind.name:
+                raise BundleError(path, f"is not a checkpoint of {kind.of}", ADVICE)
+            _require_same(path, archive.body["parameters"], parameters, kind)
             shapes = {name: [integer(n, "shape", 0) for n in shape] for name, shape in archive.body["shapes"].items()}
             arrays = {name: archive.array(name, "<f8", int(np.prod(shape))).reshape(shape) for name, shape in shapes.items()}
             return integer(archive.body["steps"], "steps", 0), arrays
         except (BundleError, Refused):
             raise
         except Exception as error:  # whatever zipfile, zlib, json and our own checks say to a damaged or hostile file
-            raise BundleError(path, f"is not a checkpoint of an orbit, or is damaged ({type(error).__name__} {error})", ADVICE) from None
+            raise BundleError(path, f"is not a checkpoint of {kind.of}, or is damaged ({type(error).__name__} {error})", ADVICE) from None
 
 
 class Refused(InputError):
-    """A checkpoint of another orbit."""
+    """A checkpoint of another run."""
 
 
-def _require_same(path: Path, found: Json, parameters: Json) -> None:
+def _require_same(path: Path, found: Json, parameters: Json, kind: Kind) -> None:
     for name, value in parameters.items():
         if found.get(name) != value:
             was, now = (f"{str(v)[:40]}" for v in (found.get(name), value))
-            raise Refused("file", str(path), f"a checkpoint of the same orbit ({name} is {was} in it, {now} here)", ADVICE)
+            raise Refused("file", str(path), f"a checkpoint of the same {kind.name} ({name} is {was} in it, {now} here)", ADVICE)

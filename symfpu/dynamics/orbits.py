@@ -20,6 +20,7 @@ from symfpu.chain import Chain, decimal
 from symfpu.dynamics.aba864 import ABA864
 from symfpu.dynamics.aba864_modes import ABA864_MODES
 from symfpu.dynamics.averages import LOOKS, RunningAverages, steps_between_looks
+from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.checkpoint import ADVICE, checkpoint_path, digest, read_checkpoint, write_checkpoint
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
 from symfpu.dynamics.motion import Motion
@@ -32,7 +33,7 @@ from symfpu.exact import integer
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SCHEMES = {scheme.name: scheme for scheme in (YOSHIDA4, ABA864, KAHAN_LI8, ABA864_MODES)}
+SCHEMES = {scheme.name: scheme for scheme in (YOSHIDA4, ABA864, BLANES_MOAN6, KAHAN_LI8, ABA864_MODES)}
 BLOCK = 50_000_000  # moves of one particle, or products of two modes, between two looks at the clock: a tenth of a second, about
 MOST_STEPS = 2**52
 WHOLE = 1e-9  # of a step: a time that is a multiple of the step but for rounding
@@ -90,8 +91,8 @@ def integrate(
     """The orbit from mode coordinates Q and momenta P at time 0 to T, sampled at times that are multiples of the step.
 
     Q, P : shapes (..., N-1), many orbits at once. T : a time, negative for the past. step : its length is cut to a whole number of steps.
-    scheme : kahan_li8, yoshida4, aba864 (T + V), aba864_modes (harmonic + anharmonic). samples : about how many, log-spaced from one step
-    to T with 0 before them; or times between 0 and T, each moved to the nearest step. averages : of E_q, by the trapezoid rule over looks
+    scheme : of SCHEMES; aba864_modes splits harmonic + anharmonic, others T + V. samples : about how many, log-spaced from one step to T
+    and 0; or times between 0 and T, each moved to the nearest step. averages : of E_q, by the trapezoid rule over looks
     at every LOOK time units, or every step if longer; samples are then moved to looks. file : written every so many seconds and at the
     end, whole or not at all; with the same arguments a killed run goes on from it and ends in the same bits. workers : threads, among
     which orbits are shared out. progress : called as (steps done, steps).

@@ -1,7 +1,7 @@
 """Orbits with deviation vectors: a symmetric splitting on T + V and its exact derivative, O(N) for a vector and a step.
 
-The table is that of ABA864, S. Blanes, F. Casas, A. Farres, J. Laskar, J. Makazaga, A. Murua, Appl. Numer. Math. 68 (2013) 58: seven
-kicks a step, a method of order 4 for T + V with small constants, symplectic and reversible. Others can be passed.
+The table is that of S. Blanes and P. C. Moan in symfpu.dynamics.blanes_moan6: fourteen kicks a step, order 6, symplectic and reversible.
+Others can be passed.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import Chain
-from symfpu.dynamics.aba864 import DRIFTS, KICKS
+from symfpu.dynamics.blanes_moan6 import DRIFTS, KICKS
 from symfpu.errors import InputError
 from symfpu.exact import integer
 

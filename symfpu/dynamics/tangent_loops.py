@@ -22,10 +22,11 @@ _compiled = njit(nogil=True, cache=True, error_model="numpy")
 def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, kick: float, drift: float, forces: Any) -> None:
     """One kick, one drift, and their derivatives: bond j has the tension r + alpha r^2 + beta r^3, its slope 1 + 2 alpha r + 3 beta r^2.
 
-    forces : room for the impulses of the bonds on the orbit (N,) and on the lanes (N * LANES,), for slopes (N, LANES) and (N,). Every
-    loop runs along one flat axis and writes to an array that it reads in the same place only, so that the compiler can vectorise it.
+    dx, dp : flat blocks, (blocks, (N+1) LANES). forces : room for the impulses of the bonds on the orbit (N,) and on the lanes
+    (N LANES,), for slopes (N,) and (N LANES,). Every loop runs along one flat axis and writes to an array that it reads in the same place
+    only, so that the compiler can vectorise it.
     """
-    tension, pull, slope, stiffness = forces
+    tension, pull, stiffness, slope = forces
     bonds, last = len(tension), (len(tension) - 1) * LANES
     ahead = x[1:]
     for j in range(bonds):
@@ -38,13 +39,12 @@ def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, 
         inner_x[j] += drift * inner_p[j]
     for j in range(bonds):
         for c in range(LANES):
-            slope[j, c] = stiffness[j]
-    slopes = slope.reshape(-1)
+            slope[j * LANES + c] = stiffness[j]
     for b in range(dx.shape[0]):
-        here, right = dx[b].reshape(-1), dx[b, 1:].reshape(-1)
+        here, right = dx[b], dx[b, LANES:]
         for i in range(len(pull)):
-            pull[i] = slopes[i] * (right[i] - here[i])
-        momenta, positions, behind = dp[b, 1:].reshape(-1), dx[b, 1:].reshape(-1), pull[LANES:]
+            pull[i] = slope[i] * (right[i] - here[i])
+        momenta, positions, behind = dp[b, LANES:], dx[b, LANES:], pull[LANES:]
         for i in range(last):
             momenta[i] += behind[i] - pull[i]
             positions[i] += drift * momenta[i]
@@ -53,18 +53,20 @@ def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, 
 @_compiled
 def advance(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, kicks: Any, drifts: Any, steps: int) -> None:
     """So many steps of a splitting; kicks (stages,) and drifts (stages + 1,) are lengths of time, drifts that meet are one."""
-    bonds = len(x) - 1
-    forces = (np.empty(bonds), np.empty(bonds * LANES), np.empty((bonds, LANES)), np.empty(bonds))
+    bonds, blocks = len(x) - 1, dx.shape[0]
+    forces = (np.empty(bonds), np.empty(bonds * LANES), np.empty(bonds), np.empty(bonds * LANES))
     if steps == 0:
         return
     x += drifts[0] * p
     dx += drifts[0] * dp
+    # a reshape is a call: once, not at every kick
+    flat_dx, flat_dp = dx.reshape(blocks, (bonds + 1) * LANES), dp.reshape(blocks, (bonds + 1) * LANES)
     for step in range(steps):
         for i in range(len(kicks)):
             drift = drifts[i + 1]
             if i == len(kicks) - 1 and step < steps - 1:
                 drift += drifts[0]
-            kick_and_drift(x, p, dx, dp, alpha, beta, kicks[i], drift, forces)
+            kick_and_drift(x, p, flat_dx, flat_dp, alpha, beta, kicks[i], drift, forces)
 
 
 @_compiled

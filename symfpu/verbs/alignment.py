@@ -11,7 +11,7 @@ import typer
 from symfpu.alignment_figures import draw_alignment
 from symfpu.bundle import load
 from symfpu.chain import decimal
-from symfpu.dynamics.alignment import SAMPLES, STEP, VECTORS, AlignmentIndices, alignment_indices
+from symfpu.dynamics.alignment import SAMPLES, STEP, VECTORS, AlignmentIndices, alignment_indices, seconds_needed
 from symfpu.errors import InputError
 from symfpu.report import fifteen_digits, output_folder
 from symfpu.verbs.terminal import JsonOption, app, print_json, progress_bar, whole
@@ -26,23 +26,30 @@ def gali(
     samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(SAMPLES),
     seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
     output: Annotated[Path | None, typer.Option("-o", "--output", help="Folder for gali.csv and the pictures.")] = None,
+    checkpoint: Annotated[Path | None, typer.Option(help="Keep the run in this file, and go on from it if it was killed.")] = None,
+    estimate: Annotated[bool, typer.Option("--estimate", help="Only say how long it would take, from a trial of a second.")] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Alignment indices of the orbit that starts on a torus, its Lyapunov exponent, and the dimension they show."""
     torus = load(file).torus
     if torus is None:
         raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
+    T, h, count = _number("time", time), _number("step", step), whole("vectors", vectors)
+    if estimate:
+        _print_estimate(seconds_needed(torus.chain, T, vectors=count, step=h), as_json)
+        return
     folder = output_folder(output) if output else None
     with progress_bar() as advance:
         found = alignment_indices(
             torus.chain,
             [float(x) for x in torus.positions(0.0)],
             [float(x) for x in torus.momenta(0.0)],
-            _number("time", time),
-            vectors=whole("vectors", vectors),
-            step=_number("step", step),
+            T,
+            vectors=count,
+            step=h,
             samples=whole("samples", samples),
             seed=whole("seed", seed),
+            file=checkpoint,
             progress=advance,
         )
     if folder is not None:
@@ -61,6 +68,14 @@ def _number(argument: str, text: str) -> float:
         return float(text)
     except ValueError as error:
         raise InputError(argument, text, "a number", "write it as 1e6") from error
+
+
+def _print_estimate(seconds: float, as_json: bool) -> None:
+    if as_json:
+        print_json({"seconds": float(f"{seconds:.2g}")})
+    else:
+        hours = f" ({seconds / 3600:.1f} hours)" if seconds > 3600 else ""
+        print(f"about {seconds:.2g} seconds{hours} of one processor")
 
 
 def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:

@@ -1,13 +1,15 @@
-"""Orbits: energy error against force evaluations beside DOP853, a long run, and the cost of a step by N. Measured, not asserted.
+"""Orbits: energy error against force evaluations beside DOP853 and heyoka, a long run, and the cost of a step by N. Measured, not asserted.
 
 Allowed on one core: 3 s for N = 32 to T = 1e6 with an energy error below 1e-10, 60 s for N = 512; a cost of a step linear in N up to 4096.
 """
 
+import itertools
 import time
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from symfpu.amplitudes import solve_amplitudes
 from symfpu.chain import Chain
@@ -18,6 +20,7 @@ from symfpu.paper import APPENDIX_F
 STEPS = {
     "yoshida4": (0.02, 0.05, 0.1, 0.2),
     "aba864": (0.05, 0.1, 0.2, 0.4),
+    "blanes_moan6": (0.25, 0.5, 0.8),
     "kahan_li8": (0.2, 0.4, 0.6),
     "aba864_modes": (0.25, 0.5, 1.0, 1.4),
 }
@@ -58,12 +61,48 @@ def test_dop853(four_torus, benchmark, record):
     record("scipy DOP853, N = 32 to T = 1e3", note="; ".join(cases))
 
 
+def test_heyoka(four_torus, benchmark, record):
+    """Adaptive Taylor series, if it is installed: pip install symfpu[heyoka]. An order of a series costs about one evaluation."""
+    heyoka = pytest.importorskip("heyoka")
+    chain, Q, P = four_torus
+    n, alpha, T, cases = chain.N - 1, float(chain.alpha), 1e4, []
+    x, p = (heyoka.make_vars(*(f"{name}{j}" for j in range(n))) for name in "xp")
+    stretches = [right - left for left, right in itertools.pairwise([0.0, *x, 0.0])]
+    tensions = [r + alpha * r**2 for r in stretches]
+    system = [*zip(x, p, strict=True), *((p[j], tensions[j + 1] - tensions[j]) for j in range(n))]
+    start = np.concatenate([chain.positions(Q), chain.positions(P)])
+
+    def run():
+        for tolerance in (1e-8, 1e-11, np.finfo(float).eps):
+            orbit = heyoka.taylor_adaptive(system, start, tol=tolerance, compact_mode=True)
+            begun = time.perf_counter()
+            steps = orbit.propagate_until(T)[3]
+            seconds = time.perf_counter() - begun
+            error = abs(float(chain.energy(chain.modes(orbit.state[:n]), chain.modes(orbit.state[n:])) / chain.energy(Q, P)) - 1)
+            cases.append(f"{steps * orbit.order / T:.0f}: {error:.1e} in {seconds:.2f} s")
+
+    benchmark.pedantic(run, rounds=1)
+    record(f"heyoka {heyoka.__version__}, N = 32 to T = 1e4", note=f"steps times order a unit of time: {'; '.join(cases)}")
+
+
 @pytest.mark.parametrize(("name", "step"), [("kahan_li8", 0.5), ("aba864_modes", 1.4)])
 def test_the_long_run(name, step, four_torus, benchmark, record):
     """Allowed 3 s with an energy error below 1e-10."""
     integrate(*four_torus, 10.0, step=0.1, scheme=name)
     orbit = benchmark.pedantic(integrate, (*four_torus, 1e6), {"step": step, "scheme": name}, rounds=3, iterations=1)
     record(f"{name}, N = 32 to T = 1e6, step {step}", note=f"energy error {orbit.energy_error:.1e}")
+
+
+@pytest.mark.parametrize("specific", [0.015 / 32, 0.01])
+def test_the_long_run_with_all_modes_alive(specific, benchmark, record):
+    """Allowed 3 s with an energy error below 1e-10: random modes of equal harmonic energy, H / N as in Fig. 9 and twenty times that."""
+    chain, draws = Chain(32, alpha="0.33"), np.random.default_rng(1)
+    Q, P = draws.normal(size=31) / chain.frequencies(), draws.normal(size=31)
+    scale = brentq(lambda s: float(chain.energy(s * Q, s * P)) - 32 * specific, 0, 0.5)
+    integrate(chain, scale * Q, scale * P, 10.0, step=0.1, scheme="blanes_moan6")
+    run = {"step": 0.25, "scheme": "blanes_moan6"}
+    orbit = benchmark.pedantic(integrate, (chain, scale * Q, scale * P, 1e6), run, rounds=3, iterations=1)
+    record(f"blanes_moan6, N = 32 to T = 1e6, step 0.25, H/N = {specific:.2g}", note=f"energy error {orbit.energy_error:.1e}")
 
 
 def test_the_long_run_of_a_long_chain(benchmark, record):

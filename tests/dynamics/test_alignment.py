@@ -38,11 +38,11 @@ def found(name):
         return alignment_indices(BETA, [0, 0, 0, 0.3, 0, 0, 0], np.zeros(7), 1e5)
     if name == "two modes":
         return alignment_indices(ALPHA, *two_torus(), 1e5, vectors=14)
-    return alignment_indices(BETA, *chaotic_state(), 1e3)
+    return alignment_indices(BETA, *chaotic_state(3), 1e3, step=0.1)
 
 
-def chaotic_state():
-    random = np.random.default_rng(1)
+def chaotic_state(seed=1):
+    random = np.random.default_rng(seed)
     return random.normal(size=7), random.normal(size=7)
 
 
@@ -87,9 +87,10 @@ def test_a_chaotic_orbit_decays_exponentially():
         assert straight < -0.98
         assert straight < bent
     assert indices.log10_gali[-1, -1] < -100
-    assert 0.05 < indices.lyapunov[-1] < 0.2
+    assert 0.15 < indices.lyapunov[-1] < 0.25
+    assert indices.energy_error < 1e-8
     assert indices.dimension().verdict == "chaotic"
-    other = alignment_indices(BETA, *chaotic_state(), 1e3, seed=5)
+    other = alignment_indices(BETA, *chaotic_state(3), 1e3, step=0.1, seed=5)
     assert other.lyapunov[-1] == pytest.approx(indices.lyapunov[-1], abs=0.01)
     regular = found("one mode")
     assert regular.lyapunov[-1] == pytest.approx(np.log(1e5) / 1e5, rel=0.5)
@@ -103,7 +104,7 @@ def test_nothing_is_concluded_before_vectors_have_grown():
 
 
 def test_volumes_agree_with_a_hundred_digits_where_doubles_underflow_their_accuracy():
-    """The maps of single blocks, multiplied and made into volumes in 100 digits: GALI_9 is 1e-38, beyond any double Gram matrix.
+    """The maps of single blocks, multiplied and made into volumes in 100 digits: GALI_9 is 1e-33, beyond any double Gram matrix.
 
     The time is so short that rounding in the orbit grows by e^10 only.
     """
@@ -120,7 +121,7 @@ def test_volumes_agree_with_a_hundred_digits_where_doubles_underflow_their_accur
             V[:, j] = V[:, j] / length
         volumes = [mpmath.log10(mpmath.det(V[:, :k].T * V[:, :k])) / 2 for k in range(2, vectors + 1)]
     assert indices.times[-1] == T
-    assert volumes[-1] < -35
+    assert volumes[-1] < -30
     assert indices.log10_gali[-1] == pytest.approx([float(v) for v in volumes], abs=SAME_VOLUME)
 
 

@@ -44,7 +44,7 @@ def state():
 
 @EVERY
 def test_orbits_agree_with_dop853(name, state):
-    steps = {"yoshida4": 1e-3, "aba864": 5e-3, "kahan_li8": 0.05, "aba864_modes": 5e-3}
+    steps = {"yoshida4": 1e-3, "aba864": 5e-3, "blanes_moan6": 0.02, "kahan_li8": 0.05, "aba864_modes": 5e-3}
     orbit = integrate(MIXED, *state, 20.0, step=steps[name], scheme=name, samples=9)
     peer = solve_ivp(
         lambda t, y: np.append(y[6:], MIXED.accelerations(y[:6])), (0, 20), np.append(*state), "DOP853", orbit.times, rtol=1e-13, atol=1e-15

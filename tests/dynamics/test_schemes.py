@@ -22,7 +22,7 @@ ORDER_SLOPE = 0.3
 ROUNDED = 1e-12
 
 # Steps of a time of about 20 over which the error of a scheme is between rounding and one.
-STEPS = {"yoshida4": (100, 140, 200), "aba864": (40, 56, 80), "kahan_li8": (20, 28, 40)}
+STEPS = {"yoshida4": (100, 140, 200), "aba864": (40, 56, 80), "blanes_moan6": (40, 56, 80), "kahan_li8": (20, 28, 40)}
 
 
 @EVERY

@@ -1,0 +1,135 @@
+"""The run behind the alignment indices: a frame from mark to mark, kept on disk and taken up again bitwise, and the time it will take."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.archive import BundleError
+from symfpu.chain import decimal
+from symfpu.dynamics.checkpoint import ADVICE, ALIGNMENT, digest, read_checkpoint, write_checkpoint
+from symfpu.dynamics.tangent import MovingFrame
+from symfpu.errors import SymfpuError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Progress = Callable[[str, float], None]
+
+PORTION = 6_400_000  # moves of a particle with its lanes between two looks at the clock: half a second, about
+TRIAL = 0.2  # seconds of a measurement
+
+
+class OrbitLost(SymfpuError):
+    """An orbit that went to infinity, as orbits of the alpha model over its barrier do, or a step too long."""
+
+    def __init__(self, time: float, step: float) -> None:
+        self.time, self.step = time, step
+        super().__init__(f"the orbit is lost before t = {time:.6g} with steps of {step:g}; take less energy or a shorter step")
+
+
+class FrameRun:
+    """A frame after so many steps, the product of its triangular factors, and the samples so far.
+
+    marks : numbers of steps at which there are samples, (S,). longest : block, in steps. volumes : log(R_jj / |R e_j|) at every mark,
+    (S, vectors), and growth : log R_11, (S,), natural logarithms. every : seconds between two checkpoints.
+    """
+
+    def __init__(self, frame: MovingFrame, marks: Ints, step: float, longest: int, every: float) -> None:
+        self.frame, self.marks, self.step, self.longest, self.every = frame, marks, step, longest, every
+        m = frame.vectors
+        self.portion = max(longest, PORTION // (frame.chain.N * len(frame.dx)))
+        self.done, self.block = 0, longest
+        self.columns, self.diagonal, self.norms = np.eye(m), np.zeros(m), np.zeros(m)
+        self.volumes, self.growth = np.zeros((len(marks), m)), np.zeros(len(marks))
+        self.path: Path | None = None
+
+    def keep_in(self, path: Path) -> None:
+        """Goes on from the file, if there is one."""
+        self.path, frame = path, self.frame
+        self.parameters = {
+            "N": frame.chain.N,
+            "alpha": decimal(frame.chain.alpha),
+            "beta": decimal(frame.chain.beta),
+            "vectors": frame.vectors,
+            "step": repr(self.step),
+            "steps": int(self.marks[-1]),
+            "sampled steps": digest(self.marks),
+            "block": self.longest,
+            "portion": self.portion,
+            "start": digest(np.stack([frame.x, frame.p])),
+            "first vectors": digest(np.stack([frame.dx, frame.dp])),
+        }
+        kept = read_checkpoint(path, self.parameters, ALIGNMENT)
+        if kept is None:
+            return
+        done, arrays = kept
+        room, block = self._arrays(done), arrays.pop("block", np.zeros(0))
+        right = {name: values.shape for name, values in arrays.items()} == {name: values.shape for name, values in room.items()}
+        if not right or done > self.marks[-1] or block.shape != (1,) or not 1 <= block[0] <= self.longest:
+            raise BundleError(path, "is damaged (its arrays are not those of its parameters)", ADVICE)
+        for name, values in room.items():
+            values[...] = arrays[name]
+        self.done, self.block = done, int(block[0])
+
+    def _arrays(self, done: int) -> dict[str, Floats]:
+        """Everything that the run is after so many steps, but for the block."""
+        known, frame = int(np.searchsorted(self.marks, done, side="right")), self.frame
+        return {
+            "x": frame.x,
+            "p": frame.p,
+            "dx": frame.dx,
+            "dp": frame.dp,
+            "columns": self.columns,
+            "diagonal": self.diagonal,
+            "norms": self.norms,
+            "volumes": self.volumes[:known],
+            "growth": self.growth[:known],
+        }
+
+    def _ends(self) -> Iterator[int]:
+        """Where loops end: at marks, and between them after portions that depend on the arguments alone, since each end is also the end of
+        a block: so an interrupted run rounds like one that was not."""
+        while self.done < self.marks[-1]:
+            following = int(self.marks[np.searchsorted(self.marks, self.done, side="right")])
+            yield min(following, (self.done // self.portion + 1) * self.portion)
+
+    def go(self, tell: Progress) -> None:
+        saved, last = time.perf_counter(), int(self.marks[-1])
+        for end in self._ends():
+            self.block = carried(self.frame, end - self.done, self.block, self.longest, self.columns, self.diagonal, self.norms)
+            if not np.isfinite(self.norms).all():
+                raise OrbitLost(float(end * self.step), self.step)
+            self.done = end
+            place = int(np.searchsorted(self.marks, end))
+            if self.marks[place] == end:
+                self.volumes[place], self.growth[place] = self.diagonal - self.norms, self.diagonal[0]
+            if self.path is not None and (end == last or time.perf_counter() - saved >= self.every):
+                write_checkpoint(self.path, self.parameters, end, self._arrays(end) | {"block": np.array([float(self.block)])}, ALIGNMENT)
+                saved = time.perf_counter()
+            tell(f"t = {end * self.step:.3g}", end / last)
+
+
+def carried(frame: MovingFrame, steps: int, block: int, longest: int, columns: Floats, diagonal: Floats, norms: Floats) -> int:
+    """Moves a frame and the product of its factors; returns the block to go on with."""
+    from symfpu.dynamics.tangent_loops import carry_frame  # lazy: numba takes longer to import than all the rest
+
+    state = (frame.x, frame.p, frame.dx, frame.dp, *frame.couplings, frame.kicks, frame.drifts)
+    return int(carry_frame(*state, steps, block, longest, columns, diagonal, norms))
+
+
+def seconds_a_step(frame: MovingFrame, block: int) -> float:
+    """Processor time of a step of a frame, from as many steps as take TRIAL seconds, about; the frame is moved."""
+    m, steps = frame.vectors, block
+    product = np.eye(m), np.zeros(m), np.zeros(m)
+    carried(frame, block, block, block, *product)  # compiles
+    while True:
+        start = time.thread_time()
+        carried(frame, steps, block, block, *product)
+        seconds = time.thread_time() - start
+        if seconds >= TRIAL / 4:
+            return seconds / steps
+        steps *= 4
