@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from symfpu.codegen.evaluator import Evaluator, compile_evaluator
     from symfpu.codegen.export import export
     from symfpu.commensurability import frequency_rank
-    from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices
+    from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices, seconds_needed
     from symfpu.dynamics.orbits import Orbit, integrate
     from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep
     from symfpu.errors import (
@@ -35,6 +35,21 @@ if TYPE_CHECKING:
     from symfpu.fixed_energy import NoTorusAtEnergy, torus_at_energy
     from symfpu.fourier import FourierTorus
     from symfpu.leading import leading_term, lemma_holds
+    from symfpu.localization import (
+        ProfileFit,
+        ProfileLine,
+        breather_law,
+        fit_profile,
+        group_energy,
+        least_packet,
+        middle_modes,
+        natural_packet,
+        packet_groups,
+        packet_parameter,
+        profile_law,
+        rounding_floor,
+    )
+    from symfpu.profile_trials import ProfileInvariance, Trend, profile_invariance, slope_by_energy
     from symfpu.propagation import coupling_sequence, excitation_sequence, reachable_modes
     from symfpu.refinement.breather_digits import PreciseOrbit, periodic_orbit_digits
     from symfpu.refinement.breather_energy import NoBreatherAtEnergy, breather_at_energy
@@ -46,6 +61,19 @@ if TYPE_CHECKING:
     from symfpu.resummation import PadeSum, ResummedTorus, pade_amplitudes, pade_frequencies, pade_poles, resum
     from symfpu.self_consistent import NoSelfConsistentFrequencies, torus_at_amplitudes
     from symfpu.series import LindstedtSeries
+    from symfpu.spectra import (
+        GroupGrowth,
+        GrowthExponents,
+        NoRecurrence,
+        ProfileDistance,
+        Recurrence,
+        fpu_trajectory,
+        growth_exponents,
+        normalised_averages,
+        packet_amplitudes,
+        profile_distance,
+        recurrence,
+    )
     from symfpu.sweeps import Sweep, sweep_propagation
     from symfpu.torus import QTorus, RootCertificate
     from symfpu.verdict import Assessment, assess
@@ -77,7 +105,7 @@ _DEFINED = {
     ),
     "symfpu.codegen.export": ("export",),
     "symfpu.commensurability": ("frequency_rank",),
-    "symfpu.dynamics.alignment": ("AlignmentIndices", "alignment_indices"),
+    "symfpu.dynamics.alignment": ("AlignmentIndices", "alignment_indices", "seconds_needed"),
     "symfpu.dynamics.orbits": ("Orbit", "integrate"),
     "symfpu.dynamics.stopping": ("EscapedOrbit", "OrbitStopped", "UnstableStep"),
     "symfpu.errors": (
@@ -106,6 +134,26 @@ _DEFINED = {
     "symfpu.leading": (
         "leading_term",
         "lemma_holds",
+    ),
+    "symfpu.localization": (
+        "ProfileFit",
+        "ProfileLine",
+        "breather_law",
+        "fit_profile",
+        "group_energy",
+        "least_packet",
+        "middle_modes",
+        "natural_packet",
+        "packet_groups",
+        "packet_parameter",
+        "profile_law",
+        "rounding_floor",
+    ),
+    "symfpu.profile_trials": (
+        "ProfileInvariance",
+        "Trend",
+        "profile_invariance",
+        "slope_by_energy",
     ),
     "symfpu.propagation": (
         "coupling_sequence",
@@ -159,6 +207,19 @@ _DEFINED = {
         "torus_at_amplitudes",
     ),
     "symfpu.series": ("LindstedtSeries",),
+    "symfpu.spectra": (
+        "GroupGrowth",
+        "GrowthExponents",
+        "NoRecurrence",
+        "ProfileDistance",
+        "Recurrence",
+        "fpu_trajectory",
+        "growth_exponents",
+        "normalised_averages",
+        "packet_amplitudes",
+        "profile_distance",
+        "recurrence",
+    ),
     "symfpu.sweeps": (
         "Sweep",
         "sweep_propagation",
@@ -200,12 +261,15 @@ __all__ = [
     "Family",
     "Floquet",
     "FourierTorus",
+    "GroupGrowth",
+    "GrowthExponents",
     "InputError",
     "LindstedtSeries",
     "Member",
     "NoBreatherAtEnergy",
     "NoPeriodicOrbit",
     "NoRealAmplitude",
+    "NoRecurrence",
     "NoSelfConsistentFrequencies",
     "NoTorus",
     "NoTorusAtEnergy",
@@ -215,8 +279,13 @@ __all__ = [
     "PadeSum",
     "PeriodicOrbit",
     "PreciseOrbit",
+    "ProfileDistance",
+    "ProfileFit",
+    "ProfileInvariance",
+    "ProfileLine",
     "PropagationProof",
     "QTorus",
+    "Recurrence",
     "RefinedTorus",
     "ResonantDivisor",
     "ResummedTorus",
@@ -226,6 +295,7 @@ __all__ = [
     "Sweep",
     "SymfpuError",
     "TooLarge",
+    "Trend",
     "UndeterminedAmplitudes",
     "UnstableStep",
     "alignment_indices",
@@ -233,34 +303,53 @@ __all__ = [
     "assess",
     "breather_at_amplitude",
     "breather_at_energy",
+    "breather_law",
     "compile_evaluator",
     "coupling_sequence",
     "excitation_sequence",
     "export",
     "family",
+    "fit_profile",
     "floquet",
+    "fpu_trajectory",
     "frequency_rank",
     "frequency_shift",
     "frequency_shift_formula",
+    "group_energy",
+    "growth_exponents",
     "init_printing",
     "integrate",
     "leading_term",
+    "least_packet",
     "lemma_holds",
     "lindstedt",
     "load",
+    "middle_modes",
+    "natural_packet",
+    "normalised_averages",
+    "packet_amplitudes",
+    "packet_groups",
+    "packet_parameter",
     "pade_amplitudes",
     "pade_frequencies",
     "pade_poles",
     "periodic_orbit",
     "periodic_orbit_digits",
+    "profile_distance",
+    "profile_invariance",
+    "profile_law",
     "prove_propagation",
     "reachable_modes",
+    "recurrence",
     "refine",
     "refine_at_amplitudes",
     "refine_at_energy",
     "resum",
+    "rounding_floor",
     "save",
+    "seconds_needed",
     "shoot",
+    "slope_by_energy",
     "solve_amplitudes",
     "sweep_propagation",
     "torus_at_amplitudes",
