@@ -27,7 +27,7 @@ Step = Callable[[str], None]
 TOLERANCES = (1e-10, 1e-13)  # of two refinements with different harmonics: the digits in which they agree are converged
 GUESS_ORDER = 8  # of the series from which Newton's method starts
 MOST_DIGITS, FEW_DIGITS = 12, 8  # shown of an amplitude, at most and where only the first refinement succeeds
-LIMIT = 420.0  # seconds for the refinement of one row, looked at between the steps of Newton's method
+LIMIT, HEAVY_LIMIT = 420.0, 3600.0  # seconds for the refinement of one row, looked at between the steps of Newton's method
 HEAVY: dict[str, tuple[tuple[float, ...], int]] = {  # rows that take minutes, with --full only: their own tolerances and guess order
     "Fig. 5d": ((1e-9, 1e-11), 4),
 }
@@ -171,12 +171,12 @@ def left_out(printed: PrintedTorus, reason: str) -> CorrectedRow:
 
 def _refined(printed: PrintedTorus, tell: Step) -> tuple[RefinedTorus | None, int, str]:
     """The exact torus, the converged digits of its amplitudes, and what went wrong."""
-    started = time.monotonic()
+    started, limit = time.monotonic(), HEAVY_LIMIT if printed.label in HEAVY else LIMIT
 
     def report(line: str) -> None:
         tell(line)
-        if time.monotonic() - started > LIMIT:
-            raise TimeIsUp(LIMIT, line)
+        if time.monotonic() - started > limit:
+            raise TimeIsUp(limit, line)
 
     found: list[RefinedTorus] = []
     failed = ""
