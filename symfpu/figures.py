@@ -13,11 +13,21 @@ from numpy.typing import NDArray
 
 from symfpu.convergence import BreatherStudy, CancellationStudy, SchemeLimit
 from symfpu.corrected import CorrectedRow, ScalingStudy
+from symfpu.panels import Panel, PaperFigure
 from symfpu.reproduction import Figure1, Figure6
 
 Floats = NDArray[np.float64]
 Axes = Any
 
+FEW_CURVES = 5  # with more the legend goes beside the picture
+CURVE_STYLES: Mapping[str, dict[str, Any]] = {
+    "line": {"lw": 1.2},
+    "points": {"marker": "o", "ls": "none", "ms": 7, "alpha": 0.8},
+    "dots": {"marker": ".", "ls": "none", "ms": 4},
+    "triangles": {"marker": "^", "ls": "none", "ms": 7},
+    "rings": {"marker": "o", "ls": "none", "ms": 9, "mfc": "none"},
+    "law": {"ls": "--", "lw": 1.2},
+}
 ORDERS_SHOWN = 62  # of a series beside its exact torus; the longest one goes on in the same way, in the CSV
 
 
@@ -207,6 +217,34 @@ def draw_figure6(data: Figure6, folder: Path) -> list[Path]:
         title = rf"Fig. 6({panel}): packet {seeds[0]}..{seeds[-1]} around $\kappa_0 = {center}$, N = {data.N}"
         paths += save_panel(partial(plot_propagation, data.N, orders), title, folder / f"fig6{panel}")
     return paths
+
+
+def plot_panel(panel: Panel, ax: Axes) -> Axes:
+    """A panel of curves; of points that lie on each other the first ones are the largest."""
+    for i, curve in enumerate(panel.curves):
+        shown = np.isfinite(curve.x) & np.isfinite(curve.y) & ((curve.x > 0) | (not panel.log_x)) & ((curve.y > 0) | (not panel.log_y))
+        look = dict(CURVE_STYLES[curve.style])
+        if look.get("marker"):
+            look["ms"] *= 1 - 0.5 * i / len(panel.curves)
+        color = "black" if curve.style == "law" else f"C{(i if curve.group is None else curve.group) % 5}"
+        known = curve.group is not None and curve.group in [earlier.group for earlier in panel.curves[:i]]
+        if curve.style == "line" and curve.group is None and i >= FEW_CURVES:
+            look["ls"] = "--"  # colours come round
+        ax.plot(curve.x[shown], curve.y[shown], color=color, label=None if known else curve.label, **look)
+    ax.set_xscale("log" if panel.log_x else "linear")
+    ax.set_yscale("log" if panel.log_y else "linear")
+    if panel.bottom is not None:
+        ax.set_ylim(bottom=panel.bottom)
+    ax.set_xlabel(panel.x_label)
+    ax.set_ylabel(panel.y_label)
+    many = len(ax.get_legend_handles_labels()[0]) > FEW_CURVES
+    ax.legend(**({"fontsize": "small", "loc": "center left", "bbox_to_anchor": (1.0, 0.5)} if many else {}))
+    return ax
+
+
+def draw_panels(figure: PaperFigure, folder: Path) -> list[Path]:
+    """Write every panel of a figure as PNG and PDF; returns the paths."""
+    return [path for panel in figure.panels for path in save_panel(partial(plot_panel, panel), panel.title, folder / panel.name)]
 
 
 def save_panel(panel: Callable[[Axes], Axes], title: str, stem: Path) -> list[Path]:

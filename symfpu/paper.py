@@ -7,6 +7,7 @@ figure that shows the example; Appendix F's own labels, `printed_label`, are off
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from symfpu.chain import Chain
 
@@ -195,3 +196,34 @@ EXCITATIONS = (
 )
 
 FIG6_CHAIN, FIG6_WIDTH = 256, 4  # our choice: modes and half-width of the packets around N/4, N/2, 3N/4
+
+
+@dataclass(frozen=True)
+class PrintedLine:
+    """log10 e_kappa = slope * kappa + intercept + power * log10 kappa, printed in a caption for seeds 1 .. s.
+
+    chains : those of the panel. specific_energy : E/N with the caption's E.
+    """
+
+    label: str
+    slope: str
+    intercept: str
+    power: int
+    chains: tuple[Chain, ...]
+    fraction: Fraction
+    specific_energy: float
+
+    def seeds(self, chain: Chain) -> int:
+        """s, the number of seeds in a chain."""
+        return int(self.fraction * chain.N)
+
+
+_SIZES = (64, 128, 256, 512)
+LINES = (
+    PrintedLine("Fig. 2a", "-36.6613", "3.49545", -2, (Chain(32, alpha="0.33"),), Fraction(1, 8), 0.000182466 / 32),
+    PrintedLine("Fig. 4a", "-56.27", "4.46", 2, tuple(Chain(N, alpha="0.33") for N in _SIZES), Fraction(1, 8), 1.5625e-8),
+    PrintedLine("Fig. 4b", "-78.64", "-1.204", 0, tuple(Chain(N, beta="0.3") for N in _SIZES), Fraction(1, 16), 1.5625e-6),
+)
+
+FIG9_RECURRENCE = 12000.0  # section 6.4.3, "a nearly complete return to their initial values at the time t=12000"
+FIG9_PACKETS = {"1/4": "2.7", "1/5": "4.43"}  # section 6.4.3, widths by the power of eps in the estimate

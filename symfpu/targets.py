@@ -5,12 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from symfpu.convergence import breather_study, cancellation_study
 from symfpu.corrected import corrected_rows, scaling_study
 from symfpu.corrected_report import corrected_markdown, corrected_record, corrected_text, write_corrected_csv
-from symfpu.figures import draw_convergence, draw_corrected, draw_figure1, draw_figure6
+from symfpu.figures import draw_convergence, draw_corrected, draw_figure1, draw_figure6, draw_panels
+from symfpu.panel_report import figure_markdown, figure_record, write_panel_csv
+from symfpu.panels import PaperFigure
+from symfpu.paper_figures.breathers import figure7, figure8
+from symfpu.paper_figures.dimensions import VECTORS, full_seconds
+from symfpu.paper_figures.laws import figure4
+from symfpu.paper_figures.packets import figure2, figure3
+from symfpu.paper_figures.patterns import figure5
+from symfpu.paper_figures.recurrences import figure9
+from symfpu.paper_figures.sequences import figure6_claims, section5
+from symfpu.paper_figures.two_torus import figure1_claims
 from symfpu.report import (
     convergence_markdown,
     convergence_record,
@@ -30,12 +40,19 @@ SCALED = ("Fig. 1", "Fig. 7")  # rows whose errors are followed to smaller mu
 
 class Page(NamedTuple):
     """record : for JSON. markdown : a section of the report. files : written beside it, by their common beginning. lines : for the
-    terminal, one for each row of the table."""
+    terminal, one for each row of the table. figure : with the claims, for targets that judge any."""
 
     record: Any
     markdown: str
     files: str = ""
     lines: tuple[str, ...] = ()
+    figure: PaperFigure | None = None
+
+
+class Target(Protocol):
+    """Computes a page and writes its files into the folder; `step` hears what comes next. full : what takes hours, too."""
+
+    def __call__(self, folder: Path, step: Step, *, full: bool = False) -> Page: ...
 
 
 def _table(folder: Path, step: Step, *, full: bool = False) -> Page:
@@ -54,24 +71,38 @@ def _table(folder: Path, step: Step, *, full: bool = False) -> Page:
     return Page(record, markdown, f"corrected-a..{'bcd'[len(studies)]}", tuple(map(corrected_text, corrected)))
 
 
-def _figure1(folder: Path, step: Step) -> Page:
+def _figure1(folder: Path, step: Step, *, full: bool = False) -> Page:
     data = figure1(step)
     write_figure1_csv(data, folder)
     step("fig1: pictures")
     draw_figure1(data, folder)
-    return Page(figure1_record(data), figure1_markdown(data), "fig1a..d")
+    more = _figure(partial(figure1_claims, data), folder, step, full=full)
+    record = figure1_record(data) | {"judged": more.record}
+    return Page(record, figure1_markdown(data) + "\n" + more.markdown, f"fig1a..d, {more.files}", figure=more.figure)
 
 
-def _figure6(folder: Path, step: Step) -> Page:
+def _figure6(folder: Path, step: Step, *, full: bool = False) -> Page:
     patterns = figure6()
     write_figure6_csv(patterns, folder)
     step("fig6: pictures")
     draw_figure6(patterns, folder)
+    judged = figure6_claims(patterns)
     record = {panel: {"seeds": list(seeds), "orders": orders} for panel, (seeds, orders) in patterns.panels.items()}
-    return Page(record, figure6_markdown(patterns), "fig6a..c")
+    markdown = figure6_markdown(patterns) + "\n" + figure_markdown(judged)
+    return Page(record | {"judged": figure_record(judged)}, markdown, "fig6a..c", figure=judged)
 
 
-def _convergence(folder: Path, step: Step) -> Page:
+def _figure(make: Callable[..., PaperFigure], folder: Path, step: Step, *, full: bool = False) -> Page:
+    """A figure of panels and claims."""
+    figure = make(folder, step, full=full)
+    write_panel_csv(figure, folder)
+    step(f"{figure.name}: pictures")
+    draw_panels(figure, folder)
+    names = [panel.name for panel in figure.panels]
+    return Page(figure_record(figure), figure_markdown(figure), ", ".join(names), figure=figure)
+
+
+def _convergence(folder: Path, step: Step, *, full: bool = False) -> Page:
     questions = cancellation_study(step), breather_study(step)
     write_convergence_csv(*questions, folder)
     step("convergence: pictures")
@@ -79,11 +110,27 @@ def _convergence(folder: Path, step: Step) -> Page:
     return Page(convergence_record(*questions), convergence_markdown(*questions), "convergence-a..e")
 
 
-FULL: dict[str, Callable[[Path, Step], Page]] = {"table": partial(_table, full=True)}  # with rows that take many minutes
-
-TARGETS: dict[str, Callable[[Path, Step], Page]] = {
+TARGETS: dict[str, Target] = {
     "table": _table,
+    "section5": partial(_figure, section5),
     "fig1": _figure1,
+    "fig2": partial(_figure, figure2),
+    "fig3": partial(_figure, figure3),
+    "fig4": partial(_figure, figure4),
+    "fig5": partial(_figure, figure5),
     "fig6": _figure6,
+    "fig7": partial(_figure, figure7),
+    "fig8": partial(_figure, figure8),
+    "fig9": partial(_figure, figure9),
     "convergence": _convergence,
 }
+FULL = ("table", "fig1", "fig2", "fig9")  # targets with a part that takes many minutes, or hours
+
+
+def full_estimate(targets: list[str], folder: Path) -> str:
+    """How long --full will take for these targets, and how it goes on if it is stopped."""
+    times = {figure: full_seconds(figure) for figure in VECTORS if figure in targets}
+    parts = [f"{figure} {seconds / 3600:.1f} h" for figure, seconds in times.items()]
+    parts += ["table 10 minutes"] if "table" in targets else []
+    resumed = f"; stopped and started again, alignment indices go on from {folder}/*.checkpoint" if times else ""
+    return f"--full, about: {', '.join(parts)}{resumed}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,11 +11,14 @@ import typer
 
 from symfpu.certificates import write_text
 from symfpu.errors import InputError
+from symfpu.panel_report import claims_markdown
+from symfpu.panels import PaperFigure
 from symfpu.report import output_folder
-from symfpu.targets import FULL, TARGETS
+from symfpu.targets import FULL, TARGETS, Page, full_estimate
 from symfpu.verbs.terminal import (
     JsonOption,
     app,
+    console,
     print_json,
     progress_bar,
 )
@@ -23,35 +26,46 @@ from symfpu.verbs.terminal import (
 
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
 def reproduce(
-    targets: Annotated[list[str], typer.Argument(help="table, fig1, fig6, convergence, or all.", metavar="TARGET...")],
+    targets: Annotated[list[str], typer.Argument(help=f"{', '.join(TARGETS)}, or all.", metavar="TARGET...")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the report, pictures and data.")] = Path("out"),
-    full: Annotated[bool, typer.Option("--full", help="With the exact tori of the table that take many minutes.")] = False,
+    full: Annotated[
+        bool, typer.Option("--full", help="Alignment indices to 1e9 instead of 1e7, all exact tori: hours; goes on where it was stopped.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """The paper's numbers from its printed frequencies, beside the printed ones."""
+    """The paper's table and figures from its printed frequencies, beside the printed numbers, with a verdict on every claim."""
     for target in targets:
         if target not in (*TARGETS, "all"):
             raise InputError("target", target, f"{', '.join(TARGETS)} or all", "name one or more of these")
     if full and not {*FULL, "all"} & set(targets):
         raise InputError("full", " ".join(targets), f"--full with {', '.join(FULL)} or all", "leave out --full")
     folder = output_folder(output)
-    pages = {}
+    chosen = [target for target in TARGETS if target in targets or "all" in targets]
+    if full:
+        console().print(full_estimate(chosen, folder), highlight=False)
     with progress_bar() as advance:
-        for target in TARGETS:
-            if target in targets or "all" in targets:
-                pages[target] = (FULL if full and target in FULL else TARGETS)[target](folder, lambda label: advance(label, None))
-    record = {target: page.record for target, page in pages.items()}
-    title = "# The paper's numbers, computed from its printed frequencies"
-    write_text(folder / "report.md", "\n\n".join([title, *(page.markdown for page in pages.values())]))
-    write_text(folder / "report.json", json.dumps(record, indent=1) + "\n")
+        pages = {target: TARGETS[target](folder, lambda label: advance(label, None), full=full) for target in chosen}
+    record = _write(pages, folder)
     if as_json:
         print_json(record)
         return
     _print_rows(record.get("table", []), pages["table"].lines if "table" in pages else ())
     for key, claim in record.get("fig1", {}).get("claims", {}).items():
         print(f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}")
+    _print_claims(page.figure for page in pages.values() if page.figure is not None)
     pictures = [page.files for page in pages.values() if page.files]
     print(f"written: {folder / 'report.md'}, report.json" + (f", {', '.join(pictures)} as PNG, PDF and CSV" if pictures else ""))
+
+
+def _write(pages: dict[str, Page], folder: Path) -> dict[str, Any]:
+    """The report as Markdown and JSON; returns the record."""
+    record = {target: page.record for target, page in pages.items()}
+    figures = [page.figure for page in pages.values() if page.figure is not None]
+    parts = ["# The paper's numbers, computed from its printed frequencies"]
+    parts += [claims_markdown(figures)] if figures else []
+    write_text(folder / "report.md", "\n\n".join([*parts, *(page.markdown for page in pages.values())]))
+    write_text(folder / "report.json", json.dumps(record, indent=1) + "\n")
+    return record
 
 
 def _print_rows(rows: Sequence[dict[str, Any]], corrected: Sequence[str]) -> None:
@@ -62,3 +76,11 @@ def _print_rows(rows: Sequence[dict[str, Any]], corrected: Sequence[str]) -> Non
         energies = ", ".join(f"{name} {float(value):.9g}" for name, value in row["energies"].items())
         print(f"  E    printed {row['printed_energy']:<24} computed {energies}")
         print(f"  {row['verdict']}\n{exact}\n")
+
+
+def _print_claims(figures: Iterable[PaperFigure]) -> None:
+    for figure in figures:
+        print(figure.title)
+        for claim in figure.claims:
+            printed = f" (printed {claim.printed})" if claim.printed else ""
+            print(f"  {claim.verdict}: section {claim.section}, {claim.text}{printed}\n    {claim.ours}")
