@@ -84,6 +84,7 @@ def family_record(found: Family) -> dict[str, Any]:
                 "value": fifteen_digits(e.value),
                 "mode": e.mode or None,
                 "harmonic": list(e.harmonic) or None,
+                "interpolated": e.interpolated,
             }
             for e in found.events
         ],

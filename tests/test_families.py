@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,7 +14,6 @@ import mpmath
 import numpy as np
 import pytest
 from numpy.polynomial import Chebyshev
-from scipy.optimize import brentq
 
 from symfpu.amplitudes import solve_amplitudes
 from symfpu.archive import BundleError
@@ -21,10 +21,12 @@ from symfpu.chain import Chain
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
 from symfpu.families import Family, NotInFamily, family
 from symfpu.lindstedt import lindstedt
+from symfpu.refinement import events
 from symfpu.refinement.breather_energy import breather_at_energy
 from symfpu.refinement.breathers import breather_at_amplitude, periodic_orbit
+from symfpu.refinement.continuation import first_torus
 from symfpu.refinement.floquet import floquet
-from symfpu.refinement.tori import RefinedTorus, refine_at_energy, shifts_of
+from symfpu.refinement.tori import NoTorus, RefinedTorus, refine_at_energy, shifts_of
 from tests.oracles.oscillators import cubic_oscillator
 from tests.test_bundle import same
 
@@ -43,11 +45,16 @@ FOLD = 1e-6
 # The oracle has 48 harmonics of dt/dphi; the 48th of the slowest orbit looked at leaves some 3e-12 of the amplitude.
 OSCILLATOR = 1e-11
 
+# Energies of located resonances, relative; Newton's method solves for the divisor itself, to some 1e-15.
+LOCATED = 1e-8
+
 # A step of at most 0.6 in ln A, thus 1.2 in ln H, is halved eight times.
 STABILITY = 0.01
 
 ROUND = Chain(8, alpha="0.4", beta="0.1")
 PAIR = Chain(8, alpha="0.3")
+WIDE = Chain(6, alpha="0.4")
+LOOP = Chain(16, beta=1)
 LONG = Chain(32, alpha="0.33")
 HARD = Chain(16, beta="0.5")
 BARRIER = Chain(3, alpha="0.5")
@@ -173,22 +180,106 @@ def test_a_fold_of_a_frequency_is_passed_and_located():
     assert folded().members[signs.index(True)].energy > 2 * fold.energy
 
 
-def test_a_resonance_is_named_rightly():
-    """The divisor (15 omega)^2 - Omega_17^2 is zero at an energy between the two members, found over breathers of given energy."""
+def test_a_resonance_is_named_and_located():
+    """15 omega = Omega_17 on the breather of harmonic balance with the energy of the event; d(15 omega)/d ln H is some 0.005 there."""
     event = next(e for e in resonant().events if e.kind == "resonance")
-    assert (event.mode, event.harmonic) == (17, (15,))
-    linear = LONG.frequencies()[16]
+    assert (event.mode, event.harmonic, event.interpolated) == (17, (15,), False)
     first, second = resonant().members[event.after : event.after + 2]
-    assert 15 * omega(first) < linear < 15 * omega(second)
-
-    def divisor(amplitude):
-        return 15 * float(breather_at_amplitude(LONG, 1, amplitude).frequency) - linear
-
-    place = breather_at_amplitude(LONG, 1, brentq(divisor, first.amplitudes[1], second.amplitudes[1], xtol=1e-6)).energy
     assert first.energy < event.energy < second.energy
-    # interpolated between members: a part of their distance, that of the curvature of omega(H) over a step
-    assert abs(event.energy - place) < 0.05 * (second.energy - first.energy)
-    assert "resonance of mode 17 with harmonic (15) at H = 0.03" in repr(event)
+    at = breather_at_energy(LONG, 1, repr(event.energy))
+    assert 15 * float(at.frequency) == pytest.approx(LONG.frequencies()[16], abs=LOCATED * 0.005)
+    assert event.value == pytest.approx(at.cosines[15, 16], rel=1e-4)
+    assert "resonance of mode 17 with harmonic (15) at H = 0.0392110" in repr(event)
+
+
+def test_a_resonance_of_two_frequencies_is_located():
+    """|12 omega_1 - 8 omega_2| = Omega_4 on the torus with the energy of the event, and not on its neighbours."""
+    found = family(WIDE, (1, 2), "0.45", from_energy="0.25", tolerance=1e-10)
+    event = next(e for e in found.events if e.kind == "resonance" and e.harmonic == (12, -8))
+    assert (event.mode, event.interpolated) == (4, False)
+
+    def divisor(torus):
+        return abs(float(12 * torus.frequencies[0] - 8 * torus.frequencies[1])) - WIDE.frequencies()[3]
+
+    at = found.at_energy(repr(event.energy), harmonic=False)
+    first, second = (divisor(m.torus) for m in found.members[event.after : event.after + 2])
+    assert first * second < 0
+    assert abs(divisor(at)) < LOCATED * abs(second - first)
+
+
+def test_a_resonance_between_the_first_members_is_found():
+    later = next(e for e in resonant().events if e.mode == 17)
+    found = family(LONG, (1,), "0.043", from_energy="0.0385", members=2)
+    assert [(e.mode, e.harmonic, e.after) for e in found.events] == [(17, (15,), 0)]
+    assert found.events[0].energy == pytest.approx(later.energy, rel=LOCATED)
+
+
+def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
+    """Where Newton's method finds no torus, or another one, the two members tell no more than that it lies between them."""
+    other = resonant().members[0].torus
+
+    def none(torus, conditions, **options):
+        raise NoTorus("tried", other, 1.0)
+
+    def another(torus, conditions, **options):
+        return other
+
+    for refined in (none, another):
+        with monkeypatch.context() as patched:
+            patched.setattr(events, "refined_torus", refined)
+            found = family(LONG, (1,), "0.05", from_energy="0.02")
+        event = next(e for e in found.events if e.mode == 17)
+        first, second = found.members[event.after : event.after + 2]
+        assert (event.mode, event.harmonic, event.interpolated) == (17, (15,), True)
+        assert first.energy < event.energy < second.energy
+        assert "at H = 0.039" in repr(event)
+        assert "(interpolated)" in repr(event)
+
+
+def test_a_family_that_comes_back_to_rest_ends_there():
+    """Mode 11 takes part on the way back, so that members of less energy and amplitude than the first are not yet those of the linear
+    limit; the last one is: the orbit of the same amplitude that harmonic balance finds from there."""
+    found = family(LOOP, (1,), "5", from_energy="0.05", tolerance=1e-10)
+    assert found.ending == "returned to the linear limit"
+    assert {e.what for e in found.events if e.kind == "fold"} == {"A_1", "omega_1", "H"}
+    first, *_, other, last = found.members
+
+    def of_the_limit(m):
+        return float(breather_at_amplitude(LOOP, 1, m.amplitudes[1]).frequency)
+
+    assert first.energy > other.energy > last.energy
+    assert first.amplitudes[1] > other.amplitudes[1] > last.amplitudes[1]
+    shift = omega(other) - LOOP.frequencies()[0]
+    assert abs(omega(other) - of_the_limit(other)) > 0.01 * shift
+    assert omega(last) == pytest.approx(of_the_limit(last), abs=1e-5 * shift)
+
+
+def test_a_beginning_beyond_the_series_is_led_up_to():
+    """At H = 0.5 Newton's method from the lowest order leads to no torus; the first members are those about it of the way from below."""
+    with pytest.raises(NoTorus):
+        first_torus(LOOP, {1: np.sqrt(2 * 0.5) / LOOP.frequencies()[0]})
+    found = family(LOOP, (1,), "0.6", from_energy="0.5", tolerance=1e-10)
+    assert found.ending == "reached the energy asked for"
+    assert found.members[0].energy < 0.5 <= found.members[1].energy
+    for m in found.members:
+        assert m.verdict == "torus"
+        assert omega(m) == pytest.approx(float(breather_at_energy(LOOP, 1, m.energy).frequency), rel=1e-8)
+
+
+@pytest.mark.long
+def test_a_beginning_that_the_family_does_not_reach_is_refused():
+    with pytest.raises(NotInFamily, match=r"no member has H = 2: .* to 0\.812.* and returned to the linear limit"):
+        family(LOOP, (1,), "5", from_energy="2", tolerance=1e-10)
+
+
+@pytest.mark.long
+def test_doubtful_members_do_not_crawl_to_a_saddle():
+    """Ever more harmonics let doubtful members follow each other by ever shorter steps; some are kept, then the family ends."""
+    found = family(BARRIER, (2,), "20", from_energy="1")
+    assert re.match(r"ended: .* steps along the way down to 0.0\d from a doubtful member$", found.ending)
+    doubtful = [m.verdict == "doubtful" for m in found.members]
+    assert doubtful == sorted(doubtful)
+    assert len(found.members) < 40
 
 
 def test_a_change_of_stability_is_located():
@@ -232,7 +323,7 @@ def test_a_family_that_cannot_go_on_says_so():
     """Towards the saddle the period grows without end, and so do the harmonics: the last ones that resolve it end the family."""
     found = family(Chain(2, beta="-0.5"), (1,), "20", from_energy="0.1", tolerance=1e-9)
     assert found.ending.startswith("ended: ")
-    assert "steps along the way down to 0.000" in found.ending
+    assert re.search(r"steps along the way down to 0\.0\d+ from a doubtful member$", found.ending)
     assert all(m.residual < 1e-6 for m in found.members)
     assert energies(found).max() < 2
     with pytest.raises(NotInFamily, match="ended: "):
@@ -460,6 +551,16 @@ DAMAGE = {
     "an event of another kind": changed(events=[{"harmonic": [1], "colour": "red"}]),
     "no events": changed(events=None),
 }
+
+
+def test_resonances_of_older_records_are_known_to_be_interpolated(copy):
+    """Records did not say so when no resonance was located."""
+    (arguments, options), record = RUNS["breather"], json.loads((copy / "family.json").read_text())
+    fold = {"kind": "fold", "what": "H", "after": 1, "energy": 0.05, "value": 0.05, "mode": 0, "harmonic": []}
+    record["events"] = [fold, fold | {"kind": "resonance", "what": "divisor", "mode": 7, "harmonic": [5]}]
+    (copy / "family.json").write_text(json.dumps(record))
+    known = family(*arguments, **options, members=3, folder=copy).events
+    assert [(e.kind, e.interpolated) for e in known] == [("fold", False), ("resonance", True)]
 
 
 @pytest.mark.parametrize("damage", DAMAGE)

@@ -47,6 +47,21 @@ class FrequencyShift:
 
 
 @dataclass(frozen=True)
+class Crossing:
+    """nu.omega is, up to its sign, the linear frequency of a mode: nu.(omega - Omega) = shift, whose size is that frequency."""
+
+    harmonic: tuple[int, ...]
+    shift: np.longdouble
+    size: float
+
+    def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
+        return np.longdouble((np.dot(np.array(self.harmonic), shifts) - self.shift) / self.size)
+
+    def gradient(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats]:
+        return np.zeros(cosines.shape), np.array(self.harmonic) / self.size
+
+
+@dataclass(frozen=True)
 class Amplitude:
     """The amplitude of a seed is given."""
 

@@ -7,7 +7,7 @@ family in the plane across it, so that a turn of the energy or of a frequency is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from symfpu.arithmetic import text
 from symfpu.chain import Chain
+from symfpu.errors import SymfpuError
 from symfpu.fourier import FourierTorus, QuasiPeriodic
 from symfpu.frequency_shift import frequency_shift
 from symfpu.lindstedt import lindstedt
@@ -29,12 +30,11 @@ from symfpu.torus import QTorus
 
 GUESS_ORDER = 2  # of the series that begins a family
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
+DOUBTFUL_STEP = 0.05  # the smallest from a doubtful member: near a saddle ever more harmonics let such ones crawl on without end
 EASY, FACTOR = 4, 1.3  # Newton steps up to which the next step along the way is longer, and by how much
 KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
 ASTRAY = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
-SIGNIFICANT = 1e-11  # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
 UNRESOLVED = 1e-6  # residual beyond which a torus is no member
-LOCATED, LOCATIONS = 1e-7, 8  # relative change of the place of an event that is enough, and the most members spent on it
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +68,7 @@ class Event:
 
     kind : 'fold' (what : the quantity that turns), 'resonance' (a divisor changes its sign; mode, harmonic) or 'stability' (what :
     the instability that begins or ends). energy : H there. value : of the quantity that turns, or of the divisor's coefficient.
+    interpolated : between the members, not found by Newton's method: good to some per cent of their distance.
     """
 
     kind: str
@@ -77,9 +78,10 @@ class Event:
     value: float
     mode: int = 0
     harmonic: tuple[int, ...] = ()
+    interpolated: bool = False
 
     def __repr__(self) -> str:
-        where = f"H = {self.energy:.10g}"
+        where = f"H = {self.energy:.3g} (interpolated)" if self.interpolated else f"H = {self.energy:.10g}"
         if self.kind == "resonance":
             harmonic = ",".join(map(str, self.harmonic))
             return f"resonance of mode {self.mode} with harmonic ({harmonic}) at {where}, coefficient {self.value:.2g}"
@@ -134,6 +136,27 @@ def periodic(torus: QuasiPeriodic) -> PeriodicOrbit:
     return PeriodicOrbit(torus.chain, torus.seeds[0], torus.frequencies[0], cosines, torus.residual(), 0, sigma)
 
 
+def returned(members: Sequence[Member], *, tolerance: float) -> bool:
+    """Whether a family has come back to the linear limit: below where it began, to the torus that the series there lead to.
+
+    Two tori of the same amplitudes nearer to each other than the root of the tolerance are one: Newton's method leads from one to
+    the other.
+    """
+    first, last = members[0], members[-1]
+    if len(members) < 3 or not last.energy < min(first.energy, members[-2].energy):
+        return False
+    if any(abs(last.amplitudes[q]) >= abs(a) for q, a in first.amplitudes.items()):
+        return False
+    try:
+        other = first_torus(first.torus.chain, last.amplitudes, tolerance=tolerance)
+    except SymfpuError:
+        return False
+    rows = {tuple(nu): i for i, nu in enumerate(other.harmonics.tolist())}
+    zero = 0 * other.cosines[0]
+    same = np.array([other.cosines[rows[nu]] if nu in rows else zero for nu in map(tuple, last.torus.harmonics.tolist())])
+    return bool(np.abs(last.torus.cosines - same).max() < np.sqrt(tolerance) * np.abs(other.cosines).max())
+
+
 class Way:
     """The last two tori of a family, and steps from them."""
 
@@ -152,6 +175,18 @@ class Way:
         self.tori, self.step = list(tori), step
         self.largest = largest  # relative shift so far
 
+    def local(self, *tori: RefinedTorus) -> Way:
+        """The same family from other tori, to look between members."""
+        return Way(
+            self.ratio,
+            energies=self.energies,
+            tolerance=self.tolerance,
+            report=self.report,
+            tori=tori,
+            step=self.step,
+            largest=self.largest,
+        )
+
     def scales(self) -> Floats:
         """A size for the shifts of all seeds that vanishes with none of them: the largest relative one, not far below any before."""
         linear = self.tori[0].chain.frequencies()[np.array(self.tori[0].seeds) - 1]
@@ -162,7 +197,8 @@ class Way:
     def _conditions(self, plane: Plane) -> list[Condition]:
         return [plane, *ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)]
 
-    def _variables(self, torus: RefinedTorus, scales: Floats) -> Floats:
+    def variables(self, torus: RefinedTorus, scales: Floats) -> Floats:
+        """Where a torus is, (ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
         A = np.array([np.longdouble(abs(a)) for a in torus.amplitudes.values()])
         return np.concatenate([np.log(A), shifts_of(torus) / scales])
 
@@ -170,7 +206,7 @@ class Way:
         """The torus whose way from the last one, along the secant, has this length; raises NoTorus."""
         last, before = self.tori[-1], self.tori[-2]
         scales = self.scales()
-        x, difference = self._variables(last, scales), self._variables(last, scales) - self._variables(before, scales)
+        x, difference = self.variables(last, scales), self.variables(last, scales) - self.variables(before, scales)
         length = float(np.linalg.norm(difference.astype(float)))
         tangent = (difference / length).astype(float)
         plane = Plane(tuple(x), tuple(tangent.tolist()), tuple(scales.tolist()), distance)
@@ -181,7 +217,7 @@ class Way:
             raise NoTorus("a frequency passes zero", found, found.residual())
         if found.warnings and (residual := found.residual()) > UNRESOLVED:
             raise NoTorus(f"{len(found.harmonics)} harmonics do not resolve it", found, residual)
-        off = float(np.linalg.norm((self._variables(found, scales) - x).astype(float) - distance * tangent))
+        off = float(np.linalg.norm((self.variables(found, scales) - x).astype(float) - distance * tangent))
         if off > ASTRAY * max(abs(distance), SMALLEST_STEP):
             raise NoTorus(f"the torus found is {off / abs(distance):.2g} steps off the way", found, found.residual())
         return found
@@ -193,7 +229,7 @@ class Way:
                 found = self.at(self.step)
                 break
             except NoTorus:
-                if self.step < SMALLEST_STEP:
+                if self.step < (DOUBTFUL_STEP if self.tori[-1].warnings else SMALLEST_STEP):
                     raise
                 self.step /= 2
         if len(found.steps) <= EASY:
@@ -209,128 +245,3 @@ def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> Fo
     cosines = last.cosines + ratio * (last.cosines - earlier)
     frequencies = tuple(b + Fraction(ratio) * (b - a) for a, b in zip(before.frequencies, last.frequencies, strict=True))
     return FourierTorus(last.chain, last.seeds, frequencies, last.harmonics, cosines, dict(last.phases))
-
-
-def quantities(torus: RefinedTorus) -> dict[str, float]:
-    """What may turn along a family: energy, shifts of the frequencies, amplitudes."""
-    shifts = shifts_of(torus)
-    named = {f"omega_{q}": float(x) for q, x in zip(torus.seeds, shifts, strict=True)}
-    return {"H": float(torus.energy())} | named | {f"A_{q}": a for q, a in torus.amplitudes.items()}
-
-
-def resonances(first: RefinedTorus, second: RefinedTorus, after: int) -> Iterator[Event]:
-    """The divisors of significant coefficients that change their sign between two tori, the place found by interpolation."""
-    rows = {tuple(nu): i for i, nu in enumerate(first.harmonics.tolist())}
-    pairs = [(rows[nu], j) for j, nu in enumerate(map(tuple, second.harmonics.tolist())) if nu in rows]
-    i, j = (np.array(x) for x in zip(*pairs, strict=True))
-    linear = first.chain.frequencies()
-    known = []
-    for torus, at in ((first, i), (second, j)):
-        rates = np.abs(torus.harmonics[at] @ np.array([float(w) for w in torus.frequencies]))
-        known.append(rates[:, None] - linear)
-    size = np.maximum(np.abs(first.cosines[i]), np.abs(second.cosines[j])) / np.abs(second.cosines).max()
-    seeds = np.zeros(size.shape, dtype=bool)
-    for k, q in enumerate(first.seeds):
-        seeds[:, q - 1] = (np.abs(first.harmonics[i]).sum(axis=1) == 1) & (first.harmonics[i][:, k] == 1)
-    for h, q in zip(*np.nonzero((known[0] * known[1] < 0) & (size > SIGNIFICANT) & ~seeds), strict=True):
-        part = known[0][h, q] / (known[0][h, q] - known[1][h, q])
-        energy = float(first.energy()) + part * (float(second.energy()) - float(first.energy()))
-        harmonic = tuple(first.harmonics[i[h]].tolist())
-        yield Event("resonance", "divisor", after, energy, float(second.cosines[j[h], q]), int(q) + 1, harmonic)
-
-
-def folds(way: Way, after: int) -> Iterator[Event]:
-    """The quantities that turn at or about the middle of the last three tori, located by a parabola through ever nearer tori."""
-    three = way.tori[-3:]
-    if len(three) < 3:
-        return
-    values = [quantities(torus) for torus in three]
-    for name in values[0]:
-        a, b, c = (v[name] for v in values)
-        noise = way.tolerance * max(abs(a), abs(b), abs(c))
-        if (b - a) * (c - b) < 0 and min(abs(b - a), abs(c - b)) > noise:
-            yield _fold(way, name, after)
-
-
-def _fold(way: Way, name: str, after: int) -> Event:
-    """Newton tori between the last three, at the vertex of the parabola through the best three of all."""
-    first, middle, last = way.tori[-3:]
-    local = Way(
-        way.ratio,
-        energies=way.energies,
-        tolerance=way.tolerance,
-        report=way.report,
-        tori=[first, middle],
-        step=way.step,
-        largest=way.largest,
-    )
-    scales = local.scales()
-    x = [local._variables(torus, scales).astype(float) for torus in (first, middle, last)]
-    direction = (x[1] - x[0]) / np.linalg.norm(x[1] - x[0])
-    known = {float((y - x[1]) @ direction): torus for y, torus in zip(x, (first, middle, last), strict=True)}
-    torus, place = middle, 0.0
-    for _ in range(LOCATIONS):
-        near = sorted(known, key=lambda s: abs(s - place))[:3]
-        vertex = _vertex(near, [quantities(known[s])[name] for s in near])
-        if not min(known) <= vertex <= max(known) or abs(vertex - place) < LOCATED:
-            break
-        try:
-            torus, place = local.at(vertex), vertex
-        except NoTorus:
-            break
-        known[vertex] = torus
-    value = quantities(torus)[name]
-    if name.startswith("omega"):
-        value = float(torus.frequencies[torus.seeds.index(int(name.split("_")[1]))])
-    return Event("fold", name, after + (place > 0), float(torus.energy()), value)
-
-
-def _vertex(s: Sequence[float], y: Sequence[float]) -> float:
-    second, first, _ = np.polyfit(np.array(s) - s[0], np.array(y) - y[0], 2)
-    return float(s[0] - first / (2 * second)) if second else float(s[0])
-
-
-def stability_change(way: Way, first: Member, second: Member, after: int) -> Event | None:
-    """The place between two breathers where one becomes unstable or stable, halved down from the step."""
-    if first.multipliers is None or second.multipliers is None or first.multipliers.stable == second.multipliers.stable:
-        return None
-    before, last = way.tori[-2], way.tori[-1]
-    local = Way(
-        way.ratio,
-        energies=way.energies,
-        tolerance=way.tolerance,
-        report=way.report,
-        tori=[last, before],
-        step=way.step,
-        largest=way.largest,
-    )
-    scales = local.scales()
-    length = float(np.linalg.norm((local._variables(last, scales) - local._variables(before, scales)).astype(float)))
-    low, high, energy = 0.0, -length, first.energy
-    for _ in range(LOCATIONS):
-        middle = (low + high) / 2
-        try:
-            torus = local.at(middle)
-        except NoTorus:
-            break
-        stable = floquet(periodic(torus)).stable
-        energy = float(torus.energy())
-        low, high = (middle, high) if stable == first.multipliers.stable else (low, middle)
-    unstable = second.multipliers if first.multipliers.stable else first.multipliers
-    change = "begins" if first.multipliers.stable else "ends"
-    return Event("stability", f"instability ({', '.join(unstable.instabilities)}) {change}", after, energy, unstable.largest)
-
-
-Unfinished = Callable[[Member], bool]
-
-
-def continued(way: Way, start: int, *, multipliers: bool, last: Member, finished: Unfinished) -> Iterator[tuple[Member, list[Event]]]:
-    """Members and events from the end of a way on, until `finished` says so; ends with NoTorus where the family cannot be followed."""
-    index = start
-    while not finished(last):
-        torus = way.advance()
-        found = member(torus, multipliers=multipliers)
-        events = [*folds(way, index - 1), *resonances(way.tori[-2], torus, index)]
-        change = stability_change(way, last, found, index)
-        yield found, events + ([change] if change else [])
-        index, last = index + 1, found

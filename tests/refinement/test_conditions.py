@@ -10,6 +10,7 @@ from symfpu.fourier import FourierTorus
 from symfpu.refinement.conditions import (
     Amplitude,
     AmplitudeRatio,
+    Crossing,
     Energy,
     EnergyRatio,
     FrequencyShift,
@@ -55,9 +56,11 @@ def met(state):
     """Conditions that the state meets, by quantities of the torus that the package computes elsewhere."""
     torus, A = state.torus, state.cosines[state.equation.seed_rows, state.equation.seed_columns]
     spectrum = torus.average_spectrum()
+    rate, linear = float(sum(n * w for n, w in zip((1, -2, 3), torus.frequencies, strict=True))), CHAIN.frequencies()[np.array(SEEDS) - 1]
     scales, tangent = (0.5, 2.0, 1.5), (0.3, -0.5, 0.2, 0.7, -0.4, 0.1)
     return {
         "frequency": FrequencyShift(1, state.shifts[1]),
+        "crossing": Crossing((1, -2, 3), np.longdouble(rate - linear @ (1, -2, 3)), 0.7),
         "amplitude": Amplitude(2, A[2]),
         "amplitude ratio": AmplitudeRatio(1, float(A[1] / A[0])),
         "energy ratio": EnergyRatio(2, float(spectrum[2] / spectrum[1])),
@@ -67,7 +70,7 @@ def met(state):
     }
 
 
-KINDS = ("frequency", "amplitude", "amplitude ratio", "energy ratio", "energy", "harmonic energy", "plane")
+KINDS = ("frequency", "crossing", "amplitude", "amplitude ratio", "energy ratio", "energy", "harmonic energy", "plane")
 
 
 @pytest.mark.parametrize("kind", KINDS)
