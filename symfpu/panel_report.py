@@ -20,8 +20,13 @@ def figure_markdown(figure: PaperFigure) -> str:
 
 def claims_table(claims: Iterable[Claim]) -> str:
     """One row for each claim."""
-    rows = [[c.section, c.text, c.printed or "-", c.ours, f"**{c.verdict}**"] for c in claims]
+    rows = [[_cell(text) for text in (c.section, c.text, c.printed or "-", c.ours, f"**{c.verdict}**")] for c in claims]
     return markdown_table(["section", "the paper says", "printed", "found here", "verdict"], rows)
+
+
+def _cell(text: str) -> str:
+    """Moduli would end a cell of a table."""
+    return text.replace("|", r"\|")
 
 
 def claims_markdown(figures: Sequence[PaperFigure]) -> str:

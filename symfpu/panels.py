@@ -22,7 +22,8 @@ STYLES = ("line", "points", "dots", "triangles", "rings", "law")
 class Curve:
     """y against x, both (n,), with a label and one of STYLES; points that are not positive are left out of logarithmic axes.
 
-    group : curves of one group share a colour, and the label of the first stands for all; default each its own.
+    group : curves of one group share a colour, and the label of the first stands for all; default each its own. name : in the table, where
+    a label is of many curves or has LaTeX in it; default the label.
     """
 
     label: str
@@ -30,6 +31,7 @@ class Curve:
     y: Floats = field(repr=False)
     style: str = "line"
     group: int | None = None
+    name: str = ""
 
     def __post_init__(self) -> None:
         if np.shape(self.x) != np.shape(self.y) or np.ndim(self.x) != 1:
@@ -55,7 +57,7 @@ class Panel:
 
     def table(self) -> tuple[list[str], Iterable[list[Any]]]:
         """Header and rows: one row for each point of each curve."""
-        rows = ([curve.label, float(x), float(y)] for curve in self.curves for x, y in zip(curve.x, curve.y, strict=True))
+        rows = ([curve.name or curve.label, float(x), float(y)] for curve in self.curves for x, y in zip(curve.x, curve.y, strict=True))
         return ["curve", *self.axes], rows
 
 

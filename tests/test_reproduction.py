@@ -1,5 +1,6 @@
-"""Rows of the table: what counts as met, which order is chosen, what the verdict says."""
+"""Rows of the table and Fig. 1: what counts as met, which order is chosen, what the verdict says."""
 
+import json
 from dataclasses import replace
 from fractions import Fraction
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 from symfpu.chain import Chain
+from symfpu.cli import main
 from symfpu.paper import APPENDIX_F, FIG1_DIGITS, TWO_TORUS, PrintedTorus
 from symfpu.reproduction import MET_DIGITS, agreement_digits, amplitude_row, energies, figure1, rounds_to
 from tests.reference import BETA_BREATHER, PERIODIC_ORBITS
@@ -109,9 +111,15 @@ def test_printed_breathers_differ_from_the_periodic_orbits(orbit):
     assert abs(float(data.amplitudes[0]) / orbit.amplitude - 1) > 1e-5
 
 
-def test_figure_1_is_computed_from_the_printed_frequencies():
+@pytest.fixture(scope="module")
+def computed():
+    """Fig. 1 and the labels of its steps."""
     labels = []
-    data = figure1(labels.append)
+    return figure1(labels.append), labels
+
+
+def test_figure_1_is_computed_from_the_printed_frequencies(computed):
+    data, labels = computed
     assert data.torus.series.frequencies == tuple(Fraction(w) for w in REFERENCE.frequencies)
     assert labels[0].startswith("fig1")
     assert data.residuals[data.best_order] == min(data.residuals.values())
@@ -127,3 +135,24 @@ def test_figure_1_is_computed_from_the_printed_frequencies():
         assert np.abs(total).max() < np.abs(harmonic).max()
     assert data.sums[0].shape == (31,)
     assert (data.sums[0] >= data.sums[1] * (1 - 1e-12)).all()
+
+
+def test_reproduce_fig1_writes_pictures_data_and_claims(computed, monkeypatch, capsys, tmp_path):
+    """The alignment indices end at 1e3, before they decide."""
+    monkeypatch.setattr("symfpu.targets.figure1", lambda step: computed[0])
+    monkeypatch.setattr("symfpu.paper_figures.dimensions.TIME", 1e3)
+    assert main(["reproduce", "fig1", "-o", str(tmp_path), "--json"]) == 0
+    out = capsys.readouterr().out
+    expected = {f"fig1{panel}.{suffix}" for panel in "abcde" for suffix in ("png", "pdf", "csv")}
+    assert {path.name for path in tmp_path.iterdir()} == expected | {"report.md", "report.json"}
+    assert all((tmp_path / name).stat().st_size > 500 for name in expected if not name.endswith("csv"))
+    record = json.loads(out)
+    assert record == json.loads((tmp_path / "report.json").read_text())
+    assert set(record["fig1"]["claims"]) == {"best_difference", "cancellation", "term_size", "harmonic_error", "energy_error"}
+    claims = {claim["text"].split(",")[0]: claim for claim in record["fig1"]["judged"]["claims"]}
+    assert len(claims) == 11
+    assert claims["cancellations by four orders of magnitude at k = 14"]["verdict"] == "holds"
+    assert claims["the energies E_q fall exponentially with q"]["verdict"] == "holds"
+    assert claims["up to k = 24 the behaviour of the series appears as convergent"]["verdict"] == "does not hold"
+    assert "the printed digits at order 22, 26" in claims["the amplitudes of order 24 are A_1 = 0.5848897"]["ours"]
+    assert claims["G_2 stays constant to 1e9"]["verdict"] == "undecided"

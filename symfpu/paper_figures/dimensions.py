@@ -44,8 +44,8 @@ def indices(name: str, start: tuple[Floats, Floats], tell: Step, folder: Path, *
 def alignment_panel(name: str, title: str, found: AlignmentIndices) -> Panel:
     """log10 G_k against log10 t."""
     curves = tuple(
-        Curve(rf"$G_{{{slope.k}}}$: ${slope.value:.2f} \pm {slope.error:.2f}$", np.log10(found.times), found.log10_gali[:, i])
-        for i, slope in enumerate(found.slopes())
+        Curve(rf"$G_{{{s.k}}}$: ${s.value:.2f} \pm {s.error:.2f}$", np.log10(found.times), found.log10_gali[:, i], name=f"G_{s.k}")
+        for i, s in enumerate(found.slopes())
     )
     return Panel(name, title, r"$\log_{10} t$", r"$\log_{10} G_k$", curves, ("log10_t", "log10_G"), log_y=False)
 

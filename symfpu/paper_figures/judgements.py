@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ Floats = NDArray[np.float64]
 SIMILAR = 1.0  # decades in which profiles over thirty decades are alike
 AGREEMENT = 0.1  # decades in which profiles are the same to the eye: the height of a marker in the paper's pictures
 FLOOR = 1e-28  # of the energy: T + V leaves in a mode the squared rounding of all others
+SHOWN_GROUPS = 6  # medians in the text
 NEAR = 0.5  # decades: a size that the paper gives by its order of magnitude
 
 
@@ -40,20 +42,44 @@ def same_profile(
     return Claim(section, text, "", ours, judged(found.distance <= within, upper.distance <= within))
 
 
-def dimension_claim(section: str, text: str, printed: int, found: AlignmentIndices, more: str = "") -> Claim:
-    """Whether the alignment indices show the printed dimension."""
-    verdict = found.dimension()
-    decided = verdict.verdict != "undecided"
-    ours = slopes_text(found) + ("" if decided else f" ({verdict.reason})") + more
-    return Claim(section, text, f"dimension {printed}", ours, judged(verdict.value == printed) if decided else OPEN)
+def dimension_claim(
+    section: str, text: str, printed: int, found: AlignmentIndices, *, shown_after: float = 0.0, whole: float = 0.0, more: str = ""
+) -> Claim:
+    """Whether the alignment indices show the printed dimension. shown_after : the time from which the paper reads its slopes; another
+    dimension that is seen before does not decide. whole : the paper's time; what agrees over a part of it is named so."""
+    verdict, T = found.dimension(), float(found.times[-1])
+    same = verdict.verdict == f"regular, dimension {printed}"
+    early = not same and shown_after > T
+    decided = verdict.verdict != "undecided" and not early
+    ours = slopes_text(found) + (f" ({verdict.reason})" if verdict.verdict == "undecided" else "")
+    ours += f"; the paper's slopes are those after {shown_after:.0e}" if early else ""
+    ours += f"; the paper goes to {whole:.0e}" if same and whole / 2 > T else ""
+    return Claim(section, text, f"dimension {printed}", ours + more, judged(same) if decided else OPEN)
 
 
 def cancellation_claim(section: str, text: str, printed: float, sums: tuple[Floats, Floats], order: int) -> Claim:
-    """Whether S_1 / S_2 has the printed size at an order, in decades, and both sums fall up to it."""
+    """Whether S_1 / S_2 has the printed size at an order, in decades; in part from half of them on."""
     decades = float(np.log10(sums[0][order] / sums[1][order]))
-    falling = all(np.all(values[2 : order + 1] < values[: order - 1]) for values in sums)
-    ours = f"S_1/S_2 = 10^{decades:.2f} at k = {order}; {'both fall' if falling else 'they do not both fall'} from every k to k + 2"
-    return Claim(section, text, f"10^{printed:g}", ours, judged(abs(decades - printed) <= NEAR and falling, falling))
+    ours = f"S_1/S_2 = 10^{decades:.2f} at k = {order}"
+    return Claim(section, text, f"10^{printed:g}", ours, judged(abs(decades - printed) <= NEAR, decades >= printed / 2))
+
+
+def falls(values: Floats, order: int) -> bool:
+    """Whether a sum falls from every k to k + 2 up to an order: odd and even orders of one mode are series of their own."""
+    return bool(np.all(values[2 : order + 1] < values[: order - 1]))
+
+
+def groups_claim(section: str, text: str, groups: Sequence[Sequence[int]], spectrum: Floats) -> Claim:
+    """Whether every group of modes lies below the one before, wholly or by its median."""
+    levels = [np.log10(spectrum[np.array(modes) - 1]) for modes in groups if len(modes)]
+    falling = all(np.median(b) < np.median(a) for a, b in itertools.pairwise(levels))
+    apart = sum(bool(b.max() < a.min()) for a, b in itertools.pairwise(levels))
+    medians = ", ".join(f"{np.median(g):.1f}" for g in levels[:SHOWN_GROUPS])
+    ours = (
+        f"median log10 of D_0, D_1, ...: {medians}{', ...' if len(levels) > SHOWN_GROUPS else ''}; {'always' if falling else 'not always'} "
+        f"falling; {apart} of {len(levels) - 1} groups lie wholly below the one before"
+    )
+    return Claim(section, text, "", ours, judged(apart == len(levels) - 1, falling))
 
 
 def parting_level(a: Floats, b: Floats, decades: float = AGREEMENT) -> tuple[float, int]:
@@ -71,15 +97,10 @@ def sums_panel(name: str, title: str, q: int, sums: tuple[Floats, Floats]) -> Pa
     """mu^k S_1(k) and mu^k S_2(k) against the order."""
     orders = np.arange(float(len(sums[0])))
     curves = tuple(
-        Curve(rf"$\mu^k S_{i}(k)$", orders, values, style)
+        Curve(rf"$\mu^k S_{i}(k)$", orders, values, style, name=f"mu_k_S{i}")
         for i, (values, style) in enumerate(zip(sums, ("triangles", "points"), strict=True), 1)
     )
     return Panel(name, title, r"order $k$", rf"sums of the terms of $Q_{{{q}}}^{{(k)}}$", curves, ("k", "mu_k_S"))
-
-
-def modes_text(groups: Mapping[int, tuple[int, ...]]) -> str:
-    """Groups of modes in words, runs shortened."""
-    return "; ".join(f"D_{k} = {runs(modes)}" for k, modes in groups.items())
 
 
 def runs(modes: tuple[int, ...]) -> str:

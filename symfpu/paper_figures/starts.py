@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -56,13 +56,12 @@ def follow(
     T: float,
     tell: Step,
     *,
-    folder: Path | None = None,
     scheme: str = SCHEME,
     step: float = MODE_STEP,
     samples: int | Floats = 200,
     averages: bool = True,
 ) -> Orbit:
-    """The orbit from a torus or a state at t = 0, with running averages; `tell` hears how far it is. folder : for a checkpoint."""
+    """The orbit from a torus or a state at t = 0, with running averages; `tell` hears how far it is."""
     Q, P = start if isinstance(start, tuple) else (start.positions(0.0), start.momenta(0.0))
     return integrate(
         chain,
@@ -74,7 +73,6 @@ def follow(
         samples=samples,
         averages=averages,
         workers=2,
-        file=None if folder is None else folder / f"{name.replace(' ', '-')}.checkpoint",
         progress=lambda done, total: tell(f"{name}: t = {T * done / total:.2g} of {T:.2g}"),
     )
 
@@ -83,7 +81,7 @@ def profile_panel(name: str, title: str, chain: Chain, profiles: Mapping[str, Fl
     """Normalised spectra (N-1,) by name, against q/N or q, with lines of laws."""
     q = np.arange(1.0, chain.N)
     x = q / chain.N if by_kappa else q
-    styles = ("points", "triangles", "rings", "points", "triangles")
+    styles = itertools.cycle(("points", "triangles", "rings"))
     curves = tuple(Curve(label, x, np.asarray(e, dtype=float), style) for (label, e), style in zip(profiles.items(), styles, strict=False))
     labels = (r"$\kappa = q/N$", r"$e_\kappa$") if by_kappa else (r"$q$", r"$\overline{E}_q / E$")
     return Panel(name, title, *labels, curves + laws, ("kappa" if by_kappa else "q", "average_energy_over_H"))
@@ -91,5 +89,5 @@ def profile_panel(name: str, title: str, chain: Chain, profiles: Mapping[str, Fl
 
 def energies_panel(name: str, title: str, times: Floats, energies: Floats, modes: tuple[int, ...], *, bottom: float | None = None) -> Panel:
     """Instantaneous E_q(t)/E of some modes; energies (S, N-1), normalised."""
-    curves = tuple(Curve(f"$q = {q}$", times, energies[:, q - 1]) for q in modes)
+    curves = tuple(Curve(f"$q = {q}$", times, energies[:, q - 1], name=f"q={q}") for q in modes)
     return Panel(name, title, r"$t$", r"$E_q(t) / E$", curves, ("t", "energy_over_H"), bottom=bottom)

@@ -44,8 +44,10 @@ def reproduce(
     if full:
         console().print(full_estimate(chosen, folder), highlight=False)
     with progress_bar() as advance:
-        pages = {target: TARGETS[target](folder, lambda label: advance(label, None), full=full) for target in chosen}
-    record = _write(pages, folder)
+        pages: dict[str, Page] = {}
+        for target in chosen:
+            pages[target] = TARGETS[target](folder, lambda label: advance(label, None), full=full)
+            record = _write(pages, folder)  # at once: a run that is stopped, or a later target that fails, loses nothing
     if as_json:
         print_json(record)
         return
