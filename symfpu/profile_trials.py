@@ -99,23 +99,31 @@ class ProfileInvariance:
         """Of the fitted slopes with log10 N; 0 by the laws."""
         return _trend([math.log10(chain.N) for chain in self.chains], [fit.line.slope for fit in self.fits])
 
-    def levels(self) -> tuple[Floats, Floats]:
-        """log10 of the mean E_q/eps of the middle halves of D_1, D_2, ..., and its standard error over realisations; (sizes, groups).
+    @property
+    def _coarse(self) -> Chain:
+        """The chain whose kappas all others have too."""
+        return replace(self.chains[0], N=math.gcd(*(chain.N for chain in self.chains)))
 
-        The laws are of middle modes; at the edges of a group small divisors take over. Mean over modes and realisations; nan where a mode
-        is below the floor, or without a second realisation.
+    def levels(self) -> tuple[Floats, Floats]:
+        """log10 of E_q/eps in the middle halves of D_1, D_2, ..., mean over the kappas that all sizes share, and its standard error over
+        realisations; (sizes, groups).
+
+        The laws are of middle modes; at the edges of a group small divisors take over. Only the same kappas compare like with like: within
+        a group e_kappa falls by decades. nan where a mode is below the floor, or without a second realisation.
         """
-        groups = [packet_groups(chain, int(self.fraction * chain.N))[1:] for chain in self.chains]
-        values, errors = np.full((2, len(self.chains), min(map(len, groups))), math.nan)
+        coarse = self._coarse
+        s = int(self.fraction * coarse.N)
+        width = s * coarse.degree_step
+        groups = [group for group in packet_groups(coarse, s)[1:] if len(group) == width]
+        values, errors = np.full((2, len(self.chains), len(groups)), math.nan)
         for i, (chain, e, floor) in enumerate(zip(self.chains, self.spectra, self.floors, strict=True)):
-            width = int(self.fraction * chain.N) * chain.degree_step
-            for k, group in enumerate(groups[i][: values.shape[1]]):
-                middle = np.array([q for q in group if width < 4 * (q - group.start + 1) <= 3 * width or width == 1]) - 1
-                if len(group) == width and (e.mean(axis=0)[middle] > floor[middle]).all():
-                    level = chain.N * e[:, middle].mean(axis=1)
-                    values[i, k] = math.log10(level.mean())
-                    if len(level) > 1:
-                        errors[i, k] = level.std(ddof=1) / level.mean() / math.log(10) / len(level) ** 0.5
+            for k, group in enumerate(groups):
+                middle = [q for q in group if width < 4 * (q - group.start + 1) <= 3 * width or width == 1]
+                places = chain.N // coarse.N * np.array(middle) - 1
+                if (e.mean(axis=0)[places] > floor[places]).all():
+                    values[i, k] = np.log10(chain.N * e[:, places].mean(axis=0)).mean()
+                    if len(e) > 1:
+                        errors[i, k] = np.log10(e[:, places]).mean(axis=1).std(ddof=1) / len(e) ** 0.5
         return values, errors
 
     @property
@@ -124,12 +132,19 @@ class ProfileInvariance:
         sizes = [math.log10(chain.N) for chain in self.chains]
         return {k + 1: _trend(sizes, column) for k, column in enumerate(self.levels()[0].T) if np.isfinite(column).all()}
 
+    @property
+    def late_growth(self) -> dict[int, float]:
+        """The same exponents between the two longest chains, where packets of few modes no longer weigh."""
+        first, second = self.levels()[0][-2:]
+        rates = (second - first) / math.log10(self.chains[-1].N / self.chains[-2].N)
+        return {k + 1: float(rate) for k, rate in enumerate(rates) if math.isfinite(rate)}
+
     def moved(self, *, per_mode: bool = False) -> tuple[float, float]:
         """Largest change of log10 e_kappa between two sizes at a common kappa beyond the packet, and that kappa.
 
         per_mode : of log10 E_q/eps = log10 (N e_kappa) instead, which the laws leave in place.
         """
-        coarse = math.gcd(*(chain.N for chain in self.chains))
+        coarse = self._coarse.N
         worst = (0.0, math.nan)
         for q in (q for q in range(1, coarse) if Fraction(q, coarse) > self.fraction):
             places = [chain.N // coarse * q - 1 for chain in self.chains]

@@ -75,7 +75,8 @@ def test_modes_below_the_noise_do_not_count():
 @pytest.mark.parametrize(("exponents", "verdict"), [((0.0, 0.1), HOLDS), ((0.0, -0.4), PARTLY), ((0.4, 0.45), FAILS)])
 def test_the_law_s_own_dependence_on_the_size(exponents, verdict):
     growth = {k: SimpleNamespace(rate=c, error=0.3) for k, c in enumerate(exponents, 1)}
-    assert laws._law_scaling(ALPHA, SimpleNamespace(growth=growth)).verdict == verdict  # an error bar excuses nothing
+    found = SimpleNamespace(growth=growth, late_growth=dict(enumerate(exponents, 1)), chains=ALPHA.chains)
+    assert laws._law_scaling(ALPHA, found).verdict == verdict  # an error bar excuses nothing
 
 
 @pytest.mark.parametrize("line", [ALPHA, BETA], ids=["alpha", "beta"])
