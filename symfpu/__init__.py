@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from symfpu.codegen.export import export
     from symfpu.commensurability import frequency_rank
     from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices, seconds_needed
+    from symfpu.dynamics.frame_run import OrbitLost
     from symfpu.dynamics.orbits import Orbit, integrate
     from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep
     from symfpu.errors import (
@@ -106,6 +107,7 @@ _DEFINED = {
     "symfpu.codegen.export": ("export",),
     "symfpu.commensurability": ("frequency_rank",),
     "symfpu.dynamics.alignment": ("AlignmentIndices", "alignment_indices", "seconds_needed"),
+    "symfpu.dynamics.frame_run": ("OrbitLost",),
     "symfpu.dynamics.orbits": ("Orbit", "integrate"),
     "symfpu.dynamics.stopping": ("EscapedOrbit", "OrbitStopped", "UnstableStep"),
     "symfpu.errors": (
@@ -275,6 +277,7 @@ __all__ = [
     "NoTorusAtEnergy",
     "NotInFamily",
     "Orbit",
+    "OrbitLost",
     "OrbitStopped",
     "PadeSum",
     "PeriodicOrbit",

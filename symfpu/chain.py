@@ -207,6 +207,12 @@ def linear_frequencies(N: int) -> Floats:
     return values
 
 
+def require_chain(chain: object) -> None:
+    """InputError for what is no Chain."""
+    if not isinstance(chain, Chain):
+        raise InputError("chain", type(chain).__name__, "a Chain", "make one with Chain(N, alpha=..., beta=...)")
+
+
 def rational(value: Fraction) -> Any:
     """The SymEngine number equal to an exact fraction."""
     return se.Integer(value.numerator) / se.Integer(value.denominator)

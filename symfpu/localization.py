@@ -12,7 +12,7 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain import Chain
+from symfpu.chain import Chain, require_chain
 from symfpu.dynamics.orbits import SCHEMES
 from symfpu.errors import InputError
 from symfpu.exact import integer, seed_modes
@@ -82,6 +82,7 @@ def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) 
 
     seed_energy : E_1, default the energy. Shape (N-1,). Raises InputError.
     """
+    require_chain(chain)
     if chain.model != "alpha":
         raise InputError("chain", chain, "the alpha model", "the law is stated for it alone")
     gamma = packet_parameter(chain, 1, positive(energy, "energy") / chain.N)
@@ -202,12 +203,14 @@ def _solved(X: Floats, y: Floats) -> Floats:
 
 
 def _packet(chain: Chain, s: int, specific_energy: float) -> tuple[int, float]:
+    require_chain(chain)
     if chain.model == "alpha+beta":
         raise InputError("chain", chain, "one coupling, alpha or beta", "the laws are stated for each model alone")
     return packet_width(chain, s), positive(specific_energy, "specific_energy")
 
 
 def packet_width(chain: Chain, s: int) -> int:
+    require_chain(chain)
     if integer(s, "s", 1) >= chain.N:
         raise InputError("s", s, f"1..{chain.N - 1} (N = {chain.N})", "take fewer seeds or a longer chain")
     return int(s)
@@ -226,6 +229,7 @@ def positive(value: float, argument: str) -> float:
 
 
 def _spectrum(chain: Chain, spectrum: ArrayLike) -> Floats:
+    require_chain(chain)
     try:
         E = np.asarray(spectrum, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -248,7 +252,10 @@ def _modes(chain: Chain, s: int, modes: str | Sequence[int]) -> tuple[int, ...]:
 
 def _floor(chain: Chain, floor: float | ArrayLike, E: Floats) -> Floats:
     """As energies in the unit of E, (N-1,)."""
-    least = np.asarray(floor, dtype=np.float64)
+    try:
+        least = np.asarray(floor, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError("floor", floor, f"a number, or {chain.N - 1} of them", "pass 0 for spectra in closed form") from error
     least = least * E.max() if least.ndim == 0 else least
     if least.shape not in ((), (chain.N - 1,)) or not (np.isfinite(least) & (least >= 0)).all():
         raise InputError("floor", floor, f"a number, 0 or more, or {chain.N - 1} of them", "pass 0 for spectra in closed form")

@@ -62,7 +62,10 @@ def slope_by_energy(
     (alpha) or 0 (beta). The others as `fit_profile`; floor one for all. Raises InputError.
     """
     energies = np.array([positive(energy, "specific_energies") for energy in specific_energies])
-    rows = np.asarray(spectra, dtype=np.float64)
+    try:
+        rows = np.asarray(spectra, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError("spectra", type(spectra).__name__, "numbers, (n, N-1)", "pass one row for each energy") from error
     if len(energies) < POINTS or rows.shape != (len(energies), chain.N - 1) or len(set(energies.tolist())) < POINTS:
         raise InputError("spectra", rows.shape, f"one of {chain.N - 1} modes for each of three energies or more", "pass (n, N-1)")
     power = (2.0 if chain.alpha else 0.0) if power is None else power
@@ -118,7 +121,7 @@ class ProfileInvariance:
         values, errors = np.full((2, len(self.chains), len(groups)), math.nan)
         for i, (chain, e, floor) in enumerate(zip(self.chains, self.spectra, self.floors, strict=True)):
             for k, group in enumerate(groups):
-                middle = [q for q in group if width < 4 * (q - group.start + 1) <= 3 * width or width == 1]
+                middle = [q for q in group if width < 4 * (q - group.start + 1) <= 3 * width]
                 places = chain.N // coarse.N * np.array(middle) - 1
                 if (e.mean(axis=0)[places] > floor[places]).all():
                     values[i, k] = np.log10(chain.N * e[:, places].mean(axis=0)).mean()
@@ -179,6 +182,9 @@ def profile_invariance(
     M, sizes, epsilon = exact(fraction, "fraction"), [integer(N, "sizes", 2) for N in sizes], positive(specific_energy, "specific_energy")
     if len(set(sizes)) < POINTS or not 0 < M < 1 or any((M * N).denominator != 1 for N in sizes):
         raise InputError("fraction, sizes", (str(M), sizes), "three sizes N or more with M N whole", "change one of them")
+    if M * math.gcd(*sizes) < 2:
+        expected = f"numbers N with a common divisor d so that M d is 2 or more (here {M * math.gcd(*sizes)})"
+        raise InputError("sizes", sizes, expected, "take sizes that share kappas in the middles of groups")
     positive(T, "T")  # integrate would take a negative one
     if phases not in PHASES:
         raise InputError("phases", phases, ", ".join(PHASES), "choose one of them")

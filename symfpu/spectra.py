@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain import Chain
+from symfpu.chain import Chain, require_chain
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError, SymfpuError
 from symfpu.exact import Number, exact, seed_modes
@@ -39,6 +39,7 @@ def fpu_trajectory(chain: Chain, amplitudes: Mapping[int, Number], phases: Mappi
     >>> fpu_trajectory(Chain(N=4, alpha=1), {1: 0.5, 3: "0.25"})
     (array([0.5 , 0.  , 0.25]), array([0., 0., 0.]))
     """
+    require_chain(chain)
     seeds = seed_modes(_mapping(amplitudes, "amplitudes"), chain.N)
     angles = _mapping({} if phases is None else phases, "phases")
     for key in angles:
@@ -60,6 +61,7 @@ def packet_amplitudes(chain: Chain, seeds: Sequence[int], energy: Number, *, sha
     >>> packet_amplitudes(Chain(N=3, alpha=1), (1, 2), 2, share="amplitude")  # Omega^2 = 1, 3
     {1: 1.0, 2: 1.0}
     """
+    require_chain(chain)
     modes = seed_modes(seeds, chain.N)
     total = _double(energy, "energy")
     if not total > 0:
@@ -76,7 +78,7 @@ def normalised_averages(orbit: Orbit) -> Floats:
 
     orbit : integrated with averages=True; its last row is the paper's normalised averaged spectrum. Raises InputError.
     """
-    if orbit.averages is None:
+    if getattr(orbit, "averages", None) is None:
         raise InputError("orbit", repr(orbit), "an orbit with running averages", "integrate with averages=True")
     if not (orbit.energies[0] > 0).all():
         raise InputError("orbit", repr(orbit), "an orbit of positive energy", "divide its averages by another number")
@@ -188,6 +190,7 @@ def growth_exponents(
     """
     if averages is None:
         raise InputError("averages", None, "those of an orbit that has them", "integrate with averages=True")
+    require_chain(chain)
     t, Ebar = _record(times, averages, "averages")
     if Ebar.shape[1] != chain.N - 1:
         raise InputError("averages", Ebar.shape, f"the {chain.N - 1} modes of {chain} on the last axis", "pass those of one orbit")

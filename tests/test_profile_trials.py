@@ -85,6 +85,7 @@ BAD = [
     ({"fraction": "1/5"}, "fraction, sizes"),
     ({"fraction": 2}, "fraction, sizes"),
     ({"sizes": (16, 32)}, "fraction, sizes"),
+    ({"sizes": (16, 24, 64)}, "sizes"),
     ({"sizes": (16, 16, 32)}, "fraction, sizes"),
     ({"specific_energy": 0}, "specific_energy"),
     ({"T": -10.0}, "T"),

@@ -6,6 +6,7 @@ import pytest
 from symfpu.chain import Chain
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
+from symfpu.localization import fit_profile, profile_law
 from symfpu.paper import APPENDIX_F, FIG9_BREATHER
 from symfpu.propagation import excitation_sequence
 from symfpu.spectra import (
@@ -337,3 +338,23 @@ def test_bad_records_are_refused():
     refused("energies", recurrence, t, E[0])
     refused("times", recurrence, t[:2], E[:2])
     refused("times", recurrence, "now", E)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: fpu_trajectory("chain", {1: 1}),
+        lambda: packet_amplitudes(None, (1,), 1),
+        lambda: growth_exponents(7, [1.0], [[1.0]], [(1,), (2,)]),
+        lambda: profile_law("chain", 1, 1e-8),
+        lambda: fit_profile(None, [1.0], 1),
+    ],
+)
+def test_what_is_no_chain_is_named(call):
+    with pytest.raises(InputError, match=r"^chain = .* allowed is a Chain"):
+        call()
+
+
+def test_what_is_no_orbit_is_named():
+    with pytest.raises(InputError, match=r"^orbit = .*integrate with averages=True"):
+        normalised_averages("orbit")

@@ -17,7 +17,7 @@ from os import PathLike
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain import Chain
+from symfpu.chain import Chain, require_chain
 from symfpu.dynamics.checkpoint import checkpoint_path, seconds_between
 from symfpu.dynamics.frame_run import FrameRun, Progress, seconds_a_step
 from symfpu.dynamics.tangent import moving_frame, step_length
@@ -28,7 +28,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 STEP, SAMPLES, VECTORS, BLOCK = 0.4, 400, 7, 40
-MOST_VECTORS = 64
+MOST_VECTORS, MOST_SAMPLES, MOST_STEPS = 64, 1_000_000, 2**52
+LOST_ENERGY = 1e-3  # relative: an orbit that has lost so much is not one of the chain
 DECADES = 1.5  # of time, the last ones, in which slopes are fitted
 PARTS = 8  # of that range, left out one at a time for the uncertainty of a slope
 FEWEST = 4 * PARTS  # samples in it
@@ -56,9 +57,9 @@ class Slope:
 class TorusDimension:
     """What the slopes say of the torus under an orbit.
 
-    verdict : 'regular, dimension s', 'regular, dimension s or more' if no index falls, 'chaotic' or 'undecided'. value : the best
-    supported s, None for a chaotic orbit; error : the standard deviation of s over the weights; weights : of each s, normalised.
-    reason : the numbers behind the verdict.
+    verdict : 'regular, dimension s', 'regular, dimension s or more' if no index falls, 'chaotic' or 'undecided'. value : s, None for a
+    chaotic or undecided orbit. error : the standard deviation of s over the weights; weights : of each s, normalised, also where
+    nothing is decided. reason : the numbers behind the verdict.
     """
 
     verdict: str
@@ -109,9 +110,12 @@ class AlignmentIndices:
         log GALI_j - log GALI_(j-1) has the slope 0 for j <= s, -1 for s < j <= 2n-s, -2 above. Each s has the weight exp(-chi^2/2)
         of these differences, whose uncertainties are at least FLOOR and are enlarged where no s fits. The orbit is called chaotic if
         the first vector grows faster than t^CHAOTIC_GROWTH (by three standard errors) and an index falls faster than a torus allows;
-        undecided if a slope is off its integer by more than ODD, if no s has the weight SURE, or if the first vector does not yet
-        grow as t does: before that time indices stay constant on every torus.
+        undecided if a slope is off its integer by more than ODD, if no s has the weight SURE, if the first vector does not yet grow as t
+        does (before that time indices stay constant on every torus), or if the orbit has lost LOST_ENERGY of its energy.
         """
+        if not self.energy_error <= LOST_ENERGY:
+            reason = f"the orbit is off by {self.energy_error:.1g} of its energy: take a shorter step than {self.step:g}"
+            return TorusDimension("undecided", None, math.nan, {}, reason)
         growth, doubt = self._fits((self.lyapunov * self.times / math.log(10))[:, None], decades)[0]
         steps = np.array(self._fits(np.diff(self.log10_gali, axis=1, prepend=0.0), decades))
         reason = f"|v| grows as t^{growth:.2f} +- {doubt:.2f}"
@@ -127,13 +131,13 @@ class AlignmentIndices:
         error = math.sqrt(sum(w * (s - best) ** 2 for s, w in weights.items()))
         j = int(np.argmax(np.abs(offsets[best])))
         if abs(growth - 1) > ODD:
-            return TorusDimension("undecided", best, error, weights, f"{reason}, on a torus as t^1 in the end: take a longer time")
+            return TorusDimension("undecided", None, error, weights, f"{reason}, on a torus as t^1 in the end: take a longer time")
         reason += (
             f"; log GALI_{j + 2} - log GALI_{j + 1}, the farthest from its integer, has the slope {steps[j, 0]:.2f} +- {steps[j, 1]:.2f}, "
             f"on a torus of dimension {best} it is {_expected(best, n, self.vectors)[j]}"
         )
         if abs(offsets[best][j]) > ODD or weights[best] < SURE:
-            return TorusDimension("undecided", best, error, weights, reason)
+            return TorusDimension("undecided", None, error, weights, f"{reason}: take a longer time")
         more = " or more" if best == self.vectors < n else ""
         return TorusDimension(f"regular, dimension {best}{more}", best, error, weights, reason)
 
@@ -167,7 +171,7 @@ def alignment_indices(
     P: ArrayLike,
     T: float,
     *,
-    vectors: int = VECTORS,
+    vectors: int | None = None,
     step: float = STEP,
     samples: int = SAMPLES,
     seed: int = 0,
@@ -178,13 +182,14 @@ def alignment_indices(
 ) -> AlignmentIndices:
     """GALI_2 .. GALI_vectors of the orbit of a state up to time T, and its maximal Lyapunov exponent.
 
-    Q, P : the state, (N-1,). vectors : 2 to 2(N-1), orthonormal at random at t = 0, by `seed`. step : of the integrator, Blanes-Moan 6
-    on T + V. Its orbit lies on tori of the integrator, off those of the chain by a part step^6: near a torus of low dimension it shows
-    this dimension up to some time only, a longer one with a shorter step; the energy error is in the result. samples : times, even
-    in log t from 1 to T; each is a whole number of steps. block : the most steps between two orthonormalisations, halved where the
-    frame is squeezed. file : written every so many seconds and at the end, whole or not at all; with the same arguments a killed run goes
-    on from it and ends in the same bits; another T has other samples and is another run. progress : called as (label, fraction done).
-    Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint; OrbitLost.
+    Q, P : the state, (N-1,). vectors : 2 to 2(N-1), default VECTORS or as many as there are, orthonormal at random at t = 0, by `seed`.
+    step : of the integrator, Blanes-Moan 6 on T + V. Its orbit lies on tori of the integrator, off those of the chain by a part step^6:
+    near a torus of low dimension it shows this dimension up to some time only, a longer one with a shorter step; the energy error is in
+    the result. samples : times, even in log t from 1 to T; each is a whole number of steps. block : the most steps between two
+    orthonormalisations, halved where the frame is squeezed. file : written every so many seconds and at the end, whole or not at all; with
+    the same arguments a killed run goes on from it and ends in the same bits; another T has other samples and is another run. progress :
+    called as (label, fraction done). Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint;
+    OrbitLost.
 
     Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they are, vectors give GALI down to about
     1e-16 for a direction, and an upper bound after that. So a frame is evolved instead: M_i B_(i-1) = B_i R_i, a QR factorisation
@@ -195,10 +200,11 @@ def alignment_indices(
     R e_j are propagated as unit vectors with their lengths in logarithms; a column loses entries below 1e-300 of its length, which
     do not count for its length. Each block's R_jj is right to EPS times the squeeze of the frame in one block, kept above 1e-5.
     """
+    require_chain(chain)
     n, h = chain.N - 1, abs(step_length(step))
     count, last = _vectors(n, vectors), _steps(T, h)
     longest = integer(block, "block", 1)
-    marks = _marks(last, h, integer(samples, "samples", FEWEST_SAMPLES))
+    marks = _marks(last, h, _samples(samples))
     frame = moving_frame(chain, Q, P, *_random_frame(count, n, integer(seed, "seed", 0)), h)
     if not np.any(frame.x) and not np.any(frame.p):
         raise InputError("Q, P", 0.0, "a state other than the equilibrium", "start from an orbit")
@@ -212,19 +218,27 @@ def alignment_indices(
     return AlignmentIndices(chain, times, volumes, run.growth / times, h, error)
 
 
-def seconds_needed(chain: Chain, T: float, *, vectors: int = VECTORS, step: float = STEP) -> float:
+def seconds_needed(chain: Chain, T: float, *, vectors: int | None = None, step: float = STEP) -> float:
     """Processor time in seconds that `alignment_indices` of such a chain will take, from a trial of a fraction of a second.
 
     The trial is a small oscillation: an orbit so chaotic that it squeezes the frame within BLOCK steps takes longer. Raises InputError.
     """
+    require_chain(chain)
     n, h = chain.N - 1, abs(step_length(step))
     count, last = _vectors(n, vectors), _steps(T, h)
     small = np.where(np.arange(n) == 0, 1e-3, 0.0)
     return last * seconds_a_step(moving_frame(chain, small, small, *_random_frame(count, n, 0), h), BLOCK)
 
 
-def _vectors(n: int, vectors: int) -> int:
-    count = integer(vectors, "vectors", 2)
+def _samples(samples: int) -> int:
+    count = integer(samples, "samples", FEWEST_SAMPLES)
+    if count > MOST_SAMPLES:
+        raise InputError("samples", count, f"{FEWEST_SAMPLES} to {MOST_SAMPLES}", "a few hundred show all there is")
+    return count
+
+
+def _vectors(n: int, vectors: int | None) -> int:
+    count = min(VECTORS, 2 * n) if vectors is None else integer(vectors, "vectors", 2)
     if count > min(2 * n, MOST_VECTORS):
         raise InputError("vectors", count, f"2 to {min(2 * n, MOST_VECTORS)}", "the phase space holds no more")
     return count
@@ -234,6 +248,8 @@ def _steps(T: float, h: float) -> int:
     """Steps to T, the last one perhaps beyond it."""
     if isinstance(T, bool) or not isinstance(T, Real) or not SHORTEST * max(1.0, h) <= float(T) < math.inf:
         raise InputError("T", T, f"a finite time from {SHORTEST * max(1.0, h):g} up", "slopes need two decades of time")
+    if not float(T) / h <= MOST_STEPS:
+        raise InputError("T", T, f"at most 2^52 steps, {h * MOST_STEPS:.3g}", "take a shorter time, or a longer step")
     return math.ceil(float(T) / h - 1e-9)
 
 

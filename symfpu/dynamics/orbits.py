@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.archive import BundleError
-from symfpu.chain import Chain, decimal
+from symfpu.chain import Chain, decimal, require_chain
 from symfpu.dynamics.aba864 import ABA864
 from symfpu.dynamics.aba864_modes import ABA864_MODES
 from symfpu.dynamics.averages import LOOKS, RunningAverages, steps_between_looks
@@ -254,8 +254,7 @@ class _Run:
 
 def _start(chain: Chain, Q: ArrayLike, P: ArrayLike, T: float, step: float) -> tuple[Floats, Floats, float, float]:
     """The arguments as numbers; raises InputError."""
-    if not isinstance(chain, Chain):
-        raise InputError("chain", type(chain).__name__, "a Chain", "make one with Chain(N, alpha=..., beta=...)")
+    require_chain(chain)
     chain.positions(Q), chain.positions(P)  # refuses other shapes
     Q, P = np.array(Q, dtype=np.float64), np.array(P, dtype=np.float64)
     if Q.shape != P.shape:
@@ -273,7 +272,7 @@ def _start(chain: Chain, Q: ArrayLike, P: ArrayLike, T: float, step: float) -> t
 
 def _whole_steps(T: float, step: float) -> int:
     if not abs(T) / step <= MOST_STEPS:
-        raise InputError("step", step, f"at least T / 2^52 = {abs(T) / MOST_STEPS:.3g}", "take a longer one")
+        raise InputError("T", T, f"at most 2^52 steps, {step * MOST_STEPS:.3g}", "take a shorter time, or a longer step")
     ratio = abs(T) / step
     whole = round(ratio) if abs(ratio - round(ratio)) <= max(WHOLE, 4 * np.finfo(float).eps * ratio) else math.ceil(ratio)
     return max(1, whole)

@@ -14,14 +14,16 @@ from symfpu.chain import decimal
 from symfpu.dynamics.alignment import SAMPLES, STEP, VECTORS, AlignmentIndices, alignment_indices, seconds_needed
 from symfpu.errors import InputError
 from symfpu.report import fifteen_digits, output_folder
-from symfpu.verbs.terminal import JsonOption, app, print_json, progress_bar, whole
+from symfpu.verbs.terminal import JsonOption, app, optional, print_json, progress_bar, whole
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
 def gali(
     file: Annotated[Path, typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE")],
     time: Annotated[str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")],
-    vectors: Annotated[str, typer.Option(help="Number of deviation vectors: GALI_2 to GALI_M.", metavar="M")] = str(VECTORS),
+    vectors: Annotated[
+        str | None, typer.Option(help=f"Number of deviation vectors: GALI_2 to GALI_M; {VECTORS} if there are so many.", metavar="M")
+    ] = None,
     step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(STEP),
     samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(SAMPLES),
     seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
@@ -34,7 +36,7 @@ def gali(
     torus = load(file).torus
     if torus is None:
         raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
-    T, h, count = _number("time", time), _number("step", step), whole("vectors", vectors)
+    T, h, count = _number("time", time), _number("step", step), optional("vectors", vectors)
     if estimate:
         _print_estimate(seconds_needed(torus.chain, T, vectors=count, step=h), as_json)
         return
@@ -79,7 +81,7 @@ def _print_estimate(seconds: float, as_json: bool) -> None:
 
 
 def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
-    """The result for JSON; `dimension` is null for a chaotic orbit, and a best guess where the verdict is 'undecided'."""
+    """The result for JSON; `dimension` is null for a chaotic orbit, and where nothing is decided."""
     dimension = found.dimension()
     return {
         "N": found.chain.N,
@@ -91,7 +93,7 @@ def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
         "slopes": {str(s.k): {"value": fifteen_digits(s.value), "error": fifteen_digits(s.error)} for s in found.slopes()},
         "log10_gali": {str(k): fifteen_digits(float(g)) for k, g in enumerate(found.log10_gali[-1], start=2)},
         "dimension": dimension.value,
-        "dimension_error": fifteen_digits(dimension.error),
+        "dimension_error": None if dimension.value is None else fifteen_digits(dimension.error),
         "verdict": dimension.verdict,
         "reason": dimension.reason,
         "lyapunov": fifteen_digits(float(found.lyapunov[-1])),
@@ -102,7 +104,7 @@ def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
 def _text(found: AlignmentIndices, seeds: tuple[int, ...]) -> list[str]:
     """The same for a reader."""
     dimension = found.dimension()
-    value = "none" if dimension.value is None else f"{dimension.value} +- {dimension.error:.1g}"
+    value = "none" if dimension.value is None else str(dimension.value)
     return [
         f"verdict: {dimension.verdict}",
         f"dimension          {value}   (the torus has the seeds {', '.join(map(str, seeds))})",

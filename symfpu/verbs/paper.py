@@ -33,7 +33,10 @@ def reproduce(
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """The paper's table and figures from its printed frequencies, beside the printed numbers, with a verdict on every claim."""
+    """The paper's table and figures from its printed frequencies, beside the printed numbers, with a verdict on every claim.
+
+    report.md and report.json hold the targets of this run alone.
+    """
     for target in targets:
         if target not in (*TARGETS, "all"):
             raise InputError("target", target, f"{', '.join(TARGETS)} or all", "name one or more of these")

@@ -99,7 +99,7 @@ def test_a_chaotic_orbit_decays_exponentially():
 def test_nothing_is_concluded_before_vectors_have_grown():
     """Before the twist shows indices are constant on every torus; the dimension is not 'two or more'."""
     indices = alignment_indices(BETA, [0, 0, 0, 0.01, 0, 0, 0], np.zeros(7), 2e3)
-    assert indices.dimension().verdict == "undecided"
+    assert (indices.dimension().verdict, indices.dimension().value) == ("undecided", None)
     assert "longer" in indices.dimension().reason
 
 
@@ -178,3 +178,24 @@ def test_bad_input_is_refused(changes, name):
 def test_bad_decades_are_refused():
     with pytest.raises(InputError, match=r"^decades = "):
         found("chaotic").slopes(0)
+
+
+def test_an_orbit_that_loses_its_energy_shows_no_dimension():
+    coarse = alignment_indices(BETA, *chaotic_state(3), 500.0, vectors=3, step=0.6)
+    assert coarse.energy_error > 0.1
+    assert coarse.dimension().value is None
+    assert "take a shorter step than 0.6" in coarse.dimension().reason
+
+
+def test_two_particles_have_fewer_vectors():
+    assert alignment_indices(Chain(2, beta=1), [0.5], [0.0], 200.0).vectors == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [({"T": 1e300}, "T"), ({"T": 1e17}, "T"), ({"samples": 10**9}, "samples"), ({"chain": "a chain"}, "chain")],
+)
+def test_absurd_runs_are_refused(change, name):
+    arguments = {"chain": Chain(4, beta=1), "Q": [0.1, 0.0, 0.0], "P": [0.0] * 3, "T": 200.0}
+    with pytest.raises(InputError, match=rf"^{name} = "):
+        alignment_indices(**arguments | change)

@@ -379,7 +379,7 @@ def test_a_checkpoint_is_json_and_arrays(tmp_path, state):
         ({"step": 0.0}, "step"),
         ({"step": -0.1}, "step"),
         ({"step": True}, "step"),
-        ({"T": 1e200}, "step"),
+        ({"T": 1e200}, "T"),
         ({"scheme": "euler"}, "scheme"),
         ({"scheme": None}, "scheme"),
         ({"samples": 0}, "samples"),
