@@ -14,7 +14,7 @@ from symfpu.chain import decimal
 from symfpu.dynamics.alignment import SAMPLES, STEP, VECTORS, AlignmentIndices, alignment_indices, seconds_needed
 from symfpu.errors import InputError
 from symfpu.report import fifteen_digits, output_folder
-from symfpu.verbs.terminal import JsonOption, app, optional, print_json, progress_bar, whole
+from symfpu.verbs.terminal import JsonOption, app, number, optional, print_json, progress_bar, whole
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
@@ -36,7 +36,7 @@ def gali(
     torus = load(file).torus
     if torus is None:
         raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
-    T, h, count = _number("time", time), _number("step", step), optional("vectors", vectors)
+    T, h, count = number("time", time), number("step", step), optional("vectors", vectors)
     if estimate:
         _print_estimate(seconds_needed(torus.chain, T, vectors=count, step=h), as_json)
         return
@@ -63,13 +63,6 @@ def gali(
         print("\n".join(_text(found, torus.seeds)))
         if folder is not None:
             print(f"written: {folder}: gali.csv, gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf")
-
-
-def _number(argument: str, text: str) -> float:
-    try:
-        return float(text)
-    except ValueError as error:
-        raise InputError(argument, text, "a number", "write it as 1e6") from error
 
 
 def _print_estimate(seconds: float, as_json: bool) -> None:

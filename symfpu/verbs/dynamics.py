@@ -17,7 +17,7 @@ from symfpu.dynamics.orbits import SCHEMES, Orbit, integrate
 from symfpu.errors import InputError
 from symfpu.fourier import QuasiPeriodic
 from symfpu.report import fifteen_digits, output_file
-from symfpu.verbs.terminal import JsonOption, app, print_json, progress_bar, whole
+from symfpu.verbs.terminal import JsonOption, app, number, print_json, progress_bar, whole
 
 Floats = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def orbit(
 ) -> None:
     """Integrates the orbit that starts on a torus at t = 0, and says how far it stays from the torus."""
     target = None if output is None else _output(output)
-    T, h, count = _number("time", time), _number("step", step), whole("samples", samples)
+    T, h, count = number("time", time), number("step", step), whole("samples", samples)
     torus = load(file).torus
     if torus is None:
         raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
@@ -69,13 +69,6 @@ def orbit(
     _print(record)
     if target is not None:
         print(f"written: {target}")
-
-
-def _number(argument: str, text: str) -> float:
-    try:
-        return float(text)
-    except ValueError as error:
-        raise InputError(argument, text, "a number such as 1e5", "write digits") from error
 
 
 def _output(path: Path) -> Path:

@@ -36,6 +36,14 @@ def whole(argument: str, text: str) -> int:
         raise InputError(argument, text, "a whole number", "write digits only") from error
 
 
+def number(argument: str, text: str) -> float:
+    """A number of the command line; InputError naming the argument otherwise."""
+    try:
+        return float(text)
+    except ValueError as error:
+        raise InputError(argument, text, "a number such as 1e5", "write digits") from error
+
+
 def whole_numbers(argument: str, text: str) -> list[int]:
     """Whole numbers with commas between them."""
     return [whole(argument, part) for part in text.split(",")] if text.strip() else []
