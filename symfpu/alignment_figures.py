@@ -6,26 +6,20 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from symfpu.dynamics.alignment import AlignmentIndices
-from symfpu.figures import save_panel
+from symfpu.figures import plot_panel, save_panel
+from symfpu.paper_figures.dimensions import alignment_panel
 
 Axes = Any
-STYLES = ("-", "--", ":")  # the project's colours come round after five curves
 FEW_DECADES = 0.5  # least height of the picture, for indices that stay where they are
 
 
 def plot_alignment(found: AlignmentIndices, ax: Axes) -> Axes:
     """log10 GALI_k against log10 t, k = 2 .. vectors, with the fitted slopes in the legend; both logarithms to base 10."""
-    for i, slope in enumerate(found.slopes()):
-        label = rf"$G_{{{slope.k}}}$: ${slope.value:.2f} \pm {slope.error:.2f}$"
-        ax.plot(np.log10(found.times), found.log10_gali[:, i], STYLES[i // 5 % len(STYLES)], color=f"C{i % 5}", lw=1.2, label=label)
+    ax = plot_panel(alignment_panel("gali", "alignment indices", found), ax)
     bottom, top = ax.get_ylim()
     ax.set_ylim(min(bottom, top - FEW_DECADES), top)
-    ax.set_xlabel(r"$\log_{10} t$")
-    ax.set_ylabel(r"$\log_{10} G_k$")
-    ax.legend(title="slopes, last decades", loc="lower left", fontsize="small")
+    ax.get_legend().set_title("slopes, last decades")
     return ax
 
 
