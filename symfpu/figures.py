@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from symfpu.convergence import BreatherStudy, CancellationStudy, SchemeLimit
 from symfpu.corrected import CorrectedRow, ScalingStudy
 from symfpu.panels import Panel, PaperFigure
+from symfpu.paper_figures.judgements import sums_panel
 from symfpu.reproduction import Figure1, Figure6
 
 Floats = NDArray[np.float64]
 Axes = Any
 
-FEW_CURVES = 5  # with more the legend goes beside the picture
+FEW_CURVES, FEW_LINES = 5, 3  # with more of them, or of lines among them, the legend goes beside the picture
 CURVE_STYLES: Mapping[str, dict[str, Any]] = {
     "line": {"lw": 1.2},
     "points": {"marker": "o", "ls": "none", "ms": 7, "alpha": 0.8},
@@ -52,17 +53,6 @@ def plot_amplitude_differences(differences: Mapping[int, tuple[float, ...]], see
     return ax
 
 
-def plot_absolute_sums(sums: tuple[Floats, Floats], q: int, ax: Axes) -> Axes:
-    """mu^k S_1(k) and mu^k S_2(k) of mode q against the order k."""
-    for values, name, marker in zip(sums, ("S_1", "S_2"), "^o", strict=True):
-        orders = np.flatnonzero(values > 0)
-        ax.semilogy(orders, values[orders], marker=marker, label=rf"$\mu^k {name}(k)$")
-    ax.set_xlabel(r"order $k$")
-    ax.set_ylabel(rf"sums of the terms of $Q_{{{q}}}^{{(k)}}$")
-    ax.legend()
-    return ax
-
-
 def plot_energy_errors(times: Floats, errors: Mapping[int, tuple[Floats, Floats]], ax: Axes) -> Axes:
     """Moduli of the relative errors of total and harmonic energy in time, by coordinate order."""
     for i, (k, (total, harmonic)) in enumerate(errors.items()):
@@ -88,7 +78,7 @@ def draw_figure1(data: Figure1, folder: Path) -> list[Path]:
     panels: dict[str, Callable[[Axes], Axes]] = {
         "fig1a": spectra,
         "fig1b": lambda ax: plot_amplitude_differences(data.differences, seeds, ax),
-        "fig1c": lambda ax: plot_absolute_sums(data.sums, 1, ax),
+        "fig1c": partial(plot_panel, sums_panel("fig1c", "", 1, data.sums)),
         "fig1d": lambda ax: plot_energy_errors(data.times, data.errors, ax),
     }
     titles = {
@@ -237,7 +227,8 @@ def plot_panel(panel: Panel, ax: Axes) -> Axes:
         ax.set_ylim(bottom=panel.bottom)
     ax.set_xlabel(panel.x_label)
     ax.set_ylabel(panel.y_label)
-    many = len(ax.get_legend_handles_labels()[0]) > FEW_CURVES
+    lines = sum(curve.style == "line" and curve.group is None for curve in panel.curves)
+    many = len(ax.get_legend_handles_labels()[0]) > FEW_CURVES or lines > FEW_LINES
     ax.legend(**({"fontsize": "small", "loc": "center left", "bbox_to_anchor": (1.0, 0.5)} if many else {}))
     return ax
 

@@ -7,14 +7,15 @@ import pytest
 from matplotlib.figure import Figure
 
 from symfpu.figures import (
-    plot_absolute_sums,
     plot_amplitude_differences,
     plot_breather_roots,
     plot_energy_errors,
+    plot_panel,
     plot_spectrum,
     plot_variants,
     save_panel,
 )
+from symfpu.paper_figures.judgements import sums_panel
 
 
 @pytest.fixture
@@ -41,7 +42,8 @@ def test_differences_have_a_line_for_each_seed(ax):
 
 
 def test_sums_are_two_lines_over_the_order(ax):
-    assert plot_absolute_sums((np.array([1.0, 0.0, 0.5]), np.array([1.0, 0.0, 0.1])), 1, ax) is ax
+    panel = sums_panel("fig1c", "", 1, (np.array([1.0, 0.0, 0.5]), np.array([1.0, 0.0, 0.1])))
+    assert plot_panel(panel, ax) is ax
     upper, lower = ax.get_lines()
     assert list(upper.get_xdata()) == list(lower.get_xdata()) == [0, 2]
     assert list(lower.get_ydata()) == [1.0, 0.1]
