@@ -6,19 +6,22 @@ Public names are loaded when they are first used, so that importing the package 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from symfpu.frequency_shift import frequency_shift, frequency_shift_formula  # at once: a module has the name of its function
-from symfpu.lindstedt import lindstedt
+from symfpu.chain.frequency_shift import frequency_shift, frequency_shift_formula  # at once: a module has the name of its function
 from symfpu.notebook import init_printing
+from symfpu.series.lindstedt import lindstedt
 
 if TYPE_CHECKING:
-    from symfpu.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
-    from symfpu.archive import BundleError
-    from symfpu.bundle import Bundle, load, save
-    from symfpu.certificates import PropagationProof, prove_propagation
-    from symfpu.chain import Chain
+    from symfpu.breathers.at_energy import NoBreatherAtEnergy, breather_at_energy
+    from symfpu.breathers.balance import NoPeriodicOrbit, PeriodicOrbit, breather_at_amplitude, periodic_orbit
+    from symfpu.breathers.digits import PreciseOrbit, periodic_orbit_digits
+    from symfpu.breathers.floquet import Floquet, floquet
+    from symfpu.breathers.shooting import ShootingFailed, ShotOrbit, shoot
+    from symfpu.bundles.bundle import Bundle, load, save
+    from symfpu.chain.chain import Chain
+    from symfpu.chain.commensurability import frequency_rank
+    from symfpu.chain.propagation import coupling_sequence, excitation_sequence, reachable_modes
     from symfpu.codegen.evaluator import Evaluator, compile_evaluator
     from symfpu.codegen.export import export
-    from symfpu.commensurability import frequency_rank
     from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices, seconds_needed
     from symfpu.dynamics.frame_run import OrbitLost
     from symfpu.dynamics.orbits import Orbit, integrate
@@ -32,11 +35,10 @@ if TYPE_CHECKING:
         TooLarge,
         UndeterminedAmplitudes,
     )
-    from symfpu.families import Family, NotInFamily, family
-    from symfpu.fixed_energy import NoTorusAtEnergy, torus_at_energy
-    from symfpu.fourier import FourierTorus
-    from symfpu.leading import leading_term, lemma_holds
-    from symfpu.localization import (
+    from symfpu.families.continuation import Event, Member
+    from symfpu.families.family import Family, NotInFamily, family
+    from symfpu.files.archive import BundleError
+    from symfpu.localization.laws import (
         ProfileFit,
         ProfileLine,
         breather_law,
@@ -50,19 +52,7 @@ if TYPE_CHECKING:
         profile_law,
         rounding_floor,
     )
-    from symfpu.profile_trials import ProfileInvariance, Trend, profile_invariance, slope_by_energy
-    from symfpu.propagation import coupling_sequence, excitation_sequence, reachable_modes
-    from symfpu.refinement.breather_digits import PreciseOrbit, periodic_orbit_digits
-    from symfpu.refinement.breather_energy import NoBreatherAtEnergy, breather_at_energy
-    from symfpu.refinement.breathers import NoPeriodicOrbit, PeriodicOrbit, breather_at_amplitude, periodic_orbit
-    from symfpu.refinement.continuation import Event, Member
-    from symfpu.refinement.floquet import Floquet, floquet
-    from symfpu.refinement.shooting import ShootingFailed, ShotOrbit, shoot
-    from symfpu.refinement.tori import NoTorus, RefinedTorus, refine, refine_at_amplitudes, refine_at_energy
-    from symfpu.resummation import PadeSum, ResummedTorus, pade_amplitudes, pade_frequencies, pade_poles, resum
-    from symfpu.self_consistent import NoSelfConsistentFrequencies, torus_at_amplitudes
-    from symfpu.series import LindstedtSeries
-    from symfpu.spectra import (
+    from symfpu.localization.spectra import (
         GroupGrowth,
         GrowthExponents,
         NoRecurrence,
@@ -75,37 +65,47 @@ if TYPE_CHECKING:
         profile_distance,
         recurrence,
     )
-    from symfpu.sweeps import Sweep, sweep_propagation
-    from symfpu.torus import QTorus, RootCertificate
-    from symfpu.verdict import Assessment, assess
+    from symfpu.localization.trials import ProfileInvariance, Trend, profile_invariance, slope_by_energy
+    from symfpu.proofs.certificates import PropagationProof, prove_propagation
+    from symfpu.proofs.leading import leading_term, lemma_holds
+    from symfpu.proofs.sweeps import Sweep, sweep_propagation
+    from symfpu.refinement.tori import NoTorus, RefinedTorus, refine, refine_at_amplitudes, refine_at_energy
+    from symfpu.series.series import LindstedtSeries
+    from symfpu.tori.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
+    from symfpu.tori.at_energy import NoTorusAtEnergy, torus_at_energy
+    from symfpu.tori.frequencies import NoSelfConsistentFrequencies, torus_at_amplitudes
+    from symfpu.tori.quasiperiodic import FourierTorus
+    from symfpu.tori.resummation import PadeSum, ResummedTorus, pade_amplitudes, pade_frequencies, pade_poles, resum
+    from symfpu.tori.torus import QTorus, RootCertificate
+    from symfpu.tori.verdict import Assessment, assess
 
 __version__ = "0.1.0"
 
 init_printing()
 
 _DEFINED = {
-    "symfpu.amplitudes": (
+    "symfpu.tori.amplitudes": (
         "AmplitudeHistory",
         "amplitude_history",
         "solve_amplitudes",
     ),
-    "symfpu.archive": ("BundleError",),
-    "symfpu.bundle": (
+    "symfpu.files.archive": ("BundleError",),
+    "symfpu.bundles.bundle": (
         "Bundle",
         "load",
         "save",
     ),
-    "symfpu.certificates": (
+    "symfpu.proofs.certificates": (
         "PropagationProof",
         "prove_propagation",
     ),
-    "symfpu.chain": ("Chain",),
+    "symfpu.chain.chain": ("Chain",),
     "symfpu.codegen.evaluator": (
         "Evaluator",
         "compile_evaluator",
     ),
     "symfpu.codegen.export": ("export",),
-    "symfpu.commensurability": ("frequency_rank",),
+    "symfpu.chain.commensurability": ("frequency_rank",),
     "symfpu.dynamics.alignment": ("AlignmentIndices", "alignment_indices", "seconds_needed"),
     "symfpu.dynamics.frame_run": ("OrbitLost",),
     "symfpu.dynamics.orbits": ("Orbit", "integrate"),
@@ -119,25 +119,25 @@ _DEFINED = {
         "TooLarge",
         "UndeterminedAmplitudes",
     ),
-    "symfpu.families": (
+    "symfpu.families.family": (
         "Family",
         "NotInFamily",
         "family",
     ),
-    "symfpu.fixed_energy": (
+    "symfpu.tori.at_energy": (
         "NoTorusAtEnergy",
         "torus_at_energy",
     ),
-    "symfpu.fourier": ("FourierTorus",),
-    "symfpu.frequency_shift": (
+    "symfpu.tori.quasiperiodic": ("FourierTorus",),
+    "symfpu.chain.frequency_shift": (
         "frequency_shift",
         "frequency_shift_formula",
     ),
-    "symfpu.leading": (
+    "symfpu.proofs.leading": (
         "leading_term",
         "lemma_holds",
     ),
-    "symfpu.localization": (
+    "symfpu.localization.laws": (
         "ProfileFit",
         "ProfileLine",
         "breather_law",
@@ -151,40 +151,40 @@ _DEFINED = {
         "profile_law",
         "rounding_floor",
     ),
-    "symfpu.profile_trials": (
+    "symfpu.localization.trials": (
         "ProfileInvariance",
         "Trend",
         "profile_invariance",
         "slope_by_energy",
     ),
-    "symfpu.propagation": (
+    "symfpu.chain.propagation": (
         "coupling_sequence",
         "excitation_sequence",
         "reachable_modes",
     ),
-    "symfpu.refinement.breather_digits": (
+    "symfpu.breathers.digits": (
         "PreciseOrbit",
         "periodic_orbit_digits",
     ),
-    "symfpu.refinement.breather_energy": (
+    "symfpu.breathers.at_energy": (
         "NoBreatherAtEnergy",
         "breather_at_energy",
     ),
-    "symfpu.refinement.breathers": (
+    "symfpu.breathers.balance": (
         "NoPeriodicOrbit",
         "PeriodicOrbit",
         "breather_at_amplitude",
         "periodic_orbit",
     ),
-    "symfpu.refinement.continuation": (
+    "symfpu.families.continuation": (
         "Event",
         "Member",
     ),
-    "symfpu.refinement.floquet": (
+    "symfpu.breathers.floquet": (
         "Floquet",
         "floquet",
     ),
-    "symfpu.refinement.shooting": (
+    "symfpu.breathers.shooting": (
         "ShootingFailed",
         "ShotOrbit",
         "shoot",
@@ -196,7 +196,7 @@ _DEFINED = {
         "refine_at_amplitudes",
         "refine_at_energy",
     ),
-    "symfpu.resummation": (
+    "symfpu.tori.resummation": (
         "PadeSum",
         "ResummedTorus",
         "pade_amplitudes",
@@ -204,12 +204,12 @@ _DEFINED = {
         "pade_poles",
         "resum",
     ),
-    "symfpu.self_consistent": (
+    "symfpu.tori.frequencies": (
         "NoSelfConsistentFrequencies",
         "torus_at_amplitudes",
     ),
-    "symfpu.series": ("LindstedtSeries",),
-    "symfpu.spectra": (
+    "symfpu.series.series": ("LindstedtSeries",),
+    "symfpu.localization.spectra": (
         "GroupGrowth",
         "GrowthExponents",
         "NoRecurrence",
@@ -222,15 +222,15 @@ _DEFINED = {
         "profile_distance",
         "recurrence",
     ),
-    "symfpu.sweeps": (
+    "symfpu.proofs.sweeps": (
         "Sweep",
         "sweep_propagation",
     ),
-    "symfpu.torus": (
+    "symfpu.tori.torus": (
         "QTorus",
         "RootCertificate",
     ),
-    "symfpu.verdict": (
+    "symfpu.tori.verdict": (
         "Assessment",
         "assess",
     ),

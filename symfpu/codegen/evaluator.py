@@ -16,11 +16,11 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.codegen.c99 import emit_torus
-from symfpu.codegen.program import torus_facts, torus_program
+from symfpu.codegen.languages.c99 import emit_torus
+from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.errors import InputError, SymfpuError
-from symfpu.fourier import FourierTorus, QuasiPeriodic
-from symfpu.series import LindstedtSeries
+from symfpu.series.series import LindstedtSeries
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
 Floats = NDArray[np.float64]
 Call = Callable[[Floats, Floats | None], Floats]
@@ -114,8 +114,8 @@ def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Ev
     Raises InputError for an unknown backend and for a series without amplitudes; SymfpuError if 'c' finds no compiler, or with the
     compiler's first line if it fails.
 
-    >>> from symfpu.chain import Chain
-    >>> from symfpu.fourier import FourierTorus
+    >>> from symfpu.chain.chain import Chain
+    >>> from symfpu.tori.quasiperiodic import FourierTorus
     >>> from fractions import Fraction
     >>> mode = FourierTorus(Chain(4, alpha=1), (1,), (Fraction(1, 2),), np.array([[1]]), np.array([[1.0, 0.0, 0.0]]), {1: 0.0})
     >>> compile_evaluator(mode, backend="numpy").momenta(0.0, phases={1: 1.5707963267948966}).tolist()

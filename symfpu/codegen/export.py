@@ -9,9 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
-from symfpu.arithmetic import text
-from symfpu.certificates import write_text
-from symfpu.codegen import (
+from symfpu.codegen.languages import (
     c99,
     c99_series,
     fortran,
@@ -23,12 +21,14 @@ from symfpu.codegen import (
     octave,
     octave_series,
 )
-from symfpu.codegen.program import TorusProgram, torus_facts, torus_program
 from symfpu.codegen.series_program import SeriesProgram, series_facts, series_program
+from symfpu.codegen.torus_program import TorusProgram, torus_facts, torus_program
 from symfpu.errors import InputError
-from symfpu.fourier import QuasiPeriodic
-from symfpu.series import LindstedtSeries
-from symfpu.torus import QTorus
+from symfpu.numbers.arithmetic import text
+from symfpu.proofs.certificates import write_text
+from symfpu.series.series import LindstedtSeries
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import QTorus
 
 LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
 

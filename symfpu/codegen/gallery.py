@@ -12,12 +12,12 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-from symfpu.amplitudes import solve_amplitudes
-from symfpu.certificates import write_text
-from symfpu.chain import Chain, decimal
+from symfpu.chain.chain import Chain, decimal
 from symfpu.codegen.export import LANGUAGES, export
-from symfpu.lindstedt import lindstedt
-from symfpu.torus import QTorus
+from symfpu.proofs.certificates import write_text
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.torus import QTorus
 
 DIGITS = 30  # of the series; doubles have 17
 

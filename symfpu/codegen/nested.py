@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symfpu.arithmetic import Numbers
-from symfpu.codegen.program import Block, Ints, TorusProgram
+from symfpu.codegen.torus_program import Block, Ints, TorusProgram
+from symfpu.numbers.arithmetic import Numbers
 
 
 @dataclass(frozen=True, eq=False)

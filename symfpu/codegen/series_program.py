@@ -18,15 +18,15 @@ import mpmath
 import numpy as np
 
 from symfpu.algebra.grading import Ints
-from symfpu.amplitudes import order_argument
-from symfpu.arithmetic import MULTIPRECISION, Numbers, mpf, text
-from symfpu.chain import decimal
-from symfpu.codegen.program import EXTRA_DIGITS, number
+from symfpu.algebra.polynomials import Polynomial, square_root
+from symfpu.chain.chain import decimal
 from symfpu.codegen.straight_line import STRAIGHT_LINE, StraightLine, numeric_statements, universal_statements
+from symfpu.codegen.torus_program import EXTRA_DIGITS, number
 from symfpu.errors import InputError
-from symfpu.frequency_polynomials import Polynomial, square_root
-from symfpu.lindstedt import lindstedt
-from symfpu.series import LindstedtSeries
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, mpf, text
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.series import LindstedtSeries
+from symfpu.tori.amplitudes import order_argument
 
 CHECK_TIMES = ("0.0", "2.75", "-13.0625", "160.5")
 DOUBLE_DIGITS = 17

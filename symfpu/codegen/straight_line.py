@@ -15,11 +15,11 @@ import mpmath
 import symengine as se
 import sympy
 
-from symfpu.arithmetic import MULTIPRECISION, Numbers
-from symfpu.chain import Chain
+from symfpu.algebra.polynomials import Polynomial
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.frequency_polynomials import Polynomial
-from symfpu.series import LindstedtSeries
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
+from symfpu.series.series import LindstedtSeries
 
 STRAIGHT_LINE = 1000  # operations; up to it a call with few times is faster than by tables, and compiling takes no longer
 

@@ -17,12 +17,12 @@ from os import PathLike
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain import Chain, require_chain
-from symfpu.dynamics.checkpoint import checkpoint_path, seconds_between
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.frame_run import FrameRun, Progress, seconds_a_step
 from symfpu.dynamics.tangent import moving_frame, step_length
 from symfpu.errors import InputError
-from symfpu.exact import integer
+from symfpu.files.checkpoint import checkpoint_path, seconds_between
+from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

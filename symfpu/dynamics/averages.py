@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 
 Floats = NDArray[np.float64]
 

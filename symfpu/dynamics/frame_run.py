@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.archive import BundleError
-from symfpu.chain import decimal
-from symfpu.dynamics.checkpoint import ADVICE, ALIGNMENT, digest, read_checkpoint, write_checkpoint
+from symfpu.chain.chain import decimal
 from symfpu.dynamics.tangent import MovingFrame
 from symfpu.errors import SymfpuError
+from symfpu.files.archive import BundleError
+from symfpu.files.checkpoint import ADVICE, ALIGNMENT, digest, read_checkpoint, write_checkpoint
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -14,10 +14,10 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
 from symfpu.errors import InputError
-from symfpu.exact import integer
+from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
 
 Floats = NDArray[np.float64]

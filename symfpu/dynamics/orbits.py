@@ -15,20 +15,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.archive import BundleError
-from symfpu.chain import Chain, decimal, require_chain
+from symfpu.chain.chain import Chain, decimal, require_chain
 from symfpu.dynamics.aba864 import ABA864
 from symfpu.dynamics.aba864_modes import ABA864_MODES
 from symfpu.dynamics.averages import LOOKS, RunningAverages, steps_between_looks
 from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
-from symfpu.dynamics.checkpoint import ADVICE, checkpoint_path, digest, read_checkpoint, write_checkpoint
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
 from symfpu.dynamics.motion import Motion
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep, require_stable, stretch_bounds
 from symfpu.dynamics.yoshida4 import YOSHIDA4
 from symfpu.errors import InputError
-from symfpu.exact import integer
+from symfpu.files.archive import BundleError
+from symfpu.files.checkpoint import ADVICE, checkpoint_path, digest, read_checkpoint, write_checkpoint
+from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

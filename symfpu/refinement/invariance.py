@@ -18,7 +18,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 
 Floats = NDArray[Any]
 Ints = NDArray[np.int64]

@@ -12,14 +12,14 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from symfpu.arithmetic import text
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
-from symfpu.exact import Number, exact
-from symfpu.fourier import QuasiPeriodic
+from symfpu.numbers.arithmetic import text
+from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import Amplitude, Condition, Energy, FrequencyShift, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, OVERSAMPLING, Floats, Ints, InvarianceEquation, long, rational
 from symfpu.refinement.newton import Iterate, NewtonStep, Report, newton
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 TOLERANCE = 1e-13  # residual of the equations of motion, relative to the largest acceleration, that ends the search for harmonics
 KEPT = 1e-18  # of the largest coefficient: smaller ones of a guess are left out
@@ -94,8 +94,8 @@ def refine(torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, report: Report
     relative to the largest acceleration; harmonics are added until it is reached. report : called with a line on every step.
     Raises InputError, and NoTorus with the best iterate.
 
-    >>> from symfpu.amplitudes import solve_amplitudes
-    >>> from symfpu.lindstedt import lindstedt
+    >>> from symfpu.tori.amplitudes import solve_amplitudes
+    >>> from symfpu.series.lindstedt import lindstedt
     >>> breather = refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
     >>> breather.residual() < 1e-13
     True

@@ -10,10 +10,10 @@ import symengine as se
 
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.selection import CosineModes
-from symfpu.chain import Chain
-from symfpu.divisors import FixedPointDivisors, gauge_terms
+from symfpu.chain.chain import Chain
 from symfpu.errors import ResonantDivisor
-from symfpu.lindstedt import lindstedt
+from symfpu.series.divisors import FixedPointDivisors, gauge_terms
+from symfpu.series.lindstedt import lindstedt
 from tests.oracles import mode_space
 from tests.oracles.cases import CASES, SHALLOW
 from tests.oracles.trigonometric import from_amplitudes, from_monomials

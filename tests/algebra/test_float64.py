@@ -11,11 +11,11 @@ import symengine as se
 from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.selection import CosineModes
-from symfpu.chain import Chain
-from symfpu.divisors import Float64Divisors
+from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
-from symfpu.exact import exact
-from symfpu.lindstedt import _run, lindstedt, predicted_bytes
+from symfpu.numbers.typed import exact
+from symfpu.series.divisors import Float64Divisors
+from symfpu.series.lindstedt import _run, lindstedt, predicted_bytes
 from tests.oracles.cases import CASES, SHALLOW
 from tests.oracles.mode_space import ModeSpaceSeries
 from tests.oracles.trigonometric import from_amplitudes, from_monomials

@@ -12,9 +12,9 @@ from symfpu.algebra import majorant
 from symfpu.algebra.fixedpoint import FixedPointRing, Modes, Precision
 from symfpu.algebra.majorant import MajorantRing
 from symfpu.algebra.words import LIMB_BITS, IntegerTable, words_of
-from symfpu.chain import Chain
-from symfpu.divisors import FixedPointDivisors, Float64Divisors
-from symfpu.lindstedt import _moduli, _run, _space, lindstedt
+from symfpu.chain.chain import Chain
+from symfpu.series.divisors import FixedPointDivisors, Float64Divisors
+from symfpu.series.lindstedt import _moduli, _run, _space, lindstedt
 from tests.oracles.cases import CASES, Case
 from tests.tolerances import NEAREST
 

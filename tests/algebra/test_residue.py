@@ -13,11 +13,11 @@ from symfpu.algebra.grading import Grading
 from symfpu.algebra.kernels import multiply_elements
 from symfpu.algebra.residue import PRIME_BITS, ResidueRing, cosine_table, largest_modulus, longest_sum
 from symfpu.algebra.selection import CosineModes
-from symfpu.certificates import random_point
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.errors import VanishingResidue
-from symfpu.lindstedt import lindstedt, residue_series
-from symfpu.series import ResiduePoint
+from symfpu.proofs.certificates import random_point
+from symfpu.series.lindstedt import lindstedt, residue_series
+from symfpu.series.series import ResiduePoint
 
 PRIMES = (97, 65537, nextprime(2**39), 2**40 - 87)
 residues = st.integers(-(2**39), 2**39)

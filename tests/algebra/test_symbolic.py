@@ -4,9 +4,9 @@ import mpmath
 import pytest
 import symengine as se
 
-from symfpu.chain import Chain
-from symfpu.divisors import multiplier_symbol
-from symfpu.lindstedt import lindstedt
+from symfpu.chain.chain import Chain
+from symfpu.series.divisors import multiplier_symbol
+from symfpu.series.lindstedt import lindstedt
 from tests.oracles.cases import SHALLOW
 from tests.oracles.mode_space import ModeSpaceSeries
 from tests.oracles.trigonometric import from_amplitudes, from_monomials

@@ -8,10 +8,10 @@ import flint
 import numpy as np
 import pytest
 
-from symfpu.amplitudes import solve_amplitudes
-from symfpu.bundle import load, save
-from symfpu.lindstedt import lindstedt
-from symfpu.paper import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
+from symfpu.bundles.bundle import load, save
+from symfpu.paper.printed import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
 
 CASES = [
     pytest.param(TWO_TORUS, 30, 50, id="2-torus of Fig. 1 to order 30, 50 digits"),
@@ -60,8 +60,8 @@ def test_series_of_many_digits(benchmark, record, request, torus, order, digits)
 def test_memory_of_the_four_torus(benchmark, record):
     code = (
         "import resource\n"
-        "from symfpu.lindstedt import lindstedt\n"
-        "from symfpu.paper import APPENDIX_F\n"
+        "from symfpu.series.lindstedt import lindstedt\n"
+        "from symfpu.paper.printed import APPENDIX_F\n"
         "t = APPENDIX_F[0]\n"
         "lindstedt(t.chain, t.seeds, t.frequencies, 11, digits=50)\n"
         "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"

@@ -8,10 +8,10 @@ from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.residue import ResidueRing
 from symfpu.algebra.selection import CosineModes
-from symfpu.certificates import prove_propagation, random_point
-from symfpu.chain import Chain
-from symfpu.lindstedt import residue_series
-from symfpu.sweeps import sweep_propagation
+from symfpu.chain.chain import Chain
+from symfpu.proofs.certificates import prove_propagation, random_point
+from symfpu.proofs.sweeps import sweep_propagation
+from symfpu.series.lindstedt import residue_series
 
 SEEDS = (94, 95, 96, 97, 98)
 
@@ -23,7 +23,7 @@ def test_proof(benchmark, record):
 
 def test_memory_of_a_proof(benchmark, record):
     code = (
-        "import resource\nfrom symfpu.certificates import prove_propagation\n"
+        "import resource\nfrom symfpu.proofs.certificates import prove_propagation\n"
         f"prove_propagation(128, {SEEDS}, 9)\nprint(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
     )
     run = benchmark.pedantic(

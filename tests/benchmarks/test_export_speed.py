@@ -9,12 +9,12 @@ import time
 import numpy as np
 import pytest
 
-from symfpu.amplitudes import solve_amplitudes
 from symfpu.codegen.evaluator import compile_evaluator
 from symfpu.codegen.export import export
 from symfpu.codegen.series_program import series_program
-from symfpu.lindstedt import lindstedt
-from symfpu.paper import APPENDIX_F, TWO_TORUS
+from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
 
 TIMES = 100_000
 DRIVER = """#include <stdlib.h>

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symfpu.chain import Chain
-from symfpu.families import family
-from symfpu.refinement.breather_digits import periodic_orbit_digits
-from symfpu.refinement.breathers import breather_at_amplitude, periodic_orbit
-from symfpu.refinement.floquet import floquet
+from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
+from symfpu.breathers.digits import periodic_orbit_digits
+from symfpu.breathers.floquet import floquet
+from symfpu.chain.chain import Chain
+from symfpu.families.family import family
 
 CHAIN, OMEGA = Chain(32, "0.33"), "0.0981410995944860"
 LENGTHS = (16, 32, 64, 128, 256)

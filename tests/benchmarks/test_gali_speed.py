@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import alignment_indices
 
 CHAIN, T = Chain(32, "0.33"), 1e6

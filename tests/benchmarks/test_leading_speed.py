@@ -1,14 +1,14 @@
 """Speed of the Lemma: closed form and comparison with the recursion for all modes of D_1 .. D_4. Measured and printed, not asserted."""
 
-import symfpu.leading
-from symfpu.chain import Chain
-from symfpu.leading import leading_terms, lemma_holds
+import symfpu.proofs.leading
+from symfpu.chain.chain import Chain
+from symfpu.proofs.leading import leading_terms, lemma_holds
 
 CHAIN, SEEDS, ORDER = Chain(N=32, alpha=1), (1, 2, 3, 4), 4
 
 
 def forget():
-    symfpu.leading._leading.cache_clear()
+    symfpu.proofs.leading._leading.cache_clear()
 
 
 def test_closed_form(benchmark, record):

@@ -11,11 +11,11 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from symfpu.amplitudes import solve_amplitudes
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import SCHEMES, integrate
-from symfpu.lindstedt import lindstedt
-from symfpu.paper import APPENDIX_F
+from symfpu.paper.printed import APPENDIX_F
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
 
 STEPS = {
     "yoshida4": (0.02, 0.05, 0.1, 0.2),

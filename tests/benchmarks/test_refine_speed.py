@@ -10,12 +10,12 @@ import time
 
 import numpy as np
 
-from symfpu.amplitudes import solve_amplitudes
-from symfpu.lindstedt import lindstedt
-from symfpu.paper import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
-from symfpu.refinement.breathers import periodic_orbit
+from symfpu.breathers.balance import periodic_orbit
+from symfpu.paper.printed import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.tori import refine
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
 
 
 def guess_of(torus, order):
@@ -61,7 +61,7 @@ def test_four_torus(benchmark, record):
     """In a process of its own, whose peak memory counts; allowed 300 s and 4 GB."""
     code = (
         "import json, resource, time\n"
-        "from symfpu.paper import APPENDIX_F\n"
+        "from symfpu.paper.printed import APPENDIX_F\n"
         "from tests.benchmarks.test_refine_speed import guess_of, refine, summary\n"
         "guess = guess_of(APPENDIX_F[0], 6)\n"
         "start = time.perf_counter()\n"

@@ -8,9 +8,9 @@ import pytest
 from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.selection import CosineModes
-from symfpu.chain import Chain
-from symfpu.lindstedt import lindstedt
-from symfpu.paper import APPENDIX_F, TWO_TORUS
+from symfpu.chain.chain import Chain
+from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
+from symfpu.series.lindstedt import lindstedt
 
 TORI = (TWO_TORUS, *(torus for torus in APPENDIX_F if len(torus.seeds) > 1))
 
@@ -73,7 +73,7 @@ def test_breather(benchmark, record):
     ("name", "command"),
     [
         ("import symfpu", [sys.executable, "-c", "import symfpu"]),
-        ("symfpu --help", [sys.executable, "-c", "from symfpu.cli import main; main(['--help'])"]),
+        ("symfpu --help", [sys.executable, "-c", "from symfpu.cli.main import main; main(['--help'])"]),
     ],
 )
 def test_start(benchmark, record, name, command):
@@ -100,8 +100,8 @@ def test_first_compilation(benchmark, record, tmp_path):
 def test_memory(benchmark, record):
     code = (
         "import resource\n"
-        "from symfpu.lindstedt import lindstedt\n"
-        "from symfpu.paper import APPENDIX_F, TWO_TORUS\n"
+        "from symfpu.series.lindstedt import lindstedt\n"
+        "from symfpu.paper.printed import APPENDIX_F, TWO_TORUS\n"
         "for t in (TWO_TORUS, *APPENDIX_F[:5]): lindstedt(t.chain, t.seeds, t.frequencies, t.order)\n"
         "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
     )

@@ -5,11 +5,11 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.codegen.series_program import series_facts, series_program
-from symfpu.fourier import FourierTorus
-from symfpu.lindstedt import lindstedt
-from symfpu.torus import QTorus
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.quasiperiodic import FourierTorus
+from symfpu.tori.torus import QTorus
 
 OF_LARGEST = 1e-13  # issue 5: of the largest coordinate or momentum; rounded sums leave some 1e-15
 OF_TAIL = 1e-12  # issue 5: of a mode's own largest value; cancelling terms cost a digit or two

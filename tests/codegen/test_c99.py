@@ -10,12 +10,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.chain import Chain
-from symfpu.codegen.c99 import emit_torus
-from symfpu.codegen.program import torus_facts, torus_program
-from symfpu.fourier import FourierTorus
-from symfpu.lindstedt import lindstedt
-from symfpu.torus import QTorus
+from symfpu.chain.chain import Chain
+from symfpu.codegen.languages.c99 import emit_torus
+from symfpu.codegen.torus_program import torus_facts, torus_program
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.quasiperiodic import FourierTorus
+from symfpu.tori.torus import QTorus
 
 OF_LARGEST = 1e-13  # issue 5: of the largest coordinate or momentum; rounded sums leave some 1e-15
 OF_TAIL = 1e-12  # issue 5: of a mode's own largest value; cancelling terms cost a digit or two

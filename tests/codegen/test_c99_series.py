@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symfpu.codegen.c99_series import emit_series
+from symfpu.codegen.languages.c99_series import emit_series
 from tests.codegen.series_cases import (
     CASES,
     OF_TAIL,
@@ -227,7 +227,7 @@ def test_facts_stay_in_their_comment_and_lines_are_short(form, name, tmp_path):
 TWICE = """
 import hashlib, sys
 import symfpu.codegen.series_program as series_program
-from symfpu.codegen.c99_series import emit_series
+from symfpu.codegen.languages.c99_series import emit_series
 from tests.codegen.series_cases import CASES, UNIVERSAL, numeric, program_of, universal
 texts = []
 for limit in (0, 10**9):

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from symfpu.codegen.gallery import GALLERY
-from symfpu.fourier import FourierTorus
+from symfpu.tori.quasiperiodic import FourierTorus
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = re.findall(r"```(c|fortran|python|octave)\n(.*?)```", (ROOT / "docs" / "export.md").read_text(), re.DOTALL)

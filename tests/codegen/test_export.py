@@ -4,15 +4,15 @@ import random
 
 import pytest
 
-from symfpu.amplitudes import solve_amplitudes
-from symfpu.bundle import save
-from symfpu.certificates import random_point
-from symfpu.chain import Chain
-from symfpu.cli import main
+from symfpu.bundles.bundle import save
+from symfpu.chain.chain import Chain
+from symfpu.cli.main import main
 from symfpu.codegen.evaluator import compile_evaluator
 from symfpu.codegen.export import LANGUAGES, export
 from symfpu.errors import InputError
-from symfpu.lindstedt import lindstedt, residue_series
+from symfpu.proofs.certificates import random_point
+from symfpu.series.lindstedt import lindstedt, residue_series
+from symfpu.tori.amplitudes import solve_amplitudes
 
 
 @pytest.fixture(scope="module")

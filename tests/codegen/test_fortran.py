@@ -9,12 +9,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.chain import Chain
-from symfpu.codegen.fortran import EXTENSION, emit_torus
-from symfpu.codegen.program import torus_facts, torus_program
+from symfpu.chain.chain import Chain
+from symfpu.codegen.languages.fortran import EXTENSION, emit_torus
+from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.errors import InputError
-from symfpu.lindstedt import lindstedt
-from symfpu.torus import QTorus
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.torus import QTorus
 
 FLAGS = ("-std=f2008", "-Wall", "-Werror", "-O2")
 OF_LARGEST = 1e-13  # what issue 5 asks: of the largest coordinate, momentum or energy

@@ -9,11 +9,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu.chain import Chain
-from symfpu.codegen.fortran_series import emit_series
+from symfpu.chain.chain import Chain
+from symfpu.codegen.languages.fortran_series import emit_series
 from symfpu.codegen.series_program import series_facts, series_program
 from symfpu.errors import InputError
-from symfpu.lindstedt import lindstedt
+from symfpu.series.lindstedt import lindstedt
 from tests.codegen import series_cases, test_fortran
 from tests.codegen.series_cases import (
     CASES,
@@ -84,7 +84,7 @@ end program pair
 
 HASHES = """\
 import hashlib
-from symfpu.codegen.fortran_series import emit_series
+from symfpu.codegen.languages.fortran_series import emit_series
 from tests.codegen.series_cases import CASES, UNIVERSAL, numeric, program_of, universal
 for series, case in ((numeric, CASES["one parity only"]), (universal, UNIVERSAL["wrapped, order 1"])):
     print(hashlib.sha256(emit_series(program_of(series(case), case)).encode()).hexdigest())

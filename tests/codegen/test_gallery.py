@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from symfpu.cli import main
+from symfpu.cli.main import main
 from symfpu.codegen.gallery import GALLERY, build
 
 FOLDER = Path(__file__).parents[2] / "generated"

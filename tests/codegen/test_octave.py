@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symfpu.chain import Chain
-from symfpu.codegen.octave import BLOCK, emit_torus
-from symfpu.codegen.program import torus_facts, torus_program
-from symfpu.fourier import FourierTorus
+from symfpu.chain.chain import Chain
+from symfpu.codegen.languages.octave import BLOCK, emit_torus
+from symfpu.codegen.torus_program import torus_facts, torus_program
+from symfpu.tori.quasiperiodic import FourierTorus
 from tests.codegen.series_cases import OF_LARGEST, assert_close
 from tests.codegen.test_c99 import CASES, angles, case, random_times
 

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu.codegen.octave_series import emit_series
+from symfpu.codegen.languages.octave_series import emit_series
 from tests.codegen import series_cases
 from tests.codegen.series_cases import CASES, OF_LARGEST, UNIVERSAL, assert_close, assert_frequencies
 from tests.codegen.test_octave import NEEDS_OCTAVE, arrays, listed, octave

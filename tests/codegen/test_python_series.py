@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.codegen import mpmath_series, numpy_series
+from symfpu.codegen.languages import mpmath_series, numpy_series
 from tests.codegen.series_cases import (
     CASES,
     DIGITS,

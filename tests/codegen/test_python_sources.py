@@ -9,13 +9,13 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.amplitudes import solve_amplitudes
-from symfpu.chain import Chain
-from symfpu.codegen import mpmath_source, numpy_source
+from symfpu.chain.chain import Chain
+from symfpu.chain.frequency_shift import frequency_shift
+from symfpu.codegen.languages import mpmath_source, numpy_source
 from symfpu.codegen.nested import nest
-from symfpu.codegen.program import replace_digits, torus_facts, torus_program
-from symfpu.frequency_shift import frequency_shift
-from symfpu.lindstedt import lindstedt
+from symfpu.codegen.torus_program import replace_digits, torus_facts, torus_program
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
 
 LARGEST, TAIL = 1e-13, 1e-12  # of the largest coordinate, and of each mode's own largest: sums of some thousand rounded terms
 

@@ -6,13 +6,13 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.amplitudes import solve_amplitudes
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import _expected, _random_frame, alignment_indices
 from symfpu.dynamics.tangent import tangent_steps
 from symfpu.errors import InputError, SymfpuError
-from symfpu.lindstedt import lindstedt
 from symfpu.refinement.tori import refine
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
 
 BETA, ALPHA = Chain(8, beta=1), Chain(8, alpha="0.5")
 

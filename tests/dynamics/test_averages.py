@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from symfpu.amplitudes import solve_amplitudes
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics import averages as looks
 from symfpu.dynamics.orbits import SCHEMES, integrate
 from symfpu.dynamics.stopping import OrbitStopped
 from symfpu.errors import InputError
-from symfpu.lindstedt import lindstedt
 from symfpu.refinement.tori import refine
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
 
 MIXED = Chain(7, alpha="0.3", beta="0.2")
 STEP = 0.125  # four of them between two looks

@@ -12,12 +12,12 @@ import time
 import numpy as np
 import pytest
 
-from symfpu.archive import BundleError
-from symfpu.bundle import load
-from symfpu.chain import Chain
+from symfpu.bundles.bundle import load
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import alignment_indices, seconds_needed
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
+from symfpu.files.archive import BundleError
 
 CHAIN = Chain(6, alpha="0.3", beta="0.2")
 PORTION = "symfpu.dynamics.frame_run.PORTION"
@@ -25,7 +25,7 @@ SHORT = {"T": 150.0, "samples": 64, "vectors": 4, "step": 0.25, "block": 16}
 
 KILLED = """
 import sys, numpy as np
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import alignment_indices
 start = np.random.default_rng(8).normal(scale=0.3, size=(2, 15))
 alignment_indices(Chain(16, alpha="0.3", beta="0.1"), *start, 1e5, samples=80, file=sys.argv[1], every=0)

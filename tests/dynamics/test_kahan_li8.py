@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.kahan_li8 import DRIFTS, KICKS, flow, tangent_flow, tangent_map_along
 from symfpu.errors import InputError
 

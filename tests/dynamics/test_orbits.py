@@ -15,15 +15,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from symfpu.amplitudes import solve_amplitudes
-from symfpu.archive import BundleError
-from symfpu.bundle import save
-from symfpu.chain import Chain
+from symfpu.bundles.bundle import save
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import SCHEMES, integrate
 from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep, potential, stretch_bounds
 from symfpu.errors import InputError
-from symfpu.lindstedt import lindstedt
+from symfpu.files.archive import BundleError
 from symfpu.refinement.tori import refine
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
 
 MIXED = Chain(7, alpha="0.3", beta="0.2")
 
@@ -228,7 +228,7 @@ def test_bounds_of_stretches_are_where_the_potential_says(chain, energy):
 
 KILLED = """
 import sys, numpy as np
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics import orbits
 orbits.BLOCK = 8_000_000
 start = np.random.default_rng(8).normal(scale=0.1, size=(2, 2, 15))

@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipj
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import SCHEMES, integrate
-from symfpu.self_consistent import torus_at_amplitudes
+from symfpu.tori.frequencies import torus_at_amplitudes
 
 EVERY = pytest.mark.parametrize("name", SCHEMES)
 

@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.blanes_moan6 import DRIFTS, KICKS
 from symfpu.dynamics.kahan_li8 import flow
 from symfpu.dynamics.tangent import moving_frame, tangent_steps

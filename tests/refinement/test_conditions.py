@@ -5,8 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symfpu.chain import Chain
-from symfpu.fourier import FourierTorus
+from symfpu.chain.chain import Chain
 from symfpu.refinement.conditions import (
     Amplitude,
     AmplitudeRatio,
@@ -19,6 +18,7 @@ from symfpu.refinement.conditions import (
     ratio_conditions,
 )
 from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.tori.quasiperiodic import FourierTorus
 from tests.refinement.test_invariance import ball
 from tests.tolerances import ROUNDING
 

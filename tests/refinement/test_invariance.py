@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.chain import Chain
+from symfpu.chain.chain import Chain
 from symfpu.refinement import invariance
 from symfpu.refinement.invariance import OVERSAMPLING, InvarianceEquation, Lattice, dilated, rational
 from tests.tolerances import EPS, ROUNDING

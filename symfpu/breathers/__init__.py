@@ -1,0 +1,1 @@
+"""Periodic orbits: harmonic balance, many digits, shooting, Floquet multipliers."""

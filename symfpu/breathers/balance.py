@@ -1,0 +1,330 @@
+"""Exact q-breathers: time-periodic orbits by harmonic balance and Newton's method, in doubles.
+
+Q_q(t) = sum_n c[n, q-1] cos(n omega t) solves Q'' = chain.accelerations(Q). The unknowns are c and sigma = omega^2 - Omega^2 of
+the seed, so that a small shift loses no digits; one of them, sigma or A = c[1, seed-1], is given. Reflection of the chain with a
+change of sign is half a period of the family: only c with q - n seed even (and n odd if alpha = 0) are unknowns.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.chain.chain import Chain, decimal
+from symfpu.chain.frequency_shift import frequency_shift
+from symfpu.errors import InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
+from symfpu.numbers.typed import Number, exact, seed_modes
+
+Floats = NDArray[np.float64]
+Condition = Callable[[Floats], tuple[float, Floats]]  # of z: what has to vanish, relative to what it is made of, and its derivatives
+
+LARGEST_SYSTEM = 8192  # unknowns; a matrix of 512 MB
+TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonics may reach
+STEP, ROUNDING_STEP = 1e-14, 1e-9  # relative Newton step that ends the iteration, at once or when it no longer shrinks
+ITERATIONS = 25
+GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or down
+REACH = 0.3  # change of a coefficient from one guess to its orbit, relative to the largest, that stays on the family
+SMALLEST_PART = 1 / 64  # of the way from rest, in one step
+
+
+class NoPeriodicOrbit(SymfpuError):
+    """Newton's method found no periodic orbit; carries the iterate with the smallest residual, its frequency and that residual."""
+
+    def __init__(self, balance: Balance, reason: str, z: Floats) -> None:
+        self.seed, self.iterate, self.frequency = balance.seed, balance.cosines(z), balance.frequency(z)
+        self.residual = residual(balance.chain, self.frequency, self.iterate)
+        super().__init__(
+            f"no periodic orbit of seed {self.seed}: {reason}; the best iterate, omega = {self.frequency:.12g} and A = "
+            f"{z[balance.first]:.6g} with {balance.harmonics} harmonics, leaves {self.residual:.2g} of the largest acceleration; "
+            f"start from a guess nearer to the orbit, such as an orbit of smaller amplitude"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicOrbit:
+    """The periodic orbit Q_q(t) = sum_n c[n, q-1] cos(n omega t) of a chain.
+
+    cosines : c, shape (H+1, N-1). residual : largest |Q'' - force| between the collocation points, relative to the largest
+    acceleration. iterations : Newton steps on the way. sigma : omega^2 - Omega_seed^2.
+    """
+
+    chain: Chain
+    seed: int
+    frequency: Fraction
+    cosines: Floats = field(repr=False)
+    residual: float
+    iterations: int
+    sigma: float
+
+    def __repr__(self) -> str:
+        return (
+            f"PeriodicOrbit({repr(self.chain)[6:-1]}, seed {self.seed}, omega={decimal(self.frequency)}, A={self.amplitude:.13g}, "
+            f"H={self.energy:.11g}, {len(self.cosines) - 1} harmonics, residual {self.residual:.2g})"
+        )
+
+    @property
+    def amplitude(self) -> float:
+        """A, the coefficient of cos(omega t) in Q_seed."""
+        return float(self.cosines[1, self.seed - 1])
+
+    @property
+    def energy(self) -> float:
+        """Total energy H."""
+        return float(self.chain.energy(self.positions(0.0), self.momenta(0.0)))
+
+    @property
+    def harmonic_energy(self) -> float:
+        """Harmonic energy sum E_q at t = 0."""
+        return float(self.chain.harmonic_energies(self.positions(0.0), self.momenta(0.0)).sum())
+
+    @property
+    def _rates(self) -> Floats:
+        return np.asarray(np.arange(len(self.cosines)) * float(self.frequency), dtype=np.float64)
+
+    def positions(self, t: ArrayLike) -> Floats:
+        """Mode coordinates Q_q(t); shape of t with an axis N-1 at the end."""
+        return np.asarray(np.cos(np.multiply.outer(t, self._rates)) @ self.cosines)
+
+    def momenta(self, t: ArrayLike) -> Floats:
+        """Mode momenta P_q(t) = dQ_q/dt; shape of t with an axis N-1 at the end."""
+        return np.asarray(np.sin(np.multiply.outer(t, self._rates)) @ (-self._rates[:, None] * self.cosines))
+
+    def average_spectrum(self) -> Floats:
+        """Averages of the harmonic energies E_q over a period, in closed form; shape (N-1,)."""
+        squares = self.cosines**2 / np.where(self._rates > 0, 2, 1)[:, None]
+        return np.asarray((self._rates**2 @ squares + self.chain.frequencies() ** 2 * squares.sum(axis=0)) / 2)
+
+
+def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Harmonics n and places q - 1 of the coefficients that the symmetry allows, in the order of the vectors z."""
+    n, q = np.indices((harmonics + 1, chain.N - 1))
+    places = np.nonzero(((q + 1 - n * seed) % 2 == 0) & ((n % 2 == 1) | (chain.alpha != 0)))
+    return places[0], places[1]
+
+
+class Balance:
+    """The equations n^2 omega^2 c + force = 0 up to a number of harmonics, for vectors z = (the c that are unknowns, sigma)."""
+
+    def __init__(self, chain: Chain, seed: int, harmonics: int) -> None:
+        self.chain, self.seed, self.harmonics = chain, seed, harmonics
+        self.n, self.q = unknowns(chain, seed, harmonics)
+        linear = chain.frequencies()
+        self.detuning = self.n**2 * linear[seed - 1] ** 2 - linear[self.q] ** 2
+        self.first = int(np.flatnonzero((self.n == 1) & (self.q == seed - 1))[0])
+        self.stretch = chain.stretches(np.eye(chain.N - 1))  # of every bond by a unit of each mode
+        points = 2 * harmonics + 1  # enough for cubic products
+        ends = np.where(np.arange(points + 1) % points == 0, 0.5, 1.0)
+        self.table = np.cos(np.pi / points * np.outer(np.arange(points + 1), np.arange(points + 1)))
+        self.analysis = 2 / points * ends[:, None] * self.table * ends
+
+    def vector(self, cosines: Floats, sigma: float) -> Floats:
+        padded = np.zeros((max(self.harmonics + 1, len(cosines)), self.chain.N - 1))
+        padded[: len(cosines)] = cosines
+        return np.append(padded[self.n, self.q], sigma)
+
+    def cosines(self, z: Floats) -> Floats:
+        c = np.zeros((self.harmonics + 1, self.chain.N - 1))
+        c[self.n, self.q] = z[:-1]
+        return c
+
+    def frequency(self, z: Floats) -> float:
+        linear = float(self.chain.frequencies()[self.seed - 1])
+        return linear + float(z[-1]) / (linear + math.sqrt(max(linear**2 + float(z[-1]), 0.0)))
+
+    def system(self, z: Floats) -> tuple[Floats, Floats]:
+        """The equations, shape (n,), and their derivatives by z, shape (n, n+1)."""
+        alpha, beta = float(self.chain.alpha), float(self.chain.beta)
+        diagonal = self.detuning + self.n**2 * z[-1]
+        r = self.table[:, : self.harmonics + 1] @ self.cosines(z) @ self.stretch
+        force = -(self.analysis @ (r**2 * (alpha + r * beta)) @ self.stretch.T)
+        slope = self.analysis @ (r * (2 * alpha + 3 * beta * r))
+        slope[1:] /= 2  # coefficients of exp(i k theta), k of both signs
+        stiffness = np.einsum("kj,pj,qj->kpq", slope, self.stretch, self.stretch, optimize=True)
+        n, q = self.n[:, None], self.q[:, None]
+        J = -stiffness[abs(n - self.n), q, self.q] - np.where(n > 0, stiffness[n + self.n, q, self.q], 0.0) + np.diag(diagonal)
+        return diagonal * z[:-1] + force[self.n, self.q], np.column_stack([J, self.n**2 * z[:-1]])
+
+    def newton(self, z: Floats, given: int | Condition) -> tuple[Floats, int]:
+        """The solution with the same z[given], or that meets a condition, and the number of steps; raises NoPeriodicOrbit."""
+        free = np.arange(len(z)) if callable(given) else np.delete(np.arange(len(z)), given)
+        best, least, before, size = z, np.inf, np.inf, float(np.max(np.abs(z[:-1])))
+        for iteration in range(1, ITERATIONS + 1):
+            equations, jacobian = self.system(z)
+            imbalance = float(np.max(np.abs(equations)) / np.max(np.abs(z[:-1])))
+            if imbalance < least:
+                best, least = z, imbalance
+            if callable(given):
+                value, row = given(z)
+                equations, jacobian = np.append(equations, value), np.vstack([jacobian, row])
+            try:
+                step = np.linalg.solve(jacobian[:, free], equations)
+            except np.linalg.LinAlgError:
+                raise NoPeriodicOrbit(self, "the matrix of Newton's method is singular", best) from None
+            z = z.copy()
+            z[free] -= step
+            reached = float(np.max(np.abs(z[:-1])))
+            if not size / GROWTH < reached < size * GROWTH:
+                raise NoPeriodicOrbit(self, f"the largest coefficient goes from {size:.3g} to {reached:.3g}", best)
+            relative = float(np.max(np.abs(step[free < len(z) - 1]))) / reached
+            if relative <= STEP or (relative < ROUNDING_STEP and relative > before / 2):
+                return z, iteration
+            before = relative
+        raise NoPeriodicOrbit(self, f"no convergence in {ITERATIONS} steps", best)
+
+
+def held_frequency(balance: Balance) -> int:
+    """The place of sigma in the vectors of a balance."""
+    return len(balance.n)
+
+
+def held_amplitude(balance: Balance) -> int:
+    """The place of A in the vectors of a balance."""
+    return balance.first
+
+
+def residual(chain: Chain, omega: float, cosines: Floats) -> float:
+    """Largest |Q'' - force| at times between the collocation points, relative to the largest acceleration."""
+    n, points = np.arange(len(cosines)), 6 * len(cosines)
+    table = np.cos(np.outer(np.pi / points * (np.arange(points) + 1 / 3), n))
+    force = chain.accelerations(table @ cosines)
+    largest = max(float(np.max(np.abs(force))), float(np.finfo(float).tiny))
+    return float(np.max(np.abs(table @ ((n[:, None] * omega) ** 2 * cosines) + force))) / largest
+
+
+def periodic_orbit(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = None) -> PeriodicOrbit:
+    """The q-breather of a seed mode with the given frequency.
+
+    frequency : omega, an exact number. guess : cosine coefficients, shape (H+1, N-1), of which those that the symmetry forbids
+    are dropped; None follows the family from rest, with the amplitude of the lowest order. The orbit is one near the guess: a
+    frequency may have several. Raises InputError; without a guess NoRealAmplitude or UndeterminedAmplitudes if the lowest order
+    has no amplitude; NoPeriodicOrbit with the best iterate.
+
+    >>> round(periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537").energy, 12)
+    0.004649999361
+    """
+    (seed,), omega = seed_modes((seed,), chain.N), positive_frequency(frequency)
+    shift, sigma = detuning(chain, seed, omega)
+    if guess is not None:
+        orbit = orbit_near(chain, seed, _cosines(chain, seed, guess), sigma, held_frequency)
+    else:
+        orbit = _walk(chain, seed, lowest_amplitude(chain, seed, shift), sigma, by_amplitude=False)
+    return replace(orbit, frequency=omega)
+
+
+def positive_frequency(frequency: Number) -> Fraction:
+    """The exact number that a frequency denotes; raises InputError."""
+    omega = exact(frequency, "frequency")
+    if omega <= 0:
+        raise InputError("frequency", frequency, "a positive number", "take one near the linear frequency")
+    return omega
+
+
+def detuning(chain: Chain, seed: int, omega: Fraction) -> tuple[float, float]:
+    """omega - Omega_seed and sigma = omega^2 - Omega_seed^2, without loss of digits."""
+    with mpmath.workdps(50):
+        linear, target = chain.linear_frequency(seed), mpmath.mpf(omega.numerator) / omega.denominator
+        return float(target - linear), float((target - linear) * (target + linear))
+
+
+def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
+    """A > 0 whose lowest frequency correction is omega - Omega = shift; raises NoRealAmplitude or UndeterminedAmplitudes."""
+    coefficient, order = frequency_shift(chain, {seed: 1.0})[seed], 2 // chain.degree_step
+    if coefficient == 0:
+        raise UndeterminedAmplitudes((seed,), order)
+    if shift / coefficient <= 0:
+        raise NoRealAmplitude(seed, shift / coefficient, order)
+    return float((shift / coefficient) ** 0.5)
+
+
+def breather_at_amplitude(chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | None = None) -> PeriodicOrbit:
+    """The q-breather of a seed mode with the given A, the coefficient of cos(omega t) in Q_seed; its frequency is found.
+
+    guess : cosine coefficients, shape (H+1, N-1); None follows the family from rest. Raises InputError, and NoPeriodicOrbit
+    with the best iterate.
+    """
+    (seed,), A = seed_modes((seed,), chain.N), float(exact(amplitude, "amplitude"))
+    if A == 0:
+        raise InputError("amplitude", amplitude, "a number that is not 0", "take a small one")
+    if guess is None:
+        sigma = 2 * float(chain.frequencies()[seed - 1]) * frequency_shift(chain, {seed: A})[seed]
+        return _walk(chain, seed, A, sigma, by_amplitude=True)
+    cosines = _cosines(chain, seed, guess)
+    cosines[1, seed - 1] = A
+    balance = Balance(chain, seed, len(cosines) - 1)
+    z = balance.vector(cosines, 0.0)
+    sigma = float(-balance.system(z)[0][balance.first] / A)  # balances cos(omega t) of the seed
+    return orbit_near(chain, seed, cosines, sigma, held_amplitude)
+
+
+def _cosines(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
+    shape = f"(H+1, {chain.N - 1})"
+    try:
+        cosines = np.array(guess, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError("guess", guess, f"an array of shape {shape}", "pass numbers") from error
+    if cosines.ndim != 2 or len(cosines) < 2 or cosines.shape[1] != chain.N - 1:
+        raise InputError("guess", cosines.shape, f"the shape {shape}, H from 1 up", "put the harmonics first, the modes last")
+    if not np.isfinite(cosines).all() or cosines[1, seed - 1] == 0:
+        raise InputError("guess", cosines[1, seed - 1], f"finite numbers, A = guess[1, {seed - 1}] not 0", "give the seed an amplitude")
+    return cosines
+
+
+@np.errstate(over="ignore", invalid="ignore")  # iterates that run away are refused by their size
+def orbit_near(
+    chain: Chain, seed: int, cosines: Floats, sigma: float, given: Callable[[Balance], int | Condition], reach: float = GROWTH
+) -> PeriodicOrbit:
+    """The orbit near cosines and sigma, with as many harmonics as it needs, none of them changed by more than reach.
+
+    given : of a balance, the place of what keeps its value, or the condition to meet. reach : relative to the largest coefficient.
+    Raises NoPeriodicOrbit.
+    """
+    guess, harmonics, iterations = cosines, max(8, len(cosines) - 1), 0
+    if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
+        raise InputError("N, harmonics", (chain.N, harmonics), f"at most {2 * LARGEST_SYSTEM} as their product", "cut the guess")
+    while True:
+        balance = Balance(chain, seed, harmonics)
+        z, steps = balance.newton(balance.vector(cosines, sigma), given(balance))
+        cosines, sigma, iterations = balance.cosines(z), float(z[-1]), iterations + steps
+        if balance.frequency(z) <= 0:
+            raise NoPeriodicOrbit(balance, f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2", z)
+        heights = np.max(np.abs(cosines), axis=1) / np.max(np.abs(cosines))
+        if np.max(heights[-max(2, harmonics // 8) :]) <= TAIL:
+            break
+        harmonics *= 2
+        if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
+            raise NoPeriodicOrbit(balance, f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g} of the largest", z)
+    change = float(np.max(np.abs(z - balance.vector(guess, sigma)))) / float(np.max(np.abs(cosines)))
+    if change > reach or abs(cosines[1, seed - 1]) < np.max(np.abs(cosines)) / GROWTH:
+        raise NoPeriodicOrbit(balance, f"the orbit found is another one: a change by {change:.3g} of the largest coefficient", z)
+    cosines, omega = cosines[: int(np.flatnonzero(heights > TAIL / 100)[-1]) + 1], balance.frequency(z)
+    return PeriodicOrbit(chain, seed, exact(omega, "frequency"), cosines, residual(chain, omega, cosines), iterations, sigma)
+
+
+def _walk(chain: Chain, seed: int, amplitude: float, sigma: float, *, by_amplitude: bool) -> PeriodicOrbit:
+    """The member at the end of the way from rest, on which A grows about with the part gone and sigma with its square."""
+    gone, step, iterations = 0.0, 1.0, 0
+    scale, cosines = 1.0, np.zeros((2, chain.N - 1))  # the guess is cosines, a member or the linear mode, scaled to the next part
+    cosines[1, seed - 1] = amplitude
+    given = held_amplitude if by_amplitude else held_frequency
+    while True:
+        part = min(1.0, gone + step)
+        guess = cosines * (part / scale)
+        if by_amplitude:
+            guess[1, seed - 1] = amplitude * part
+        try:
+            orbit = orbit_near(chain, seed, guess, sigma * (part / scale) ** 2, given, REACH)
+        except NoPeriodicOrbit:
+            step /= 2
+            if step < SMALLEST_PART:
+                raise
+            continue
+        gone = scale = part
+        cosines, sigma, iterations = orbit.cosines, orbit.sigma, iterations + orbit.iterations
+        if gone == 1:
+            return replace(orbit, iterations=iterations)

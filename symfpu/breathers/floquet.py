@@ -1,0 +1,185 @@
+"""Floquet multipliers of a q-breather: its tangent map over a period, and the stability that they decide.
+
+The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives M = R H^-1 R H with the symplectic
+inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with a = 1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in
+pairs with lambda + 1/lambda = 2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M, is a simple kappa = 0 whose
+left eigenvector is the acceleration at t = 0, B f = 0. So every pair is exactly reciprocal, and the double 1 costs no digits.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.breathers.balance import PeriodicOrbit
+from symfpu.chain.chain import decimal
+from symfpu.dynamics.kahan_li8 import ORDER, tangent_map_along
+from symfpu.errors import InputError
+
+Floats = NDArray[np.float64]
+
+ACCURACY = 1e-12  # of the tangent map, relative to its largest entry
+FIRST_STEP = 0.1  # over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
+DOUBLINGS = 5
+SAFETY = 8  # times the error that a kappa may have: what it may be off the circle
+
+TRIVIAL, ELLIPTIC = "trivial", "on the circle"
+TANGENT, DOUBLING, QUADRUPLE = "real > 0", "real < 0", "complex quadruple"
+
+
+@dataclass(frozen=True, eq=False)
+class Floquet:
+    """Multipliers of a periodic orbit.
+
+    pairs : (lambda, 1/lambda), |lambda| >= 1, shape (N-1, 2), the trivial pair (1, 1) first, then by falling size and growing angle.
+    kinds : of every pair: "trivial", "on the circle", "real > 0" (tangent bifurcation at +1), "real < 0" (period doubling at -1),
+    "complex quadruple" (Krein collision; two pairs make one quadruple). kappa : (lambda + 1/lambda - 2)/4, tolerance : how far each may
+    be off because of the errors of map and orbit; both (N-1,). monodromy : M in modes, rows and columns Q_1 .., P_1 ..; shape (2(N-1),
+    2(N-1)). symplecticity : largest entry of M^T J M - J. map_error : estimated error of the half-period map. trivial_error : by how
+    much the trivial pair of the computed map misses kappa = 0.
+    """
+
+    orbit: PeriodicOrbit
+    pairs: NDArray[np.complex128] = field(repr=False)
+    kinds: tuple[str, ...]
+    kappa: NDArray[np.complex128] = field(repr=False)
+    tolerance: Floats = field(repr=False)
+    monodromy: Floats = field(repr=False)
+    symplecticity: float
+    map_error: float
+    trivial_error: float
+
+    def __repr__(self) -> str:
+        verdict = "stable" if self.stable else "unstable: " + ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
+        return (
+            f"Floquet({repr(self.orbit.chain)[6:-1]}, seed {self.orbit.seed}, omega={decimal(self.orbit.frequency)}, {verdict}, "
+            f"largest |multiplier| {self.largest:.12g}, symplecticity error {self.symplecticity:.1g})"
+        )
+
+    @property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """All 2(N-1) multipliers, pair after pair."""
+        return self.pairs.reshape(-1)
+
+    @property
+    def stable(self) -> bool:
+        """Every multiplier on the unit circle, as far as the errors allow to tell."""
+        return not self.instabilities
+
+    @property
+    def instabilities(self) -> dict[str, int]:
+        """Number of unstable pairs, or of quadruples, by kind; empty if stable."""
+        counts = Counter(kind for kind in self.kinds if kind not in (TRIVIAL, ELLIPTIC))
+        return {kind: count // 2 if kind == QUADRUPLE else count for kind, count in counts.items()}
+
+    @property
+    def largest(self) -> float:
+        """Largest |multiplier|; exactly 1 if stable."""
+        return 1.0 if self.stable else float(np.max(np.abs(self.pairs)))
+
+
+def monodromy(orbit: PeriodicOrbit) -> Floats:
+    """Tangent map over one period in mode coordinates and momenta, from t = 0; shape (2(N-1), 2(N-1)). Raises InputError."""
+    return _whole(_half(_checked(orbit))[0])
+
+
+def floquet(orbit: PeriodicOrbit) -> Floquet:
+    """Floquet multipliers and stability of a periodic orbit.
+
+    A kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its error to first order:
+    the error of B^T C over the cosine between its left and right eigenvector. Raises InputError.
+
+    >>> from symfpu.chain.chain import Chain
+    >>> from symfpu.breathers.balance import breather_at_amplitude
+    >>> floquet(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")).stable
+    True
+    """
+    from scipy.linalg import eig
+
+    half, map_error = _half(_checked(orbit))
+    n, whole = len(half) // 2, _whole(half)
+    B, C = half[:n, n:], half[n:, :n]
+    force = orbit.chain.accelerations(orbit.positions(0.0))
+    basis = np.linalg.svd(force[None, :])[2].T  # the acceleration, then an orthonormal basis of what is perpendicular to it
+    flow, rest = basis[:, 0], basis[:, 1:]
+    trivial = float(np.linalg.norm(C.T @ (B @ flow)))
+    error = map_error * float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2)) + trivial
+    kappa, left, right = eig(rest.T @ B.T @ C @ rest, left=True)
+    tolerance = SAFETY * error / np.maximum(np.abs(np.einsum("ij,ij->j", left.conj(), right)), np.finfo(float).tiny)
+    kinds = [_kind(k, t) for k, t in zip(kappa, tolerance, strict=True)]
+    pairs = np.array([_pair(k, kind) for k, kind in zip(kappa, kinds, strict=True)]).reshape(-1, 2)
+    order = np.lexsort((np.angle(pairs[:, 0]), -np.abs(pairs[:, 0]).round(12)))
+    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    return Floquet(
+        orbit,
+        np.vstack([[[1.0, 1.0]], pairs[order]]),
+        (TRIVIAL, *(kinds[i] for i in order)),
+        np.append(0.0, kappa[order]),
+        np.append(SAFETY * error, tolerance[order]),
+        whole,
+        float(np.max(np.abs(whole.T @ J @ whole - J))),
+        map_error,
+        trivial,
+    )
+
+
+def _checked(orbit: PeriodicOrbit) -> PeriodicOrbit:
+    if not isinstance(orbit, PeriodicOrbit):
+        raise InputError("orbit", type(orbit).__name__, "a PeriodicOrbit", "take one from periodic_orbit or breather_at_amplitude")
+    return orbit
+
+
+def _half(orbit: PeriodicOrbit) -> tuple[Floats, float]:
+    """The tangent map over half a period and its estimated error, in the spectral norm."""
+    chain, duration = orbit.chain, np.pi / float(orbit.frequency)
+    r = chain.stretches(orbit.positions(np.linspace(0, duration, 2 * len(orbit.cosines))))
+    stiffest = float(np.max(np.abs(1 + r * (2 * float(chain.alpha) + r * (3 * float(chain.beta))))))
+    steps = int(np.ceil(duration * np.sqrt(stiffest) / FIRST_STEP))
+    coefficients = chain.stretches(orbit.cosines)
+    rates = np.arange(len(coefficients)) * float(orbit.frequency)
+
+    def stretches(t: Floats) -> Floats:
+        return np.asarray(np.cos(np.multiply.outer(t, rates)) @ coefficients)
+
+    coarse = tangent_map_along(chain, stretches, duration, steps)
+    for _ in range(DOUBLINGS):
+        steps *= 2
+        fine = tangent_map_along(chain, stretches, duration, steps)
+        error = float(np.linalg.norm(fine - coarse, 2)) / (2**ORDER - 1)
+        if error <= ACCURACY * max(1.0, float(np.max(np.abs(fine)))):
+            break
+        coarse = fine
+    return fine, error + np.sqrt(steps) * float(np.finfo(float).eps * np.linalg.norm(fine, 2))
+
+
+def _whole(half: Floats) -> Floats:
+    """R H^-1 R H with the symplectic inverse."""
+    n = len(half) // 2
+    A, B, C, D = half[:n, :n], half[:n, n:], half[n:, :n], half[n:, n:]
+    return np.block([[D.T, B.T], [C.T, A.T]]) @ half
+
+
+def _kind(kappa: complex, tolerance: float) -> str:
+    if abs(kappa.imag) > tolerance:
+        return QUADRUPLE
+    if kappa.real > tolerance:
+        return TANGENT
+    return DOUBLING if kappa.real < -1 - tolerance else ELLIPTIC
+
+
+def _pair(kappa: complex, kind: str) -> tuple[complex, complex]:
+    """(lambda, 1/lambda) with |lambda| >= 1 of lambda + 1/lambda = 2 + 4 kappa; on the circle exp(+-i angle)."""
+    if kind == ELLIPTIC:
+        angle = 2 * np.arcsin(np.sqrt(np.clip(-kappa.real, 0.0, 1.0)))
+        return complex(np.cos(angle), np.sin(angle)), complex(np.cos(angle), -np.sin(angle))
+    if kind != QUADRUPLE:
+        kappa = complex(kappa.real, 0.0)
+    root = np.sqrt(kappa + 1 + 0j) + np.sqrt(kappa + 0j)
+    root = root if abs(root) >= 1 else 1 / root
+    value = complex(root**2)
+    if kind != QUADRUPLE:
+        value = complex(value.real, 0.0)
+    return value, 1 / value

@@ -1,0 +1,163 @@
+"""Exact q-breathers by shooting: Newton's method on the motion over half a period, with its tangent map.
+
+A state at rest, P(0) = 0, that is at rest again at T/2 returns at T, since the motion is reversible. The unknowns are the Q_q(0) that the
+symmetry of the family allows: even q for an even seed, q of the seed's parity if alpha = 0, else all. The tangent map is the
+exact derivative of the integrator's map, so that Newton's method converges quadratically down to rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.breathers.balance import GROWTH, ITERATIONS, ROUNDING_STEP, STEP, detuning, lowest_amplitude, positive_frequency
+from symfpu.chain.chain import Chain, decimal
+from symfpu.dynamics.kahan_li8 import ORDER, tangent_flow
+from symfpu.errors import InputError, SymfpuError
+from symfpu.numbers.typed import Number, seed_modes
+
+Floats = NDArray[np.float64]
+
+ACCURACY = 1e-15  # of the half period, relative to its largest number: a small omega - Omega magnifies errors
+FIRST_STEP = 0.1  # time of the coarser of the first two integrations
+DOUBLINGS = 5
+
+
+class ShootingFailed(SymfpuError):
+    """Newton's method on the half period found no orbit; carries the start Q(0) with the smallest residual, and the residuals."""
+
+    def __init__(self, seed: int, reason: str, start: Floats, residuals: tuple[float, ...]) -> None:
+        self.seed, self.reason, self.iterate, self.residuals = seed, reason, start, residuals
+        self.residual = min(residuals, default=float("inf"))
+        super().__init__(
+            f"shooting at the breather of seed {seed} failed: {reason}; the best start, Q_{seed}(0) = {start[seed - 1]:.6g}, is at rest "
+            f"at T/2 up to {self.residual:.2g} of omega max|Q|; pass as guess the start of a series or of an orbit nearby"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class ShotOrbit:
+    """A periodic orbit as its start at rest.
+
+    start : Q(0), shape (N-1,); P(0) = 0. residual : the distance of (omega Q, P) after a whole period from the start, over omega max|Q|,
+    with steps half as long as those of the search. history : max|P(T/2)| / (omega max|Q|) of the guess and after every Newton step.
+    steps : of the composition in half a period.
+    """
+
+    chain: Chain
+    seed: int
+    frequency: Fraction
+    start: Floats = field(repr=False)
+    residual: float
+    history: tuple[float, ...] = field(repr=False)
+    steps: int
+
+    def __repr__(self) -> str:
+        return (
+            f"ShotOrbit({repr(self.chain)[6:-1]}, seed {self.seed}, omega={decimal(self.frequency)}, Q_{self.seed}(0)="
+            f"{self.start[self.seed - 1]:.13g}, H={self.energy:.11g}, {self.iterations} Newton steps, residual {self.residual:.2g})"
+        )
+
+    @property
+    def iterations(self) -> int:
+        """Newton steps."""
+        return len(self.history) - 1
+
+    @property
+    def energy(self) -> float:
+        """Total energy H."""
+        return float(self.chain.energy(self.start, np.zeros_like(self.start)))
+
+    @property
+    def harmonic_energy(self) -> float:
+        """Harmonic energy sum E_q at t = 0."""
+        return float(self.chain.harmonic_energies(self.start, np.zeros_like(self.start)).sum())
+
+
+@np.errstate(over="ignore", invalid="ignore")  # motions that run away are refused
+def shoot(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = None) -> ShotOrbit:
+    """The q-breather of a seed mode with the given frequency, by Newton's method on Q(0).
+
+    frequency : omega, an exact number. guess : Q(0), shape (N-1,), of which the modes that the symmetry forbids are dropped; None for
+    the seed alone with the amplitude of the lowest order, good for small ones. Raises InputError; without a guess
+    NoRealAmplitude or UndeterminedAmplitudes; ShootingFailed with the best start.
+
+    >>> shot = shoot(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
+    >>> round(shot.energy, 12), shot.residual < 1e-13
+    (0.004649999361, True)
+    """
+    (seed,), omega = seed_modes((seed,), chain.N), positive_frequency(frequency)
+    if guess is None:
+        start = np.zeros(chain.N - 1)
+        start[seed - 1] = lowest_amplitude(chain, seed, detuning(chain, seed, omega)[0])
+    else:
+        start = _start(chain, seed, guess)
+    modes = np.arange(1, chain.N)
+    allowed = (modes - seed) % 2 == 0 if chain.alpha == 0 or seed % 2 == 0 else np.full(len(modes), True)
+    start = np.where(allowed, start, 0.0)
+    half, rate = np.pi / float(omega), float(omega)
+    steps = _steps(chain, seed, start, half)
+    start, history = _newton(chain, seed, start, np.flatnonzero(allowed), half, steps)
+    none = np.zeros((0, chain.N - 1))
+    Q, P, *_ = tangent_flow(chain, start, 0 * start, none, none, 2 * half, 4 * steps)
+    residual = float(max(np.max(np.abs(Q - start)), np.max(np.abs(P)) / rate) / np.max(np.abs(start)))
+    return ShotOrbit(chain, seed, omega, start, residual, history, steps)
+
+
+def _newton(chain: Chain, seed: int, start: Floats, free: NDArray[np.intp], half: float, steps: int) -> tuple[Floats, tuple[float, ...]]:
+    """The start at rest that is at rest after half a period, and the residuals on the way; raises ShootingFailed."""
+    directions = np.eye(chain.N - 1)[free]
+    size, before, history, best = float(np.max(np.abs(start))), np.inf, [], start
+    for _ in range(ITERATIONS + 1):
+        _, P, _, slopes = tangent_flow(chain, start, 0 * start, directions, 0 * directions, half, steps)
+        history.append(float(np.max(np.abs(P)) * half / (np.pi * np.max(np.abs(start)))))
+        if not np.isfinite(history[-1]):
+            raise ShootingFailed(seed, "the motion runs away to infinity", best, tuple(history[:-1]))
+        best = start if history[-1] == min(history) else best
+        if before <= STEP or (before < ROUNDING_STEP and len(history) > 2 and history[-1] > history[-2] / 2):
+            return best, tuple(history)
+        try:
+            step = np.linalg.solve(slopes[:, free].T, P[free])
+        except np.linalg.LinAlgError:
+            raise ShootingFailed(seed, "the matrix of Newton's method is singular", best, tuple(history)) from None
+        start = start.copy()
+        start[free] -= step
+        reached = float(np.max(np.abs(start)))
+        if not size / GROWTH < reached < size * GROWTH:
+            raise ShootingFailed(seed, f"the largest coordinate goes from {size:.3g} to {reached:.3g}", best, tuple(history))
+        before = float(np.max(np.abs(step))) / reached
+    raise ShootingFailed(seed, f"no convergence in {ITERATIONS} steps", best, tuple(history))
+
+
+def _start(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
+    try:
+        start = np.array(guess, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError("guess", guess, f"an array of shape ({chain.N - 1},)", "pass numbers") from error
+    if start.shape != (chain.N - 1,):
+        raise InputError("guess", start.shape, f"the shape ({chain.N - 1},)", "pass the mode coordinates Q(0)")
+    if not np.isfinite(start).all() or start[seed - 1] == 0:
+        raise InputError("guess", start[seed - 1], f"finite numbers, Q_{seed}(0) not 0", "give the seed an amplitude")
+    return start
+
+
+def _steps(chain: Chain, seed: int, start: Floats, half: float) -> int:
+    """Steps with which half a period from the guess is integrated to ACCURACY."""
+    steps, none = int(np.ceil(half / FIRST_STEP)), np.zeros((0, chain.N - 1))
+
+    def end(steps: int) -> Floats:
+        return np.concatenate(tangent_flow(chain, start, 0 * start, none, none, half, steps)[:2])
+
+    coarse = end(steps)
+    for _ in range(DOUBLINGS):
+        steps *= 2
+        fine = end(steps)
+        if not np.isfinite(fine).all():
+            raise ShootingFailed(seed, "the motion from the guess runs away to infinity", start, ())
+        if np.max(np.abs(fine - coarse)) <= (2**ORDER - 1) * ACCURACY * np.max(np.abs(fine)):
+            break
+        coarse = fine
+    return steps

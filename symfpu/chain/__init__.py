@@ -1,0 +1,1 @@
+"""The chain: its modes and couplings, and what they alone decide."""

@@ -1,0 +1,237 @@
+"""The FPU chain with fixed ends: modes, couplings, energies, and the Hamiltonian as an expression (section 2 of the paper)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from itertools import product
+from typing import Any
+
+import mpmath
+import numpy as np
+import symengine as se
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import DOUBLES, Doubles, Numbers, arithmetic_of, sine_matrix
+from symfpu.numbers.typed import Number, exact, integer
+
+Floats = NDArray[np.float64]
+
+SMALLEST_COUPLING = Fraction(1, 10**50)
+LARGEST_EXPRESSION = 40  # bonds; the cubic coupling has about N^3 terms
+
+
+@dataclass(frozen=True)
+class Chain:
+    """FPU chain of N bonds (N - 1 moving particles, fixed ends), Eq. fpuham; all quantities dimensionless.
+
+    N : number of bonds, at least 2. alpha, beta : cubic and quartic coupling, exact numbers (see symfpu.numbers.typed); at least
+    one is not zero. Raises InputError. A changed chain is dataclasses.replace(chain, beta="1/10").
+
+    >>> Chain(N=32, alpha="0.33")
+    Chain(N=32, alpha=0.33)
+    >>> Chain(N=2, beta=1).frequencies()
+    array([1.41421356])
+    """
+
+    N: int
+    alpha: Fraction
+    beta: Fraction
+
+    def __init__(self, N: int, alpha: Number = 0, beta: Number = 0) -> None:
+        object.__setattr__(self, "N", integer(N, "N", 2))
+        object.__setattr__(self, "alpha", exact(alpha, "alpha"))
+        object.__setattr__(self, "beta", exact(beta, "beta"))
+        for name, typed, value in (("alpha", alpha, self.alpha), ("beta", beta, self.beta)):
+            if value and not SMALLEST_COUPLING <= abs(value) <= 1 / SMALLEST_COUPLING:
+                raise InputError(name, typed, "0, or a number of size 1e-50 to 1e50", "rescale the amplitudes")
+        if self.alpha == 0 and self.beta == 0:
+            raise InputError("alpha, beta", (0, 0), "at least one of them not zero", "give alpha=, beta= or both")
+
+    def __repr__(self) -> str:
+        couplings = [f"{name}={decimal(value)}" for name, value in (("alpha", self.alpha), ("beta", self.beta)) if value]
+        return f"Chain(N={self.N}, {', '.join(couplings)})"
+
+    @property
+    def model(self) -> str:
+        """'alpha', 'beta' or 'alpha+beta'."""
+        return "+".join(name for name, value in (("alpha", self.alpha), ("beta", self.beta)) if value)
+
+    @property
+    def degree_step(self) -> int:
+        """How much the degree in the amplitudes grows with the order: 1 if alpha is not zero (r = k+1), else 2 (r = 2k+1)."""
+        return 1 if self.alpha else 2
+
+    @property
+    def mu(self) -> float:
+        """The small parameter: alpha/sqrt(2N) if alpha is not zero, else beta/(2N)."""
+        return float(self.alpha) / (2 * self.N) ** 0.5 if self.alpha else float(self.beta / (2 * self.N))
+
+    @property
+    def relative_couplings(self) -> tuple[Fraction, Fraction]:
+        """Coefficients of the quadratic and the cubic force in units of mu and, if alpha is not zero, of mu^2."""
+        return (Fraction(1), self.beta / self.alpha**2) if self.alpha else (Fraction(0), Fraction(1))
+
+    def linear_frequency(self, q: int) -> mpmath.mpf:
+        """Omega_q = 2 sin(q pi / 2N) at the working precision of mpmath."""
+        return 2 * mpmath.sinpi(mpmath.mpf(q) / (2 * self.N))
+
+    def small_parameter(self, numbers: Doubles = DOUBLES) -> Any:
+        """mu in the given arithmetic."""
+        if numbers is DOUBLES:
+            return self.mu
+        if self.alpha:
+            return numbers.number(self.alpha) / mpmath.sqrt(2 * self.N)
+        return numbers.number(self.beta / (2 * self.N))
+
+    def frequencies(self, numbers: Doubles = DOUBLES) -> Numbers:
+        """Linear frequencies Omega_q, q = 1 .. N-1, correctly rounded, or in another arithmetic; shape (N-1,)."""
+        if numbers is DOUBLES:
+            return linear_frequencies(self.N)
+        return np.array([self.linear_frequency(q) for q in range(1, self.N)], dtype=object)
+
+    def positions(self, Q: ArrayLike) -> Numbers:
+        """Particle displacements x_1 .. x_(N-1) of mode coordinates (Eq. lintra); shape (..., N-1) to (..., N-1).
+
+        The transform is orthogonal and its own inverse: it also takes momenta, and positions to modes. Here and below arrays
+        of mpf give arrays of mpf at mpmath's working precision.
+        """
+        from scipy.fft import dst
+
+        state, numbers = self._state(Q, "Q")
+        if numbers is not DOUBLES:
+            return numbers.dot(state, sine_matrix(self.N))
+        return np.asarray(dst(state, type=1, norm="ortho", axis=-1))
+
+    def modes(self, x: ArrayLike) -> Numbers:
+        """Mode coordinates Q_1 .. Q_(N-1) of particle displacements, the inverse of `positions`; shape (..., N-1)."""
+        return self.positions(x)
+
+    def stretches(self, Q: ArrayLike) -> Numbers:
+        """Bond stretches r_j = x_(j+1) - x_j, j = 0 .. N-1, of mode coordinates; shape (..., N-1) to (..., N)."""
+        x = self.positions(Q)
+        return np.diff(np.concatenate([np.zeros_like(x[..., :1]), x, np.zeros_like(x[..., :1])], axis=-1), axis=-1)
+
+    def energy(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
+        """Total energy H (Eq. fpuham) of mode coordinates and momenta; shapes (..., N-1) to (...)."""
+        r, (P, numbers) = self.stretches(Q), self._state(P, "P")
+        alpha, beta = numbers.number(self.alpha), numbers.number(self.beta)
+        potential = r**2 * (0.5 + r * (alpha / 3 + r * beta / 4))
+        return np.asarray(0.5 * np.sum(P**2, axis=-1) + np.sum(potential, axis=-1))
+
+    def harmonic_energies(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
+        """Harmonic energy E_q = (P_q^2 + Omega_q^2 Q_q^2)/2 of every mode (Eq. harmonicene); shapes (..., N-1)."""
+        (Q, numbers), (P, _) = self._state(Q, "Q"), self._state(P, "P")
+        return np.asarray(0.5 * (P**2 + (self.frequencies(numbers) * Q) ** 2))
+
+    def accelerations(self, Q: ArrayLike) -> Numbers:
+        """Second time derivative of every mode coordinate (Eq. eqmo); shapes (..., N-1)."""
+        r = self.stretches(Q)
+        numbers = arithmetic_of(r)
+        tension = r * (1 + r * (numbers.number(self.alpha) + r * numbers.number(self.beta)))
+        return self.positions(np.diff(tension, axis=-1))
+
+    def _state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Doubles]:
+        numbers = arithmetic_of(values)
+        try:
+            array = numbers.array(values)
+        except (TypeError, ValueError) as error:
+            raise InputError(argument, values, "an array of real numbers", "pass numbers") from error
+        if array.ndim == 0 or array.shape[-1] != self.N - 1:
+            raise InputError(argument, array.shape, f"an array whose last axis has length N-1 = {self.N - 1}", "put the modes last")
+        return array, numbers
+
+    def B(self, q: int, l: int, m: int) -> int:
+        """Coupling of three modes (Eq. transa): -1, 0 or 1 for distinct sums, by selection rule."""
+        return self._coupling(q, l, m)
+
+    def C(self, q: int, l: int, m: int, n: int) -> int:
+        """Coupling of four modes (Eq. transa, with the sums equal to -2N that the paper leaves out)."""
+        return self._coupling(q, l, m, n)
+
+    def _coupling(self, *modes: int) -> int:
+        for mode in modes:
+            if integer(mode, "mode", 1) >= self.N:
+                raise InputError("mode", mode, f"1..{self.N - 1}", "name a mode of the chain")
+        first, *others = modes
+        sums = [first + sum(s * m for s, m in zip(signs, others, strict=True)) for signs in product((1, -1), repeat=len(others))]
+        return sum((total == 0) - (abs(total) == 2 * self.N) for total in sums)
+
+    def coupled(self, *modes: int) -> Iterator[tuple[int, int]]:
+        """The modes q with a coupling to the given two or three, each with its B or C."""
+        for q in range(1, self.N):
+            if coupling := self._coupling(q, *modes):
+                yield q, coupling
+
+    def hamiltonian(self) -> Any:
+        """H of Eq. fpuham2 as a SymEngine expression in Q1 .. Q(N-1), P1 .. P(N-1), with exact numbers.
+
+        Raises InputError for N above LARGEST_EXPRESSION, where it would have millions of terms.
+        """
+        Q, P, Omega = self._symbols()
+        modes = range(1, self.N)
+        H = sum(P[q] ** 2 + Omega[q] ** 2 * Q[q] ** 2 for q in modes) / 2
+        u = {q: Omega[q] * Q[q] for q in modes}
+        if self.alpha:
+            cubic = sum(b * u[q] * u[l] * u[m] for l, m in product(modes, repeat=2) for q, b in self.coupled(l, m))
+            H += rational(self.alpha) / (3 * se.sqrt(2 * self.N)) * cubic
+        if self.beta:
+            quartic = sum(c * u[q] * u[l] * u[m] * u[n] for l, m, n in product(modes, repeat=3) for q, c in self.coupled(l, m, n))
+            H += rational(self.beta) / (8 * self.N) * quartic
+        return H
+
+    def equations_of_motion(self) -> dict[int, Any]:
+        """Right-hand sides of d^2 Q_q / dt^2 = -dH/dQ_q (Eq. eqmo) as SymEngine expressions, by mode."""
+        H, Q = self.hamiltonian(), self._symbols()[0]
+        return {q: -se.diff(H, Q[q]) for q in range(1, self.N)}
+
+    def _symbols(self) -> tuple[dict[int, Any], dict[int, Any], dict[int, Any]]:
+        if self.N > LARGEST_EXPRESSION:
+            raise InputError(
+                "N", self.N, f"at most {LARGEST_EXPRESSION} for an expression", "use energy() and accelerations() with numbers"
+            )
+        modes = range(1, self.N)
+        Omega = {q: 2 * se.sin(se.pi * q / (2 * self.N)) for q in modes}
+        return {q: se.Symbol(f"Q{q}") for q in modes}, {q: se.Symbol(f"P{q}") for q in modes}, Omega
+
+
+@lru_cache(maxsize=64)
+def linear_frequencies(N: int) -> Floats:
+    """Omega_1 .. Omega_(N-1), correctly rounded, as a read-only array."""
+    with mpmath.workdps(30):
+        values = np.array([float(2 * mpmath.sinpi(mpmath.mpf(q) / (2 * N))) for q in range(1, N)])
+    values.flags.writeable = False
+    return values
+
+
+def require_chain(chain: object) -> None:
+    """InputError for what is no Chain."""
+    if not isinstance(chain, Chain):
+        raise InputError("chain", type(chain).__name__, "a Chain", "make one with Chain(N, alpha=..., beta=...)")
+
+
+def rational(value: Fraction) -> Any:
+    """The SymEngine number equal to an exact fraction."""
+    return se.Integer(value.numerator) / se.Integer(value.denominator)
+
+
+def decimal(value: Fraction) -> str:
+    """The shortest text that gives the exact number back: a finite decimal, or p/q.
+
+    >>> decimal(Fraction(33, 100)), decimal(Fraction(1, 3))
+    ('0.33', '1/3')
+    """
+    power, rest = 0, value.denominator
+    for prime in (2, 5):
+        count = 0
+        while rest % prime == 0:
+            rest, count = rest // prime, count + 1
+        power = max(power, count)
+    if rest != 1:
+        return str(value)
+    digits = f"{abs(value.numerator) * 10**power // value.denominator:0{power + 1}d}"
+    text = f"{digits[: len(digits) - power]}.{digits[len(digits) - power :]}" if power else digits
+    return f"-{text}" if value < 0 else text

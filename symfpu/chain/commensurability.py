@@ -1,0 +1,27 @@
+"""Integer relations between the linear frequencies, by exact rank over the rationals."""
+
+from __future__ import annotations
+
+from symfpu.numbers.typed import integer
+
+
+def frequency_rank(N: int) -> int:
+    """Rank over the rationals of Omega_1 .. Omega_(N-1); N - 1 if no commensurability relation holds.
+
+    Omega_q = -i (x^q - x^-q) with x a primitive 4N-th root of unity; dropping the common factor, each frequency is an
+    integer vector of powers of x modulo the cyclotomic polynomial of 4N, and the rank is exact. Raises InputError.
+
+    >>> frequency_rank(7), frequency_rank(8), frequency_rank(6)
+    (6, 7, 4)
+    """
+    from sympy import QQ, Poly, Symbol, cyclotomic_poly
+    from sympy.polys.matrices import DomainMatrix
+
+    N = integer(N, "N", 2)
+    x = Symbol("x")
+    modulus = Poly(cyclotomic_poly(4 * N, x), x, domain=QQ)
+    rows = []
+    for q in range(1, N):
+        remainder = Poly.from_dict({(q,): 1, (4 * N - q,): -1}, x, domain=QQ).rem(modulus)
+        rows.append([remainder.nth(k) for k in range(modulus.degree())])
+    return int(DomainMatrix([[QQ(int(v)) for v in row] for row in rows], (N - 1, modulus.degree()), QQ).rank())

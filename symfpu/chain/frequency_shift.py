@@ -1,0 +1,81 @@
+"""The lowest frequency correction with every divisor at the linear frequencies, in closed form.
+
+For generic modes, mu^2 omega_q^(2) = (alpha^2/2N) Omega_q [(1 - 3/4 Omega_q^2) A_q^2 - sum_n Omega_n^2 A_n^2] and
+mu omega_q^(1) = (beta/2N) Omega_q [9/8 Omega_q^2 A_q^2 + 3/2 sum_n Omega_n^2 A_n^2], n running over the other seeds. Special
+modes: for q = N/2 the first bracket of alpha is 0 and 9/8 becomes 3/4; for q + n = N the term of n is halved in both.
+N/3 and 2N/3 are not special.
+
+At beta = 2 alpha^2/3 both add up to (alpha^2/2N) Omega_q A_q^2, for every mode and without any other seed: there the FPU
+chain agrees with the Toda lattice to fourth order, whose Birkhoff normal form of this order is a sum of squares of the
+single actions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+import symengine as se
+
+from symfpu.chain.chain import Chain, rational
+from symfpu.errors import InputError
+from symfpu.numbers.typed import exact, seed_modes
+
+
+def shift_coefficients(N: int, q: int, n: int) -> tuple[tuple[Fraction, Fraction], Fraction]:
+    """Closed form of the shift of mode q by the amplitude of mode n, as exact numbers ((a, b), c).
+
+    omega_q - Omega_q = Omega_q A_n^2 [(alpha^2/2N) (a + b Omega_n^2) + (beta/2N) c Omega_n^2].
+    """
+    if q == n:
+        alpha = (Fraction(0), Fraction(0)) if 2 * q == N else (Fraction(1), Fraction(-3, 4))
+        return alpha, Fraction(3, 4) if 2 * q == N else Fraction(9, 8)
+    half = Fraction(1, 2 if q + n == N else 1)
+    return (Fraction(0), -half), Fraction(3, 2) * half
+
+
+def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, float]:
+    """omega_q - Omega_q of every seed to lowest order, for seed amplitudes by mode; dimensionless.
+
+    Both couplings may act; alpha counts with alpha^2, beta with its first power. Raises InputError for modes outside the
+    chain or amplitudes that are not finite numbers.
+
+    >>> round(frequency_shift(Chain(N=2, beta=1), {1: 0.1})[1], 12)  # sqrt(2)/4 3/4 2 0.01
+    0.005303300859
+    """
+    if not isinstance(amplitudes, Mapping):
+        raise InputError("amplitudes", amplitudes, "a mapping from modes to numbers", "write it as {mode: amplitude}")
+    seeds = seed_modes(amplitudes, chain.N)
+    numbers = {q: float(exact(amplitudes[q], f"amplitudes, A_{q}")) for q in seeds}
+    linear = chain.frequencies()
+    quadratic, cubic = float(chain.alpha**2) / (2 * chain.N), float(chain.beta) / (2 * chain.N)
+    shifts = {}
+    for q in seeds:
+        total = 0.0
+        for n in seeds:
+            (a, b), c = shift_coefficients(chain.N, q, n)
+            square = float(linear[n - 1]) ** 2
+            total += numbers[n] ** 2 * (quadratic * (float(a) + float(b) * square) + cubic * float(c) * square)
+        shifts[q] = float(linear[q - 1]) * total
+    return shifts
+
+
+def frequency_shift_formula(chain: Chain, seeds: Sequence[int]) -> dict[int, Any]:
+    """The same as SymEngine expressions in Omega_q and A{q}, with the chain's exact couplings.
+
+    >>> frequency_shift_formula(Chain(N=12, alpha=1, beta="2/3"), (1, 5))
+    {1: (1/24)*A1**2*Omega_1, 5: (1/24)*A5**2*Omega_5}
+    """
+    modes = seed_modes(seeds, chain.N)
+    quadratic, cubic = rational(chain.alpha**2) / (2 * chain.N), rational(chain.beta) / (2 * chain.N)
+    formulas = {}
+    for q in modes:
+        terms = []
+        for n in modes:
+            (a, b), c = shift_coefficients(chain.N, q, n)
+            square = se.Symbol(f"Omega_{n}") ** 2
+            bracket = quadratic * (rational(a) + rational(b) * square) + cubic * rational(c) * square
+            terms.append(se.expand(bracket * se.Symbol(f"A{n}") ** 2 * se.Symbol(f"Omega_{q}")))
+        formulas[q] = se.Add(*terms)
+    return formulas

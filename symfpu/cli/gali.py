@@ -1,0 +1,120 @@
+"""The verb gali: alignment indices of the orbit of a saved torus."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from symfpu.bundles.bundle import load
+from symfpu.chain.chain import decimal
+from symfpu.cli.terminal import JsonOption, app, number, optional, print_json, progress_bar, whole
+from symfpu.dynamics.alignment import SAMPLES, STEP, VECTORS, AlignmentIndices, alignment_indices, seconds_needed
+from symfpu.errors import InputError
+from symfpu.figures.alignment import draw_alignment
+from symfpu.reports.report import fifteen_digits, output_folder
+
+
+@app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
+def gali(
+    file: Annotated[Path, typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE")],
+    time: Annotated[str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")],
+    vectors: Annotated[
+        str | None, typer.Option(help=f"Number of deviation vectors: GALI_2 to GALI_M; {VECTORS} if there are so many.", metavar="M")
+    ] = None,
+    step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(STEP),
+    samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(SAMPLES),
+    seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="Folder for gali.csv and the pictures.")] = None,
+    checkpoint: Annotated[Path | None, typer.Option(help="Keep the run in this file, and go on from it if it was killed.")] = None,
+    estimate: Annotated[bool, typer.Option("--estimate", help="Only say how long it would take, from a trial of a second.")] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Alignment indices of the orbit that starts on a torus, its Lyapunov exponent, and the dimension they show."""
+    torus = load(file).torus
+    if torus is None:
+        raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
+    T, h, count = number("time", time), number("step", step), optional("vectors", vectors)
+    if estimate:
+        _print_estimate(seconds_needed(torus.chain, T, vectors=count, step=h), as_json)
+        return
+    folder = output_folder(output) if output else None
+    with progress_bar() as advance:
+        found = alignment_indices(
+            torus.chain,
+            [float(x) for x in torus.positions(0.0)],
+            [float(x) for x in torus.momenta(0.0)],
+            T,
+            vectors=count,
+            step=h,
+            samples=whole("samples", samples),
+            seed=whole("seed", seed),
+            file=checkpoint,
+            progress=advance,
+        )
+    if folder is not None:
+        _write_table(found, folder / "gali.csv")
+        draw_alignment(found, folder)
+    if as_json:
+        print_json(_record(found, torus.seeds))
+    else:
+        print("\n".join(_text(found, torus.seeds)))
+        if folder is not None:
+            print(f"written: {folder}: gali.csv, gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf")
+
+
+def _print_estimate(seconds: float, as_json: bool) -> None:
+    if as_json:
+        print_json({"seconds": float(f"{seconds:.2g}")})
+    else:
+        hours = f" ({seconds / 3600:.1f} hours)" if seconds > 3600 else ""
+        print(f"about {seconds:.2g} seconds{hours} of one processor")
+
+
+def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
+    """The result for JSON; `dimension` is null for a chaotic orbit, and where nothing is decided."""
+    dimension = found.dimension()
+    return {
+        "N": found.chain.N,
+        "alpha": decimal(found.chain.alpha),
+        "beta": decimal(found.chain.beta),
+        "seeds": list(seeds),
+        "time": fifteen_digits(float(found.times[-1])),
+        "step": fifteen_digits(found.step),
+        "slopes": {str(s.k): {"value": fifteen_digits(s.value), "error": fifteen_digits(s.error)} for s in found.slopes()},
+        "log10_gali": {str(k): fifteen_digits(float(g)) for k, g in enumerate(found.log10_gali[-1], start=2)},
+        "dimension": dimension.value,
+        "dimension_error": None if dimension.value is None else fifteen_digits(dimension.error),
+        "verdict": dimension.verdict,
+        "reason": dimension.reason,
+        "lyapunov": fifteen_digits(float(found.lyapunov[-1])),
+        "energy_error": fifteen_digits(found.energy_error),
+    }
+
+
+def _text(found: AlignmentIndices, seeds: tuple[int, ...]) -> list[str]:
+    """The same for a reader."""
+    dimension = found.dimension()
+    value = "none" if dimension.value is None else str(dimension.value)
+    return [
+        f"verdict: {dimension.verdict}",
+        f"dimension          {value}   (the torus has the seeds {', '.join(map(str, seeds))})",
+        f"                   {dimension.reason}",
+        f"Lyapunov exponent  {found.lyapunov[-1]:.3g}   (log|v| / t at t = {found.times[-1]:.6g}; falls as log(t)/t on a torus)",
+        f"energy error       {found.energy_error:.2g}   (relative, at the end; steps of {found.step:g})",
+        *(
+            f"GALI_{s.k:<3} slope {s.value:8.3f} +- {s.error:.3f}   log10 at the end {g:.4g}"
+            for s, g in zip(found.slopes(), found.log10_gali[-1], strict=True)
+        ),
+    ]
+
+
+def _write_table(found: AlignmentIndices, path: Path) -> None:
+    """Time, log10 GALI_k and the Lyapunov estimate of every sample."""
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["t", *(f"log10 GALI_{k}" for k in range(2, found.vectors + 1)), "lyapunov"])
+        for t, values, exponent in zip(found.times, found.log10_gali, found.lyapunov, strict=True):
+            writer.writerow([repr(float(v)) for v in (t, *values, exponent)])

@@ -1,0 +1,134 @@
+"""Verbs of motion: the orbit that starts on a saved torus."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from symfpu.bundles.bundle import load
+from symfpu.cli.terminal import JsonOption, app, number, print_json, progress_bar, whole
+from symfpu.dynamics.orbits import SCHEMES, Orbit, integrate
+from symfpu.errors import InputError
+from symfpu.proofs.certificates import write_text
+from symfpu.reports.report import fifteen_digits, output_file
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+Floats = NDArray[np.float64]
+
+LOST_ENERGY = 1e-3  # relative
+SHOWN = 8  # modes of the largest average harmonic energy
+
+
+@app.command(epilog="Example: symfpu orbit torus.symfpu --time 1e5 -o orbit.csv")
+def orbit(
+    file: Annotated[Path, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")],
+    time: Annotated[str, typer.Option("--time", help="How long to follow it, such as 1e6.", metavar="T")],
+    step: Annotated[str, typer.Option(help="Length of a step.", metavar="H")] = "0.2",
+    scheme: Annotated[str, typer.Option(help=f"{', '.join(SCHEMES)}.", metavar="SCHEME")] = "kahan_li8",
+    samples: Annotated[str, typer.Option(help="How many times to look, log-spaced.", metavar="S")] = "200",
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="t, H and E_q of the samples as .csv, or with Q and P as .npz.")
+    ] = None,
+    checkpoint: Annotated[Path | None, typer.Option(help="Keep the run in this file, and go on from it if it was killed.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Integrates the orbit that starts on a torus at t = 0, and says how far it stays from the torus."""
+    target = None if output is None else _output(output)
+    T, h, count = number("time", time), number("step", step), whole("samples", samples)
+    torus = load(file).torus
+    if torus is None:
+        raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
+    exact = torus.in_doubles()
+    with progress_bar() as advance:
+        advance("orbit", None)
+        made = integrate(
+            exact.chain,
+            exact.positions(0.0),
+            exact.momenta(0.0),
+            T,
+            step=h,
+            scheme=scheme,
+            samples=count,
+            averages=True,
+            file=checkpoint,
+            progress=lambda done, total: advance("orbit", done / total),
+        )
+    if target is not None:
+        _write(target, made)
+    record = _record(made, exact)
+    if as_json:
+        print_json(record)
+        return
+    print(made)
+    _print(record)
+    if target is not None:
+        print(f"written: {target}")
+
+
+def _output(path: Path) -> Path:
+    if path.suffix not in (".csv", ".npz"):
+        raise InputError("output", str(path), "a name that ends in .csv or .npz", "choose another with -o")
+    return output_file(path)
+
+
+def _record(made: Orbit, torus: QuasiPeriodic) -> dict[str, Any]:
+    """What the verb prints; deviations relative to the largest coordinate of the torus at the samples."""
+    there = torus.positions(made.times)
+    distances = np.max(np.abs(made.Q - there), axis=1) / np.max(np.abs(there))
+    worst = int(np.argmax(distances))
+    assert made.averages is not None
+    average, expected = made.averages[-1], torus.average_spectrum()
+    return {
+        "N": made.chain.N,
+        "scheme": made.scheme.name,
+        "step": fifteen_digits(made.step),
+        "time": fifteen_digits(made.times[-1]),
+        "samples": len(made.times),
+        "energy": repr(float(made.energies[0])),
+        "energy_error": fifteen_digits(made.energy_error),
+        "largest_deviation": fifteen_digits(distances[worst]),
+        "largest_deviation_time": fifteen_digits(made.times[worst]),
+        "average_spectrum": [fifteen_digits(value) for value in average],
+        "torus_average_spectrum": [fifteen_digits(value) for value in expected],
+        "seconds": round(made.seconds, 3),
+    }
+
+
+def _print(record: dict[str, Any]) -> None:
+    print(f"energy error       {record['energy_error']:.3g}   (largest |H(t)/H(0) - 1| of the samples)")
+    print(
+        f"off the torus      {record['largest_deviation']:.3g}   (largest at t = {record['largest_deviation_time']:.10g}, "
+        f"relative to the largest coordinate)"
+    )
+    if record["energy_error"] > LOST_ENERGY:
+        print("the energy is lost: this is no orbit of the chain, take a shorter step")
+    print("mode  time average of E_q      on the torus, for ever")
+    average, expected = record["average_spectrum"], record["torus_average_spectrum"]
+    for q in sorted(range(len(average)), key=lambda q: -average[q])[:SHOWN]:
+        print(f"{q + 1:<5} {average[q]:<24.6g} {expected[q]:.6g}")
+
+
+def _write(path: Path, made: Orbit) -> None:
+    """The samples: t, H and E_q, and in .npz also Q and P."""
+    spectrum = made.harmonic_energies()
+    if path.suffix == ".csv":
+        text = io.StringIO()
+        rows = csv.writer(text)
+        rows.writerow(["t", "H", *(f"E{q}" for q in range(1, made.chain.N))])
+        rows.writerows([[repr(float(v)) for v in (t, H, *E)] for t, H, E in zip(made.times, made.energies, spectrum, strict=True)])
+        write_text(path, text.getvalue())
+        return
+    draft = path.with_name(f".{path.name}")
+    try:
+        with draft.open("wb") as stream:
+            np.savez(stream, t=made.times, Q=made.Q, P=made.P, H=made.energies, E=spectrum)
+        draft.replace(path)
+    except OSError as error:
+        draft.unlink(missing_ok=True)
+        raise InputError("output", str(path), "a file that can be written", f"choose another ({error.strerror})") from error

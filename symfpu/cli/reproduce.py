@@ -1,0 +1,91 @@
+"""The verb of the paper: reproduce."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from symfpu.cli.terminal import (
+    JsonOption,
+    app,
+    console,
+    print_json,
+    progress_bar,
+)
+from symfpu.errors import InputError
+from symfpu.figures.panels import PaperFigure
+from symfpu.paper.claims_page import claims_markdown
+from symfpu.paper.targets import FULL, TARGETS, Page, full_estimate
+from symfpu.proofs.certificates import write_text
+from symfpu.reports.report import output_folder
+
+
+@app.command(epilog="Example: symfpu reproduce table fig1 -o out")
+def reproduce(
+    targets: Annotated[list[str], typer.Argument(help=f"{', '.join(TARGETS)}, or all.", metavar="TARGET...")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the report, pictures and data.")] = Path("out"),
+    full: Annotated[
+        bool, typer.Option("--full", help="Alignment indices to 1e9 instead of 1e7, all exact tori: hours; goes on where it was stopped.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """The paper's table and figures from its printed frequencies, beside the printed numbers, with a verdict on every claim.
+
+    report.md and report.json hold the targets of this run alone.
+    """
+    for target in targets:
+        if target not in (*TARGETS, "all"):
+            raise InputError("target", target, f"{', '.join(TARGETS)} or all", "name one or more of these")
+    if full and not {*FULL, "all"} & set(targets):
+        raise InputError("full", " ".join(targets), f"--full with {', '.join(FULL)} or all", "leave out --full")
+    folder = output_folder(output)
+    chosen = [target for target in TARGETS if target in targets or "all" in targets]
+    if full:
+        console().print(full_estimate(chosen, folder), highlight=False)
+    with progress_bar() as advance:
+        pages: dict[str, Page] = {}
+        for target in chosen:
+            pages[target] = TARGETS[target](folder, lambda label: advance(label, None), full=full)
+            record = _write(pages, folder)  # at once: a run that is stopped, or a later target that fails, loses nothing
+    if as_json:
+        print_json(record)
+        return
+    _print_rows(record.get("table", []), pages["table"].lines if "table" in pages else ())
+    for key, claim in record.get("fig1", {}).get("claims", {}).items():
+        print(f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}")
+    _print_claims(page.figure for page in pages.values() if page.figure is not None)
+    pictures = [page.files for page in pages.values() if page.files]
+    print(f"written: {folder / 'report.md'}, report.json" + (f", {', '.join(pictures)} as PNG, PDF and CSV" if pictures else ""))
+
+
+def _write(pages: dict[str, Page], folder: Path) -> dict[str, Any]:
+    """The report as Markdown and JSON; returns the record."""
+    record = {target: page.record for target, page in pages.items()}
+    figures = [page.figure for page in pages.values() if page.figure is not None]
+    parts = ["# The paper's numbers, computed from its printed frequencies"]
+    parts += [claims_markdown(figures)] if figures else []
+    write_text(folder / "report.md", "\n\n".join([*parts, *(page.markdown for page in pages.values())]))
+    write_text(folder / "report.json", json.dumps(record, indent=1) + "\n")
+    return record
+
+
+def _print_rows(rows: Sequence[dict[str, Any]], corrected: Sequence[str]) -> None:
+    for row, exact in zip(rows, corrected, strict=True):
+        print(f"{row['label']}  (Appendix F: {row['printed_label']})")
+        for q, printed in row["printed_amplitudes"].items():
+            print(f"  A_{q:<3} printed {printed:<24} computed {row['torus']['amplitudes'][q]}")
+        energies = ", ".join(f"{name} {float(value):.9g}" for name, value in row["energies"].items())
+        print(f"  E    printed {row['printed_energy']:<24} computed {energies}")
+        print(f"  {row['verdict']}\n{exact}\n")
+
+
+def _print_claims(figures: Iterable[PaperFigure]) -> None:
+    for figure in figures:
+        print(figure.title)
+        for claim in figure.claims:
+            printed = f" (printed {claim.printed})" if claim.printed else ""
+            print(f"  {claim.verdict}: section {claim.section}, {claim.text}{printed}\n    {claim.ours}")

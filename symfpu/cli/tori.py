@@ -1,0 +1,163 @@
+"""Verbs of one torus: solve, show, export."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from symfpu.bundles.bundle import load, save
+from symfpu.chain.chain import Chain
+from symfpu.cli.terminal import (
+    BondsOption,
+    JsonOption,
+    OrderOption,
+    SeedsOption,
+    app,
+    console,
+    optional,
+    print_json,
+    progress_bar,
+    whole,
+    whole_numbers,
+)
+from symfpu.codegen.export import LANGUAGES
+from symfpu.codegen.export import export as export_source
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import text
+from symfpu.refinement.tori import RefinedTorus
+from symfpu.reports.family import refined_record, refined_text
+from symfpu.reports.report import assessment_text, output_file, torus_record
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.torus import QTorus
+from symfpu.tori.verdict import assess
+
+
+@app.command(epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 24")
+def solve(
+    context: typer.Context,
+    bonds: BondsOption,
+    seeds: SeedsOption,
+    omega: Annotated[str, typer.Option(help="Frequencies, one for each seed, such as 0.19626,0.39046.", metavar="W,W,...")],
+    order: OrderOption,
+    alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
+    beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
+    frequency_order: Annotated[
+        str | None, typer.Option(help="Order of the frequency series that gives the amplitudes.  Default: --order.", metavar="K")
+    ] = None,
+    coordinate_order: Annotated[
+        str | None, typer.Option(help="Order at which the coordinates Q(t) are cut.  Default: --order.", metavar="K")
+    ] = None,
+    digits: Annotated[str | None, typer.Option(help="Any number of digits, proved.  Default: doubles.", metavar="D")] = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="Keep series, torus and verdict in this file.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Amplitudes and energies of the q-torus with the given frequencies, and a verdict on its series."""
+    chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
+    chosen = whole_numbers("seeds", seeds)
+    highest, cut = optional("frequency-order", frequency_order), optional("coordinate-order", coordinate_order)
+    places, file = optional("digits", digits), output_file(output) if output else None
+    with progress_bar() as advance:
+        series = lindstedt(
+            chain,
+            chosen,
+            omega.split(","),
+            whole("order", order),
+            digits=places,
+            progress=lambda done, total: advance("series", done / total),
+        )
+        advance("amplitudes", None)
+        torus = solve_amplitudes(series, frequency_order=highest, order=cut)
+        assessment = assess(series, torus, progress=lambda done, total: advance("verdict", done / total))
+        record = torus_record(torus, assessment)
+        if file:
+            advance("writing", None)
+            save(file, torus, verdict=assessment.record(), command=shlex.join(["symfpu", *context.obj]))
+    if as_json:
+        print_json(record)
+    else:
+        print(f"verdict: {assessment.headline}")
+        _print_torus(torus, record)
+        print(assessment_text(assessment))
+        if file:
+            print(f"written: {file}")
+
+
+def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
+    print(torus.series)
+    for q, amplitude in record["amplitudes"].items():
+        print(f"seed {q:<4} omega {record['frequencies'][q]:<20} amplitude {amplitude}")
+    if torus.certificate is not None:
+        radius = text(max(torus.certificate.radius.values()), 2)
+        print(
+            f"exactly one root within {radius}: certified"
+            if torus.certificate.certified
+            else f"root not certified: {torus.certificate.reason}"
+        )
+    print(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
+    print(f"energy H           {record['energy']}   (at t = 0)")
+    print(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {record['average_harmonic_energy']})")
+    print(f"residual           {record['residual']:.3g}   (equations of motion, relative to the largest acceleration)")
+    for warning in torus.warnings:
+        console().print(f"warning: {warning}", style="yellow", highlight=False)
+
+
+@app.command(epilog="Example: symfpu show torus.symfpu")
+def show(
+    file: Annotated[Path, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")],
+    as_json: JsonOption = False,
+) -> None:
+    """What a result file holds: series, torus, verdict, and what made it."""
+    bundle = load(file)
+    refined = bundle.torus if isinstance(bundle.torus, RefinedTorus) else None
+    torus = bundle.torus if isinstance(bundle.torus, QTorus) else None
+    record = refined_record(refined) if refined else torus_record(torus) if torus else {}
+    if as_json:
+        print_json(record | {"provenance": dict(bundle.provenance), "assessment": bundle.verdict, "test_vectors": bundle.test_vectors})
+        return
+    if bundle.verdict and not refined:
+        print(f"verdict: {bundle.verdict.get('verdict')}")
+    if refined:
+        print(refined_text(refined))
+    elif torus:
+        _print_torus(torus, record)
+    else:
+        print(bundle.series)
+    for reason in (bundle.verdict or {}).get("reasons", []):
+        print(f"  {reason}")
+    for key, value in bundle.provenance.items():
+        print(f"{key:<18} {value}")
+
+
+@app.command(epilog="Example: symfpu export torus.symfpu --lang c -o my_torus")
+def export(
+    context: typer.Context,
+    file: Annotated[Path, typer.Argument(help="A file written by symfpu solve -o.", metavar="FILE")],
+    language: Annotated[str, typer.Option("--lang", help=f"{', '.join(LANGUAGES)}.", metavar="LANGUAGE")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="The source file; its name names the functions.")],
+    series: Annotated[bool, typer.Option("--series", help="The series with free amplitudes instead of the torus.")] = False,
+    order: Annotated[str | None, typer.Option(help="With --series: order of the coordinates.  Default: all.", metavar="K")] = None,
+    frequency_order: Annotated[str | None, typer.Option(help="With --series: order of omega(A).  Default: all.", metavar="K")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+) -> None:
+    """Source code that needs nothing of symfpu and tests itself: a torus, Q(t), P(t), E_q(t), H(t), or a series with free amplitudes."""
+    bundle = load(file)
+    solution = bundle.series if series else bundle.torus
+    if solution is None:
+        wanted, advice = ("series", "leave out --series") if series else ("torus", "write one with symfpu solve -o, or export the --series")
+        raise InputError("FILE", str(file), f"a file with a {wanted} in it", advice)
+    with progress_bar() as advance:
+        advance("source code", None)
+        written = export_source(
+            solution,
+            language,
+            output,
+            order=optional("order", order),
+            frequency_order=optional("frequency-order", frequency_order),
+            force=force,
+            command=shlex.join(["symfpu", *context.obj]),
+        )
+    print(f"written: {written}")

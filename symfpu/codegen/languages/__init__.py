@@ -1,0 +1,1 @@
+"""One language a file: source text from a program as data."""

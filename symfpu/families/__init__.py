@@ -1,0 +1,1 @@
+"""Families of tori and breathers in energy, with their events."""

@@ -1,0 +1,247 @@
+"""Families of tori by pseudo-arclength continuation from the linear limit.
+
+A family keeps the ratio of its amplitudes or mode energies. Its way is measured in the variables (ln |A|, shift / scale) of the seeds,
+scale the shift where the step begins: from one member a step goes along the secant of the last two and Newton's method returns to the
+family in the plane across it, so that a turn of the energy or of a frequency is passed like any other point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+
+from symfpu.breathers.balance import PeriodicOrbit
+from symfpu.breathers.floquet import Floquet, floquet
+from symfpu.chain.chain import Chain
+from symfpu.chain.frequency_shift import frequency_shift
+from symfpu.errors import SymfpuError
+from symfpu.numbers.arithmetic import text
+from symfpu.refinement.conditions import Amplitude, Condition, Plane, ratio_conditions
+from symfpu.refinement.invariance import DIGITS, Floats
+from symfpu.refinement.newton import Report
+from symfpu.refinement.tori import TOLERANCE, NoTorus, RefinedTorus, refine_at_amplitudes, refined_torus, shifts_of
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.torus import QTorus
+
+GUESS_ORDER = 2  # of the series that begins a family
+FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
+DOUBTFUL_STEP = 0.05  # the smallest from a doubtful member: near a saddle ever more harmonics let such ones crawl on without end
+EASY, FACTOR = 4, 1.3  # Newton steps up to which the next step along the way is longer, and by how much
+KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
+ASTRAY = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
+UNRESOLVED = 1e-6  # residual beyond which a torus is no member
+
+
+@dataclass(frozen=True, eq=False)
+class Member:
+    """One torus of a family. energy : H, harmonic_energy : sum E_q, both at the angles zero. multipliers : of a breather, if asked for."""
+
+    torus: QuasiPeriodic
+    amplitudes: Mapping[int, float]
+    energy: float
+    harmonic_energy: float
+    residual: float
+    warnings: tuple[str, ...] = ()
+    multipliers: Floquet | None = field(repr=False, default=None)
+
+    @property
+    def verdict(self) -> str:
+        """'torus', or 'doubtful' with the reasons in `warnings`."""
+        return "doubtful" if self.warnings else "torus"
+
+    def __repr__(self) -> str:
+        rates = ", ".join(f"omega_{q}={float(w):.12g}" for q, w in zip(self.torus.seeds, self.torus.frequencies, strict=True))
+        amplitudes = ", ".join(f"A_{q}={a:.8g}" for q, a in self.amplitudes.items())
+        stability = "" if self.multipliers is None else ", stable" if self.multipliers.stable else ", unstable"
+        doubts = "".join(f"; {w}" for w in self.warnings)
+        return f"Member({self.verdict}, H={self.energy:.10g}, {rates}, {amplitudes}, residual {self.residual:.2g}{stability}{doubts})"
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something on the way between the members `after` and `after` + 1.
+
+    kind : 'fold' (what : the quantity that turns), 'resonance' (a divisor changes its sign; mode, harmonic) or 'stability' (what :
+    the instability that begins or ends). energy : H there. value : of the quantity that turns, or of the divisor's coefficient.
+    interpolated : between the members, not found by Newton's method: good to some per cent of their distance.
+    """
+
+    kind: str
+    what: str
+    after: int
+    energy: float
+    value: float
+    mode: int = 0
+    harmonic: tuple[int, ...] = ()
+    interpolated: bool = False
+
+    def __repr__(self) -> str:
+        where = f"H = {self.energy:.3g} (interpolated)" if self.interpolated else f"H = {self.energy:.10g}"
+        if self.kind == "resonance":
+            harmonic = ",".join(map(str, self.harmonic))
+            return f"resonance of mode {self.mode} with harmonic ({harmonic}) at {where}, coefficient {self.value:.2g}"
+        return f"{self.kind}: {self.what} at {where}" + (f", {self.value:.10g}" if self.kind == "fold" else "")
+
+
+def first_torus(
+    chain: Chain,
+    amplitudes: Mapping[int, float],
+    *,
+    energy_ratio: Mapping[int, float] | None = None,
+    tolerance: float = TOLERANCE,
+    report: Report = lambda _: None,
+) -> RefinedTorus:
+    """The torus with these small amplitudes, from a short series about the lowest frequency shift.
+
+    energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed is as given.
+    """
+    shifts = frequency_shift(chain, amplitudes)
+    with mpmath.workdps(DIGITS):
+        omega = [Fraction(text(chain.linear_frequency(q) + mpmath.mpf(shifts[q]), 25)) for q in amplitudes]
+    series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
+    guess = QTorus(series, dict(amplitudes), dict.fromkeys(amplitudes, 0.0), 0, GUESS_ORDER)
+    if energy_ratio is None:
+        return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance, report=report)
+    first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
+    conditions = [first, *ratio_conditions(tuple(amplitudes), energy_ratio, energies=True)]
+    return refined_torus(guess, conditions, tolerance=tolerance, report=report)
+
+
+def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
+    """A torus with its energies, its residual and, for a breather, its multipliers."""
+    return Member(
+        torus=torus,
+        amplitudes=torus.amplitudes,
+        energy=float(torus.energy()),
+        harmonic_energy=float(torus.harmonic_energies().sum()),
+        residual=torus.residual(),
+        warnings=torus.warnings,
+        multipliers=floquet(periodic(torus)) if multipliers else None,
+    )
+
+
+def periodic(torus: QuasiPeriodic) -> PeriodicOrbit:
+    """A torus of one angle as a periodic orbit."""
+    order = np.argsort(torus.harmonics[:, 0])
+    cosines = np.zeros((int(torus.harmonics[:, 0].max()) + 1, torus.chain.N - 1))
+    cosines[torus.harmonics[order, 0]] = torus.cosines[order].astype(float)
+    with mpmath.workdps(2 * DIGITS):
+        w = mpmath.mpf(torus.frequencies[0].numerator) / torus.frequencies[0].denominator
+        sigma = float(w**2 - torus.chain.linear_frequency(torus.seeds[0]) ** 2)
+    return PeriodicOrbit(torus.chain, torus.seeds[0], torus.frequencies[0], cosines, torus.residual(), 0, sigma)
+
+
+def returned(members: Sequence[Member], *, tolerance: float) -> bool:
+    """Whether a family has come back to the linear limit: below where it began, to the torus that the series there lead to.
+
+    Two tori of the same amplitudes nearer to each other than the root of the tolerance are one: Newton's method leads from one to
+    the other.
+    """
+    first, last = members[0], members[-1]
+    if len(members) < 3 or not last.energy < min(first.energy, members[-2].energy):
+        return False
+    if any(abs(last.amplitudes[q]) >= abs(a) for q, a in first.amplitudes.items()):
+        return False
+    try:
+        other = first_torus(first.torus.chain, last.amplitudes, tolerance=tolerance)
+    except SymfpuError:
+        return False
+    rows = {tuple(nu): i for i, nu in enumerate(other.harmonics.tolist())}
+    zero = 0 * other.cosines[0]
+    same = np.array([other.cosines[rows[nu]] if nu in rows else zero for nu in map(tuple, last.torus.harmonics.tolist())])
+    return bool(np.abs(last.torus.cosines - same).max() < np.sqrt(tolerance) * np.abs(other.cosines).max())
+
+
+class Way:
+    """The last two tori of a family, and steps from them."""
+
+    def __init__(
+        self,
+        ratio: Mapping[int, float],
+        *,
+        energies: bool,
+        tolerance: float,
+        report: Report,
+        tori: Sequence[RefinedTorus],
+        step: float,
+        largest: float = 0.0,
+    ) -> None:
+        self.ratio, self.energies, self.tolerance, self.report = ratio, energies, tolerance, report
+        self.tori, self.step = list(tori), step
+        self.largest = largest  # relative shift so far
+
+    def local(self, *tori: RefinedTorus) -> Way:
+        """The same family from other tori, to look between members."""
+        return Way(
+            self.ratio,
+            energies=self.energies,
+            tolerance=self.tolerance,
+            report=self.report,
+            tori=tori,
+            step=self.step,
+            largest=self.largest,
+        )
+
+    def scales(self) -> Floats:
+        """A size for the shifts of all seeds that vanishes with none of them: the largest relative one, not far below any before."""
+        linear = self.tori[0].chain.frequencies()[np.array(self.tori[0].seeds) - 1]
+        relative = [float(np.max(np.abs(shifts_of(torus)).astype(float) / linear)) for torus in self.tori[-2:]]
+        self.largest = max(self.largest, *relative)
+        return np.asarray(max(relative[-1], KEPT_SCALE * self.largest) * linear)
+
+    def _conditions(self, plane: Plane) -> list[Condition]:
+        return [plane, *ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)]
+
+    def variables(self, torus: RefinedTorus, scales: Floats) -> Floats:
+        """Where a torus is, (ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
+        A = np.array([np.longdouble(abs(a)) for a in torus.amplitudes.values()])
+        return np.concatenate([np.log(A), shifts_of(torus) / scales])
+
+    def at(self, distance: float) -> RefinedTorus:
+        """The torus whose way from the last one, along the secant, has this length; raises NoTorus."""
+        last, before = self.tori[-1], self.tori[-2]
+        scales = self.scales()
+        x, difference = self.variables(last, scales), self.variables(last, scales) - self.variables(before, scales)
+        length = float(np.linalg.norm(difference.astype(float)))
+        tangent = (difference / length).astype(float)
+        plane = Plane(tuple(x), tuple(tangent.tolist()), tuple(scales.tolist()), distance)
+        found = refined_torus(
+            extrapolated(before, last, distance / length), self._conditions(plane), tolerance=self.tolerance, report=self.report
+        )
+        if min(found.frequencies) <= 0:  # the mirror image of the family behind a saddle
+            raise NoTorus("a frequency passes zero", found, found.residual())
+        if found.warnings and (residual := found.residual()) > UNRESOLVED:
+            raise NoTorus(f"{len(found.harmonics)} harmonics do not resolve it", found, residual)
+        off = float(np.linalg.norm((self.variables(found, scales) - x).astype(float) - distance * tangent))
+        if off > ASTRAY * max(abs(distance), SMALLEST_STEP):
+            raise NoTorus(f"the torus found is {off / abs(distance):.2g} steps off the way", found, found.residual())
+        return found
+
+    def advance(self) -> RefinedTorus:
+        """The next torus, by the longest step that succeeds; raises NoTorus when none does."""
+        while True:
+            try:
+                found = self.at(self.step)
+                break
+            except NoTorus:
+                if self.step < (DOUBTFUL_STEP if self.tori[-1].warnings else SMALLEST_STEP):
+                    raise
+                self.step /= 2
+        if len(found.steps) <= EASY:
+            self.step = min(self.step * FACTOR, LARGEST_STEP)
+        self.tori = [*self.tori[-2:], found]
+        return found
+
+
+def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> FourierTorus:
+    """The guess on the line through two tori, `ratio` of their distance beyond the second."""
+    rows = {tuple(nu): i for i, nu in enumerate(before.harmonics.tolist())}
+    earlier = np.array([before.cosines[rows[nu]] if nu in rows else 0 * last.cosines[0] for nu in map(tuple, last.harmonics.tolist())])
+    cosines = last.cosines + ratio * (last.cosines - earlier)
+    frequencies = tuple(b + Fraction(ratio) * (b - a) for a, b in zip(before.frequencies, last.frequencies, strict=True))
+    return FourierTorus(last.chain, last.seeds, frequencies, last.harmonics, cosines, dict(last.phases))

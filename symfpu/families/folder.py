@@ -1,0 +1,205 @@
+"""The checked arguments of a family, and its members and events as they are kept, in memory and in a folder."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from symfpu.bundles.bundle import load, save
+from symfpu.chain.chain import Chain, decimal
+from symfpu.errors import InputError
+from symfpu.families.continuation import FIRST_STEP, Event, Member, member
+from symfpu.numbers.typed import Number, exact, integer, seed_modes
+from symfpu.proofs.certificates import write_text
+from symfpu.refinement.tori import RefinedTorus
+from symfpu.tori.torus import QTorus
+
+Json = dict[str, Any]
+
+BEGINNING = "1/1000"  # of the energy asked for, where a family begins by default
+SMALLEST, LARGEST = Fraction(1, 10**300), 10**300  # energies whose doubles are neither 0 nor infinite
+RECORD = "family.json"
+APPENDIX_BEGINNING = "1/10"  # the same with Appendix A
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Checked arguments. start : amplitudes of the first member; chosen : by from_energy, not from the goal."""
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    goal: float
+    harmonic: bool
+    ratio: dict[int, float]
+    energies: bool
+    start: dict[int, float]
+    most: int
+    multipliers: bool
+    tolerance: float
+    order: int | None
+    chosen: bool
+
+    @property
+    def first(self) -> float:
+        """Energy of the first member, by the linear estimate."""
+        linear = self.chain.frequencies()
+        return sum((float(linear[q - 1]) * a) ** 2 / 2 for q, a in self.start.items())
+
+    def done(self, members: list[Member]) -> float:
+        """How far towards the goal, by the logarithm of the energy."""
+        if not members:
+            return 0.0
+        energy = members[-1].harmonic_energy if self.harmonic else members[-1].energy
+        first = self.first
+        if energy >= self.goal:
+            return 1.0
+        return max(math.log(energy / first) / math.log(self.goal / first), 0.0) if 0 < first < self.goal and energy > 0 else 0.0
+
+    def described(self) -> Json:
+        """What two runs of one family have in common."""
+        return {
+            "N": self.chain.N,
+            "alpha": decimal(self.chain.alpha),
+            "beta": decimal(self.chain.beta),
+            "seeds": list(self.seeds),
+            "ratio": {str(q): repr(x) for q, x in self.ratio.items()},
+            "ratio_of": "mode energies" if self.energies else "amplitudes",
+            "start": {str(q): repr(a) for q, a in self.start.items()},
+            "order": self.order,
+            "multipliers": self.multipliers,
+            "tolerance": repr(self.tolerance),
+        }
+
+
+def checked_family(
+    chain: Chain,
+    seeds: tuple[int, ...],
+    to_energy: Number,
+    harmonic: bool,
+    amplitude_ratio: Mapping[int, Number] | None,
+    energy_ratio: Mapping[int, Number] | None,
+    from_energy: Number | None,
+    members: int,
+    multipliers: bool,
+    tolerance: float,
+    order: int | None,
+) -> Plan:
+    """The arguments of `family`, checked."""
+    chosen = tuple(sorted(seed_modes(seeds, chain.N)))
+    goal = exact(to_energy, "to_energy")
+    first = (
+        goal * exact(BEGINNING if order is None else APPENDIX_BEGINNING, "") if from_energy is None else exact(from_energy, "from_energy")
+    )
+    if not 0 < goal < LARGEST or not SMALLEST < first < goal:
+        argument, value = ("from_energy", from_energy) if from_energy is not None and 0 < goal < LARGEST else ("to_energy", to_energy)
+        raise InputError(argument, value, "0 < from_energy < to_energy, in the range of doubles", "choose energies in this order")
+    if amplitude_ratio is not None and energy_ratio is not None:
+        raise InputError("energy_ratio", dict(energy_ratio), "only one of amplitude_ratio and energy_ratio", "leave one out")
+    if multipliers and len(chosen) > 1:
+        raise InputError("multipliers", multipliers, "False for more than one seed", "only periodic orbits have multipliers")
+    name = "energy_ratio" if amplitude_ratio is None else "amplitude_ratio"
+    given = next((x for x in (amplitude_ratio, energy_ratio) if x is not None), dict.fromkeys(chosen, 1))
+    if not hasattr(given, "values") or set(given) != set(chosen) or not all(exact(x, name) > 0 for x in given.values()):
+        raise InputError(name, given, f"a positive number for each of the seeds {chosen}", "complete it")
+    ratio, linear = {q: float(exact(given[q], name)) for q in chosen}, chain.frequencies()
+    weights = {q: x if amplitude_ratio is not None else math.sqrt(x) / float(linear[q - 1]) for q, x in ratio.items()}
+    energy = sum((float(linear[q - 1]) * w) ** 2 / 2 for q, w in weights.items())
+    start = {q: w * math.sqrt(float(first) / energy) for q, w in weights.items()}
+    return Plan(
+        chain=chain,
+        seeds=chosen,
+        goal=float(goal),
+        harmonic=harmonic,
+        ratio=ratio,
+        energies=amplitude_ratio is None,
+        start=start,
+        most=integer(members, "members", 1),
+        multipliers=multipliers,
+        tolerance=tolerance,
+        order=order,
+        chosen=from_energy is not None,
+    )
+
+
+def _seeds(described: Json) -> tuple[int, ...]:
+    return tuple(int(q) for q in described["seeds"])
+
+
+class Kept:
+    """Members and events so far, in memory and, if there is a folder, on disk after every member."""
+
+    def __init__(self, plan: Plan, folder: Path | None) -> None:
+        self.plan, self.folder = plan, folder
+        self.members: list[Member] = []
+        self.events: list[Event] = []
+        self.step, self.largest = FIRST_STEP, 0.0
+        if folder is not None:
+            self._read(folder)
+
+    def _read(self, folder: Path) -> None:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError("folder", str(folder), "a folder that can be written", f"choose another ({error.strerror})") from error
+        if not (folder / RECORD).exists():
+            return
+        try:
+            record = json.loads((folder / RECORD).read_text())
+            plan, events, count = record["plan"], record["events"], int(record["members"])
+            self.step, self.largest = float(record["step"]), float(record["largest"])
+            start = {q: float(plan["start"][str(q)]) for q in self.plan.seeds} if _seeds(plan) == self.plan.seeds else self.plan.start
+            # records of before resonances were located do not say that they were interpolated
+            known = [{"interpolated": event["kind"] == "resonance"} | event for event in events]
+            self.events = [Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in known]
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise InputError("folder", str(folder), "a family that symfpu wrote", f"{RECORD} is damaged; choose another folder") from error
+        if not self.plan.chosen:
+            self.plan = replace(self.plan, start=start)
+        different = [key for key, value in self.plan.described().items() if plan.get(key) != value]
+        if different:
+            raise InputError("folder", str(folder), f"the same family (its {different[0]} differs)", "choose another folder")
+        for k in range(count):
+            torus = self._torus(k)
+            if isinstance(torus, RefinedTorus):
+                self.members.append(member(torus, multipliers=self.plan.multipliers))
+            else:
+                amplitudes, energy = {q: float(a) for q, a in torus.amplitudes.items()}, float(torus.energy())
+                harmonic = float(torus.harmonic_energies().sum())
+                self.members.append(Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings))
+
+    def _torus(self, index: int) -> RefinedTorus | QTorus:
+        """A member that the record counts; InputError where its file is not there, BundleError where it is damaged."""
+        try:
+            torus = load(self._file(index)).torus
+        except FileNotFoundError as error:
+            allowed, advice = f"all {index + 1} members or more", f"restore {self._file(index).name}, or choose another folder"
+            raise InputError("folder", str(self.folder), allowed, advice) from error
+        if torus is None or (torus.chain, tuple(torus.seeds)) != (self.plan.chain, self.plan.seeds):
+            advice = f"{self._file(index).name} is another torus; choose another folder"
+            raise InputError("folder", str(self.folder), "members of one family", advice)
+        return torus
+
+    def _file(self, index: int) -> Path:
+        assert self.folder is not None
+        return self.folder / f"member-{index:04d}.symfpu"
+
+    def add(self, found: Member, events: list[Event]) -> None:
+        """The member first, then the record that counts it: a run may be stopped at any time."""
+        if self.folder is not None and isinstance(found.torus, (RefinedTorus, QTorus)):
+            save(self._file(len(self.members)), found.torus, verdict={"verdict": found.verdict, "reasons": list(found.warnings)})
+        self.members.append(found)
+        self.events += events
+        if self.folder is not None:
+            record = {
+                "plan": self.plan.described(),
+                "members": len(self.members),
+                "step": self.step,
+                "largest": self.largest,
+                "events": [asdict(event) for event in self.events],
+            }
+            write_text(self.folder / RECORD, json.dumps(record, indent=1) + "\n")

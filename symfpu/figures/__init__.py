@@ -1,0 +1,1 @@
+"""Pictures of results: axes in, axes out."""

@@ -1,0 +1,1 @@
+"""Files: archives, checkpoints, writing whole or not at all."""

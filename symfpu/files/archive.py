@@ -1,0 +1,136 @@
+"""A ZIP archive of one JSON document and of flat .npy arrays, with digests: written whole or not at all, read without trust."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import secrets
+import struct
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+import psutil
+from numpy.typing import NDArray
+
+from symfpu.errors import InputError, SymfpuError
+from symfpu.numbers.typed import integer
+
+Array = NDArray[Any]
+Json = dict[str, Any]
+
+FORMAT, SCHEMA = "symfpu bundle", 1
+DOCUMENT = "bundle.json"
+COMPRESSION = 1  # mantissas are noise; the zeros between them are gone at the first level
+CHUNK = 1 << 22
+DEFLATE_RATIO = 1032  # no deflated byte stands for more
+DOCUMENT_GROWTH = 20  # bytes of memory for a byte of JSON, about
+
+
+class BundleError(SymfpuError):
+    """A file that cannot be loaded: damaged, foreign, newer or too large."""
+
+    def __init__(self, path: Path, problem: str, advice: str) -> None:
+        self.path, self.problem, self.advice = path, problem, advice
+        super().__init__(f"{path} {problem}; {advice}")
+
+
+def digest_of(body: Json) -> str:
+    return hashlib.sha256(json.dumps(body, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def _header(dtype: str, count: int) -> bytes:
+    """What an .npy file of version 1.0 begins with; a multiple of 64 bytes."""
+    header = f"{{'descr': '{dtype}', 'fortran_order': False, 'shape': ({count},), }}"
+    padded = header + " " * (-(len(header) + 11) % 64) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(padded)) + padded.encode("ascii")
+
+
+def member_digest(values: Array) -> str:
+    digest = hashlib.sha256(_header(values.dtype.str, values.size))
+    digest.update(values.data)
+    return digest.hexdigest()
+
+
+def write_archive(path: Path, body: Json, members: Mapping[str, Array]) -> None:
+    """Through a temporary file beside it, so that the file is never half written."""
+    draft = path.parent / f".symfpu-{secrets.token_hex(8)}"
+    try:
+        with draft.open("xb") as stream:
+            with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=COMPRESSION) as archive:
+                archive.writestr(zipfile.ZipInfo(DOCUMENT), json.dumps(body), zipfile.ZIP_DEFLATED, COMPRESSION)
+                for name, values in members.items():
+                    with archive.open(f"{name}.npy", "w", force_zip64=values.nbytes >= 1 << 30) as member:
+                        member.write(_header(values.dtype.str, values.size))
+                        for start in range(0, values.size, CHUNK):
+                            member.write(values[start : start + CHUNK].data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(draft, path)
+    except OSError as error:
+        raise InputError("path", str(path), "a file that can be written", f"choose another ({error.strerror})") from error
+    finally:
+        with contextlib.suppress(OSError):
+            draft.unlink(missing_ok=True)
+
+
+class Archive:
+    """The members of a file: the document, checked against its digest, and the arrays, checked before they are allocated."""
+
+    def __init__(self, path: Path, stream: BinaryIO) -> None:
+        self._zip = zipfile.ZipFile(stream)
+        members = {info.filename: info for info in self._zip.infolist()}
+        if DOCUMENT not in members:
+            raise BundleError(path, f"is not a symfpu bundle (no {DOCUMENT} in it)", "give a file that symfpu.save wrote")
+        if len(members) < len(self._zip.infolist()):
+            raise ValueError("a member occurs twice")
+        size, free = os.fstat(stream.fileno()).st_size, psutil.virtual_memory().available
+        for info in members.values():
+            if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):  # others inflate without a bound
+                raise ValueError(f"{info.filename} is compressed by method {info.compress_type}")
+            if info.compress_size > size or info.file_size > DEFLATE_RATIO * info.compress_size:
+                raise ValueError(f"{info.filename} claims {info.file_size} bytes")
+        needed = sum(info.file_size for info in members.values()) + DOCUMENT_GROWTH * members[DOCUMENT].file_size
+        if needed > free:
+            raise BundleError(path, f"needs {needed:,} bytes of memory, {free:,} are free", "close other programs")
+        self.body = self._document(path)
+        self.digests: dict[str, str] = self.body["arrays"]
+        if set(members) != {DOCUMENT, *(f"{name}.npy" for name in self.digests)}:
+            raise ValueError(f"it holds {sorted(members)}, not the arrays {sorted(self.digests)}")
+
+    def _document(self, path: Path) -> Json:
+        info = self._zip.getinfo(DOCUMENT)
+        with self._zip.open(info) as member:
+            body = json.loads(member.read(info.file_size))
+        if not isinstance(body, dict) or body.get("format") != FORMAT:
+            raise BundleError(path, f"is not a symfpu bundle (its format is not {FORMAT!r})", "give a file that symfpu.save wrote")
+        schema = integer(body["schema"], "schema", 1)
+        if schema > SCHEMA:
+            raise BundleError(path, f"was written by a newer symfpu (schema {schema}; this one reads {SCHEMA})", "update symfpu")
+        if body.pop("digest") != digest_of(body):
+            raise ValueError(f"{DOCUMENT} does not match its digest")
+        return body
+
+    def entries(self, name: str) -> int:
+        """How many numbers the file claims for an array, at most."""
+        return self._zip.getinfo(f"{name}.npy").file_size // 8
+
+    def array(self, name: str, dtype: str, count: int) -> Array:
+        """An array of so many numbers of eight bytes; ValueError where the file holds another, or its digest differs."""
+        info, header, nbytes = self._zip.getinfo(f"{name}.npy"), _header(dtype, count), 8 * count
+        if info.file_size != len(header) + nbytes:
+            raise ValueError(f"{info.filename} holds {info.file_size} bytes where {len(header) + nbytes} are due")
+        values: Array = np.empty(count, dtype)
+        flat = values.view(np.uint8)
+        with self._zip.open(info) as member:
+            if member.read(len(header)) != header:
+                raise ValueError(f"{info.filename} is not an array of {count} numbers {dtype}")
+            for start in range(0, nbytes, CHUNK):
+                flat[start : start + CHUNK] = np.frombuffer(member.read(min(CHUNK, nbytes - start)), np.uint8)
+        if member_digest(values) != self.digests[name]:
+            raise ValueError(f"{info.filename} does not match its digest")
+        return values

@@ -1,0 +1,1 @@
+"""Localization: laws of the energy profile, spectra of orbits."""

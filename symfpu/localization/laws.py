@@ -1,0 +1,262 @@
+"""How the energy of low-frequency packets falls off along the spectrum: the paper's laws, and lines fitted to profiles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import pairwise
+from numbers import Real
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.chain.chain import Chain, require_chain
+from symfpu.dynamics.orbits import SCHEMES
+from symfpu.errors import InputError
+from symfpu.numbers.typed import integer, seed_modes
+
+Floats = NDArray[np.float64]
+
+FLOOR = 1e-22  # of the largest energy: ten times the rounding of an orbit on T + V with N = 512 to T = 1e6 (docs/localization.md)
+LAST_BIT = 0.045 * 2.0**-104  # mean square of one rounding, relative: EPS^2/12 times the mean of 1/m^2 over mantissas m
+BLOCKS = 2  # groups of modes, at least, for a line with an error bar
+
+
+@dataclass(frozen=True)
+class ProfileLine:
+    """log10 e_kappa = slope * kappa + intercept + power * log10 kappa, with kappa = q/N. Call it with kappa."""
+
+    slope: float
+    intercept: float
+    power: float = 0.0
+
+    def __call__(self, kappa: ArrayLike) -> Floats:
+        kappa = np.asarray(kappa, dtype=np.float64)
+        return np.asarray(self.slope * kappa + self.intercept + (self.power * np.log10(kappa) if self.power else 0.0))
+
+    def __repr__(self) -> str:
+        power = f" {'-' if self.power < 0 else '+'} {abs(self.power):.6g} log10 kappa" if self.power else ""
+        return f"log10 e = {self.slope:.6g} kappa {'-' if self.intercept < 0 else '+'} {abs(self.intercept):.6g}{power}"
+
+
+def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
+    """lambda of seeds 1 .. s: alpha^2 eps / (pi M)^4 (below Eq. eksa2), or beta eps / (pi M)^2 (below Eq. eksp2), with M = s/N.
+
+    specific_energy : eps = E/N. The laws are for lambda well below 1. Raises InputError, also for a chain with both couplings.
+    """
+    s, epsilon = _packet(chain, s, specific_energy)
+    width = math.pi * s / chain.N
+    return float(chain.alpha) ** 2 * epsilon / width**4 if chain.alpha else abs(float(chain.beta)) * epsilon / width**2
+
+
+def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> Floats:
+    """E^(k), the energy of the middle mode of D_k for seeds 1 .. s; Eqs. eksa (alpha) and eksp (beta). Arguments as `packet_parameter`.
+
+    Estimates of magnitude. At k = 0 a seed has eps/M, which Eq. eksa gives a quarter of.
+    """
+    parameter, M, k = packet_parameter(chain, s, specific_energy), s / chain.N, np.asarray(k, dtype=np.float64)
+    front = specific_energy / M
+    return np.asarray(front * (k + 0.5) ** 2 * parameter**k if chain.alpha else front * parameter ** (2 * k))
+
+
+def profile_law(chain: Chain, s: int, specific_energy: float, *, denominator: int | None = None) -> ProfileLine:
+    """log10 e_kappa of seeds 1 .. s, Eqs. eksa2 (alpha) and eksp2 (beta): `group_energy` over E = N eps, at k + 1/2, or 2k, = kappa/M.
+
+    The slope depends on M and eps alone, the intercept on N too: e_kappa is a share of the whole energy, and falls as 1/N. denominator :
+    of kappa = q/denominator, default N; the line of Fig. 4(a) has N-1. Raises InputError.
+
+    >>> profile_law(Chain(N=256, beta="0.3"), 16, 1.5625e-6)  # Fig. 4(b)
+    log10 e = -78.6419 kappa - 1.20412
+    """
+    parameter = packet_parameter(chain, s, specific_energy)
+    inverse = (chain.N if denominator is None else integer(denominator, "denominator", 1)) / s
+    if not chain.alpha:
+        return ProfileLine(math.log10(parameter) * inverse, -math.log10(s))
+    return ProfileLine(math.log10(parameter) * inverse, math.log10(inverse**2 / (parameter**0.5 * s)), 2.0)
+
+
+def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) -> Floats:
+    """E_q of the breather with seed 1, alpha model, Eq. brelaw: gamma^(q-1) q^2 E_1, gamma = alpha^2 N^4 eps / pi^4, eps = energy/N.
+
+    seed_energy : E_1, default the energy. Shape (N-1,). Raises InputError.
+    """
+    require_chain(chain)
+    if chain.model != "alpha":
+        raise InputError("chain", chain, "the alpha model", "the law is stated for it alone")
+    gamma = packet_parameter(chain, 1, positive(energy, "energy") / chain.N)
+    q = np.arange(1, chain.N)
+    return np.asarray(gamma ** (q - 1.0) * q**2 * (energy if seed_energy is None else positive(seed_energy, "seed_energy")))
+
+
+def least_packet(chain: Chain, specific_energy: float) -> float:
+    """The width s at which lambda = 1: alpha^(1/2) eps^(1/4) N / pi, or (beta eps)^(1/2) N / pi. The paper leaves out the 1/pi."""
+    return float(packet_parameter(chain, 1, specific_energy) ** (0.25 if chain.alpha else 0.5))
+
+
+def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") -> float:
+    """Width of the natural packet of the alpha model in section 6.4.3: alpha^(1/2) eps^(1/4) N, or with "1/5" alpha^(2/5) eps^(1/5) N."""
+    if chain.model != "alpha" or exponent not in ("1/4", "1/5"):
+        raise InputError("chain, exponent", (chain, exponent), "the alpha model, '1/4' or '1/5'", "the widths are stated for these")
+    return float(chain.N * (float(chain.alpha) ** 2 * positive(specific_energy, "specific_energy")) ** float(Fraction(exponent)))
+
+
+def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
+    """D_0, D_1, ... of seeds 1 .. s: {ks+1 .. (k+1)s} (alpha), {(2k-1)s+1 .. (2k+1)s} (beta), the last one cut at N-1."""
+    step = packet_width(chain, s) * chain.degree_step
+    ends = [0, *range(s, chain.N - 1, step), chain.N - 1]
+    return tuple(range(a + 1, b + 1) for a, b in pairwise(ends))
+
+
+def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
+    """The middle modes of D_1, D_2, ...: ks + [s/2] (alpha; (k+1) for s = 1, where the paper's formula leaves D_k), 2ks (beta)."""
+    step = packet_width(chain, s) * chain.degree_step
+    offset = (s // 2 or 1) if chain.alpha else 0
+    return tuple(range(step + offset, chain.N, step))
+
+
+def rounding_floor(chain: Chain, spectrum: ArrayLike, T: float, *, step: float, scheme: str = "kahan_li8") -> Floats:
+    """Energy that rounding is expected to put into the running average of every mode until T, on T + V; shape (N-1,).
+
+    spectrum : mean E_q of the orbit, (N-1,). Every drift and kick rounds each x_j and p_j once, at random, with the mean square EPS^2/12
+    over the square of the mantissa: white in modes, so that E_q grows by (EPS^2/12) <1/m^2> (Omega_q^2 <x^2> + <p^2>)/2 a stage. The
+    average has half of the last. Zero for aba864_modes, whose modes do not share their rounding. Raises InputError.
+    """
+    E, T, step = _spectrum(chain, spectrum), positive(T, "T"), positive(step, "step")
+    if scheme not in SCHEMES:
+        raise InputError("scheme", scheme, ", ".join(SCHEMES), "choose one of them")
+    if SCHEMES[scheme].in_modes:
+        return np.zeros(chain.N - 1)
+    squared = chain.frequencies() ** 2
+    positions, momenta = np.sum(E / squared) / (chain.N - 1), np.sum(E) / (chain.N - 1)
+    return np.asarray(0.25 * LAST_BIT * SCHEMES[scheme].stages * T / step * (squared * positions + momenta))
+
+
+@dataclass(frozen=True, eq=False)
+class ProfileFit:
+    """A line through a profile. errors : standard errors of slope, intercept and power (0 if fixed). scatter : rms residual, in decades,
+    over the degrees of freedom. modes, residuals : (n,)."""
+
+    line: ProfileLine
+    errors: tuple[float, float, float]
+    scatter: float
+    modes: tuple[int, ...] = field(repr=False)
+    residuals: Floats = field(repr=False)
+
+    def __repr__(self) -> str:
+        slope, intercept, power = self.errors
+        free = f", power {self.line.power:.4g} +- {power:.2g}" if power else ""
+        fixed = f" + {self.line.power:g} log10 kappa" if self.line.power and not power else ""
+        return (
+            f"ProfileFit(log10 e = ({self.line.slope:.5g} +- {slope:.2g}) kappa + ({self.line.intercept:.5g} +- {intercept:.2g}){fixed}"
+            f"{free}, {len(self.modes)} modes {self.modes[0]}..{self.modes[-1]}, scatter {self.scatter:.2g})"
+        )
+
+
+def fit_profile(
+    chain: Chain,
+    spectrum: ArrayLike,
+    s: int,
+    *,
+    modes: str | Sequence[int] = "tail",
+    power: float | None = 0.0,
+    floor: float | ArrayLike = FLOOR,
+) -> ProfileFit:
+    """Regression of log10 e_kappa on kappa beyond the seeds 1 .. s, all modes alike; e_kappa is the spectrum over its sum.
+
+    spectrum : E_q in any unit, (N-1,). modes : tail, all q > s; middle, those of `middle_modes`; or a list. power : of kappa, a number, or
+    None for a fitted one. floor : modes at or below it are left out; a number, relative to the largest E_q, or energies (N-1,) in the
+    unit of the spectrum (`rounding_floor`). For spectra in closed form pass 0.
+
+    Errors: jackknife over the groups D_k, since within a group the residuals are a common staircase; they know of no systematic bend. A
+    part of a group at the end of the tail counts as one. Raises InputError, also if modes in other groups do not fix the line.
+    """
+    E, s = _spectrum(chain, spectrum), packet_width(chain, s)
+    power = None if power is None else finite(power, "power")
+    named = _modes(chain, s, modes)
+    least = _floor(chain, floor, E)
+    chosen = np.array([q for q in named if E[q - 1] > least[q - 1]], dtype=np.int64)
+    group_of = {q: k for k, group in enumerate(packet_groups(chain, s)) for q in group}
+    blocks = np.array([group_of[int(q)] for q in chosen])
+    names, sizes = np.unique(blocks, return_counts=True)
+    if len(names) < BLOCKS or len(chosen) - sizes.max() < 2 + (power is None):
+        expected = "modes above the floor in several groups D_k, more than the line needs without any one of them"
+        raise InputError(
+            "modes", tuple(chosen.tolist()), expected, "name more, take fewer seeds, or the scheme aba864_modes for lower tails"
+        )
+    kappa, e = chosen / chain.N, np.log10(E[chosen - 1]) - math.log10(E.sum())
+    columns = [kappa, np.ones_like(kappa)] + ([np.log10(kappa)] if power is None else [])
+    y, X = e - (power or 0.0) * np.log10(kappa), np.stack(columns, axis=1)
+    fitted = _solved(X, y)
+    without = np.array([_solved(X[blocks != k], y[blocks != k]) for k in names])
+    spread = np.sqrt((len(without) - 1) * np.mean((without - without.mean(axis=0)) ** 2, axis=0))
+    residuals = y - X @ fitted
+    scatter = float(np.sqrt(residuals @ residuals / max(1, len(y) - X.shape[1])))
+    line = ProfileLine(float(fitted[0]), float(fitted[1]), float(fitted[2]) if power is None else power)
+    errors = float(spread[0]), float(spread[1]), float(spread[2]) if power is None else 0.0
+    return ProfileFit(line, errors, scatter, tuple(chosen.tolist()), residuals)
+
+
+def _solved(X: Floats, y: Floats) -> Floats:
+    return np.asarray(np.linalg.lstsq(X, y, rcond=None)[0])
+
+
+def _packet(chain: Chain, s: int, specific_energy: float) -> tuple[int, float]:
+    require_chain(chain)
+    if chain.model == "alpha+beta":
+        raise InputError("chain", chain, "one coupling, alpha or beta", "the laws are stated for each model alone")
+    return packet_width(chain, s), positive(specific_energy, "specific_energy")
+
+
+def packet_width(chain: Chain, s: int) -> int:
+    require_chain(chain)
+    if integer(s, "s", 1) >= chain.N:
+        raise InputError("s", s, f"1..{chain.N - 1} (N = {chain.N})", "take fewer seeds or a longer chain")
+    return int(s)
+
+
+def finite(value: float, argument: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(float(value)):
+        raise InputError(argument, value, "a finite number", "pass a number")
+    return float(value)
+
+
+def positive(value: float, argument: str) -> float:
+    if not finite(value, argument) > 0:
+        raise InputError(argument, value, "a positive number", "pass one")
+    return float(value)
+
+
+def _spectrum(chain: Chain, spectrum: ArrayLike) -> Floats:
+    require_chain(chain)
+    try:
+        E = np.asarray(spectrum, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError("spectrum", spectrum, "an array of numbers", "pass mean mode energies") from error
+    if E.shape != (chain.N - 1,) or not (np.isfinite(E) & (E >= 0)).all() or not E.sum() > 0:
+        raise InputError("spectrum", E.shape, f"{chain.N - 1} finite energies, 0 or more, not all 0", "pass mean mode energies, (N-1,)")
+    return E
+
+
+def _modes(chain: Chain, s: int, modes: str | Sequence[int]) -> tuple[int, ...]:
+    if isinstance(modes, str):
+        if modes not in ("tail", "middle"):
+            raise InputError("modes", modes, "tail, middle or a list of modes", "choose one of them")
+        return tuple(range(s + 1, chain.N)) if modes == "tail" else middle_modes(chain, s)
+    listed = seed_modes(modes, chain.N)
+    if min(listed) <= s:
+        raise InputError("modes", listed, f"modes beyond the seeds 1..{s}", "leave out the seeds")
+    return tuple(sorted(listed))
+
+
+def _floor(chain: Chain, floor: float | ArrayLike, E: Floats) -> Floats:
+    """As energies in the unit of E, (N-1,)."""
+    try:
+        least = np.asarray(floor, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError("floor", floor, f"a number, or {chain.N - 1} of them", "pass 0 for spectra in closed form") from error
+    least = least * E.max() if least.ndim == 0 else least
+    if least.shape not in ((), (chain.N - 1,)) or not (np.isfinite(least) & (least >= 0)).all():
+        raise InputError("floor", floor, f"a number, 0 or more, or {chain.N - 1} of them", "pass 0 for spectra in closed form")
+    return np.asarray(np.broadcast_to(least, E.shape))

@@ -1,0 +1,1 @@
+"""Numbers: what was typed, and the arithmetics that carry it."""

@@ -1,0 +1,1 @@
+"""The paper: its printed numbers, its figures, a verdict on every claim."""

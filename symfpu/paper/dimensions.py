@@ -1,0 +1,63 @@
+"""Alignment indices of the paper's orbits: Figs. 1(e), 2(b), 9(d)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices, seconds_needed
+from symfpu.figures.panels import Curve, Panel
+from symfpu.paper.starts import Step, printed_row
+
+Floats = NDArray[np.float64]
+
+TIME, FULL_TIME = 1e7, 1e9  # default; the paper's, with --full
+VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}  # by figure: whose chain, and how many vectors
+GALI_STEP = 0.4  # of the tangent map
+
+
+def full_seconds(figure: str) -> float:
+    """Processor time that the alignment indices of a figure will take with --full, from a short trial."""
+    label, vectors = VECTORS[figure]
+    return seconds_needed(printed_row(label).chain, FULL_TIME, vectors=vectors, step=GALI_STEP)
+
+
+def indices(name: str, start: tuple[Floats, Floats], tell: Step, folder: Path, *, full: bool) -> AlignmentIndices:
+    """GALI_2, ... of an orbit of a figure to TIME, or to FULL_TIME with a checkpoint in the folder."""
+    label, vectors = VECTORS[name]
+    chain = printed_row(label).chain
+    T = FULL_TIME if full else TIME
+    file = folder / f"{name}-gali.checkpoint" if full else None
+    return alignment_indices(
+        chain,
+        *start,
+        T,
+        vectors=vectors,
+        step=GALI_STEP,
+        file=file,
+        progress=lambda label, done: tell(f"{name}: GALI, {label} of {T:.0e}"),
+    )
+
+
+def alignment_panel(name: str, title: str, found: AlignmentIndices) -> Panel:
+    """log10 G_k against log10 t."""
+    curves = tuple(
+        Curve(rf"$G_{{{s.k}}}$: ${s.value:.2f} \pm {s.error:.2f}$", np.log10(found.times), found.log10_gali[:, i], name=f"G_{s.k}")
+        for i, s in enumerate(found.slopes())
+    )
+    return Panel(name, title, r"$\log_{10} t$", r"$\log_{10} G_k$", curves, ("log10_t", "log10_G"), log_y=False)
+
+
+def slopes_text(found: AlignmentIndices) -> str:
+    """Slopes and verdict in a line."""
+    slopes = ", ".join(f"{s.value:.2f}+-{s.error:.2f}" for s in found.slopes())
+    return f"slopes {slopes} of G_2..G_{found.vectors} to t = {found.times[-1]:.0e}: {found.dimension().verdict}"
+
+
+def settled_after(found: AlignmentIndices, k: int, decades: float = 0.3) -> float:
+    """The time after which log10 G_k stays within so many decades of its last value."""
+    values = found.log10_gali[:, k - 2]
+    off = np.abs(values - values[-1]) > decades
+    return float(found.times[int(np.flatnonzero(off)[-1]) + 1]) if off.any() else float(found.times[0])

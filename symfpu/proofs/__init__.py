@@ -1,0 +1,1 @@
+"""Exact statements, their certificates, and the independent checker."""

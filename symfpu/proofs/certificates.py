@@ -1,0 +1,298 @@
+"""The propagation rule proved or refuted by exact arithmetic, with a certificate that others can check.
+
+A mode is excited at an order if its term is not identically zero for generic frequencies. That it is excited is shown by
+one coefficient with a nonzero residue modulo a prime. That it is not excited is shown by the couplings, which leave it
+nothing, or by an identity between integer polynomials in the L_q(nu); what neither shows is reported as undecided.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import random
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from symfpu.algebra.grading import monomial_count
+from symfpu.algebra.residue import largest_modulus
+from symfpu.chain.chain import Chain
+from symfpu.chain.propagation import coupled_modes, excitation_sequence
+from symfpu.errors import InputError, SymfpuError, VanishingResidue
+from symfpu.numbers.typed import integer, seed_modes
+from symfpu.series.lindstedt import Progress, check_size, lindstedt, residue_series, shared_grading
+from symfpu.series.series import LindstedtSeries, ResiduePoint
+
+FORMAT, SCHEMA = "symfpu propagation certificate", 1
+ATTEMPTS = 50  # points tried before giving up on vanishing divisors
+IDENTITY_TERMS = 4000  # monomials times modes up to which an identity is tried
+IDENTITY_ORDER = 4
+
+
+@dataclass(frozen=True)
+class Witness:
+    """A coefficient that is not zero: mode, order, monomial (p_1, n_1, ..., p_s, n_s), and its residue at a point."""
+
+    mode: int
+    order: int
+    point: int
+    monomial: tuple[int, ...]
+    residue: int
+
+
+@dataclass(frozen=True)
+class Vanishing:
+    """Orders at which the term of a mode is identically zero, and by what: 'couplings' or 'identity'."""
+
+    mode: int
+    orders: tuple[int, ...]
+    by: str
+
+
+@dataclass(frozen=True)
+class Undecided:
+    """Orders at which the term of a mode was zero at every point and no proof was found.
+
+    error_probability : bound on the probability that a term of generic frequencies vanishes at all points, if the primes
+    do not divide all its coefficients.
+    """
+
+    mode: int
+    orders: tuple[int, ...]
+    error_probability: float
+
+
+@dataclass(frozen=True)
+class RuleException:
+    """A mode whose order is not the predicted one; None where it is excited at no order up to the last."""
+
+    mode: int
+    predicted: int | None
+    actual: int | None
+
+
+@dataclass(frozen=True)
+class PropagationProof:
+    """The proposition's D_k beside the actual ones up to an order, and everything that shows it.
+
+    verdict : 'proved', 'refuted' (some exception is decided) or 'undecided'. rule, actual : modes by order.
+    """
+
+    N: int
+    model: str
+    seeds: tuple[int, ...]
+    order: int
+    rule: tuple[tuple[int, ...], ...]
+    actual: tuple[tuple[int, ...], ...]
+    verdict: str
+    exceptions: tuple[RuleException, ...]
+    undecided: tuple[Undecided, ...]
+    points: tuple[ResiduePoint, ...] = field(repr=False)
+    excited: tuple[Witness, ...] = field(repr=False)
+    vanishing: tuple[Vanishing, ...] = field(repr=False)
+
+    def __repr__(self) -> str:
+        seeds = ",".join(map(str, self.seeds))
+        detail = "".join(f"; mode {e.mode} predicted at {e.predicted}, actually {e.actual}" for e in self.exceptions[:3])
+        more = f"; {len(self.exceptions) - 3} more" if len(self.exceptions) > 3 else ""
+        return f"PropagationProof(N={self.N}, {self.model}, seeds={seeds}, order {self.order}: {self.verdict}{detail}{more})"
+
+    def certificate(self) -> dict[str, Any]:
+        """The certificate as plain integers, strings, lists and dictionaries; symfpu.proofs.verify checks it by another route."""
+        body: dict[str, Any] = {
+            "format": FORMAT,
+            "schema": SCHEMA,
+            "N": self.N,
+            "model": self.model,
+            "seeds": list(self.seeds),
+            "order": self.order,
+            "rule": [list(modes) for modes in self.rule],
+            "actual": [list(modes) for modes in self.actual],
+            "verdict": self.verdict,
+            "exceptions": [{"mode": e.mode, "predicted": e.predicted, "actual": e.actual} for e in self.exceptions],
+            "undecided": [
+                {"mode": u.mode, "orders": list(u.orders), "error_probability": f"{u.error_probability:.1e}"} for u in self.undecided
+            ],
+            "points": [{"prime": p.prime, "root": p.root, "frequencies": list(p.frequencies)} for p in self.points],
+            "excited": [
+                {"mode": w.mode, "order": w.order, "point": w.point, "monomial": list(w.monomial), "residue": w.residue}
+                for w in self.excited
+            ],
+            "vanishing": [{"mode": v.mode, "orders": list(v.orders), "by": v.by} for v in self.vanishing],
+        }
+        text = json.dumps(body, sort_keys=True, separators=(",", ":"))
+        return body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
+
+    def write(self, path: Path | str) -> None:
+        """Write the certificate as JSON, whole or not at all. Raises InputError if the file cannot be written."""
+        write_text(Path(path), json.dumps(self.certificate(), indent=1) + "\n")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file through a temporary one beside it, so that it is never half written."""
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        draft.write_text(text)
+        draft.replace(path)
+    except OSError as error:
+        draft.unlink(missing_ok=True)
+        raise InputError("output", str(path), "a file that can be written", f"choose another ({error.strerror})") from error
+
+
+def prove_propagation(
+    N: int,
+    seeds: Sequence[int],
+    order: int,
+    *,
+    model: str = "alpha",
+    points: int = 1,
+    random_seed: int = 0,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> PropagationProof:
+    """Prove or refute the propagation rule (Eqs. app, dk) for given N, seeds and model, up to an order.
+
+    points : independent primes and random frequencies, each a run of the recursion; with 0 nothing can be shown excited.
+    random_seed : the same seed gives the same points. progress : called as (orders done, orders in all).
+
+    Raises InputError for arguments out of range, TooLarge before allocating what does not fit.
+
+    >>> prove_propagation(8, (1, 4), 3, model="beta")
+    PropagationProof(N=8, beta, seeds=1,4, order 3: refuted; mode 7 predicted at 1, actually 2)
+    """
+    N, points = integer(N, "N", 2), integer(points, "points", 0)
+    if model not in ("alpha", "beta"):
+        raise InputError("model", model, "'alpha' or 'beta'", "the rule is stated for these")
+    seeds = tuple(sorted(seed_modes(seeds, N)))
+    order = integer(order, "order", 0)
+    chain = Chain(N, alpha=int(model == "alpha"), beta=int(model == "beta"))
+    check_size(chain, seeds, order, "residue")
+    if workers is not None:
+        integer(workers, "workers", 1)
+    rule = excitation_sequence(N, seeds, order, model=model)
+    source = random.Random(random_seed)  # noqa: S311 (points need be random, not secret)
+    used: list[ResiduePoint] = []
+    found: dict[int, Witness] = {}
+    for number in range(points):
+        done = _shifted(progress, number * order, points * order)
+        point, series = _run_at_random_point(chain, seeds, order, source, done, workers)
+        used.append(point)
+        for witness in _witnesses(series, number, point.prime):
+            if witness.mode not in found or witness.order < found[witness.mode].order:
+                found[witness.mode] = witness
+    actual = dict.fromkeys(seeds, 0) | {q: w.order for q, w in found.items()}
+    vanishing, undecided = _zero_terms(chain, seeds, order, model, actual, used)
+    predicted = {q: k for k, modes in enumerate(rule) for q in modes}
+    exceptions = tuple(RuleException(q, predicted.get(q), actual.get(q)) for q in range(1, N) if predicted.get(q) != actual.get(q))
+    return PropagationProof(
+        N=N,
+        model=model,
+        seeds=seeds,
+        order=order,
+        rule=tuple(rule),
+        actual=tuple(tuple(sorted(q for q, k in actual.items() if k == j)) for j in range(order + 1)),
+        verdict=_verdict(exceptions, undecided),
+        exceptions=exceptions,
+        undecided=undecided,
+        points=tuple(used),
+        excited=tuple(found[q] for q in sorted(found)),
+        vanishing=vanishing,
+    )
+
+
+def _verdict(exceptions: Iterable[RuleException], undecided: Sequence[Undecided]) -> str:
+    open_modes = {u.mode for u in undecided}
+    if any(e.mode not in open_modes for e in exceptions):
+        return "refuted"
+    return "undecided" if undecided else "proved"
+
+
+def _shifted(progress: Progress | None, before: int, total: int) -> Progress | None:
+    if progress is None:
+        return None
+    report: Callable[[int, int], None] = progress
+    return lambda done, _: report(before + done, total)
+
+
+def random_point(N: int, seeds: int, degree: int, source: random.Random) -> ResiduePoint:
+    """A random prime p = 1 mod 4N that keeps sums of this degree exact, an element of order 4N, and random frequencies."""
+    from sympy import isprime, primefactors
+
+    top = largest_modulus(seeds, degree) // (4 * N)
+    if top < 2**12:
+        raise SymfpuError(f"no primes 1 mod {4 * N} are left for order {degree - 1} with {seeds} seeds; take a lower order")
+    prime = 4
+    while not isprime(prime):
+        prime = 4 * N * source.randrange(top // 2, top) + 1
+    root = 1
+    while any(pow(root, 4 * N // f, prime) == 1 for f in primefactors(4 * N)):  # until its order is 4N, no less
+        root = pow(source.randrange(2, prime), (prime - 1) // (4 * N), prime)
+    return ResiduePoint(prime, root, tuple(source.randrange(1, prime) for _ in range(seeds)))
+
+
+def _run_at_random_point(
+    chain: Chain, seeds: tuple[int, ...], order: int, source: random.Random, progress: Progress | None, workers: int | None
+) -> tuple[ResiduePoint, LindstedtSeries]:
+    for _ in range(ATTEMPTS):
+        point = random_point(chain.N, len(seeds), 1 + chain.degree_step * order, source)
+        try:
+            return point, residue_series(chain, seeds, point, order, workers=workers, progress=progress)
+        except VanishingResidue:
+            continue
+    raise SymfpuError(f"a divisor vanished at each of {ATTEMPTS} random points; the seeds {seeds} may be resonant for every frequency")
+
+
+def _witnesses(series: LindstedtSeries, point: int, prime: int) -> Iterable[Witness]:
+    """For every mode outside the seeds, its first nonzero order and there the monomial with the fewest divisors."""
+    seen = set(series.seeds)
+    for k in range(1, series.order + 1):
+        table = series.coordinates[k]
+        degree = series.degree(k)
+        new = [int(c) for c in np.flatnonzero(table.any(axis=0)) if int(c) + 1 not in seen]
+        exponents = series.grading.exponents(degree)[series.grading.canonical(degree)]
+        simplest = np.argsort(np.prod(exponents + 1, axis=1), kind="stable") if new else ()
+        for column in new:
+            row = next(int(r) for r in simplest if table[r, column] != 0)
+            yield Witness(column + 1, k, point, tuple(map(int, exponents[row])), int(table[row, column]) % prime)
+            seen.add(column + 1)
+
+
+def _zero_terms(
+    chain: Chain, seeds: tuple[int, ...], order: int, model: str, actual: dict[int, int], points: Sequence[ResiduePoint]
+) -> tuple[tuple[Vanishing, ...], tuple[Undecided, ...]]:
+    """Why every term below the actual order of its mode is zero; what is left is undecided."""
+    coupled = [set(modes) for modes in coupled_modes(chain.N, seeds, order, model=model)]
+    vanishing, undecided = [], []
+    for q in range(1, chain.N):
+        orders = [] if q in seeds else list(range(1, actual.get(q, order + 1)))
+        by_couplings = tuple(j for j in orders if q not in coupled[j])
+        rest = [j for j in orders if q in coupled[j]]
+        by_identity = tuple(j for j in rest if _is_identity(chain, seeds, q, j))
+        left = tuple(j for j in rest if j not in by_identity)
+        for shown, by in ((by_couplings, "couplings"), (by_identity, "identity")):
+            if shown:
+                vanishing.append(Vanishing(q, shown, by))
+        if left:
+            undecided.append(Undecided(q, left, _error_probability(chain, len(seeds), max(left), points)))
+    return tuple(vanishing), tuple(undecided)
+
+
+def _is_identity(chain: Chain, seeds: tuple[int, ...], q: int, order: int) -> bool:
+    """Whether the term of q is the zero polynomial in independent symbols L_q(nu); False also where that is too large."""
+    degree = 1 + chain.degree_step * order
+    if order > IDENTITY_ORDER or monomial_count(len(seeds), degree) * chain.N > IDENTITY_TERMS:
+        return False
+    return all(value == 0 for value in lindstedt(chain, seeds, order=order).coordinates[order][:, q - 1])
+
+
+def _error_probability(chain: Chain, seeds: int, order: int, points: Sequence[ResiduePoint]) -> float:
+    """Schwartz-Zippel: a term is a quotient of polynomials in the frequencies over a product of divisors, each at most
+    `order` times and of degree 2; its numerator vanishes at a random point with probability at most degree / p."""
+    grading = shared_grading(seeds, 1 + chain.degree_step * order)
+    harmonics = {tuple(nu) for d in range(1, grading.degree + 1) for nu in grading.harmonics(d)[0].tolist()}
+    degree = 2 * order * len(harmonics) * (chain.N - 1)
+    return float(np.prod([min(1.0, degree / point.prime) for point in points])) if points else 1.0

@@ -1,0 +1,1 @@
+"""The Poincare-Lindstedt series."""

@@ -1,0 +1,393 @@
+"""A Poincare-Lindstedt series: coordinates and frequency corrections as arrays and as SymEngine expressions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import mpmath
+import numpy as np
+import symengine as se
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.algebra.grading import Grading, Ints
+from symfpu.algebra.polynomials import Polynomial, evaluate, powers_of, rescaled, square_root
+from symfpu.algebra.words import IntegerTable
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError, SymfpuError
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Doubles, Numbers, from_integers, integers
+from symfpu.numbers.typed import integer
+from symfpu.series.divisors import SmallDivisor
+
+Floats = NDArray[np.float64]
+
+LOG10_2 = 0.30102999566398120
+
+
+@dataclass(frozen=True)
+class ResiduePoint:
+    """A prime p = 1 mod 4N, an element of order 4N and the chosen frequencies, all modulo p."""
+
+    prime: int
+    root: int
+    frequencies: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class LindstedtSeries:
+    """The series Q_q = sum mu^k Q_q^(k) and omega_q = Omega_q + sum mu^k omega_q^(k) with free seed amplitudes.
+
+    Made by `lindstedt`. The tables are in the ring's variables w_i = Omega_i z_i, z_i = (A_i/2) exp(i theta_i), and in
+    u_q = Omega_q Q_q, [omega_q^2]^(k) = Omega_q^2 W_q^(k), without mu; degree d carries the factor unit^-(d-1).
+
+    coordinates : for each order 0 .. order, u_q^(k); shape (canonical monomials, N-1).
+    corrections : for each order 0 .. order, W_q^(k); shape (diagonal monomials, s); no rows where none exist.
+    With digits, both are IntegerTables in units of 2^-bits, and results are mpf: every entry of these tables is correct to
+    `digits` digits of the largest one of its order, proved; sums at given amplitudes keep the absolute error of their order.
+    radii : for each order, the largest error of u_q^(k), and the errors of W_q^(k) by monomial and seed, in the same units.
+    point : where a series of residues was taken.
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...] | None
+    order: int
+    ring: str
+    grading: Grading = field(repr=False)
+    coordinates: tuple[Any, ...] = field(repr=False)
+    corrections: tuple[Any, ...] = field(repr=False)
+    unit: Fraction
+    smallest_divisors: tuple[SmallDivisor, ...]
+    multiply_adds: int = 0
+    digits: int | None = None
+    bits: int = 0
+    radii: tuple[tuple[float, Floats], ...] = field(repr=False, default=())
+    point: ResiduePoint | None = None
+
+    def __repr__(self) -> str:
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        smallest = f", smallest divisor {self.smallest_divisors[0]}" if self.smallest_divisors else ""
+        return (
+            f"LindstedtSeries({chain}, seeds={','.join(map(str, self.seeds))}, order {self.order}, "
+            f"{self.coefficient_count:,} coefficients ({self.precision}){smallest})"
+        )
+
+    @property
+    def symbolic(self) -> bool:
+        """Whether the coefficients are expressions in the symbols L_q(nu) (the universal form)."""
+        return self.ring in ("symbolic", "nested")
+
+    @property
+    def precision(self) -> str:
+        """The ring of the coefficients, and how many digits it was asked for and carries."""
+        if self.digits is None:
+            return self.ring
+        return f"{self.digits} digits, {self.guard_digits} guard digits"
+
+    @property
+    def guard_digits(self) -> int:
+        """Decimal places carried beyond the promised ones: what the recursion can lose, from its divisors and order."""
+        return int(self.bits * LOG10_2) - (self.digits or 0)
+
+    @property
+    def numbers(self) -> Doubles:
+        """The arithmetic of numeric results."""
+        return DOUBLES if self.digits is None else MULTIPRECISION
+
+    def _context(self) -> Any:
+        return self.numbers.context(self.digits)
+
+    @property
+    def coefficient_count(self) -> int:
+        """Coefficients stored: one for each canonical monomial and mode."""
+        return sum(table.size for table in self.coordinates)
+
+    def degree(self, order: int) -> int:
+        """Degree of order k in the amplitudes: k + 1, or 2k + 1 where only beta acts."""
+        return 1 + self.chain.degree_step * self._order(order)
+
+    def _order(self, order: int) -> int:
+        if integer(order, "order", 0) > self.order:
+            raise InputError("order", order, f"0..{self.order}, the series' order", "compute a longer series")
+        return int(order)
+
+    def _mode(self, q: int) -> int:
+        if integer(q, "q", 1) >= self.chain.N:
+            raise InputError("q", q, f"1..{self.chain.N - 1}", "name a mode of the chain")
+        return int(q)
+
+    def _seed(self, q: int) -> int:
+        if q not in self.seeds:
+            raise InputError("q", q, f"a seed, one of {self.seeds}", "only seeds have frequency corrections")
+        return self.seeds.index(q)
+
+    def _linear(self, q: int) -> Any:
+        return self.chain.frequencies(self.numbers)[q - 1] if not self.symbolic else se.Symbol(f"Omega_{q}")
+
+    def _entries(self, table: Any, columns: Any = slice(None)) -> NDArray[Any]:
+        """Entries of a table as the numbers they denote: doubles, mpf or expressions."""
+        if isinstance(table, IntegerTable):
+            return from_integers(table.integers(columns), np.asarray(-self.bits))
+        return np.asarray(table[:, columns])
+
+    def _times(self, values: NDArray[Any], powers: Ints, units: int, halves: int = 0) -> NDArray[Any]:
+        """values times prod Omega_i^powers unit^units 2^-halves, in numbers or in symbols."""
+        if self.symbolic or self.digits:
+            unit = self.numbers.number(self.unit) if self.digits else se.Integer(1)
+            scale = unit**units / (2 if self.digits else se.Integer(2)) ** halves
+            factors = [np.prod([self._linear(q) ** int(e) for q, e in zip(self.seeds, row, strict=True)]) * scale for row in powers]
+            return np.array([v * f for v, f in zip(values, factors, strict=True)], dtype=object)
+        linear = np.array([self._linear(q) for q in self.seeds])
+        logarithm = powers @ np.log2(linear) + units * np.log2(float(self.unit)) - halves
+        whole = np.floor(logarithm).astype(int)
+        with np.errstate(over="ignore", under="ignore"):
+            return np.asarray(np.ldexp(values * np.exp2(logarithm - whole), whole))
+
+    def coefficients(self, q: int, order: int) -> tuple[Ints, NDArray[Any]]:
+        """Q_q^(k), without mu^k, as a polynomial in z_i = (A_i/2) exp(i theta_i) and conj z_i (Eq. qser).
+
+        Returns exponents (count, 2s) = (p_1, n_1, ..., p_s, n_s) and coefficients (count,) of its canonical monomials, zero
+        coefficients left out. The conjugate of a monomial has the same coefficient and is not listed again.
+        Raises InputError for a mode or an order outside the series, SymfpuError where a coefficient exceeds doubles.
+        """
+        degree, column = self.degree(order), self._mode(q) - 1
+        with self._context():
+            values = self._entries(self.coordinates[order], [column])[:, 0]
+            at = np.flatnonzero(values != 0)
+            exponents = self.grading.exponents(degree)[self.grading.canonical(degree)[at]]
+            result = self._times(values[at] / self._linear(q), self.grading.powers(degree)[at], degree - 1)
+            return exponents, self._finite(result, f"Q_{q}^({order})")
+
+    def frequency_coefficients(self, q: int, order: int, *, squared: bool = False) -> tuple[Ints, NDArray[Any]]:
+        """omega_q^(k), or [omega_q^2]^(k) if squared, without mu^k, as a polynomial in the amplitudes (Eq. omeser).
+
+        Returns exponents (count, s) of A_1 .. A_s and coefficients (count,), zero coefficients left out. Order 0 is Omega_q
+        (its square). omega^(k) = ([omega^2]^(k) - sum_{0<j<k} omega^(j) omega^(k-j)) / (2 Omega).
+        """
+        i, order = self._seed(q), self._order(order)
+        degree = self.chain.degree_step * order
+        with self._context():
+            polynomials = [self.squared_polynomial(i, k) for k in range(order + 1)]
+            if not squared:
+                polynomials = square_root(polynomials, self._linear(q))
+            chosen = {e: c for e, c in polynomials[order].items() if c != 0}
+            exponents = np.array(list(chosen), dtype=np.int64).reshape(len(chosen), len(self.seeds)) * 2
+            values = np.array(list(chosen.values()), dtype=object if self.symbolic or self.digits else float)
+            if self.ring == "symbolic":
+                values = np.array([se.expand(v) for v in values], dtype=object)
+            result = self._times(values, exponents, degree, degree)
+            return exponents, self._finite(result, f"omega_{q}^({order})")
+
+    def squared_polynomial(self, i: int, order: int) -> Polynomial:
+        """[omega_q^2]^(k) as {powers of w_i^2: coefficient}, scaled as the tables are."""
+        linear = self._linear(self.seeds[i])
+        if order == 0:
+            return {(0,) * len(self.seeds): linear**2}
+        diagonal = self.grading.diagonal(self.chain.degree_step * order)
+        column = self._entries(self.corrections[order], [i])[:, 0] if len(diagonal) else ()
+        return {tuple(map(int, e)): linear**2 * c for e, c in zip(diagonal, column, strict=True)}
+
+    def _finite(self, values: NDArray[Any], what: str) -> NDArray[Any]:
+        if not self.symbolic and not self.digits and not np.isfinite(values).all():
+            raise SymfpuError(f"{what} has coefficients beyond the range of doubles; evaluate at amplitudes (harmonic_terms) instead")
+        return values
+
+    def term(self, q: int, order: int) -> Any:
+        """Q_q^(k), without mu^k, as a SymEngine expression in A_i and theta_i (Eq. qser); it prints as LaTeX in a notebook.
+
+        Coefficients are doubles, or polynomials in the symbols L_q(nu) and Omega_q for a series in universal form.
+        """
+        exponents, values = self.coefficients(q, order)
+        A, theta = self._amplitude_symbols()
+        terms = []
+        for row, value in zip(exponents, values, strict=True):
+            nu = [int(n) for n in row[0::2] - row[1::2]]
+            powers = [int(n) for n in row[0::2] + row[1::2]]
+            scalar = se.Integer(2 if any(nu) else 1) / se.Integer(2) ** sum(powers)
+            amplitude = se.Mul(*(a**e for a, e in zip(A, powers, strict=True)))
+            angle = se.Add(*(n * angle for n, angle in zip(nu, theta, strict=True)))
+            terms.append(scalar * self._symbol(value) * amplitude * se.cos(angle))
+        return se.Add(*terms)
+
+    def frequency_correction(self, q: int, order: int) -> Any:
+        """omega_q^(k), without mu^k, as a SymEngine expression in the amplitudes (Eq. omeser)."""
+        return self._amplitude_polynomial(*self.frequency_coefficients(q, order))
+
+    def squared_frequency_correction(self, q: int, order: int) -> Any:
+        """[omega_q^2]^(k), without mu^k, as a SymEngine expression in the amplitudes."""
+        return self._amplitude_polynomial(*self.frequency_coefficients(q, order, squared=True))
+
+    def _amplitude_polynomial(self, exponents: Ints, values: NDArray[Any]) -> Any:
+        A, _ = self._amplitude_symbols()
+        return se.Add(
+            *(
+                self._symbol(value) * se.Mul(*(a ** int(e) for a, e in zip(A, row, strict=True)))
+                for row, value in zip(exponents, values, strict=True)
+            )
+        )
+
+    def _symbol(self, value: Any) -> Any:
+        """A coefficient as a SymEngine number; with digits, of that precision."""
+        if isinstance(value, se.Basic):
+            return value
+        return se.RealDouble(float(value)) if self.digits is None else se.Float(mpmath.nstr(value, self.digits + 2), dps=self.digits + 2)
+
+    def _amplitude_symbols(self) -> tuple[list[Any], list[Any]]:
+        return [se.Symbol(f"A{q}") for q in self.seeds], [se.Symbol(f"theta{q}") for q in self.seeds]
+
+    def _numeric(self) -> None:
+        if self.frequencies is None:
+            raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
+
+    @cached_property
+    def _kappa(self) -> Any:
+        """|mu|^(1/step) unit: what the variables w_i are multiplied by before the scaled tables apply."""
+        return abs(self.chain.small_parameter(self.numbers)) ** (1 / self.chain.degree_step) * self.numbers.number(self.unit)
+
+    def _sign(self, order: int) -> float:
+        return -1.0 if self.chain.mu < 0 and order % 2 else 1.0
+
+    @cached_property
+    def seed_factors(self) -> Numbers:
+        """kappa Omega_i / 2: the scaled variables x_i at unit amplitudes; shape (s,)."""
+        return np.asarray(self._kappa / 2 * self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1])
+
+    def scaled_seeds(self, amplitudes: ArrayLike) -> Numbers:
+        """The variables of the scaled tables, kappa Omega_i A_i / 2; shapes (s,)."""
+        with self._context():
+            return np.asarray(self.seed_factors * self.numbers.array(amplitudes))
+
+    def amplitude_terms(self, order: int) -> tuple[Ints, Ints, Numbers]:
+        """mu^k Q_q^(k) with free amplitudes: sum over rows of value[., q] x^e cos(nu.theta), x = scaled_seeds(A).
+
+        Returns harmonics nu (R, s), exponents e (R, s) and values (R, N-1), one row for each canonical monomial.
+        """
+        self._numeric()
+        degree = self.degree(order)
+        nu, index = self.grading.harmonics(degree)
+        with self._context():
+            values = self._entries(self.coordinates[order]) * (self._sign(order) / self._kappa) / self.chain.frequencies(self.numbers)
+            values[(nu != 0).any(axis=1)[index]] *= 2
+        return nu[index], self.grading.powers(degree), values
+
+    def harmonic_terms(self, amplitudes: ArrayLike, order: int, *, absolute: bool = False) -> tuple[Ints, Numbers]:
+        """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients: sum over rows of value[., q] cos(nu.theta).
+
+        amplitudes : (s,) in the order of the seeds. Returns harmonics (H, s), one of each pair +-nu, and values (H, N-1).
+        absolute : take the modulus of every monomial before they are summed (for S_1 of Eq. serabs2); always doubles.
+        """
+        self._numeric()
+        if np.shape(amplitudes) != (len(self.seeds),):
+            raise InputError(
+                "amplitudes", np.shape(amplitudes), f"one for each of the seeds {self.seeds}", "pass a sequence in their order"
+            )
+        nu, index = self.grading.harmonics(self.degree(order))
+        by_harmonic = np.argsort(index, kind="stable")
+        starts = np.searchsorted(index[by_harmonic], np.arange(len(nu)))
+        doubles = absolute or self.digits is None
+        with self._context():
+            table: NDArray[Any] = np.zeros(0)
+            exponent = np.zeros(1, dtype=np.int64)
+            if doubles:
+                table = self._doubles(amplitudes, order)
+            else:
+                table, exponent = self._integers(amplitudes, order)
+            values = np.add.reduceat(np.abs(table[by_harmonic]) if absolute else table[by_harmonic], starts, axis=0)
+            numbers = DOUBLES if doubles else MULTIPRECISION
+            factor = self._sign(order) / self._kappa
+            values = values * float(factor) if doubles else from_integers(values, exponent) * factor
+            values = values / self.chain.frequencies(numbers)
+            values[(nu != 0).any(axis=1)] *= 2
+        return nu, np.abs(values) if absolute else values
+
+    def _doubles(self, amplitudes: ArrayLike, order: int) -> Floats:
+        """Every coefficient of an order times its monomial, as doubles."""
+        table = self.coordinates[order]
+        values = table.floats(-self.bits) if isinstance(table, IntegerTable) else table
+        seeds = self.scaled_seeds(amplitudes).astype(float)
+        return np.asarray(values * np.prod(seeds ** self.grading.powers(self.degree(order)), axis=1)[:, None])
+
+    def _integers(self, amplitudes: ArrayLike, order: int) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+        """The same as integers, and the power of two of their unit."""
+        powers, seeds = self.grading.powers(self.degree(order)), self.scaled_seeds(amplitudes)
+        table = powers_of(list(seeds), int(powers.max()), mpmath.mpf(1))
+        monomials = np.array(table[0], dtype=object)[powers[:, 0]]
+        for i in range(1, len(seeds)):
+            monomials = monomials * np.array(table[i], dtype=object)[powers[:, i]]
+        whole, exponent = integers(monomials[:, None])
+        return self.coordinates[order].integers() * whole, exponent - self.bits
+
+    def absolute_sums(self, q: int, amplitudes: ArrayLike, *, with_mu: bool = False) -> tuple[Floats, Floats]:
+        """S_1(k) and S_2(k) of Eqs. serabs2 and serabs3 for Q_q^(k), k = 0 .. order, as doubles; shapes (order + 1,) each.
+
+        S_1 adds the moduli of all coefficients, S_2 those of the cosines after the monomials of one harmonic are summed.
+        with_mu : sums of mu^k Q_q^(k) instead, which cannot leave the range of doubles.
+        """
+        column = self._mode(q) - 1
+        sums = np.empty((2, self.order + 1))
+        for k in range(self.order + 1):
+            unit = 1.0 if with_mu else abs(self.chain.mu) ** -float(k)
+            for row, absolute in enumerate((True, False)):
+                sums[row, k] = unit * float(np.abs(self.harmonic_terms(amplitudes, k, absolute=absolute)[1][:, column]).sum())
+        return sums[0], sums[1]
+
+    def frequency_terms(self, squared_amplitudes: ArrayLike, order: int | None = None) -> tuple[Numbers, Numbers]:
+        """mu^k omega_q^(k) for k = 0 .. order (default all) at these values of A^2, and the derivatives by A^2.
+
+        squared_amplitudes : (s,). Returns terms (order + 1, s), order 0 being Omega_q, and derivatives (order + 1, s, s)
+        with the last axis for the variable.
+        """
+        self._numeric()
+        top = self.order if order is None else self._order(order)
+        if self.digits is None:
+            return self._frequency_doubles(np.asarray(squared_amplitudes, dtype=float), top)
+        with self._context():
+            point = list(self.numbers.array(squared_amplitudes))
+            powers = powers_of(point, self.chain.degree_step * top // 2, mpmath.mpf(1))
+            parts = [[evaluate(p, powers) for p in polynomials] for polynomials in self._frequency_polynomials[: top + 1]]
+            terms = np.array([[mpmath.mpf(value) for value, _ in row] for row in parts], dtype=object)
+            slopes = np.array([[[mpmath.mpf(x) for x in gradient] for _, gradient in row] for row in parts], dtype=object)
+        return terms, slopes
+
+    @cached_property
+    def _frequency_polynomials(self) -> list[list[Polynomial]]:
+        """mu^k omega_q^(k) as polynomials in A^2, by order and seed, in mpf."""
+        slopes = [f**2 for f in self.seed_factors]
+        by_seed = []
+        for i, q in enumerate(self.seeds):
+            roots = square_root([self.squared_polynomial(i, k) for k in range(self.order + 1)], self._linear(q))
+            by_seed.append([rescaled(p, slopes, self._sign(k)) for k, p in enumerate(roots)])
+        return [list(row) for row in zip(*by_seed, strict=True)]
+
+    def _frequency_doubles(self, squares: Floats, top: int) -> tuple[Floats, Floats]:
+        s = len(self.seeds)
+        linear = self.chain.frequencies()[np.array(self.seeds) - 1]
+        slope = self.seed_factors**2
+        y = slope * squares
+        terms, jacobian = np.zeros((top + 1, s)), np.zeros((top + 1, s, s))
+        terms[0] = linear
+        for k in range(1, top + 1):
+            e = self.grading.diagonal(self.chain.degree_step * k)
+            if len(e) == 0:
+                continue
+            table = self._sign(k) * self.corrections[k] * linear**2
+            square, square_slope = _polynomial(y, e, table)
+            square -= np.einsum("jq,jq->q", terms[1:k], terms[k - 1 : 0 : -1])
+            square_slope = square_slope * slope - 2 * np.einsum("jq,jqi->qi", terms[1:k], jacobian[k - 1 : 0 : -1])
+            terms[k] = square / (2 * linear)
+            jacobian[k] = square_slope / (2 * linear)[:, None]
+        return terms, jacobian
+
+
+def _polynomial(y: Floats, exponents: Ints, table: Floats) -> tuple[Floats, Floats]:
+    """Values (s,) and derivatives (s, variables) of the polynomials sum_e table[e] y^e."""
+    powers = y**exponents
+    square = np.prod(powers, axis=1) @ table
+    slopes = []
+    for j in range(len(y)):
+        lowered = powers.copy()
+        lowered[:, j] = exponents[:, j] * y[j] ** np.maximum(exponents[:, j] - 1, 0)
+        slopes.append(np.prod(lowered, axis=1) @ table)
+    return square, np.stack(slopes, axis=1)

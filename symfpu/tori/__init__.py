@@ -1,0 +1,1 @@
+"""Tori: from a series to amplitudes, orbits and a verdict."""

@@ -1,0 +1,296 @@
+"""Frequencies to amplitudes: the truncated equations omega_q = Omega_q + sum mu^k omega_q^(k)(A) (Eq. omeser)."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from math import lcm
+from typing import Any
+
+import mpmath
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.chain.chain import decimal
+from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
+from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf
+from symfpu.numbers.typed import exact, integer
+from symfpu.series.series import LindstedtSeries
+from symfpu.tori.root_certificate import certify_root
+from symfpu.tori.torus import QTorus
+
+Floats = NDArray[np.float64]
+
+RESIDUAL_FLOOR = 1e-10  # relative residual below which growth with the order is no reason to doubt
+LARGEST_GUESS = 1e12
+LARGE_RESIDUAL = 1e-4  # relative residual above which the solution is doubtful whatever the orders say
+RESIDUAL_POINTS = 128  # angles at which two neighbouring orders are compared, about
+SHIFT_GUARD = 35  # digits beyond the asked ones, of which the difference of two nearly equal frequencies loses some
+NEWTON_STEPS = 50
+LOST_DIGITS = 5  # of the guard digits of an evaluation, at a root
+ROUNDING = 256 * np.finfo(float).eps  # of the sum of moduli of the series: what a root may leave
+AGREEMENT = 1e-3  # relative change from the neighbouring order above which a root is doubtful
+
+
+@dataclass(frozen=True)
+class AmplitudeHistory:
+    """Amplitudes A(K) by frequency order K, and why orders without a root have none.
+
+    orders : all K at which the frequency series gains a term. amplitudes : K -> (A of each seed); failures : K -> error.
+    """
+
+    seeds: tuple[int, ...]
+    orders: tuple[int, ...]
+    amplitudes: Mapping[int, tuple[Any, ...]]
+    failures: Mapping[int, SymfpuError]
+
+    def __repr__(self) -> str:
+        last = next((f", A({K}) = {self.amplitudes[K]}" for K in reversed(self.orders) if K in self.amplitudes), "")
+        return f"AmplitudeHistory(seeds={self.seeds}, {len(self.amplitudes)} of {len(self.orders)} orders have a root{last})"
+
+    def differences(self) -> dict[int, tuple[float, ...]]:
+        """Delta A(k) = |A(k + step) - A(k)| for consecutive orders that have a root (the paper's step is 2)."""
+        pairs = ((a, b) for a, b in itertools.pairwise(self.orders) if a in self.amplitudes and b in self.amplitudes)
+        return {a: tuple(float(abs(y - x)) for x, y in zip(self.amplitudes[a], self.amplitudes[b], strict=True)) for a, b in pairs}
+
+
+def frequency_orders(series: LindstedtSeries) -> tuple[int, ...]:
+    """Orders k at which omega^(k) need not vanish: even ones with alpha, all with beta alone."""
+    step = 2 // series.chain.degree_step
+    return tuple(range(step, series.order + 1, step))
+
+
+def amplitude_history(series: LindstedtSeries) -> AmplitudeHistory:
+    """The amplitudes for every frequency order up to the series' order, each found from the one before.
+
+    The lowest order is linear in A^2 and needs no guess. Raises UndeterminedAmplitudes if it does not determine A^2.
+    """
+    orders = frequency_orders(series)
+    found: dict[int, tuple[Any, ...]] = {}
+    failures: dict[int, SymfpuError] = {}
+    squares = np.abs(_lowest_order(series)) if orders else np.zeros(len(series.seeds))
+    for K in orders:
+        try:
+            root, _ = root_squares(series, K, squares)
+            found[K] = _square_roots(series, root)
+            squares = root
+        except (NoRealAmplitude, DidNotConverge) as failure:
+            failures[K] = failure
+    return AmplitudeHistory(series.seeds, orders, found, failures)
+
+
+def solve_amplitudes(
+    series: LindstedtSeries,
+    *,
+    frequency_order: int | None = None,
+    order: int | None = None,
+    phases: Mapping[int, float] | None = None,
+    guess: Mapping[int, float] | None = None,
+) -> QTorus:
+    """Seed amplitudes whose truncated frequency series equals the chosen frequencies (Eq. omeser), as a QTorus.
+
+    frequency_order : K of the frequency series, up to series.order; default the whole series. order : truncation of
+    Q_q(t), up to series.order; default the whole series. The two are independent. phases : by seed, radians; default 0.
+    guess : amplitudes by seed; default none needed: the lowest correction is linear in A^2, and each order starts from the
+    root of the one before. Gauge: A_q multiplies cos(omega_q t + phi_q) in Q_q, not Q_q(0).
+
+    Raises InputError for arguments out of range and for frequencies that are commensurable within the harmonics of the
+    series; NoRealAmplitude if an A^2 comes out negative (names the seed), also where the lowest order has no real root and
+    no later one up to frequency_order has; DidNotConverge with the last iterate and residual; UndeterminedAmplitudes if
+    no correction determines the amplitudes.
+    Where neighbouring frequency orders disagree, the torus says so in its warnings. For a series with digits the root is
+    polished to them by mpmath, and its certificate says whether ball arithmetic proves that it exists within 10^-digits.
+    """
+    if series.frequencies is None:
+        raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
+    _refuse_commensurable(series)
+    K = order_argument("frequency_order", frequency_order, series)
+    coordinate_order = order_argument("order", order, series)
+    angles = dict.fromkeys(series.seeds, 0.0) | by_seed("phases", phases, series)
+    orders = [k for k in frequency_orders(series) if k <= K]
+    if not orders:
+        first = 2 // series.chain.degree_step
+        advice = "compute a longer series" if series.order < first else f"take {first} or more"
+        raise InputError("frequency_order", K, f"{first} or more, the order of the first frequency correction", advice)
+    history = amplitude_history(series)
+    start = _start(series, orders, history, guess)
+    squares, residual = root_squares(series, orders[-1], start)
+    amplitudes = _square_roots(series, squares)
+    torus = QTorus(
+        series=series,
+        amplitudes=dict(zip(series.seeds, amplitudes, strict=True)),
+        phases=angles,
+        frequency_order=K,
+        order=coordinate_order,
+        history=dict(history.amplitudes),
+        root_residual=residual,
+        certificate=certify_root(series, list(squares), K) if series.digits else None,
+    )
+    return torus.doubted((*order_doubts(amplitudes, orders, history), *residual_doubts(torus)))
+
+
+def _square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:
+    with series.numbers.context(series.digits):
+        return tuple(series.numbers.sqrt(squares).tolist())
+
+
+def _refuse_commensurable(series: LindstedtSeries) -> None:
+    """Refuse frequencies for which two harmonics of the series coincide, or one is at rest: the orbit fills no torus of s angles."""
+    assert series.frequencies is not None
+    common = lcm(*(w.denominator for w in series.frequencies))
+    whole = [int(w * common) for w in series.frequencies]
+    seen: dict[int, tuple[int, ...]] = {0: (0,) * len(series.seeds)}
+    for order in range(series.order + 1):
+        for row in series.grading.harmonics(series.degree(order))[0].tolist():
+            nu = tuple(row)
+            other = seen.setdefault(abs(sum(n * w for n, w in zip(nu, whole, strict=True))), nu)
+            if other != nu:
+                allowed = "incommensurable up to the harmonics of the series"
+                advice = (
+                    f"harmonics {nu} and {other} of the seeds {series.seeds} coincide: change omega_{series.seeds[-1]} or lower the order"
+                )
+                raise InputError("frequencies", tuple(map(decimal, series.frequencies)), allowed, advice)
+
+
+def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
+    """An order at which a series is cut, by default its own; InputError naming the argument if the series ends before."""
+    if value is None:
+        return series.order
+    if integer(value, name, 0) > series.order:
+        raise InputError(name, value, f"0..{series.order}, the series' order", "compute a longer series or lower it")
+    return int(value)
+
+
+def by_seed(name: str, values: Mapping[int, Any] | None, series: LindstedtSeries) -> dict[int, Any]:
+    """Numbers by seed in the arithmetic of the series; InputError naming the argument for other keys or values."""
+    if values is not None and not isinstance(values, Mapping):
+        raise InputError(name, values, f"a mapping from the seeds {series.seeds} to numbers", "write it as {seed: number}")
+    for q in values or {}:
+        if q not in series.seeds:
+            raise InputError(name, q, f"seeds {series.seeds} as keys", "name seeds only")
+    with series.numbers.context(series.digits):
+        return {int(q): series.numbers.number(exact(v, name)) for q, v in (values or {}).items()}
+
+
+def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory, guess: Mapping[int, float] | None) -> Numbers:
+    if guess is not None:
+        given = by_seed("guess", guess, series)
+        if set(given) != set(series.seeds):
+            raise InputError("guess", dict(guess), f"an amplitude for each of the seeds {series.seeds}", "complete it or leave it out")
+        if not all(0 < abs(a) < LARGEST_GUESS for a in given.values()):
+            raise InputError(
+                "guess", dict(guess), f"amplitudes that are not 0 and below {LARGEST_GUESS:g}", "take them near the expected ones"
+            )
+        return np.array([float(given[q]) ** 2 for q in series.seeds])
+    earlier = [k for k in orders if k in history.amplitudes]
+    if not earlier:
+        raise history.failures[orders[0]]
+    with series.numbers.context(series.digits):
+        return np.array(history.amplitudes[earlier[-1]]) ** 2
+
+
+def shifts(series: LindstedtSeries) -> Numbers:
+    """omega_q - Omega_q of the seeds, correctly rounded; shape (s,)."""
+    assert series.frequencies is not None
+    with mpmath.workdps((series.digits or 17) + SHIFT_GUARD):
+        exact = [mpf(w) - series.chain.linear_frequency(q) for q, w in zip(series.seeds, series.frequencies, strict=True)]
+    return np.array([float(x) for x in exact]) if series.digits is None else np.array(exact, dtype=object)
+
+
+def _lowest_order(series: LindstedtSeries) -> Floats:
+    """A^2 from the lowest correction, which is linear in A^2; it may be negative."""
+    first = frequency_orders(series)[0]
+    _, jacobian = series.frequency_terms(np.zeros(len(series.seeds)), first)
+    matrix = jacobian[first].astype(float)
+    if not np.any(matrix) or np.linalg.cond(matrix) > 1 / np.finfo(float).eps:
+        raise UndeterminedAmplitudes(series.seeds, first)
+    return np.asarray(np.linalg.solve(matrix, shifts(series).astype(float)))
+
+
+def root_squares(series: LindstedtSeries, K: int, start: Numbers) -> tuple[Numbers, float]:
+    """A^2 that solves the equations truncated at order K, and the residual it leaves."""
+    from scipy.optimize import root
+
+    target = shifts(series)
+    scale = np.where(start != 0, np.abs(start), 1.0)
+    unit = np.abs(target) + np.finfo(float).tiny
+
+    def equations(y: Numbers) -> tuple[Numbers, Numbers]:
+        terms, jacobian = series.frequency_terms(y * scale, K)
+        return (terms[1:].sum(axis=0) - target) / unit, jacobian[1:].sum(axis=0) * scale / unit[:, None]
+
+    def doubles(y: Floats) -> tuple[Floats, Floats]:
+        values, jacobian = equations(y)
+        return values.astype(float), jacobian.astype(float)
+
+    with np.errstate(over="ignore", invalid="ignore"), series.numbers.context(series.digits):
+        near = root(doubles, (start / scale).astype(float), jac=True, method="hybr", tol=1e-15).x
+        squares = (near if series.digits is None else _polished(equations, near, series.digits)) * scale
+        terms, _ = series.frequency_terms(squares, K)
+        residual = float(np.max(np.abs(terms[1:].sum(axis=0) - target)))
+        rounding = ROUNDING if series.digits is None else 10.0 ** -(series.digits + GUARD_DIGITS - LOST_DIGITS)
+        allowed = rounding * float(np.max(np.abs(terms[1:]).sum(axis=0) + np.abs(target)))
+    if not residual <= allowed:  # also when it is not a number
+        iterate = {q: float(np.sign(float(x)) * abs(float(x)) ** 0.5) for q, x in zip(series.seeds, squares, strict=True)}
+        raise DidNotConverge(K, iterate, residual)
+    for q, x in zip(series.seeds, squares, strict=True):
+        if x <= 0:
+            raise NoRealAmplitude(q, float(x), K)
+    return squares, residual
+
+
+def _polished(equations: Callable[[Numbers], tuple[Numbers, Numbers]], near: Floats, digits: int) -> Numbers:
+    """The root near a point to all digits, by mpmath's Newton iteration; the last iterate where it does not converge."""
+    known: dict[tuple[Any, ...], tuple[Numbers, Numbers]] = {}
+
+    def at(point: tuple[Any, ...]) -> tuple[Numbers, Numbers]:
+        if point not in known:
+            known[point] = equations(np.array(point, dtype=object))
+        return known[point]
+
+    def values(*point: Any) -> list[Any]:
+        return list(at(point)[0])
+
+    def jacobian(*point: Any) -> Any:
+        return mpmath.matrix(at(point)[1].tolist())
+
+    start = [mpmath.mpf(float(x)) for x in near]
+    tolerance = mpmath.mpf(10) ** -(digits + GUARD_DIGITS - LOST_DIGITS)
+    found = mpmath.findroot(values, start, solver="mdnewton", J=jacobian, tol=tolerance, maxsteps=NEWTON_STEPS, verify=False)
+    return np.array(list(found), dtype=object)
+
+
+def order_doubts(amplitudes: tuple[Any, ...], orders: list[int], history: AmplitudeHistory) -> tuple[str, ...]:
+    """Why the root may be one of the truncated polynomial only."""
+    K = orders[-1]
+    if len(orders) == 1:
+        return (f"order {K} is the only frequency order: nothing to compare the amplitudes with",)
+    before = orders[-2]
+    if before not in history.amplitudes:
+        return (f"frequency order {before} has no root: the root at order {K} may be one of the truncated polynomial only",)
+    change = max(abs(float(a / b - 1)) for a, b in zip(amplitudes, history.amplitudes[before], strict=True))
+    doubts = []
+    if change > AGREEMENT:
+        doubts.append(f"the amplitudes of frequency orders {before} and {K} differ by {change:.1%}: not a torus to that accuracy")
+    differences = {k: max(d) for k, d in history.differences().items() if k < K}
+    best = min(differences, key=lambda k: differences[k]) if differences else K
+    if differences and max(orders.index(K) - orders.index(best), 0) > 2 and differences[before] > 2 * differences[best]:
+        after = orders[orders.index(best) + 1]
+        doubts.append(f"the amplitudes agree best between frequency orders {best} and {after} and move apart beyond")
+    return tuple(doubts)
+
+
+def residual_doubts(torus: QTorus) -> tuple[str, ...]:
+    """Whether the residual of the equations of motion is large, or grew with the last two orders of the coordinates."""
+    points = None if torus.digits else max(3, round(RESIDUAL_POINTS ** (1 / len(torus.seeds))))
+    residual, before = torus.residual(points), torus.order - 2
+    doubts = []
+    if residual > LARGE_RESIDUAL:
+        doubts.append(f"the equations of motion are met only to {residual:.1e} of the largest acceleration")
+    if before >= 1 and residual > RESIDUAL_FLOOR:
+        earlier = replace(torus, order=before).residual(points)
+        if residual > 1.05 * earlier:
+            growth = f"{earlier:.1e} at {before}, {residual:.1e} at {torus.order}"
+            doubts.append(f"the residual of the equations of motion grows with the order ({growth}): cut the series earlier, by order=")
+    return tuple(doubts)

@@ -1,0 +1,201 @@
+"""Quasi-periodic solutions given by their cosine coefficients: orbit, energies, averages and residuals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from numbers import Real
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.algebra.grading import Ints
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Doubles, Numbers
+from symfpu.numbers.typed import integer
+
+Floats = NDArray[np.float64]
+
+CHUNK = 4_000_000  # entries of a table of cosines held at once
+GRID_POINTS = 4096  # angles at which a residual is taken, about
+SEEN_BY_DOUBLES = 1e-10  # relative residuals above it need no more digits
+GRID_POINTS_DIGITS = 16  # the same for numbers of many digits
+
+
+class QuasiPeriodic:
+    """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)): what every torus and breather can do.
+
+    seeds, frequencies, phases : the s angles. harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : c_q[nu];
+    shape (H, N-1). With digits, results are arrays of mpf, evaluated with that many digits and more; else doubles.
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...]
+    phases: Mapping[int, Any]
+    harmonics: Ints
+    cosines: Numbers
+    digits: int | None
+
+    @property
+    def numbers(self) -> Doubles:
+        """The arithmetic of the results."""
+        return DOUBLES if self.digits is None else MULTIPRECISION
+
+    def _context(self) -> Any:
+        return self.numbers.context(self.digits)
+
+    @cached_property
+    def _omega(self) -> Numbers:
+        return np.array([self.numbers.number(w) for w in self.frequencies])
+
+    @cached_property
+    def _rates(self) -> Numbers:
+        """nu.omega of every harmonic; shape (H,)."""
+        return np.asarray(self.harmonics @ self._omega)
+
+    def in_doubles(self) -> FourierTorus:
+        """The same solution with its coefficients rounded to doubles."""
+        phases = {q: float(phi) for q, phi in self.phases.items()}
+        return FourierTorus(self.chain, self.seeds, self.frequencies, self.harmonics, self.cosines.astype(float), phases)
+
+    def positions(self, t: ArrayLike) -> Numbers:
+        """Mode coordinates Q_q(t); t a number or an array (T,), result (N-1,) or (T, N-1)."""
+        return self._along(t, lambda angles: self.numbers.dot(self.numbers.cos(angles), self.cosines))
+
+    def momenta(self, t: ArrayLike) -> Numbers:
+        """Mode momenta P_q(t) = dQ_q/dt; t a number or an array (T,), result (N-1,) or (T, N-1)."""
+        return self._along(t, lambda angles: self.numbers.dot(self.numbers.sin(angles), -self._rates[:, None] * self.cosines))
+
+    def _along(self, t: ArrayLike, evaluate: Callable[[Numbers], Numbers]) -> Numbers:
+        with self._context():
+            try:
+                times = self.numbers.array(t)
+            except (TypeError, ValueError) as error:
+                raise InputError("t", t, "a finite number or an array of them", "pass real numbers") from error
+            if times.ndim > 1 or not self.numbers.finite(times):
+                raise InputError("t", t, "a finite number or a one-dimensional array of them", "flatten it")
+            theta = times.reshape(-1, 1) * self._omega + self._offsets()
+            values = self._at_angles(theta, evaluate)
+            return values[0] if times.ndim == 0 else values
+
+    def _offsets(self) -> Numbers:
+        return self.numbers.array([self.phases[q] for q in self.seeds])
+
+    def _at_angles(self, theta: Numbers, evaluate: Callable[[Numbers], Numbers]) -> Numbers:
+        step = max(1, CHUNK // len(self.harmonics))
+        parts = [evaluate(theta[i : i + step] @ self.harmonics.T) for i in range(0, len(theta), step)]
+        return np.concatenate(parts) if parts else np.zeros((0, self.chain.N - 1))
+
+    def energy(self, t: ArrayLike = 0.0) -> Any:
+        """Total energy H along the solution; constant in time for an exact torus. A number, or shape (T,)."""
+        with self._context():
+            return self.chain.energy(self.positions(t), self.momenta(t))[()]
+
+    def harmonic_energies(self, t: ArrayLike = 0.0) -> Numbers:
+        """Harmonic energies E_q(t) (Eq. harmonicene); shape of t with an axis N-1 at the end."""
+        with self._context():
+            return self.chain.harmonic_energies(self.positions(t), self.momenta(t))
+
+    def energy_error(self, t: ArrayLike, *, harmonic: bool = False) -> Numbers:
+        """Relative error in time (E(t) - E(0)) / E(0) of the total energy, or of the harmonic energy sum E_q."""
+        with self._context():
+            values = self.harmonic_energies(t).sum(axis=-1) if harmonic else self.energy(t)
+            start = self.harmonic_energies().sum() if harmonic else self.energy()
+            return np.asarray((values - start) / start)
+
+    def average_spectrum(self, T: float | None = None) -> Numbers:
+        """Time averages of the harmonic energies E_q, in closed form; shape (N-1,).
+
+        T : averaging time from t = 0, computed in doubles; None for the infinite-time average, (1/4) sum c^2 ((nu.omega)^2 +
+        Omega^2) over nu != 0 plus the constant term. With the factor 1/2 of E_q that the paper's section 3.2 leaves out.
+        """
+        if T is not None:
+            return self._finite_average(T)
+        with self._context():
+            linear = self.chain.frequencies(self.numbers)
+            weights = np.where((self.harmonics != 0).any(axis=1), 0.5, 1.0)
+            kinetic = (weights * self._rates**2) @ self.cosines**2
+            return np.asarray(0.5 * (kinetic + linear**2 * (weights @ self.cosines**2)))
+
+    def _finite_average(self, T: float) -> Floats:
+        if not isinstance(T, Real) or not np.isfinite(float(T)) or T <= 0:
+            raise InputError("T", T, "a positive finite time, or None for infinite", "pass T > 0")
+        linear = self.chain.frequencies()
+        rates, cosines = self._rates.astype(float), self.cosines.astype(float)
+        psi = self.harmonics @ np.array([float(self.phases[q]) for q in self.seeds])
+        velocity = rates[:, None] * cosines
+        total = np.zeros(self.chain.N - 1)
+        step = max(1, CHUNK // len(self.harmonics))
+        for i in range(0, len(self.harmonics), step):
+            rows = slice(i, i + step)
+            difference = mean_cosine(rates[rows, None] - rates, psi[rows, None] - psi, T)
+            total_ = mean_cosine(rates[rows, None] + rates, psi[rows, None] + psi, T)
+            total += np.einsum("hq,hq->q", velocity[rows], (difference - total_) @ velocity)
+            total += linear**2 * np.einsum("hq,hq->q", cosines[rows], (difference + total_) @ cosines)
+        return total / 4
+
+    @property
+    def _curvatures(self) -> Numbers:
+        return np.asarray(-(self._rates[:, None] ** 2) * self.cosines)
+
+    def residuals(self, points: int | None = None) -> Numbers:
+        """Largest |d^2Q_q/dt^2 - force| of each mode on a grid of angles; zero for an exact torus; shape (N-1,).
+
+        points : grid points for each of the s angles; default such that the grid has about 4096. With digits, where doubles
+        cannot see the residual, about 16.
+        """
+        return self._residuals(points)[0]
+
+    def residual(self, points: int | None = None) -> float:
+        """Largest residual of the equations of motion on a grid of angles, relative to the largest acceleration."""
+        residuals, largest = self._residuals(points)
+        return float(residuals.max() / largest)
+
+    def _residuals(self, points: int | None) -> tuple[Numbers, Any]:
+        if self.digits is not None and points is None:
+            residuals, largest = self.in_doubles()._residuals(None)
+            if residuals.max() > SEEN_BY_DOUBLES * largest:
+                return residuals, largest
+        wanted = GRID_POINTS if self.digits is None else GRID_POINTS_DIGITS
+        number = integer(points, "points", 1) if points is not None else max(2, min(64, round(wanted ** (1 / len(self.seeds)))))
+        with self._context():
+            worst, largest = np.zeros(self.chain.N - 1), 0.0
+            for theta in self.angle_grid(number):
+                Q = self._at_angles(theta, lambda angles: self.numbers.dot(self.numbers.cos(angles), self.cosines))
+                second = self._at_angles(theta, lambda angles: self.numbers.dot(self.numbers.cos(angles), self._curvatures))
+                force = self.chain.accelerations(Q)
+                worst = np.maximum(worst, np.abs(second - force).max(axis=0))
+                largest = max(largest, np.abs(force).max())
+            return worst, largest
+
+    def angle_grid(self, number: int) -> Iterator[Numbers]:
+        """The tensor grid of angles in portions; a shift keeps it off the symmetric angles 0 and pi."""
+        s = len(self.seeds)
+        for start in range(0, number**s, GRID_POINTS):
+            index = np.arange(start, min(start + GRID_POINTS, number**s))
+            digits = np.stack(np.unravel_index(index, (number,) * s), axis=-1)
+            yield 2 * self.numbers.pi * (3 * digits + 1) / (3 * number)
+
+
+@dataclass(frozen=True, eq=False)
+class FourierTorus(QuasiPeriodic):
+    """A solution whose coefficients are given. seeds, frequencies : (s,). harmonics : (H, s). cosines : (H, N-1)."""
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...]
+    harmonics: Ints = field(repr=False)
+    cosines: Numbers = field(repr=False)
+    phases: Mapping[int, Any] = field(default_factory=dict)
+    digits: int | None = None
+
+
+def mean_cosine(rate: Floats, phase: Floats, T: float) -> Floats:
+    """(1/T) times the integral of cos(rate t + phase) over 0 .. T, stable for every rate."""
+    half = rate * (T / 2)
+    return np.asarray(np.sinc(half / np.pi) * np.cos(half + phase))

@@ -1,0 +1,116 @@
+"""A q-torus with numbers in it: a series at chosen amplitudes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from symfpu.algebra.grading import Ints
+from symfpu.chain.chain import Chain
+from symfpu.numbers.arithmetic import Numbers, text
+from symfpu.series.series import LindstedtSeries
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+
+@dataclass(frozen=True)
+class RootCertificate:
+    """Whether interval Newton in ball arithmetic has shown that the truncated system has exactly one root near the amplitudes.
+
+    radius : by seed; in the box of amplitudes within it there is exactly one root, wherever in its proved error bounds each
+    coefficient of the series lies (A^2 of the root is within 10^-digits, relative). reason : if not certified, the inequality
+    that failed.
+    """
+
+    certified: bool
+    radius: Mapping[int, Any]  # mpf: doubles end at 1e-308
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class QTorus(QuasiPeriodic):
+    """The quasi-periodic solution Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)), truncated at `order`.
+
+    Made by `solve_amplitudes`. amplitudes, phases : by seed; phases in radians. frequency_order : truncation of the
+    frequency series that gave the amplitudes; order : truncation of the coordinates. history : amplitudes by frequency
+    order. root_residual : largest |omega_q - truncated series|. certificate : whether the root is proved to exist (series with
+    digits only). warnings : reasons to doubt that this is a torus.
+    """
+
+    series: LindstedtSeries = field(repr=False)
+    amplitudes: Mapping[int, Any]
+    phases: Mapping[int, Any]
+    frequency_order: int
+    order: int
+    history: Mapping[int, tuple[Any, ...]] = field(repr=False, default_factory=dict)
+    root_residual: float = 0.0
+    certificate: RootCertificate | None = None
+    warnings: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        places = self.digits or 12
+        amplitudes = ", ".join(f"A_{q}={text(a, places)}" for q, a in self.amplitudes.items())
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        proof = "" if self.certificate is None else ", certified" if self.certificate.certified else ", not certified"
+        doubts = "".join(f"; {warning}" for warning in self.warnings)
+        return (
+            f"QTorus({chain}, {amplitudes}, frequency order {self.frequency_order}, order {self.order}, "
+            f"H={float(self.energy()):.10g}, residual {self.residual():.2g}{proof}{doubts})"
+        )
+
+    @property
+    def chain(self) -> Chain:  # type: ignore[override]
+        """The chain."""
+        return self.series.chain
+
+    @property
+    def seeds(self) -> tuple[int, ...]:  # type: ignore[override]
+        """The seed modes."""
+        return self.series.seeds
+
+    @property
+    def frequencies(self) -> tuple[Fraction, ...]:  # type: ignore[override]
+        """The chosen frequency of every seed."""
+        assert self.series.frequencies is not None
+        return self.series.frequencies
+
+    @property
+    def digits(self) -> int | None:  # type: ignore[override]
+        """Digits of all results; None for doubles."""
+        return self.series.digits
+
+    def doubted(self, warnings: tuple[str, ...]) -> QTorus:
+        """The same torus with warnings; what was computed of it is kept."""
+        torus = replace(self, warnings=warnings)
+        if "_terms" in self.__dict__:
+            torus.__dict__["_terms"] = self.__dict__["_terms"]
+        return torus
+
+    @cached_property
+    def _terms(self) -> tuple[Ints, Numbers]:
+        """Harmonics (H, s) and cosine coefficients (H, N-1), all orders summed."""
+        amplitudes = [self.amplitudes[q] for q in self.seeds]
+        with self._context():
+            parts = [self.series.harmonic_terms(amplitudes, k) for k in range(self.order + 1)]
+            keys = np.concatenate([self.series.grading.harmonic_keys(nu) for nu, _ in parts])
+            _, first, index = np.unique(keys, return_index=True, return_inverse=True)
+            values = self.numbers.zeros((len(first), self.chain.N - 1))
+            at = 0
+            for nu, part in parts:
+                values[index[at : at + len(nu)]] += part
+                at += len(nu)
+        return np.concatenate([nu for nu, _ in parts])[first], values
+
+    @property
+    def harmonics(self) -> Ints:  # type: ignore[override]
+        """The harmonics nu of the solution, one of each pair +-nu; shape (H, s)."""
+        return self._terms[0]
+
+    @property
+    def cosines(self) -> Numbers:  # type: ignore[override]
+        """The coefficients c_q[nu] of cos(nu.theta) in Q_q; shape (H, N-1)."""
+        return self._terms[1]

@@ -1,0 +1,133 @@
+"""Breathers of a given energy against the exact potentials of one mode, and where the family ends."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.breathers.at_energy import NoBreatherAtEnergy, breather_at_energy
+from symfpu.breathers.balance import NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+
+ALPHA = Chain(N=32, alpha="0.33")
+
+# The energy is met to rounding; its relative change is twice that of the amplitude.
+ENERGY = 1e-13
+
+# Frequencies: rounding of sigma and of the energy, both relative.
+FREQUENCY = 1e-12
+
+
+def potential(chain, seed):
+    """Coefficients of x^2, x^3, x^4 of H on one exact mode, from the sums of powers of cos(q (j + 1/2) pi / N) over the bonds.
+
+    Squares give N/2. Cubes: -N/4 for 2N/3, else 0 (for N/3 by pairs; then alpha excites 2N/3, and the mode is exact in beta only).
+    Fourth powers: N/4 for N/2, 3N/8 for N/3 and 2N/3.
+    """
+    N, Omega = mpmath.mpf(chain.N), chain.linear_frequency(seed)
+    alpha, beta = (mpmath.mpf(c.numerator) / c.denominator for c in (chain.alpha, chain.beta))
+    cubes = -N / 4 if 3 * seed == 2 * chain.N else 0
+    fourth = N / 4 if 2 * seed == chain.N else 3 * N / 8
+    scale = mpmath.sqrt(2 / N) * Omega
+    return Omega**2 / 2, alpha / 3 * scale**3 * cubes, beta / 4 * scale**4 * fourth
+
+
+def frequency_at(coefficients, energy):
+    """omega of x'' = -V'(x) at an energy: the period by the trapezoidal rule in the phase between the turning points."""
+    a, b, c = coefficients
+    roots = mpmath.polyroots([c, b, a, 0, -energy] if c else [b, a, 0, -energy] if b else [a, 0, -energy], maxsteps=200, extraprec=200)
+    real = [mpmath.re(x) for x in roots if abs(mpmath.im(x)) < mpmath.mpf("1e-20")]
+    top, bottom = min(x for x in real if x > 0), max(x for x in real if x < 0)
+    others = [x for x in roots if abs(x - top) > mpmath.mpf("1e-15") and abs(x - bottom) > mpmath.mpf("1e-15")]
+    points, total = 200, mpmath.mpf(0)
+    for k in range(points):
+        x = (top + bottom) / 2 + (top - bottom) / 2 * mpmath.cospi(2 * (k + mpmath.mpf(1) / 2) / points)
+        total += 1 / mpmath.sqrt(2 * mpmath.re(mpmath.fprod(x - other for other in others)) * (c or b or a))
+    return points / total
+
+
+CASES = (
+    (Chain(4, alpha=1), 2, "0.8"),  # stays harmonic
+    (Chain(4, alpha=1, beta="0.5"), 2, "0.8"),
+    (Chain(6, beta=1), 2, "1.5"),
+    (Chain(6, beta="-0.3"), 3, "0.3"),
+    (Chain(6, beta=1), 4, "2"),
+    (Chain(6, alpha="0.4"), 4, "2"),
+    (Chain(9, alpha="0.4", beta="0.2"), 6, "1"),
+)
+
+
+@pytest.mark.parametrize(("chain", "seed", "energy"), CASES, ids=repr)
+def test_one_mode_has_the_frequency_of_its_potential(chain, seed, energy):
+    with mpmath.workdps(30):
+        omega = frequency_at(potential(chain, seed), mpmath.mpf(energy))
+    orbit = breather_at_energy(chain, seed, energy)
+    assert orbit.energy == pytest.approx(float(energy), rel=ENERGY)
+    assert float(orbit.frequency) == pytest.approx(float(omega), rel=FREQUENCY)
+    others = np.delete(np.arange(chain.N - 1), seed - 1)
+    assert orbit.cosines[:, others] == pytest.approx(0, abs=1e-13)
+    assert orbit.residual < 1e-12
+
+
+def test_the_energies_of_the_paper_lead_back_to_its_frequencies():
+    orbit = periodic_orbit(ALPHA, 25, "1.8830741847088537")
+    found = breather_at_energy(ALPHA, 25, orbit.energy)
+    assert float(found.frequency) == pytest.approx(1.8830741847088537, abs=1e-15)
+    assert found.amplitude == pytest.approx(orbit.amplitude, rel=1e-12)
+    assert found.iterations >= 1
+
+
+def test_harmonic_energy_is_another_member():
+    chain = Chain(8, alpha="0.4", beta="0.1")
+    total, harmonic = breather_at_energy(chain, 3, "0.4"), breather_at_energy(chain, 3, "0.4", harmonic=True)
+    assert total.energy == pytest.approx(0.4, rel=ENERGY)
+    assert harmonic.harmonic_energy == pytest.approx(0.4, rel=ENERGY)
+    assert harmonic.energy != pytest.approx(0.4, rel=1e-3)
+
+
+def test_a_member_nearby_is_enough():
+    chain = Chain(8, alpha="0.4", beta="0.1")
+    member = breather_at_amplitude(chain, 3, "-0.8")
+    found = breather_at_energy(chain, 3, 1.01 * member.energy, guess=member)
+    assert found.energy == pytest.approx(1.01 * member.energy, rel=ENERGY)
+    assert found.amplitude < 0
+    with pytest.raises(NoPeriodicOrbit):
+        breather_at_energy(chain, 3, 1e6 * member.energy, guess=member)
+    for guess in (member.cosines, breather_at_amplitude(chain, 2, "0.1"), breather_at_amplitude(Chain(8, alpha="0.4"), 3, "0.1")):
+        with pytest.raises(InputError, match=r"^guess = "):
+            breather_at_energy(chain, 3, 1, guess=guess)
+
+
+def test_the_family_ends_at_the_barrier_of_its_potential():
+    """V = a x^2 + b x^3 of mode 2N/3 in alpha: no oscillation above the maximum of V, 4 a^3 / (27 b^2)."""
+    chain = Chain(6, alpha="0.4")
+    a, b, _ = (float(value) for value in potential(chain, 4))
+    barrier = 4 * a**3 / (27 * b**2)
+    with pytest.raises(NoBreatherAtEnergy, match=r"the family from rest was followed over 0 \.\. .* ended because: ") as failure:
+        breather_at_energy(chain, 4, "50")
+    error = failure.value
+    assert 0.97 * barrier < error.reached < barrier
+    assert (error.seed, error.energy, error.harmonic) == (4, 50.0, False)
+    assert error.reason
+    member = breather_at_energy(chain, 4, error.reached)
+    assert float(member.frequency) == pytest.approx(error.frequency, rel=1e-9)
+    assert member.amplitude == pytest.approx(error.amplitude, rel=1e-9)
+
+
+@pytest.mark.parametrize("energy", [0, -1, "one", float("inf")])
+def test_energies_that_select_no_orbit_are_refused(energy):
+    with pytest.raises(InputError, match=r"^energy = "):
+        breather_at_energy(ALPHA, 1, energy)
+
+
+def test_other_bad_input_is_refused():
+    with pytest.raises(InputError, match=r"^seeds = "):
+        breather_at_energy(ALPHA, 0, "0.1")
+    with pytest.raises(InputError, match=r"^harmonic = "):
+        breather_at_energy(ALPHA, 1, "0.1", harmonic="yes")
+
+
+def test_solutions_of_negative_squared_frequency_are_no_orbits():
+    """cosh solves the same equations; a soft mode at an amplitude beyond its barrier."""
+    with pytest.raises(NoPeriodicOrbit):
+        breather_at_amplitude(Chain(6, beta=-1), 4, "1.5")

@@ -1,0 +1,203 @@
+"""Periodic orbits against independent numbers, an elliptic oscillator, integration over a period, and where they must fail."""
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from symfpu.breathers.balance import Balance, NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
+from tests.oracles.oscillators import cubic_oscillator, duffing
+from tests.reference import PERIODIC_ORBITS
+from tests.tolerances import DIFFERENCE, PERIODIC_ORBIT
+
+ALPHA = Chain(N=32, alpha="0.33")
+FIG9 = "0.09844127049688513"
+
+# Newton ends at steps of 1e-14; small divisors, some 1e-4, magnify the rounding of the equations.
+RESIDUAL = 1e-12
+
+# DOP853 at rtol 1e-13 over one period; the breathers are stable, so that errors grow linearly.
+RETURN = 1e-12
+
+# sigma is rounded once, A^2 is about proportional to it; the digits of the oracle are more.
+ELLIPTIC = 1e-13
+
+# Central differences of second order with step h = 6e-4 of rates about 1: h^2 / 6, for a few harmonics.
+CENTRAL = 1e-6
+
+CASES = (
+    (Chain(N=6, alpha="0.25", beta="0.3"), 4, "0.3"),
+    (Chain(N=5, beta="-0.3"), 4, "0.3"),
+    (Chain(N=8, alpha="-0.4"), 2, "0.5"),
+    (Chain(N=9, alpha=1), 3, "-0.3"),
+    (Chain(N=2, alpha=1, beta=1), 1, "0.5"),
+    (ALPHA, 1, "1.27"),
+)
+
+
+def after_one_period(orbit):
+    chain, Q = orbit.chain, orbit.positions(0.0)
+    start = np.concatenate([Q, np.zeros_like(Q)])
+
+    def field(t, y):
+        return np.concatenate([y[len(Q) :], chain.accelerations(y[: len(Q)])])
+
+    period = 2 * np.pi / float(orbit.frequency)
+    end = solve_ivp(field, (0, period), start, method="DOP853", rtol=1e-13, atol=1e-16).y[:, -1]
+    return np.max(np.abs(end - start)) / np.max(np.abs(start))
+
+
+@pytest.mark.parametrize("known", PERIODIC_ORBITS, ids=lambda known: f"seed {known.seed}")
+def test_independent_numbers(known):
+    orbit = periodic_orbit(Chain(known.N, alpha=known.alpha), known.seed, known.frequency)
+    assert orbit.frequency == Fraction(known.frequency)
+    assert orbit.amplitude == pytest.approx(known.amplitude, rel=PERIODIC_ORBIT)
+    assert orbit.energy == pytest.approx(known.energy, rel=PERIODIC_ORBIT)
+    assert orbit.residual < RESIDUAL
+
+
+@pytest.mark.parametrize(("chain", "seed", "amplitude"), CASES, ids=repr)
+def test_the_orbit_closes(chain, seed, amplitude):
+    orbit = breather_at_amplitude(chain, seed, amplitude)
+    assert orbit.amplitude == pytest.approx(float(amplitude), rel=1e-15)
+    assert orbit.residual < RESIDUAL
+    assert after_one_period(orbit) < RETURN
+
+
+@pytest.mark.parametrize(("N", "seed"), [(2, 1), (4, 2), (6, 4), (9, 3)])
+def test_one_mode_of_beta_is_the_duffing_oscillator(N, seed):
+    """N/2, 2N/3 and N/3: x'' + Omega^2 x + (beta / 2N) Omega^4 C_qqqq x^3 = 0, solved by elliptic functions; large swing."""
+    chain = Chain(N, beta="0.5")
+    with mpmath.workdps(30):
+        squared = chain.linear_frequency(seed) ** 2
+        omega, amplitude = duffing(squared, mpmath.mpf("0.5") / (2 * N) * squared**2 * chain.C(*[seed] * 4), mpmath.mpf(1))
+        orbit = periodic_orbit(chain, seed, mpmath.nstr(omega, 25))
+        assert orbit.frequency == Fraction(mpmath.nstr(omega, 25))
+        assert abs(orbit.amplitude / amplitude - 1) < ELLIPTIC
+        assert abs(float(breather_at_amplitude(chain, seed, float(amplitude)).frequency) / omega - 1) < ELLIPTIC
+    others = np.delete(np.arange(N - 1), seed - 1)
+    assert np.all(orbit.cosines[:, others] == pytest.approx(0, abs=ELLIPTIC))
+
+
+def test_a_small_shift_of_the_frequency_loses_no_digits():
+    """The Duffing oscillator at a swing of 1e-3: omega - Omega is 1e-7, of which the difference of doubles has 9 digits."""
+    chain = Chain(2, beta="0.5")
+    with mpmath.workdps(30):
+        squared = chain.linear_frequency(1) ** 2
+        omega, amplitude = duffing(squared, squared**2 / 8 * chain.C(1, 1, 1, 1), mpmath.mpf("0.001"))
+        assert abs(periodic_orbit(chain, 1, mpmath.nstr(omega, 29)).amplitude / amplitude - 1) < ELLIPTIC
+
+
+def test_two_thirds_of_alpha_is_the_cubic_oscillator():
+    """x'' + Omega^2 x + (alpha / sqrt(2N)) Omega^3 B_qqq x^2 = 0, solved by quadrature; it has a harmonic zero."""
+    chain, seed = Chain(6, alpha="0.4"), 4
+    with mpmath.workdps(30):
+        Omega = chain.linear_frequency(seed)
+        quadratic = mpmath.mpf("0.4") / mpmath.sqrt(12) * Omega**3 * chain.B(seed, seed, seed)
+        omega, amplitude = cubic_oscillator(Omega**2, quadratic, mpmath.mpf("0.5"))
+        orbit = periodic_orbit(chain, seed, mpmath.nstr(omega, 25))
+        assert abs(abs(orbit.amplitude) / abs(amplitude) - 1) < ELLIPTIC
+    assert abs(orbit.cosines[0, seed - 1]) > 0.01
+
+
+def test_the_matrix_of_newtons_method_is_the_derivative():
+    balance = Balance(Chain(7, alpha="0.3", beta="0.2"), 2, 5)
+    z = np.random.default_rng(1).normal(scale=0.3, size=len(balance.n) + 1)
+    h = 1e-3  # central differences of a cubic polynomial: the error is h^2 times the third derivative, removed by a second h
+    slopes = [
+        np.array([balance.system(z + k * h * unit)[0] - balance.system(z - k * h * unit)[0] for unit in np.eye(len(z))]).T / (2 * k * h)
+        for k in (1, 2)
+    ]
+    assert balance.system(z)[1] == pytest.approx((4 * slopes[0] - slopes[1]) / 3, abs=DIFFERENCE)
+
+
+def test_the_breather_of_figure_9():
+    """The printed A = 1.3009 at this frequency is a root of a truncated series; the orbit has another, and A = 1.3009 another frequency."""
+    orbit = periodic_orbit(ALPHA, 1, FIG9)
+    assert orbit.amplitude == pytest.approx(1.27153895251, abs=1e-10)
+    assert orbit.energy == pytest.approx(0.014318397381, abs=1e-11)
+    printed = breather_at_amplitude(ALPHA, 1, "1.3009149083500795")
+    assert float(printed.frequency) == pytest.approx(0.09845654289692, abs=1e-13)
+    assert printed.energy == pytest.approx(0.015239087871, abs=1e-11)
+    assert after_one_period(orbit) < RETURN
+    assert periodic_orbit(ALPHA, 1, FIG9, printed.cosines).amplitude == pytest.approx(orbit.amplitude, rel=PERIODIC_ORBIT)
+
+
+def test_the_walk_stays_on_the_family():
+    """At A = 3 Newton's method from the linear mode falls onto a branch in resonance, mode 17 at harmonic 15, omega = 0.09874."""
+    assert float(breather_at_amplitude(ALPHA, 1, 3).frequency) == pytest.approx(0.0999729484, abs=1e-10)
+
+
+@pytest.fixture(scope="module")
+def orbit():
+    return breather_at_amplitude(Chain(8, alpha="0.4", beta="0.1"), 3, "0.8")
+
+
+def test_energy_is_conserved_and_averages_are_those_of_a_period(orbit):
+    chain, period = orbit.chain, 2 * np.pi / float(orbit.frequency)
+    t = period * np.arange(4 * len(orbit.cosines)) / (4 * len(orbit.cosines))
+    Q, P = orbit.positions(t), orbit.momenta(t)
+    assert chain.energy(Q, P) == pytest.approx(orbit.energy, rel=RESIDUAL)
+    assert orbit.average_spectrum() == pytest.approx(chain.harmonic_energies(Q, P).mean(axis=0), rel=1e-12)
+    assert orbit.harmonic_energy == pytest.approx(chain.harmonic_energies(Q[0], P[0]).sum(), rel=1e-14)
+    assert orbit.harmonic_energy != pytest.approx(orbit.energy, rel=1e-3)
+    assert Q.shape == P.shape == (len(t), 7)
+    h = 1e-4 * period
+    assert (orbit.positions(1 + h) - orbit.positions(1 - h)) / (2 * h) == pytest.approx(orbit.momenta(1.0), abs=CENTRAL)
+
+
+def test_repr_is_an_answer(orbit):
+    assert repr(orbit).startswith("PeriodicOrbit(N=8, alpha=0.4, beta=0.1, seed 3, omega=")
+    assert ", A=0.8, H=" in repr(orbit)
+
+
+@pytest.mark.parametrize("search", [periodic_orbit, breather_at_amplitude])
+@pytest.mark.parametrize("seed", [0, 32, 1.5, "1"])
+def test_seeds_outside_the_chain_are_refused(search, seed):
+    with pytest.raises(InputError, match=r"^seeds = "):
+        search(ALPHA, seed, "0.1")
+    with pytest.raises(InputError, match=r"^seeds = "):
+        search(ALPHA, seed, "0.1", np.ones((2, 31)))
+
+
+@pytest.mark.parametrize("number", [0, "one", float("nan")])
+def test_numbers_that_select_no_orbit_are_refused(number):
+    with pytest.raises(InputError, match=r"^frequency = "):
+        periodic_orbit(ALPHA, 1, number)
+    with pytest.raises(InputError, match=r"^amplitude = "):
+        breather_at_amplitude(ALPHA, 1, number)
+
+
+@pytest.mark.parametrize("guess", ["x", 1.0, np.ones((1, 31)), np.ones((3, 30)), np.zeros((2, 31)), np.full((2, 31), np.nan)])
+def test_bad_guesses_are_refused(guess):
+    with pytest.raises(InputError, match=r"^guess = "):
+        periodic_orbit(ALPHA, 1, FIG9, guess)
+
+
+def test_more_unknowns_than_memory_are_refused():
+    with pytest.raises(InputError, match="cut the guess"):
+        periodic_orbit(ALPHA, 1, FIG9, np.ones((1000, 31)))
+
+
+def test_the_wrong_side_of_the_linear_frequency_has_no_amplitude():
+    with pytest.raises(NoRealAmplitude, match="A_1"):
+        periodic_orbit(ALPHA, 1, "0.097")
+    with pytest.raises(UndeterminedAmplitudes):
+        periodic_orbit(Chain(2, alpha=1), 1, "1.4")
+
+
+@pytest.mark.parametrize("scale", [1e-6, 40.0, 1e200])
+def test_a_search_that_fails_carries_its_best_iterate(scale):
+    guess = np.zeros((3, 31))
+    guess[1, 0] = scale
+    guess[2, 1] = -scale
+    with pytest.raises(NoPeriodicOrbit, match="start from a guess nearer") as failure:
+        periodic_orbit(ALPHA, 1, FIG9, guess)
+    assert failure.value.seed == 1
+    assert failure.value.iterate.shape[1] == 31
+    assert failure.value.frequency == pytest.approx(float(FIG9), rel=1e-15)
+    assert not failure.value.residual < 1e-6

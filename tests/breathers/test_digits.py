@@ -1,0 +1,141 @@
+"""Orbits of many digits against orbits in doubles, an elliptic oscillator, and their own residual at other points."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.breathers import digits as digits_module
+from symfpu.breathers.balance import NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
+from symfpu.breathers.digits import Sweeps, periodic_orbit_digits
+from symfpu.breathers.fixed_force import FixedForce
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from tests.oracles.oscillators import duffing
+
+ALPHA = Chain(N=32, alpha="0.33")
+
+# The orbit in doubles, relative to its largest coefficient: its Newton steps end at 1e-14, small divisors magnify rounding.
+DOUBLES = 1e-13
+
+# The elliptic oracle has 30 digits.
+ORACLE = mpmath.mpf("1e-27")
+
+CASES = (
+    (ALPHA, 1, "0.0981410995944860", 100),
+    (ALPHA, 25, "1.8830741847088537", 100),
+    (Chain(8, alpha="0.4", beta="0.1"), 3, "1.13", 60),
+    (Chain(7, beta="-0.3"), 2, "0.86", 40),
+    (Chain(2, alpha=1, beta=1), 1, "1.5", 20),
+)
+
+
+@pytest.mark.parametrize(("chain", "seed", "frequency", "digits"), CASES, ids=repr)
+def test_the_digits_continue_those_of_doubles(chain, seed, frequency, digits):
+    orbit = periodic_orbit(chain, seed, frequency)
+    precise = periodic_orbit_digits(orbit, digits)
+    assert precise.frequency == Fraction(frequency)
+    assert precise.digits == digits
+    rounded = precise.cosines[: len(orbit.cosines)].astype(float)
+    assert rounded == pytest.approx(orbit.cosines, abs=DOUBLES * np.max(np.abs(orbit.cosines)))
+    assert precise.bound < mpmath.mpf(10) ** -digits
+    assert 0 < precise.residual(3) < mpmath.mpf(10) ** (-digits - 5)  # at angles where nothing was collocated
+    assert np.max(np.abs(precise.cosines[-1])) < mpmath.mpf(10) ** (-digits - 5)
+
+
+def test_the_bound_is_above_the_residual_and_sees_a_wrong_digit():
+    orbit = breather_at_amplitude(Chain(6, alpha="0.4", beta="0.2"), 5, "0.6")
+    precise = periodic_orbit_digits(orbit, 30)
+    t = np.linspace(0, 2 * np.pi / float(orbit.frequency), 1001)
+    largest = np.max(np.abs(orbit.chain.accelerations(orbit.positions(t))))
+    assert replace(precise, digits=80).residuals(7).max() < precise.bound * largest < 1e-40
+    with mpmath.workdps(60):
+        sweeps = Sweeps(orbit, 60, None)
+    sweeps.converge()
+    sweeps.c[3, 4] += sweeps.size >> 100  # a digit in the 30th place
+    with mpmath.workdps(60):
+        spoilt = sweeps.result(30, 1)
+    assert 1e-31 < spoilt.bound < 1e-27
+    assert 1e-31 < spoilt.residuals(7).max() < spoilt.bound * largest
+
+
+def test_duffing_to_many_digits():
+    """N/2 of beta at large swing: amplitude and frequency by elliptic functions, each found from the other."""
+    chain = Chain(4, beta="0.5")
+    with mpmath.workdps(40):
+        squared = chain.linear_frequency(2) ** 2
+        omega, amplitude = duffing(squared, mpmath.mpf("0.5") / 8 * squared**2 * chain.C(2, 2, 2, 2), mpmath.mpf(1))
+        texts = mpmath.nstr(omega, 29), mpmath.nstr(amplitude, 29)
+        by_frequency = periodic_orbit_digits(periodic_orbit(chain, 2, texts[0]), 30)
+        assert abs(by_frequency.amplitude / amplitude - 1) < ORACLE
+        by_amplitude = periodic_orbit_digits(breather_at_amplitude(chain, 2, texts[1]), 30, amplitude=texts[1])
+        assert abs(mpmath.mpf(by_amplitude.frequency.numerator) / by_amplitude.frequency.denominator / omega - 1) < ORACLE
+        assert abs(by_amplitude.amplitude - mpmath.mpf(texts[1])) < mpmath.mpf("1e-38")
+        assert not by_amplitude.cosines[:, [0, 2]].any()
+
+
+def test_frequency_and_amplitude_lead_to_the_same_member():
+    orbit = breather_at_amplitude(Chain(8, alpha="0.4"), 3, "0.5")
+    first = periodic_orbit_digits(orbit, 50, amplitude="0.5")
+    again = periodic_orbit_digits(orbit, 40, frequency=first.frequency)
+    with mpmath.workdps(60):
+        assert abs(again.amplitude - mpmath.mpf("0.5")) < mpmath.mpf("1e-38")
+        assert first.energy() == pytest.approx(again.energy(), rel=1e-15)
+
+
+def test_a_small_block_of_the_matrix_reaches_the_same_digits(monkeypatch):
+    """High harmonics by their diagonal alone: more sweeps, the same orbit."""
+    orbit = breather_at_amplitude(Chain(8, alpha="0.4", beta="0.1"), 3, "0.8")
+    whole = periodic_orbit_digits(orbit, 60)
+    monkeypatch.setattr(digits_module, "LARGEST_BLOCK", 10)
+    part = periodic_orbit_digits(orbit, 60)
+    assert part.sweeps > whole.sweeps
+    with mpmath.workdps(80):
+        assert np.max(np.abs(part.cosines - whole.cosines)) < mpmath.mpf("1e-65")
+
+
+def test_the_fixed_force_is_that_of_the_chain():
+    chain, bits = Chain(5, alpha="0.3", beta="-0.2"), 120
+    random = np.random.default_rng(5).normal(size=(4, 4))
+    with mpmath.workdps(40):
+        force = FixedForce(chain, bits)
+        c = np.array([[force.fixed(mpmath.mpf(x)) for x in row] for row in random], dtype=object)
+        values = force.equations(c, force.fixed(mpmath.mpf("0.7")), 9).astype(float) / 2.0**bits
+    t = np.linspace(0.1, 3, 7)
+    Q = np.cos(np.outer(t, np.arange(4))) @ random
+    second = np.cos(np.outer(t, np.arange(4))) @ (0.7 * np.arange(4)[:, None] ** 2 * random)
+    assert np.cos(np.outer(t, np.arange(10))) @ values == pytest.approx(second + chain.accelerations(Q), abs=1e-13)
+
+
+def test_repr_is_an_answer():
+    text = repr(periodic_orbit_digits(periodic_orbit(ALPHA, 25, "1.8830741847088537"), 20))
+    assert text.startswith("PreciseOrbit(N=32, alpha=0.33, seed 25, omega=1.88307418470885.., A=0.051212159174019.., 20 digits, ")
+    assert "residual below " in text
+
+
+@pytest.mark.parametrize(
+    ("digits", "options", "name"),
+    [
+        (0, {}, "digits"),
+        (1001, {}, "digits"),
+        (2.5, {}, "digits"),
+        (20, {"frequency": 1, "amplitude": 1}, "frequency, amplitude"),
+        (20, {"frequency": "x"}, "frequency"),
+        (20, {"amplitude": 0}, "amplitude"),
+    ],
+)
+def test_bad_input_is_refused(digits, options, name):
+    orbit = breather_at_amplitude(Chain(4, beta=1), 2, "0.1")
+    with pytest.raises(InputError, match=rf"^{name} = "):
+        periodic_orbit_digits(orbit, digits, **options)
+    with pytest.raises(InputError, match=r"^orbit = "):
+        periodic_orbit_digits(orbit.cosines, 20)
+
+
+def test_sweeps_that_gain_nothing_are_given_up(monkeypatch):
+    orbit = breather_at_amplitude(Chain(6, alpha="0.4"), 2, "0.5")
+    monkeypatch.setattr("scipy.linalg.lu_solve", lambda matrix, values: 0 * values)
+    with pytest.raises(NoPeriodicOrbit, match="the sweeps in fixed point stop at a residual of 1e-1"):
+        periodic_orbit_digits(orbit, 30)

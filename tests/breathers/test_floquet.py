@@ -1,0 +1,134 @@
+"""Tangent maps and multipliers of breathers against integrated variations, linear rotation, and their symmetries."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
+from symfpu.breathers.floquet import DOUBLING, ELLIPTIC, QUADRUPLE, TANGENT, TRIVIAL, floquet, monodromy
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+
+FIG7 = (Chain(N=32, alpha="0.33"), 1, "0.0981410995944860")
+
+# DOP853 at rtol 1e-13 along an unstable orbit: errors grow with the largest multiplier, here below 2, in some hundred steps.
+VARIATIONS = 1e-11
+
+# Estimated error of half a period is held to 1e-12; a period and 62 columns make some of it.
+SYMPLECTIC = 1e-11
+
+# Multipliers at amplitude 1e-4 differ from those of rest by (alpha A)^2 / N and the like, times T.
+AT_REST = 1e-7
+
+UNSTABLE = (
+    (Chain(6, beta=1), 5, "1", {TANGENT: 1}),
+    (Chain(4, alpha="0.5"), 2, "1", {DOUBLING: 1}),
+    (Chain(6, alpha="0.5"), 3, "1", {QUADRUPLE: 1}),
+    (Chain(8, alpha="0.5", beta="0.25"), 2, "1.5", {DOUBLING: 1}),
+)
+
+
+def variations(orbit):
+    """M by DOP853 of the motion and its variations from the initial state, in modes, without the tables of the orbit."""
+    chain, n = orbit.chain, orbit.chain.N - 1
+    basis = chain.stretches(np.eye(n))  # row q: stretches by a unit of mode q
+
+    def field(t, y):
+        state = y.reshape(2 * n, 2 * n + 1)
+        r = chain.stretches(state[:n, 0])
+        slopes = 1 + 2 * float(chain.alpha) * r + 3 * float(chain.beta) * r**2
+        force = -(basis * slopes) @ (basis.T @ state[:n])
+        force[:, 0] = chain.accelerations(state[:n, 0])
+        return np.vstack([state[n:], force]).reshape(-1)
+
+    start = np.column_stack([np.append(orbit.positions(0.0), np.zeros(n)), np.eye(2 * n)])
+    period = 2 * np.pi / float(orbit.frequency)
+    return solve_ivp(field, (0, period), start.reshape(-1), "DOP853", rtol=1e-13, atol=1e-14).y[:, -1].reshape(2 * n, -1)[:, 1:]
+
+
+def nearest(values, others):
+    """Largest distance of a value from its nearest partner in others."""
+    return max(np.min(np.abs(np.asarray(others) - value)) for value in values)
+
+
+@pytest.mark.parametrize(("chain", "seed", "amplitude", "instabilities"), UNSTABLE, ids=repr)
+def test_unstable_orbits_agree_with_integrated_variations(chain, seed, amplitude, instabilities):
+    orbit = breather_at_amplitude(chain, seed, amplitude)
+    result, M = floquet(orbit), variations(orbit)
+    assert result.instabilities == instabilities
+    assert not result.stable
+    assert result.largest > 1.01
+    assert result.monodromy == pytest.approx(M, abs=VARIATIONS)
+    off = np.abs(np.abs(result.multipliers) - 1) > 1e-3
+    assert nearest(result.multipliers[off], np.linalg.eigvals(M)) < 1e-9
+    assert result.largest == pytest.approx(np.max(np.abs(np.linalg.eigvals(M))), rel=1e-9)
+
+
+@pytest.mark.parametrize("case", [FIG7, (Chain(8, alpha="0.4", beta="0.1"), 3, "1.13"), (Chain(6, beta=1), 5, "2.3")], ids=repr)
+def test_the_map_is_symplectic_and_reversible_and_has_the_pairs(case):
+    orbit = periodic_orbit(*case)
+    result = floquet(orbit)
+    n, M = orbit.chain.N - 1, result.monodromy
+    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    R = np.diag(np.repeat([1.0, -1.0], n))
+    assert result.symplecticity == np.max(np.abs(M.T @ J @ M - J))
+    assert result.symplecticity < SYMPLECTIC
+    twice_reversed = R @ M @ R @ M
+    assert twice_reversed == pytest.approx(np.eye(2 * n), abs=SYMPLECTIC)
+    assert np.linalg.det(M) == pytest.approx(1, abs=SYMPLECTIC)
+    assert result.pairs.prod(axis=1) == pytest.approx(np.ones(n), abs=1e-15)
+    assert result.pairs.shape == (n, 2)
+    sums = np.trace(M), np.trace(M @ M)
+    assert [result.multipliers.sum(), (result.multipliers**2).sum()] == pytest.approx(sums, abs=1e-10)
+    assert monodromy(orbit) == pytest.approx(M, abs=0)
+
+
+def test_the_trivial_pair_is_the_flow():
+    """M carries (P, -dH/dQ) to itself: the unstable double eigenvalue of M costs half the digits, the pair here none."""
+    result = floquet(periodic_orbit(*FIG7))
+    flow = np.append(np.zeros(31), result.orbit.chain.accelerations(result.orbit.positions(0.0)))
+    assert np.linalg.norm(result.monodromy @ flow - flow) < 1e-11 * np.linalg.norm(flow)
+    assert result.kinds[0] == TRIVIAL
+    assert result.pairs[0].tolist() == [1, 1]
+    assert result.trivial_error < 1e-12
+    assert result.kinds.count(TRIVIAL) == 1
+
+
+@pytest.mark.parametrize("chain", [Chain(9, alpha="0.3"), Chain(9, beta="0.3")], ids=repr)
+def test_small_orbits_have_the_multipliers_of_rest(chain):
+    orbit = breather_at_amplitude(chain, 2, "1e-4")
+    result = floquet(orbit)
+    angles = np.delete(chain.frequencies(), 1) * 2 * np.pi / float(orbit.frequency)
+    assert result.stable
+    assert result.largest == 1
+    assert set(result.kinds[1:]) == {ELLIPTIC}
+    expected = np.concatenate([np.exp(1j * angles), np.exp(-1j * angles)])
+    assert nearest(expected, result.multipliers) < AT_REST
+    assert nearest(result.multipliers[2:], expected) < AT_REST
+
+
+def test_stability_is_lost_once_as_the_amplitude_grows():
+    chain = Chain(6, beta=1)
+    verdicts = [floquet(breather_at_amplitude(chain, 5, A)).stable for A in ("0.3", "0.6", "0.9", "1.2", "1.5")]
+    assert verdicts == sorted(verdicts, reverse=True)
+    assert verdicts[0]
+    assert not verdicts[-1]
+
+
+def test_a_chain_of_one_particle_has_the_trivial_pair_only():
+    result = floquet(breather_at_amplitude(Chain(2, beta=1), 1, "0.5"))
+    assert result.multipliers.tolist() == [1, 1]
+    assert result.stable
+
+
+def test_the_answer_is_in_the_repr():
+    stable, unstable = floquet(breather_at_amplitude(Chain(4, beta=1), 2, "0.1")), floquet(breather_at_amplitude(*UNSTABLE[0][:3]))
+    assert repr(stable).startswith("Floquet(N=4, beta=1, seed 2, omega=1.4")
+    assert ", stable, largest |multiplier| 1, symplecticity error " in repr(stable)
+    assert ", unstable: 1 real > 0, largest |multiplier| 1.201" in repr(unstable)
+
+
+@pytest.mark.parametrize("function", [floquet, monodromy])
+def test_what_is_no_orbit_is_refused(function):
+    with pytest.raises(InputError, match=r"^orbit = .*periodic_orbit"):
+        function(np.ones((3, 5)))

@@ -1,0 +1,275 @@
+"""Bundles: one clear line for every file that is not one, is damaged, or lies."""
+# ruff: noqa: F811 (pytest passes fixtures by name)
+
+import hashlib
+import io
+import json
+import os
+import pickle
+import random
+import struct
+import tracemalloc
+import zipfile
+
+import numpy as np
+import pytest
+import symengine as se
+
+from symfpu.bundles.bundle import BundleError, load, save
+from symfpu.proofs.certificates import prove_propagation
+from symfpu.series.lindstedt import lindstedt
+from tests.bundles.test_bundle import ALPHA, digest, healthy, opened, same  # noqa: F401 (a fixture)
+
+
+def refused(path, data):
+    """Whether these bytes are refused, by one line that names the file; else what they load as."""
+    path.write_bytes(data)
+    try:
+        return load(path)
+    except BundleError as error:
+        line, shown = str(error), error.__cause__ or (error.__context__ and not error.__suppress_context__)
+    assert line.startswith(f"{path} ")
+    assert "\n" not in line
+    assert not shown  # no traceback of a library above ours
+    return None
+
+
+def test_no_truncated_file_loads(healthy, tmp_path):
+    _, data = healthy
+    for length in [*range(0, len(data), 23), *range(len(data) - 120, len(data))]:
+        assert refused(tmp_path / "cut", data[:length]) is None
+
+
+def test_flipped_bits_and_overwritten_bytes_are_found(healthy, tmp_path):
+    """Most are refused; those in fields of the archive that nobody reads change nothing."""
+    bundle, data = healthy
+    source, found = random.Random(5), 0
+    for trial in range(1000):
+        bad, at = bytearray(data), source.randrange(len(data))
+        if trial % 2:
+            bad[at] ^= 1 << source.randrange(8)
+        else:
+            bad[at : at + source.randrange(1, 40)] = source.randbytes(source.randrange(40))
+        result = refused(tmp_path / "bad", bytes(bad))
+        found += result is None
+        assert result is None or same(result, bundle)
+    assert found > 900
+
+
+def test_every_bit_of_the_directory_may_flip(healthy, tmp_path):
+    """The part that claims sizes, names and methods."""
+    bundle, data = healthy
+    for at in range(data.index(b"PK\x01\x02"), len(data)):
+        for bit in range(8):
+            result = refused(tmp_path / "bad", data[:at] + bytes([data[at] ^ 1 << bit]) + data[at + 1 :])
+            assert result is None or same(result, bundle)
+
+
+def foreign(kind, path):
+    if kind == "certificate":
+        prove_propagation(8, (1, 4), 2).write(path)
+    elif kind == "npz":
+        with path.open("wb") as stream:
+            np.savez(stream, coordinates=np.zeros(3))
+    elif kind == "other zip":
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("bundle.json", "[]")
+    else:
+        contents = {"empty": b"", "text": b"Q = 1\n", "pickle": pickle.dumps({"format": "symfpu bundle"}), "PK only": b"PK\x03\x04"}
+        path.write_bytes(contents[kind])
+
+
+@pytest.mark.parametrize("kind", ["certificate", "npz", "other zip", "empty", "text", "pickle", "PK only"])
+def test_foreign_files_are_refused(kind, tmp_path):
+    foreign(kind, tmp_path / "file")
+    with pytest.raises(BundleError, match="is damaged" if kind == "PK only" else "is not a symfpu bundle"):
+        load(tmp_path / "file")
+
+
+def test_files_that_cannot_be_read_are_errors_of_the_system(tmp_path):
+    for path in (tmp_path / "missing", tmp_path):
+        with pytest.raises(OSError, match=path.name):
+            load(path)
+
+
+def forged(path, change):
+    """Rewrite a bundle after change(members, body), all digests made right again."""
+    members, body = opened(path)
+    change(members, body)
+    for name in body["arrays"]:
+        if f"{name}.npy" in members:
+            body["arrays"][name] = hashlib.sha256(members[f"{name}.npy"]).hexdigest()
+    members["bundle.json"] = json.dumps(body | {"digest": digest({k: v for k, v in body.items() if k != "digest"})}).encode()
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+    return path
+
+
+def numpy_file(array):
+    stream = io.BytesIO()
+    np.save(stream, array)
+    return stream.getvalue()
+
+
+class Bomb:
+    def __reduce__(self):
+        return os.mkdir, ("executed",)
+
+
+CHANGES = {
+    "newer": (lambda m, b: b.update(schema=2), r"newer symfpu \(schema 2; this one reads 1\); update symfpu"),
+    "newer without a digest": (lambda m, b: b.update(schema=7, arrays={}), "newer symfpu"),
+    "schema 0": (lambda m, b: b.update(schema=0), "schema"),
+    "schema as text": (lambda m, b: b.update(schema="1"), "schema"),
+    "foreign format": (lambda m, b: b.update(format="another"), "is not a symfpu bundle"),
+    "missing array": (lambda m, b: m.pop("corrections.npy"), "corrections"),
+    "undeclared array": (lambda m, b: b["arrays"].pop("corrections"), "corrections"),
+    "extra member": (lambda m, b: m.update(readme=b"x"), "readme"),
+    "missing key": (lambda m, b: b["series"].pop("unit"), "unit"),
+    "pickled objects": (lambda m, b: m.update({"coordinates.npy": numpy_file(np.array([Bomb()], dtype=object))}), "coordinates"),
+    "other dtype": (
+        lambda m, b: m.update({"corrections.npy": numpy_file(np.zeros(4, dtype=np.int64))}),
+        "is not an array of 4 numbers <f8",
+    ),
+    "other shape": (lambda m, b: m.update({"coordinates.npy": numpy_file(np.zeros(999))}), "coordinates.npy holds 8120 bytes where"),
+    "huge order": (lambda m, b: b["series"].update(order=10**18), "more rows than the file holds"),
+    "huge chain": (lambda m, b: b["series"].update(N=10**18), "coordinates"),
+    "no chain": (lambda m, b: b["series"].update(N=1), "N = 1"),
+    "no coupling": (lambda m, b: b["series"].update(alpha="0"), "alpha, beta"),
+    "zero denominator": (lambda m, b: b["series"].update(alpha="1/0"), "ZeroDivisionError"),
+    "code for a number": (lambda m, b: b["series"].update(alpha="__import__('os').mkdir('executed')"), "is no exact number"),
+    "long power": (lambda m, b: b["series"].update(alpha="1e999999999"), "is no exact number"),
+    "seed outside": (lambda m, b: b["series"].update(seeds=[1, 8]), "seeds"),
+    "seeds out of order": (lambda m, b: b["series"].update(seeds=[2, 1]), "do not go together"),
+    "frequency missing": (lambda m, b: b["series"].update(frequencies=["0.4"]), "do not go together"),
+    "negative frequency": (lambda m, b: b["series"].update(frequencies=["0.4", "-0.8"]), "do not go together"),
+    "no frequencies": (lambda m, b: b["series"].update(frequencies=None), "do not fit"),
+    "unknown ring": (lambda m, b: b["series"].update(ring="octonions", frequencies=None), "octonions"),
+    "amplitude of no seed": (lambda m, b: b["torus"].update(amplitudes={"1": "0.1", "3": "0.1"}), "seeds"),
+    "amplitude of code": (lambda m, b: b["torus"]["amplitudes"].update({"1": {"exact": "exit()"}}), "is no binary number"),
+    "order of the torus": (lambda m, b: b["torus"].update(order=4), "no torus of order 4"),
+    "frequency order": (lambda m, b: b["torus"].update(frequency_order=4), "no torus"),
+    "verdict as text": (lambda m, b: b.update(verdict="good"), "is damaged"),
+}
+
+
+@pytest.mark.parametrize("case", CHANGES)
+def test_forged_files_are_refused(case, healthy, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "forged").write_bytes(healthy[1])
+    change, message = CHANGES[case]
+    forged(tmp_path / "forged", change)
+    with pytest.raises(BundleError, match=message):
+        load(tmp_path / "forged")
+    assert os.listdir() == ["forged"]
+
+
+def test_what_a_later_version_adds_to_the_same_schema_is_ignored(healthy, tmp_path):
+    def change(members, body):
+        body["news"] = body["series"]["news"] = body["torus"]["news"] = 1
+        members["news.npy"], body["arrays"]["news"] = numpy_file(np.zeros(3)), ""
+
+    bundle, data = healthy
+    (tmp_path / "later").write_bytes(data)
+    assert same(load(forged(tmp_path / "later", change)), bundle)
+
+
+def test_changes_without_the_digest_are_found(healthy, tmp_path):
+    """The archive's own checksums are right, as after a careless edit."""
+    for name in ("bundle.json", "coordinates.npy"):
+        (tmp_path / "edited").write_bytes(healthy[1])
+        members, _ = opened(tmp_path / "edited")
+        old, new = (b'"0.3"', b'"0.4"') if name == "bundle.json" else (members[name][-8:], b"12345678")
+        members[name] = members[name].replace(old, new)
+        with zipfile.ZipFile(tmp_path / "edited", "w") as archive:
+            for member, data in members.items():
+                archive.writestr(member, data)
+        with pytest.raises(BundleError, match="does not match its digest"):
+            load(tmp_path / "edited")
+
+
+def test_a_member_may_occur_once(healthy, tmp_path):
+    (tmp_path / "twice").write_bytes(healthy[1])
+    with pytest.warns(UserWarning, match="Duplicate"), zipfile.ZipFile(tmp_path / "twice", "a") as archive:
+        archive.writestr("coordinates.npy", b"another")
+    with pytest.raises(BundleError, match="a member occurs twice"):
+        load(tmp_path / "twice")
+
+
+@pytest.mark.parametrize(
+    ("nodes", "message"),
+    [
+        ([["sum", 1, 1], ["number", "1"]], "before its parts"),
+        ([["number", "1"], ["sum", -1, -1]], "before its parts"),
+        ([["eval", "exit()"]], "before its parts"),
+        ([["eval"]], "KeyError 'eval'"),
+        ([["number", "1"]], "is none of the expressions"),
+    ],
+)
+def test_forged_expressions_are_refused(nodes, message, tmp_path):
+    path = save(tmp_path / "symbolic", lindstedt(ALPHA, (1, 2), order=2))
+    with pytest.raises(BundleError, match=message):
+        load(forged(path, lambda m, b: b["series"].update(expressions=nodes)))
+
+
+def test_compressions_that_inflate_without_a_bound_are_refused(healthy, tmp_path):
+    (tmp_path / "bzip2").write_bytes(healthy[1])
+    members, _ = opened(tmp_path / "bzip2")
+    with zipfile.ZipFile(tmp_path / "bzip2", "w", zipfile.ZIP_BZIP2) as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+    with pytest.raises(BundleError, match="is compressed by method 12"):
+        load(tmp_path / "bzip2")
+
+
+def test_names_of_symbols_are_only_names(tmp_path):
+    path = save(tmp_path / "symbolic", lindstedt(ALPHA, (1,), order=1))
+    renamed = forged(
+        path,
+        lambda m, b: b["series"].update(expressions=[[k, "exit()" if k == "symbol" else v, *r] for k, v, *r in b["series"]["expressions"]]),
+    )
+    assert se.Symbol("exit()") in load(renamed).series.coordinates[1][-1, 1].free_symbols
+
+
+def memory_of(action):
+    tracemalloc.start()
+    try:
+        with pytest.raises(BundleError) as refusal:
+            action()
+        return tracemalloc.get_traced_memory()[1], str(refusal.value)
+    finally:
+        tracemalloc.stop()
+
+
+def test_claims_and_bombs_allocate_nothing(healthy, tmp_path):
+    """A member of 200 MB in 200 kB; a header for 10^15 numbers; sizes that the directory makes up."""
+    path, size = tmp_path / "bomb", struct.pack("<I", len(opened_bytes(healthy[1], "coordinates.npy")))
+    header = numpy_file(np.zeros(0)).replace(b"(0,), }" + b" " * 14, b"(1000000000000000,), }"[:21])
+    cases = [{"coordinates.npy": numpy_file(np.zeros(25_000_000))}, {"coordinates.npy": header}]
+    for members in cases:
+        path.write_bytes(healthy[1])
+        forged(path, lambda m, b, members=members: m.update(members))
+        assert memory_of(lambda: load(path))[0] < 10_000_000
+    directory = healthy[1].index(b"PK\x01\x02")
+    at = healthy[1].index(size, directory)
+    path.write_bytes(healthy[1][:at] + struct.pack("<I", 2**31) + healthy[1][at + 4 :])
+    peak, message = memory_of(lambda: load(path))
+    assert peak < 10_000_000
+    assert "claims 2147483648 bytes" in message
+
+
+def opened_bytes(data, name):
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        return archive.read(name)
+
+
+def test_a_file_larger_than_the_memory_is_refused(healthy, tmp_path, monkeypatch):
+    class Memory:
+        available = 10_000
+
+    monkeypatch.setattr("psutil.virtual_memory", Memory)
+    result = tmp_path / "large"
+    result.write_bytes(healthy[1])
+    with pytest.raises(BundleError, match=r"needs [\d,]+ bytes of memory, 10,000 are free; close other programs"):
+        load(result)

@@ -1,0 +1,113 @@
+"""symfpu gali: keys of the JSON, table and pictures, and bad input."""
+
+import csv
+import json
+
+import pytest
+
+from symfpu.bundles.bundle import save
+from symfpu.chain.chain import Chain
+from symfpu.cli.main import main
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    """A breather of mode 4 in a beta chain of eight bonds."""
+    path = tmp_path_factory.mktemp("gali") / "breather.symfpu"
+    series = lindstedt(Chain(8, beta=1), (4,), ("1.44",), 6)
+    save(path, solve_amplitudes(series))
+    return path
+
+
+def run(capsys, *argv):
+    code = main(list(argv))
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_json_has_slopes_and_dimension(capsys, kept):
+    code, out, err = run(capsys, "gali", str(kept), "--time", "5e4", "--vectors", "4", "--json")
+    record = json.loads(out)
+    assert (code, err) == (0, "")
+    assert list(record["slopes"]) == ["2", "3", "4"]
+    for k, slope in record["slopes"].items():
+        assert slope["value"] == pytest.approx(1 - int(k), abs=0.25)
+        assert 0 < slope["error"] < 0.25
+    assert (record["dimension"], record["verdict"]) == (1, "regular, dimension 1")
+    assert (record["N"], record["beta"], record["seeds"], record["time"]) == (8, "1", [4], 50000.0)
+
+
+def test_a_folder_gets_the_table_and_the_pictures(capsys, kept, tmp_path):
+    out_folder = tmp_path / "out"
+    code, out, err = run(capsys, "gali", str(kept), "--time", "1000", "--samples", "64", "-o", str(out_folder))
+    assert (code, err) == (0, "")
+    assert out.startswith("verdict: ")
+    assert "Lyapunov exponent" in out
+    named = out.splitlines()[-1].removeprefix(f"written: {out_folder}: ").split(", ")
+    assert sorted(named) == sorted(path.name for path in out_folder.iterdir())
+    assert all(path.stat().st_size > 1000 for path in out_folder.iterdir())
+    with (out_folder / "gali.csv").open() as stream:
+        head, *rows = csv.reader(stream)
+    assert head == ["t", *(f"log10 GALI_{k}" for k in range(2, 8)), "lyapunov"]
+    assert float(rows[-1][0]) == 1000.0
+    assert all(len(row) == 8 for row in rows)
+
+
+def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, kept, tmp_path):
+    words = ("gali", str(kept), "--samples", "64", "--vectors", "3", "--checkpoint", str(tmp_path / "run"), "--json")
+    first, second = (run(capsys, *words, "--time", "200") for _ in range(2))
+    assert first == second
+    assert first[0] == 0
+    begun = (tmp_path / "run").stat().st_mtime_ns
+    code, out, err = run(capsys, *words, "--time", "300")
+    assert (code, out) == (2, "")
+    assert "a checkpoint of the same alignment indices (steps is 500 in it, 750 here)" in err
+    assert (tmp_path / "run").stat().st_mtime_ns == begun
+    code, out, err = run(capsys, "gali", str(tmp_path / "run"), "--time", "200")
+    assert (code, out) == (1, "")
+    assert "is a checkpoint of alignment indices" in err
+
+
+def test_an_estimate_grows_with_the_time_and_computes_nothing(capsys, kept, tmp_path):
+    words = ("gali", str(kept), "--estimate", "-o", str(tmp_path / "out"))
+    code, out, err = run(capsys, *words, "--time", "1e11")
+    assert (code, err) == (0, "")
+    assert out.startswith("about ")
+    assert "hours" in out
+    short, long = (json.loads(run(capsys, *words, "--json", "--time", time)[1])["seconds"] for time in ("1e6", "1e9"))
+    assert long / short == pytest.approx(1000, rel=0.9)
+    assert not (tmp_path / "out").exists()
+    assert run(capsys, *words, "--time", "5")[0] == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--time", "long"], "time = 'long'"),
+        (["--time", "5"], "T = 5.0"),
+        (["--time", "1000", "--vectors", "99"], "vectors = 99"),
+        (["--time", "1000", "--step", "0"], "step = 0.0"),
+    ],
+)
+def test_bad_input_is_one_line(capsys, kept, words, message):
+    code, out, err = run(capsys, "gali", str(kept), *words)
+    assert (code, out) == (2, "")
+    assert len(err.splitlines()) == 1
+    assert message in err
+
+
+def test_a_file_without_a_torus_is_refused(capsys, tmp_path):
+    path = tmp_path / "series.symfpu"
+    save(path, lindstedt(Chain(8, beta=1), (4,), ("1.44",), 2))
+    code, out, err = run(capsys, "gali", str(path), "--time", "1000")
+    assert (code, out) == (2, "")
+    assert "a file with a torus in it" in err
+
+
+def test_help_has_an_example(capsys):
+    code, out, err = run(capsys, "gali", "--help")
+    assert (code, err) == (0, "")
+    assert "Example: symfpu gali" in out
+    assert "--json" in out

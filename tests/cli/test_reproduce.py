@@ -1,0 +1,177 @@
+"""symfpu reproduce: report, pictures and data of every panel; long runs that are stopped and go on; bad arguments."""
+
+import csv
+import json
+from functools import partial
+
+import numpy as np
+import pytest
+
+from symfpu.cli.main import main
+from symfpu.dynamics.alignment import alignment_indices
+from symfpu.errors import SymfpuError
+from symfpu.figures.panels import VERDICTS
+from symfpu.localization.spectra import NoRecurrence, fpu_trajectory, packet_amplitudes
+from symfpu.paper import dimensions, fig2_fig3, targets
+from symfpu.paper.starts import printed_row
+from tests.paper.cases import shorter_figure_9
+
+LONG = 1e3  # in place of 1e9
+RUNS = {"every": 0.0}  # a checkpoint at every look
+
+
+def run(capsys, *argv):
+    code = main(["reproduce", *argv])
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def strict(text):
+    def refuse(word):
+        raise AssertionError(word)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+@pytest.fixture
+def short(monkeypatch):
+    monkeypatch.setattr(fig2_fig3, "TIME", 2e3)
+    shorter_figure_9(monkeypatch)
+
+
+def test_reproduce_writes_claims_pictures_and_data(short, capsys, tmp_path):
+    code, out, err = run(capsys, "section5", "fig6", "fig3", "-o", str(tmp_path))
+    assert (code, err) == (0, "")
+    panels = ("fig3a", "fig3b", "fig6a", "fig6b", "fig6c")
+    expected = {f"{panel}.{suffix}" for panel in panels for suffix in ("png", "pdf", "csv")}
+    assert {path.name for path in tmp_path.iterdir()} == expected | {"report.md", "report.json"}
+    page = (tmp_path / "report.md").read_text()
+    record = strict((tmp_path / "report.json").read_text())
+    claims = [claim for part in (record["section5"], record["fig3"], record["fig6"]["judged"]) for claim in part["claims"]]
+    counts = {verdict: sum(claim["verdict"] == verdict for claim in claims) for verdict in VERDICTS}
+    summary = ", ".join(f"{n} {verdict}" for verdict, n in counts.items() if n)
+    assert f"## Claims\n\n{summary}.\n" in page
+    assert all(page.count(f"({panel}.png)") == 1 for panel in panels)
+    assert all(len(row) == 7 for row in cells(page, "| section |"))
+    assert all(claim["ours"] in out and f"{claim['verdict']}: section {claim['section']}, {claim['text']}" in out for claim in claims)
+    assert out.splitlines()[-1].endswith("report.json, fig3a, fig3b, fig6a..c as PNG, PDF and CSV")
+    header, *rows = csv.reader((tmp_path / "fig3a.csv").read_text().splitlines())
+    assert header == ["curve", "t", "average_energy_over_H"]
+    assert len({name for name, _, _ in rows}) == 31
+
+
+def cells(page, header):
+    """Rows of all tables with this header, split where a cell ends."""
+    lines = page.replace(r"\|", "").splitlines()
+    starts = [i for i, line in enumerate(lines) if line.startswith(header)]
+    return [line.split("|") for i in starts for line in lines[i : i + 3]]
+
+
+def test_json_is_strict_and_alone_on_standard_output(capsys, tmp_path):
+    code, out, err = run(capsys, "section5", "-o", str(tmp_path), "--json")
+    assert (code, err) == (0, "")
+    assert strict(out) == strict((tmp_path / "report.json").read_text())
+    assert list(strict(out)) == ["section5"]
+
+
+def test_a_target_that_fails_loses_nothing_of_those_before(monkeypatch, capsys, tmp_path):
+    def lost(folder, step, *, full=False):
+        raise NoRecurrence(1e4, 0.9)
+
+    monkeypatch.setitem(targets.TARGETS, "fig9", lost)
+    code, out, err = run(capsys, "fig9", "fig6", "-o", str(tmp_path))
+    assert (code, out) == (1, "")
+    assert "no recurrence" in err
+    assert "Fig. 6" in (tmp_path / "report.md").read_text()
+    assert list(strict((tmp_path / "report.json").read_text())) == ["fig6"]
+
+
+@pytest.fixture
+def full(short, monkeypatch):
+    monkeypatch.setattr(dimensions, "FULL_TIME", LONG)
+    monkeypatch.setattr(targets, "draw_panels", lambda figure, folder: [])  # pictures of these panels are drawn in other tests
+    monkeypatch.setattr(dimensions, "alignment_indices", partial(alignment_indices, **RUNS))
+
+
+def test_full_says_how_long_and_goes_on_where_it_was_stopped(full, monkeypatch, capsys, tmp_path):
+    """Stopped after a third by the interrupt key; the second run starts there, and ends in the bits of one that was never stopped."""
+    fractions = []
+
+    def watched(stop_at, *given, progress, **options):
+        def hear(label, done):
+            fractions.append(done)
+            progress(label, done)
+            if done > stop_at:
+                raise KeyboardInterrupt
+
+        return alignment_indices(*given, progress=hear, **options, **RUNS)
+
+    monkeypatch.setattr(dimensions, "alignment_indices", partial(watched, 1 / 3))
+    code, out, err = run(capsys, "fig9", "--full", "-o", str(tmp_path))
+    assert (code, out) == (130, "")
+    assert "--full, about: fig9 0.0 h; stopped and started again, alignment indices go on from" in err
+    assert str(tmp_path) in err
+    assert err.splitlines()[-1] == "symfpu: interrupted"
+    assert [path.name for path in tmp_path.iterdir()] == ["fig9-gali.checkpoint"]
+    reached = max(fractions)
+    fractions.clear()
+    monkeypatch.setattr(dimensions, "alignment_indices", partial(watched, 2.0))
+    code, out, err = run(capsys, "fig9", "--full", "-o", str(tmp_path), "--json")
+    assert code == 0
+    assert list(strict(out)) == ["fig9"]
+    assert min(fractions) > 0.9 * reached > 0.3
+    row = printed_row("Fig. 9")
+    start = fpu_trajectory(row.chain, packet_amplitudes(row.chain, (1,), row.energy))
+    whole = alignment_indices(row.chain, *start, LONG, vectors=7, step=dimensions.GALI_STEP)
+    rows = [line for line in csv.reader((tmp_path / "fig9d.csv").read_text().splitlines()) if line[0] == "G_7"]
+    assert [float(value) for _, _, value in rows] == whole.log10_gali[:, -1].tolist()
+
+
+def test_a_checkpoint_of_another_run_is_refused_by_name(tmp_path):
+    file = tmp_path / "fig9-gali.checkpoint"
+    file.write_bytes(b"something else")
+    with pytest.raises(SymfpuError, match=r"fig9-gali\.checkpoint"):
+        dimensions.indices("fig9", (np.ones(31), np.zeros(31)), print, tmp_path, full=True)
+    assert file.read_bytes() == b"something else"
+
+
+@pytest.mark.parametrize(
+    ("argv", "named"),
+    [
+        (["fig3", "fig0"], "fig0"),
+        (["all", "nosuch"], "nosuch"),
+        (["fig3", "--full"], "fig1, fig2, fig9"),
+        (["section5", "fig6", "--full"], "leave out"),
+    ],
+)
+def test_bad_arguments_compute_nothing(monkeypatch, capsys, tmp_path, argv, named):
+    code, out, err = run(capsys, *argv, "-o", str(tmp_path / "new"))
+    assert (code, out, len(err.splitlines())) == (2, "", 1)
+    assert named in err
+    assert not (tmp_path / "new").exists()
+
+
+def test_targets_are_done_once_and_in_order_of_the_paper(monkeypatch, capsys, tmp_path):
+    done = []
+    page = targets.Page({}, "## page\n")
+    for name in targets.TARGETS:
+        monkeypatch.setitem(targets.TARGETS, name, lambda folder, step, *, full=False, name=name: done.append((name, full)) or page)
+    assert run(capsys, "fig9", "table", "fig9", "-o", str(tmp_path))[0] == 0
+    assert done == [("table", False), ("fig9", False)]
+    done.clear()
+    monkeypatch.setattr("symfpu.cli.reproduce.full_estimate", lambda chosen, folder: ", ".join(chosen))
+    monkeypatch.setattr("symfpu.cli.reproduce._print_rows", lambda rows, lines: None)
+    assert run(capsys, "all", "--full", "-o", str(tmp_path))[0] == 0
+    assert done == [(name, True) for name in targets.TARGETS]
+
+
+def test_the_estimate_names_what_takes_long(monkeypatch, tmp_path):
+    monkeypatch.setattr(targets, "full_seconds", lambda figure: {"fig1": 3600.0, "fig2": 7200.0, "fig9": 9000.0}[figure])
+    assert targets.full_estimate(["fig2", "fig3", "fig9"], tmp_path).startswith("--full, about: fig2 2.0 h, fig9 2.5 h; stopped")
+    assert targets.full_estimate(["table"], tmp_path) == "--full, about: table 10 minutes"
+    assert set(targets.FULL) == {"table", *dimensions.VECTORS}
+
+
+def test_the_estimate_is_that_of_the_figure_s_own_chain():
+    """Seven vectors cost more than five, N = 32 more than N = 16: times in the ratio of the work, to a factor of two."""
+    assert 1.0 < dimensions.full_seconds("fig2") / dimensions.full_seconds("fig1") < 4.0

@@ -1,0 +1,668 @@
+"""Families of tori against orbits found one by one, exact oscillators and located events; stopped, killed, damaged and gone on with."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from functools import lru_cache
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+from numpy.polynomial import Chebyshev
+
+from symfpu.breathers.at_energy import breather_at_energy
+from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
+from symfpu.breathers.floquet import floquet
+from symfpu.chain.chain import Chain
+from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
+from symfpu.families import events
+from symfpu.families.continuation import first_torus
+from symfpu.families.family import Family, NotInFamily, family
+from symfpu.files.archive import BundleError
+from symfpu.refinement.tori import NoTorus, RefinedTorus, refine_at_energy, shifts_of
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
+from tests.bundles.test_bundle import same
+from tests.oracles.oscillators import cubic_oscillator
+
+# `family` asks for 1e-13; small divisors and other times between the grid points leave some of it.
+RESIDUAL = 1e-12
+
+# Two solvers of one orbit, each to its rounding over the smallest divisor, some 1e-4.
+SAME_ORBIT = 1e-11
+
+# Ratios are conditions of Newton's method, met to the rounding of doubles of the coefficients.
+RATIO = 1e-12
+
+# The shift is known to 1e-18, some 1e-11 of itself; the place of its minimum to the root of that at worst, in relation to H.
+FOLD = 1e-6
+
+# The oracle has 48 harmonics of dt/dphi; the 48th of the slowest orbit looked at leaves some 3e-12 of the amplitude.
+OSCILLATOR = 1e-11
+
+# Energies of located resonances, relative; Newton's method solves for the divisor itself, to some 1e-15.
+LOCATED = 1e-8
+
+# A step of at most 0.6 in ln A, thus 1.2 in ln H, is halved eight times.
+STABILITY = 0.01
+
+ROUND = Chain(8, alpha="0.4", beta="0.1")
+PAIR = Chain(8, alpha="0.3")
+WIDE = Chain(6, alpha="0.4")
+LOOP = Chain(16, beta=1)
+LONG = Chain(32, alpha="0.33")
+HARD = Chain(16, beta="0.5")
+BARRIER = Chain(3, alpha="0.5")
+
+
+@lru_cache
+def breathers():
+    return family(ROUND, (3,), "0.5", from_energy="0.01")
+
+
+@lru_cache
+def folded():
+    return family(PAIR, (1, 2), "0.05", from_energy="0.001")
+
+
+@lru_cache
+def resonant():
+    return family(LONG, (1,), "0.05", from_energy="0.004")
+
+
+@lru_cache
+def destabilised():
+    return family(HARD, (15,), "1.6", from_energy="0.01", multipliers=True)
+
+
+def omega(member, place=0):
+    return float(member.torus.frequencies[place])
+
+
+def energies(found):
+    return np.array([m.energy for m in found.members])
+
+
+@pytest.mark.parametrize("found", [breathers, folded, resonant, destabilised])
+def test_a_family_reaches_its_energy_with_tori_only(found):
+    """It ends at the first member beyond; every member solves the equations of motion, also at other times than its own."""
+    result, goal = found(), {breathers: 0.5, folded: 0.05, resonant: 0.05, destabilised: 1.6}[found]
+    assert energies(result)[-1] >= goal > energies(result)[:-1].max()
+    assert result.ending == "reached the energy asked for"
+    for m in result.members:
+        assert m.verdict == "torus"
+        assert m.residual < RESIDUAL
+        assert m.torus.residual(23) < RESIDUAL
+        assert m.energy == pytest.approx(float(m.torus.energy()), rel=1e-15)
+        assert m.harmonic_energy == pytest.approx(float(m.torus.harmonic_energies().sum()), rel=1e-15)
+    assert f"{len(result.members)} members, H = " in repr(result)
+
+
+def test_it_begins_where_it_is_asked_to():
+    """The linear estimate of the energy, right up to the next power of the amplitude; by default a thousandth of the goal."""
+    begun = family(ROUND, (3,), "0.5", members=1)
+    assert begun.members[0].energy == pytest.approx(0.0005, rel=1e-3)
+    assert begun.ending == "was left after 1 members, the most asked for"
+    assert breathers().members[0].energy == pytest.approx(0.01, rel=0.02)
+
+
+def test_members_are_the_breathers_of_harmonic_balance():
+    for m in breathers().members:
+        (amplitude,) = m.amplitudes.values()
+        orbit = breather_at_amplitude(ROUND, 3, amplitude)
+        assert omega(m) == pytest.approx(float(orbit.frequency), rel=SAME_ORBIT)
+        assert m.energy == pytest.approx(orbit.energy, rel=SAME_ORBIT)
+        assert m.harmonic_energy == pytest.approx(orbit.harmonic_energy, rel=SAME_ORBIT)
+        for (n,), row in zip(m.torus.harmonics, m.torus.cosines, strict=True):
+            expected = orbit.cosines[n] if n < len(orbit.cosines) else 0 * row
+            assert row == pytest.approx(expected, abs=SAME_ORBIT * amplitude)
+    last = breathers().members[-1]
+    assert periodic_orbit(ROUND, 3, last.torus.frequencies[0]).amplitude == pytest.approx(last.amplitudes[3], rel=1e3 * SAME_ORBIT)
+
+
+def averages(torus):
+    """Mode energies averaged over a grid of angles that resolves them, (N-1,): no formula of coefficients."""
+    points = 4 * np.abs(torus.harmonics).max() + 3
+    angles = 2 * np.pi * np.stack(np.meshgrid(*[np.arange(points) / points] * len(torus.seeds)), axis=-1).reshape(-1, len(torus.seeds))
+    phase = angles @ torus.harmonics.T
+    Q = np.cos(phase) @ torus.cosines
+    P = -np.sin(phase) @ ((torus.harmonics @ [float(w) for w in torus.frequencies])[:, None] * torus.cosines)
+    return torus.chain.harmonic_energies(Q, P).mean(axis=0)
+
+
+def test_members_keep_the_ratio_of_their_averaged_energies():
+    for m in folded().members[::4]:
+        mine = averages(m.torus)
+        assert mine[0] == pytest.approx(mine[1], rel=RATIO)
+        assert m.amplitudes[1] / m.amplitudes[2] != pytest.approx(2, rel=1e-4)
+
+
+@pytest.mark.parametrize("ratios", [{"amplitude_ratio": {3: "1/2", 1: 1}}, {"energy_ratio": {1: 3, 3: 1}}], ids=["amplitudes", "energies"])
+def test_members_keep_the_ratio_asked_for(ratios):
+    for m in family(Chain(6, beta="0.3"), (1, 3), "0.02", from_energy="0.01", **ratios).members:
+        if "amplitude_ratio" in ratios:
+            assert m.amplitudes[3] / m.amplitudes[1] == pytest.approx(0.5, rel=RATIO)
+        else:
+            mine = averages(m.torus)
+            assert mine[0] / mine[2] == pytest.approx(3, rel=RATIO)
+
+
+def test_the_goal_may_be_a_harmonic_energy():
+    found = family(ROUND, (3,), "0.5", from_energy="0.2", harmonic=True)
+    assert found.members[-1].harmonic_energy >= 0.5 > found.members[-2].harmonic_energy
+    assert found.members[-1].energy != pytest.approx(found.members[-1].harmonic_energy, rel=1e-3)
+
+
+def test_a_fold_of_a_frequency_is_passed_and_located():
+    """omega_2 has a minimum, seen over tori of given energies; its shift changes sign later, and the family goes on beyond both."""
+    (fold,) = folded().events
+    assert (fold.kind, fold.what) == ("fold", "omega_2")
+    near = folded().members[fold.after].torus
+
+    def shift(ln_energy):
+        return [float(shifts_of(refine_at_energy(near, float(np.exp(x)), harmonic=False, energy_ratio={1: 1, 2: 1}))[1]) for x in ln_energy]
+
+    about = np.log(0.003)
+    shifts = Chebyshev.interpolate(shift, 10, domain=(about - 0.25, about + 0.25))
+    (turn,) = [x.real for x in shifts.deriv().roots() if abs(x.imag) < 1e-9 and abs(x.real - about) < 0.25]
+    assert shifts.deriv(2)(turn) > 0
+    assert fold.energy == pytest.approx(np.exp(turn), rel=FOLD)
+    assert fold.value == pytest.approx(float(PAIR.linear_frequency(2)) + shifts(turn), abs=1e-15)
+    assert folded().members[fold.after].energy <= fold.energy <= folded().members[fold.after + 1].energy
+    signs = [float(shifts_of(m.torus)[1]) > 0 for m in folded().members]
+    assert signs == sorted(signs)
+    assert (signs[0], signs[-1]) == (False, True)
+    assert folded().members[signs.index(True)].energy > 2 * fold.energy
+
+
+def test_a_resonance_is_named_and_located():
+    """15 omega = Omega_17 on the breather of harmonic balance with the energy of the event; d(15 omega)/d ln H is some 0.005 there."""
+    event = next(e for e in resonant().events if e.kind == "resonance")
+    assert (event.mode, event.harmonic, event.interpolated) == (17, (15,), False)
+    first, second = resonant().members[event.after : event.after + 2]
+    assert first.energy < event.energy < second.energy
+    at = breather_at_energy(LONG, 1, repr(event.energy))
+    assert 15 * float(at.frequency) == pytest.approx(LONG.frequencies()[16], abs=LOCATED * 0.005)
+    assert event.value == pytest.approx(at.cosines[15, 16], rel=1e-4)
+    assert "resonance of mode 17 with harmonic (15) at H = 0.0392110" in repr(event)
+
+
+def test_a_resonance_of_two_frequencies_is_located():
+    """|12 omega_1 - 8 omega_2| = Omega_4 on the torus with the energy of the event, and not on its neighbours."""
+    found = family(WIDE, (1, 2), "0.45", from_energy="0.25", tolerance=1e-10)
+    event = next(e for e in found.events if e.kind == "resonance" and e.harmonic == (12, -8))
+    assert (event.mode, event.interpolated) == (4, False)
+
+    def divisor(torus):
+        return abs(float(12 * torus.frequencies[0] - 8 * torus.frequencies[1])) - WIDE.frequencies()[3]
+
+    at = found.at_energy(repr(event.energy), harmonic=False)
+    first, second = (divisor(m.torus) for m in found.members[event.after : event.after + 2])
+    assert first * second < 0
+    assert abs(divisor(at)) < LOCATED * abs(second - first)
+
+
+def test_a_resonance_between_the_first_members_is_found():
+    later = next(e for e in resonant().events if e.mode == 17)
+    found = family(LONG, (1,), "0.043", from_energy="0.0385", members=2)
+    assert [(e.mode, e.harmonic, e.after) for e in found.events] == [(17, (15,), 0)]
+    assert found.events[0].energy == pytest.approx(later.energy, rel=LOCATED)
+
+
+def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
+    """Where Newton's method finds no torus, or another one, the two members tell no more than that it lies between them."""
+    other = resonant().members[0].torus
+
+    def none(torus, conditions, **options):
+        raise NoTorus("tried", other, 1.0)
+
+    def another(torus, conditions, **options):
+        return other
+
+    for refined in (none, another):
+        with monkeypatch.context() as patched:
+            patched.setattr(events, "refined_torus", refined)
+            found = family(LONG, (1,), "0.05", from_energy="0.02")
+        event = next(e for e in found.events if e.mode == 17)
+        first, second = found.members[event.after : event.after + 2]
+        assert (event.mode, event.harmonic, event.interpolated) == (17, (15,), True)
+        assert first.energy < event.energy < second.energy
+        assert "at H = 0.039" in repr(event)
+        assert "(interpolated)" in repr(event)
+
+
+def test_a_family_that_comes_back_to_rest_ends_there():
+    """Mode 11 takes part on the way back, so that members of less energy and amplitude than the first are not yet those of the linear
+    limit; the last one is: the orbit of the same amplitude that harmonic balance finds from there."""
+    found = family(LOOP, (1,), "5", from_energy="0.05", tolerance=1e-10)
+    assert found.ending == "returned to the linear limit"
+    assert {e.what for e in found.events if e.kind == "fold"} == {"A_1", "omega_1", "H"}
+    first, *_, other, last = found.members
+
+    def of_the_limit(m):
+        return float(breather_at_amplitude(LOOP, 1, m.amplitudes[1]).frequency)
+
+    assert first.energy > other.energy > last.energy
+    assert first.amplitudes[1] > other.amplitudes[1] > last.amplitudes[1]
+    shift = omega(other) - LOOP.frequencies()[0]
+    assert abs(omega(other) - of_the_limit(other)) > 0.01 * shift
+    assert omega(last) == pytest.approx(of_the_limit(last), abs=1e-5 * shift)
+
+
+def test_a_beginning_beyond_the_series_is_led_up_to():
+    """At H = 0.5 Newton's method from the lowest order leads to no torus; the first members are those about it of the way from below."""
+    with pytest.raises(NoTorus):
+        first_torus(LOOP, {1: np.sqrt(2 * 0.5) / LOOP.frequencies()[0]})
+    found = family(LOOP, (1,), "0.6", from_energy="0.5", tolerance=1e-10)
+    assert found.ending == "reached the energy asked for"
+    assert found.members[0].energy < 0.5 <= found.members[1].energy
+    for m in found.members:
+        assert m.verdict == "torus"
+        assert omega(m) == pytest.approx(float(breather_at_energy(LOOP, 1, m.energy).frequency), rel=1e-8)
+
+
+@pytest.mark.long
+def test_a_beginning_that_the_family_does_not_reach_is_refused():
+    with pytest.raises(NotInFamily, match=r"no member has H = 2: .* to 0\.812.* and returned to the linear limit"):
+        family(LOOP, (1,), "5", from_energy="2", tolerance=1e-10)
+
+
+@pytest.mark.long
+def test_doubtful_members_do_not_crawl_to_a_saddle():
+    """Ever more harmonics let doubtful members follow each other by ever shorter steps; some are kept, then the family ends."""
+    found = family(BARRIER, (2,), "20", from_energy="1")
+    assert re.match(r"ended: .* steps along the way down to 0.0\d from a doubtful member$", found.ending)
+    doubtful = [m.verdict == "doubtful" for m in found.members]
+    assert doubtful == sorted(doubtful)
+    assert len(found.members) < 40
+
+
+def test_a_change_of_stability_is_located():
+    (event,) = [e for e in destabilised().events if e.kind == "stability"]
+    assert event.what == "instability (real > 0) begins"
+    assert event.energy == pytest.approx(1.3353, rel=STABILITY)
+    below, above = (floquet(breather_at_energy(HARD, 15, event.energy * (1 + d))) for d in (-STABILITY, STABILITY))
+    assert below.stable
+    assert above.instabilities == {"real > 0": 1}
+    stable = [m.multipliers.stable for m in destabilised().members]
+    assert stable == sorted(stable, reverse=True)
+    assert stable[event.after : event.after + 2] == [True, False]
+    assert ", stable" in repr(destabilised().members[0])
+    assert ", unstable" in repr(destabilised().members[-1])
+
+
+def test_a_family_turns_below_a_barrier():
+    """x'' + Omega^2 x + b x^2 = 0 has a saddle at H = Omega^6 / 6 b^2. Up to it A turns, since the orbit rests there ever longer; both,
+    and omega, are those of the exact oscillator, whose quadrature resolves 48 harmonics."""
+    found = family(BARRIER, (2,), "20", from_energy="1", members=14)
+    assert found.ending == "was left after 14 members, the most asked for"
+    with mpmath.workdps(30):
+        linear = BARRIER.linear_frequency(2)
+        quadratic = mpmath.mpf("0.5") / mpmath.sqrt(6) * linear**3 * BARRIER.B(2, 2, 2)
+        barrier = float(linear**6 / (6 * quadratic**2))
+        known = [m for m in found.members if omega(m) > 0.7]
+        for m in known:
+            rate, amplitude = cubic_oscillator(linear**2, quadratic, mpmath.mpf(float(m.torus.positions(0.0)[1])))
+            assert omega(m) == pytest.approx(float(rate), rel=OSCILLATOR)
+            assert abs(m.amplitudes[2]) == pytest.approx(abs(float(amplitude)), rel=OSCILLATOR)
+    assert barrier == pytest.approx(4)
+    assert energies(found).max() < barrier * (1 + 1e-14)
+    (turn,) = [e for e in found.events if e.kind == "fold"]
+    assert turn.what == "A_2"
+    assert [m.energy > turn.energy for m in known].count(True) >= 2
+    assert omega(found.members[-1]) < 0.6
+
+
+@pytest.mark.long
+def test_a_family_that_cannot_go_on_says_so():
+    """Towards the saddle the period grows without end, and so do the harmonics: the last ones that resolve it end the family."""
+    found = family(Chain(2, beta="-0.5"), (1,), "20", from_energy="0.1", tolerance=1e-9)
+    assert found.ending.startswith("ended: ")
+    assert re.search(r"steps along the way down to 0\.0\d+ from a doubtful member$", found.ending)
+    assert all(m.residual < 1e-6 for m in found.members)
+    assert energies(found).max() < 2
+    with pytest.raises(NotInFamily, match="ended: "):
+        found.at_energy("20", harmonic=False)
+
+
+def test_the_family_goes_on_where_its_series_ends():
+    """docs/convergence.md: orbit and fold of the fixed-frequency scheme coincide at A = 1.0812, omega = 0.098352. Before it the roots of
+    the truncated series approach the member of their frequency; behind it they do not."""
+    at = breather_at_amplitude(LONG, 1, "1.0812")
+    assert float(at.frequency) == pytest.approx(0.098352, abs=1e-6)
+    assert at.energy == pytest.approx(0.00926, abs=1e-5)
+    before = [m for m in resonant().members if m.amplitudes[1] < 0.95]
+    behind = [m for m in resonant().members if m.amplitudes[1] > 1.2]
+    assert before
+    assert behind[-1].energy >= 0.05
+
+    def missed(m, order):
+        frequency = m.torus.frequencies[0].limit_denominator(10**14)
+        try:
+            found = float(solve_amplitudes(lindstedt(LONG, (1,), (frequency,), order)).amplitudes[1])
+        except (NoRealAmplitude, DidNotConverge):
+            return np.inf
+        return abs(found / m.amplitudes[1] - 1)
+
+    assert missed(before[-1], 60) < 0.2 * missed(before[-1], 20)
+    assert all(missed(m, 60) > 0.01 for m in behind)
+
+
+def test_at_energy_is_on_the_family():
+    """Not the ratio of the nearest member's amplitudes, which changes along a family of equal energies."""
+    torus = folded().at_energy("0.02", harmonic=False)
+    mine = averages(torus)
+    assert mine[0] == pytest.approx(mine[1], rel=RATIO)
+    assert float(torus.energy()) == pytest.approx(0.02, rel=RATIO)
+    assert torus.residual() < RESIDUAL
+    harmonic = folded().at_energy("0.02", harmonic=True)
+    assert float(harmonic.harmonic_energies().sum()) == pytest.approx(0.02, rel=RATIO)
+    breather = breathers().at_energy("0.1", harmonic=False)
+    assert breather.amplitudes[3] == pytest.approx(breather_at_energy(ROUND, 3, "0.1").amplitude, rel=SAME_ORBIT)
+
+
+@pytest.mark.parametrize("energy", ["0.0001", "7"])
+def test_an_energy_beyond_reach_is_not_in_the_family(energy):
+    with pytest.raises(NotInFamily) as failure:
+        breathers().at_energy(energy, harmonic=False)
+    assert (failure.value.quantity, failure.value.value) == ("H", float(energy))
+    assert failure.value.reached == (energies(breathers()).min(), energies(breathers()).max())
+    assert type(failure.value.reached[0]) is float
+    assert failure.value.ending == "reached the energy asked for"
+    assert "follow the family further" in str(failure.value)
+
+
+def test_a_frequency_may_have_several_members():
+    """omega_2 of the folded family falls and rises again: two tori have one omega_2, with one ratio of the mode energies."""
+    family_ = folded()
+    lowest = min(float(m.torus.frequencies[1]) for m in family_.members)
+    first = float(family_.members[0].torus.frequencies[1])
+    wanted = repr((first + lowest) / 2)
+    tori = family_.at_frequency(2, wanted)
+    assert len(tori) == 2
+    for torus in tori:
+        assert float(torus.frequencies[1]) == pytest.approx(float(wanted), abs=1e-15)
+        averages = torus.average_spectrum()
+        assert torus.residual() < 1e-12
+        assert averages[1] / averages[0] == pytest.approx(1, rel=RATIO)
+    assert tori[0].energy() < tori[1].energy()
+    assert len(breathers().at_frequency(3, breathers().members[2].torus.frequencies[0])) == 1
+
+
+def test_a_frequency_beyond_reach_is_not_in_the_family():
+    with pytest.raises(NotInFamily, match=r"no member has omega_3 = 9: the family goes from .* follow the family further") as failure:
+        breathers().at_frequency(3, 9)
+    assert failure.value.quantity == "omega_3"
+    assert failure.value.reached[0] < failure.value.reached[1] < 9
+    with pytest.raises(InputError, match=r"^seed = 5"):
+        breathers().at_frequency(5, 1)
+
+
+# folders
+
+RUNS = {
+    "breather": ((ROUND, (3,), "0.1"), {"multipliers": True, "from_energy": "0.001"}),
+    "pair": ((Chain(6, beta="0.3"), (1, 3), "0.01"), {"from_energy": "0.002", "tolerance": 1e-10}),
+    "appendix-a": ((ROUND, (1, 3), "0.01"), {"method": "appendix-a", "order": 4, "from_energy": "0.002"}),
+}
+
+
+@lru_cache
+def whole(run):
+    arguments, options = RUNS[run]
+    return family(*arguments, **options)
+
+
+def alike(found, other):
+    """Members bit for bit: tori, energies, residuals, multipliers; and the events."""
+    assert len(found.members) == len(other.members)
+    for m, n in zip(found.members, other.members, strict=True):
+        if isinstance(m.torus, RefinedTorus):
+            assert same(m.torus, n.torus)
+        else:
+            assert same((m.torus.frequencies, m.torus.cosines), (n.torus.frequencies, n.torus.cosines))
+        assert (m.amplitudes, m.energy, m.harmonic_energy, m.residual, m.warnings) == (
+            n.amplitudes,
+            n.energy,
+            n.harmonic_energy,
+            n.residual,
+            n.warnings,
+        )
+        assert (m.multipliers is None) == (n.multipliers is None)
+        assert m.multipliers is None or (m.multipliers.pairs == n.multipliers.pairs).all()
+    assert found.events == other.events
+    assert found.ending == other.ending
+
+
+@pytest.mark.parametrize("run", RUNS)
+def test_a_stopped_family_goes_on_as_if_it_had_not_been(run, tmp_path):
+    arguments, options = RUNS[run]
+    for members in (1, 5):
+        part = family(*arguments, **options, members=members, folder=tmp_path)
+        assert part.ending == f"was left after {members} members, the most asked for"
+        assert len(part.members) == members
+    alike(family(*arguments, **options, folder=tmp_path), whole(run))
+    alike(family(*arguments, **options, folder=tmp_path), whole(run))
+    assert len(list(tmp_path.glob("member-*.symfpu"))) == len(whole(run).members)
+
+
+def test_a_family_goes_on_to_another_goal(tmp_path):
+    """Where it began is in the folder; a goal below what was reached needs nothing more."""
+    near = family(ROUND, (3,), "0.01", folder=tmp_path)
+    far = family(ROUND, (3,), "0.05", folder=tmp_path)
+    assert [m.energy for m in far.members[: len(near.members)]] == [m.energy for m in near.members]
+    assert far.members[-1].energy >= 0.05
+    alike(family(ROUND, (3,), "0.005", folder=tmp_path), far)
+
+
+class Killed(BaseException):
+    pass
+
+
+@pytest.mark.parametrize("moment", [0, 1, 6, 7])
+def test_a_family_stopped_while_writing_goes_on(moment, tmp_path, monkeypatch):
+    """Every member is two files put in place; before any of them."""
+    (arguments, options), replace, calls = RUNS["breather"], os.replace, iter(range(10**6))
+
+    def stopping(*paths):
+        if next(calls) == moment:
+            raise Killed
+        replace(*paths)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "replace", stopping)
+        with pytest.raises(Killed):
+            family(*arguments, **options, folder=tmp_path)
+    alike(family(*arguments, **options, folder=tmp_path), whole("breather"))
+
+
+def test_a_killed_family_goes_on(tmp_path):
+    code = (
+        "from symfpu.chain.chain import Chain; from symfpu.families.family import family\n"
+        "family(Chain(8, alpha='0.4', beta='0.1'), (3,), '0.1', multipliers=True, from_energy='0.001', folder='.')"
+    )
+    process = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(Path.cwd())})
+    while process.poll() is None and not (tmp_path / "member-0003.symfpu").exists():
+        time.sleep(0.001)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert (tmp_path / "family.json").exists()
+    arguments, options = RUNS["breather"]
+    alike(family(*arguments, **options, folder=tmp_path), whole("breather"))
+
+
+OTHERS = {
+    "N": ((Chain(9, alpha="0.4", beta="0.1"), (3,)), {}),
+    "alpha": ((Chain(8, alpha="0.3", beta="0.1"), (3,)), {}),
+    "beta": ((Chain(8, alpha="0.4", beta="0.2"), (3,)), {}),
+    "seeds": ((ROUND, (1,)), {}),
+    "start": ((ROUND, (3,)), {"from_energy": "0.002"}),
+    "order": ((ROUND, (3,)), {"method": "appendix-a", "order": 4}),
+    "multipliers": ((ROUND, (3,)), {"multipliers": False}),
+    "tolerance": ((ROUND, (3,)), {"tolerance": 1e-12}),
+    "ratio_of": ((ROUND, (3,)), {"amplitude_ratio": {3: 1}}),
+}
+
+
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("begun")
+    arguments, options = RUNS["breather"]
+    family(*arguments, **options, members=3, folder=folder)
+    return folder
+
+
+@pytest.fixture
+def copy(begun, tmp_path):
+    for file in begun.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    return tmp_path
+
+
+@pytest.mark.parametrize("differs", OTHERS)
+def test_a_folder_of_another_family_is_refused(differs, begun):
+    arguments, options = OTHERS[differs]
+    before = {file.name: file.read_bytes() for file in begun.iterdir()}
+    chosen = {"multipliers": "method" not in options, "from_energy": "0.001"} | options
+    with pytest.raises(InputError, match=rf"^folder = .*its {differs} differs"):
+        family(*arguments, "0.1", folder=begun, **chosen)
+    assert {file.name: file.read_bytes() for file in begun.iterdir()} == before
+
+
+def changed(**entries):
+    return lambda text: json.dumps(json.loads(text) | entries)
+
+
+DAMAGE = {
+    "empty": lambda text: "",
+    "half": lambda text: text[: len(text) // 2],
+    "a list": lambda text: "[]",
+    "no plan": changed(plan=None),
+    "a plan of words": changed(plan="x"),
+    "a plan without seeds": changed(plan={}),
+    "no count": changed(members=None),
+    "a step of words": changed(step="long"),
+    "events of words": changed(events=["fold"]),
+    "an event of another kind": changed(events=[{"harmonic": [1], "colour": "red"}]),
+    "no events": changed(events=None),
+}
+
+
+def test_resonances_of_older_records_are_known_to_be_interpolated(copy):
+    """Records did not say so when no resonance was located."""
+    (arguments, options), record = RUNS["breather"], json.loads((copy / "family.json").read_text())
+    fold = {"kind": "fold", "what": "H", "after": 1, "energy": 0.05, "value": 0.05, "mode": 0, "harmonic": []}
+    record["events"] = [fold, fold | {"kind": "resonance", "what": "divisor", "mode": 7, "harmonic": [5]}]
+    (copy / "family.json").write_text(json.dumps(record))
+    known = family(*arguments, **options, members=3, folder=copy).events
+    assert [(e.kind, e.interpolated) for e in known] == [("fold", False), ("resonance", True)]
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_damaged_record_is_refused(damage, copy):
+    record = copy / "family.json"
+    record.write_text(DAMAGE[damage](record.read_text()))
+    arguments, options = RUNS["breather"]
+    with pytest.raises(InputError, match=r"^folder = .*family\.json is damaged"):
+        family(*arguments, **options, folder=copy)
+
+
+def test_damaged_missing_and_foreign_members_are_refused(copy, tmp_path_factory):
+    (arguments, options), file = RUNS["breather"], copy / "member-0001.symfpu"
+    data = file.read_bytes()
+    file.write_bytes(data[: len(data) // 2])
+    with pytest.raises(BundleError, match=r"member-0001\.symfpu is damaged"):
+        family(*arguments, **options, folder=copy)
+    file.unlink()
+    with pytest.raises(InputError, match=r"^folder = .*member-0001\.symfpu"):
+        family(*arguments, **options, folder=copy)
+    other = tmp_path_factory.mktemp("other")
+    family(ROUND, (1,), "0.1", members=1, folder=other)
+    file.write_bytes((other / "member-0000.symfpu").read_bytes())
+    with pytest.raises(InputError, match=r"^folder = .*member-0001\.symfpu is another torus"):
+        family(*arguments, **options, folder=copy)
+
+
+def test_a_folder_that_is_a_file_is_refused(tmp_path):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(InputError, match=r"^folder = .*a folder that can be written"):
+        family(ROUND, (3,), "0.1", folder=tmp_path / "file")
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+# Appendix A
+
+
+def test_appendix_a_gives_series_of_growing_energy():
+    found = whole("appendix-a")
+    assert found.ending == "reached the energy asked for"
+    assert (np.diff(energies(found)) > 0).all()
+    assert energies(found)[-1] >= 0.01 > energies(found)[-2]
+    for m in found.members:
+        assert m.torus.order == 4
+        assert m.energy == pytest.approx(float(m.torus.energy()), rel=1e-15)
+        assert m.residual == m.torus.residual()
+    refined = found.at_energy("0.005", harmonic=False)
+    assert float(refined.energy()) == pytest.approx(0.005, rel=RATIO)
+
+
+def test_appendix_a_ends_honestly():
+    found = family(Chain(8, beta="0.3"), (1,), "50", method="appendix-a", order=4)
+    assert found.ending.startswith("ended: no further torus at omega_1 = ")
+    assert found.members[-1].energy < 50
+    assert found.members[-1].verdict == "doubtful"
+    assert "doubtful" in repr(found)
+
+
+BAD = {
+    "method": ({"method": "newton"}, "method"),
+    "order without": ({"method": "appendix-a"}, "order"),
+    "order with arclength": ({"order": 4}, "order"),
+    "order no integer": ({"method": "appendix-a", "order": 2.5}, "order"),
+    "multipliers with appendix-a": ({"method": "appendix-a", "order": 4, "seeds": (1,), "multipliers": True}, "multipliers"),
+    "multipliers of two seeds": ({"multipliers": True}, "multipliers"),
+    "ratio of one seed": ({"amplitude_ratio": {1: 1}}, "amplitude_ratio"),
+    "empty ratio": ({"amplitude_ratio": {}}, "amplitude_ratio"),
+    "negative ratio": ({"energy_ratio": {1: 1, 2: -1}}, "energy_ratio"),
+    "ratio of words": ({"energy_ratio": {1: 1, 2: "x"}}, "energy_ratio"),
+    "ratio of other seeds": ({"energy_ratio": {1: 1, 3: 1}}, "energy_ratio"),
+    "ratio without seeds": ({"amplitude_ratio": (1, 2)}, "amplitude_ratio"),
+    "both ratios": ({"amplitude_ratio": {1: 1, 2: 1}, "energy_ratio": {1: 1, 2: 1}}, "energy_ratio"),
+    "energies in the wrong order": ({"from_energy": "0.2"}, "from_energy"),
+    "equal energies": ({"from_energy": "0.1"}, "from_energy"),
+    "a negative beginning": ({"from_energy": -1}, "from_energy"),
+    "a beginning of words": ({"from_energy": "x"}, "from_energy"),
+    "a negative goal": ({"to_energy": -1}, "to_energy"),
+    "no goal": ({"to_energy": 0, "from_energy": "0.1"}, "to_energy"),
+    "a goal of words": ({"to_energy": "x"}, "to_energy"),
+    "a goal beyond doubles": ({"to_energy": "1e400"}, "to_energy"),
+    "a goal below doubles": ({"to_energy": "1e-400"}, "to_energy"),
+    "no members": ({"members": 0}, "members"),
+    "members no integer": ({"members": 2.5}, "members"),
+    "seed outside": ({"seeds": (1, 8)}, "seeds"),
+    "no seeds": ({"seeds": ()}, "seeds"),
+    "a seed twice": ({"seeds": (1, 1)}, "seeds"),
+    "tolerance": ({"tolerance": 2}, "tolerance"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_arguments_are_named(case):
+    changes, named = BAD[case]
+    with pytest.raises(InputError, match=rf"^{named} = "):
+        family(**({"chain": PAIR, "seeds": (1, 2), "to_energy": "0.1"} | changes))
+
+
+def test_progress_is_told():
+    lines = []
+    found = family(ROUND, (3,), "0.1", from_energy="0.05", progress=lambda label, done: lines.append((label, done)))
+    assert isinstance(found, Family)
+    assert lines[0][0].startswith("member 1: ")
+    done = [part for _, part in lines]
+    assert done == sorted(done)
+    assert 0 <= done[0] < done[-1] < 1

@@ -1,0 +1,234 @@
+"""Arrays of two precisions: how numbers are read, how dot products keep their digits, and that contexts are put back."""
+
+from decimal import Decimal
+from fractions import Fraction
+
+import flint
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from symfpu.chain.chain import Chain
+from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, ResonantDivisor
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    GUARD_DIGITS,
+    MULTIPRECISION,
+    arithmetic_of,
+    from_integers,
+    integers,
+    mpf,
+    sine_matrix,
+    text,
+)
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
+
+PRECISION = 150  # bits
+
+
+def numbers(least=-200, most=200):
+    """mpf of very different sizes, and zero."""
+    mantissas, exponents = st.integers(-(2**PRECISION), 2**PRECISION), st.integers(least, most)
+    return st.builds(lambda m, e: mpmath.mpf((int(m < 0), abs(m), e, abs(m).bit_length())) if m else mpmath.mpf(0), mantissas, exponents)
+
+
+matrices = st.integers(1, 5).flatmap(
+    lambda n: st.tuples(
+        st.lists(st.lists(numbers(), min_size=n, max_size=n), min_size=1, max_size=3),
+        st.lists(st.lists(numbers(), min_size=n, max_size=n), min_size=1, max_size=3),
+    )
+)
+
+
+@given(matrices)
+def test_dot_loses_no_digits_of_small_rows_and_columns(factors):
+    """Each entry is cut at 2^-prec of the largest of its row or column, so each sum is off by at most 5 n 2^-prec of both."""
+    left, columns = (np.array(rows, dtype=object) for rows in factors)
+    with mpmath.workprec(PRECISION):
+        ours = MULTIPRECISION.dot(left, columns.T)
+    assert ours.shape == (len(left), len(columns))
+    with mpmath.workprec(4 * PRECISION + 2000):
+        for i, row in enumerate(left):
+            for j, column in enumerate(columns):
+                allowed = 5 * len(row) * mpmath.ldexp(max(map(abs, row)) * max(map(abs, column)), -PRECISION)
+                assert abs(ours[i, j] - mpmath.fdot(row, column)) <= allowed
+
+
+def test_dot_of_rows_and_columns_of_very_different_size():
+    """A row of 1e-300 times a column of 1e300, beside a row and a column of one: every product to all digits."""
+    generator = np.random.default_rng(1)
+    with mpmath.workdps(40):
+        left = MULTIPRECISION.array(generator.random((3, 6)) + 0.5) * np.array(
+            [[mpmath.mpf(10) ** -300], [mpmath.mpf(1)], [mpmath.mpf(10) ** 250]]
+        )
+        right = MULTIPRECISION.array(generator.random((6, 2)) + 0.5) * np.array([[mpmath.mpf(10) ** 300, mpmath.mpf(10) ** -400]])
+        product = MULTIPRECISION.dot(left, right)
+        for i in range(3):
+            for j in range(2):
+                assert abs(product[i, j] / mpmath.fdot(left[i], right[:, j]) - 1) < 1e-37
+
+
+def test_dot_has_the_shapes_of_matmul():
+    with mpmath.workdps(30):
+        left, right = MULTIPRECISION.array(np.arange(24).reshape(2, 3, 4)), MULTIPRECISION.array(np.arange(20).reshape(4, 5))
+        assert MULTIPRECISION.dot(left, right).tolist() == (np.arange(24).reshape(2, 3, 4) @ np.arange(20).reshape(4, 5)).tolist()
+        assert MULTIPRECISION.dot(left[0, 0], right).shape == (5,)
+        assert MULTIPRECISION.dot(left[:0], right).shape == (0, 3, 5)
+        zeros = MULTIPRECISION.dot(left[:, :, :0], right[:0])
+        assert zeros.shape == (2, 3, 5)
+        assert all(isinstance(x, mpmath.mpf) and x == 0 for x in zeros.flat)
+
+
+@given(st.lists(st.lists(numbers(), min_size=2, max_size=2), min_size=1, max_size=4))
+def test_integers_and_back_keep_the_digits_of_the_largest(rows):
+    values = np.array(rows, dtype=object)
+    with mpmath.workprec(PRECISION):
+        table, exponents = integers(values)
+        assert table.shape == values.shape
+        assert exponents.shape == (2,)
+        back = from_integers(table, exponents)
+        for j in range(2):
+            allowed = mpmath.ldexp(max(map(abs, values[:, j])), 1 - PRECISION)
+            assert all(abs(a - b) <= allowed for a, b in zip(values[:, j], back[:, j], strict=True))
+
+
+def test_floats_are_read_by_their_shortest_decimal():
+    """0.1 means one tenth: as a float, in arrays, as text and as a fraction alike."""
+    with mpmath.workdps(50):
+        tenth = mpmath.mpf(1) / 10
+        for value in (0.1, np.float64(0.1), "0.1", Fraction(1, 10)):
+            assert mpf(value) == tenth
+        assert MULTIPRECISION.array([0.1, 3, np.int64(7)]).tolist() == [tenth, 3, 7]
+        assert mpf(mpmath.mpf(0.1)) == mpmath.mpf(0.1) != tenth  # an mpf is what it is
+        assert MULTIPRECISION.number(Fraction(1, 10)) == tenth
+        assert mpf(10**60 + 1) - mpf(10**60) in (0, 1)
+    assert DOUBLES.number(Fraction(1, 10)) == 0.1
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_every_float_comes_back(value):
+    with mpmath.workdps(30):
+        assert float(mpf(value)) == value
+        exact = Fraction(Decimal(repr(value)))
+        assert abs(mpf(value) - mpf(exact)) <= abs(mpf(exact)) * mpmath.mpf(10) ** -29
+
+
+def test_numbers_that_are_none_are_refused():
+    for value in ([1j], ["one"], [None], [[1, 2], [3]], [object()]):
+        with pytest.raises((TypeError, ValueError)):
+            MULTIPRECISION.array(value)
+
+
+def test_the_arithmetic_of_an_array_is_found():
+    assert arithmetic_of([1.0, 2.0]) is arithmetic_of(np.arange(3)) is arithmetic_of([]) is DOUBLES
+    assert arithmetic_of([mpmath.mpf(1)]) is arithmetic_of([[1.0, mpmath.mpf(2)]]) is MULTIPRECISION
+    assert arithmetic_of([Fraction(1, 2)]) is DOUBLES
+
+
+def test_functions_are_those_of_mpmath():
+    with mpmath.workdps(40):
+        values = MULTIPRECISION.array([0.3, 2, 7])
+        for ours, theirs in ((MULTIPRECISION.cos, mpmath.cos), (MULTIPRECISION.sin, mpmath.sin), (MULTIPRECISION.sqrt, mpmath.sqrt)):
+            assert ours(values).tolist() == [theirs(x) for x in values]
+        assert MULTIPRECISION.pi == mpmath.pi
+        assert MULTIPRECISION.finite(values)
+        assert not MULTIPRECISION.finite(MULTIPRECISION.array([1, "inf"]))
+        assert not MULTIPRECISION.finite(MULTIPRECISION.array([1, "nan"]))
+    assert text(values[0], 20) == "0.3"
+    assert text(1 / 3, 4) == "0.3333"
+
+
+@pytest.mark.parametrize("N", [2, 3, 7, 16])
+def test_the_sine_matrix_is_orthogonal_at_every_precision(N):
+    """Kept tables of one precision are not used at another."""
+    for digits in (20, 60, 20, 100):
+        with mpmath.workdps(digits):
+            matrix = sine_matrix(N)
+            square = MULTIPRECISION.dot(matrix, matrix)
+            assert abs(square - np.eye(N - 1).astype(int)).max() < mpmath.mpf(10) ** (2 - digits)
+
+
+def test_transforms_of_the_chain_agree_with_doubles():
+    chain = Chain(9, "0.3", "-0.2")
+    Q, P = np.random.default_rng(2).normal(size=(2, 4, 8))
+    with mpmath.workdps(40):
+        many = [f(MULTIPRECISION.array(Q)) for f in (chain.positions, chain.modes, chain.stretches, chain.accelerations)]
+        energies = [f(MULTIPRECISION.array(Q), MULTIPRECISION.array(P)) for f in (chain.energy, chain.harmonic_energies)]
+        back = chain.modes(many[0])
+        assert abs(back - MULTIPRECISION.array(Q)).max() < 1e-38
+    few = [f(Q) for f in (chain.positions, chain.modes, chain.stretches, chain.accelerations)]
+    few += [f(Q, P) for f in (chain.energy, chain.harmonic_energies)]
+    for ours, theirs in zip(many + energies, few, strict=True):
+        assert ours.shape == theirs.shape
+        assert np.allclose(ours.astype(float), theirs, rtol=1e-13, atol=1e-13)
+
+
+def refused(error, call, *arguments, **options):
+    with pytest.raises(error):
+        call(*arguments, **options)
+
+
+CHAIN = Chain(8, beta="0.3")
+
+
+@pytest.fixture(scope="module")
+def torus():
+    return solve_amplitudes(lindstedt(CHAIN, (3,), ("1.113",), 4, digits=30))
+
+
+PUBLIC = {
+    "series": lambda t: lindstedt(CHAIN, (3,), ("1.113",), 3, digits=25),
+    "resonance": lambda t: refused(ResonantDivisor, lindstedt, Chain(6, "0.1"), (1,), ("1/2",), 3, digits=25),
+    "term": lambda t: t.series.term(3, 1),
+    "coefficients": lambda t: t.series.coefficients(5, 2),
+    "frequency correction": lambda t: t.series.frequency_correction(3, 2),
+    "unknown mode": lambda t: refused(InputError, t.series.term, 9, 1),
+    "harmonic terms": lambda t: t.series.harmonic_terms([0.1], 2),
+    "bad amplitudes": lambda t: refused(Exception, t.series.harmonic_terms, ["x"], 2),
+    "frequency terms": lambda t: t.series.frequency_terms([0.1]),
+    "absolute sums": lambda t: t.series.absolute_sums(3, [0.1]),
+    "amplitudes": lambda t: solve_amplitudes(t.series),
+    "history": lambda t: amplitude_history(t.series),
+    "no real amplitude": lambda t: refused(NoRealAmplitude, solve_amplitudes, lindstedt(CHAIN, (3,), ("1.1",), 1, digits=25)),
+    "no root": lambda t: refused(DidNotConverge, solve_amplitudes, lindstedt(Chain(16, beta="0.3"), (3,), ("0.9",), 2, digits=25)),
+    "bad phase": lambda t: refused(InputError, solve_amplitudes, t.series, phases={3: "x"}),
+    "positions": lambda t: t.positions([0.0, 1.0]),
+    "momenta": lambda t: t.momenta(0.5),
+    "bad time": lambda t: refused(InputError, t.positions, "soon"),
+    "infinite time": lambda t: refused(InputError, t.momenta, float("inf")),
+    "energy": lambda t: t.energy(1.0),
+    "harmonic energies": lambda t: t.harmonic_energies(1.0),
+    "averages": lambda t: (t.average_spectrum(), t.average_spectrum(10.0)),
+    "residual": lambda t: t.residual(),
+    "text": lambda t: (repr(t), repr(t.series)),
+}
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+@pytest.mark.parametrize("digits", [15, 8, 77])
+def test_the_working_precision_is_put_back(name, digits, torus):
+    """Also after exceptions; mpmath's and python-flint's, whatever they were. Results do not depend on them."""
+    before = flint.ctx.prec
+    with mpmath.workdps(digits):
+        precision = mpmath.mp.prec
+        PUBLIC[name](torus)
+        assert (mpmath.mp.dps, mpmath.mp.prec, flint.ctx.prec) == (digits, precision, before)
+
+
+def test_results_do_not_depend_on_the_working_precision(torus):
+    for digits in (5, 15, 100):
+        with mpmath.workdps(digits):
+            again = solve_amplitudes(lindstedt(CHAIN, (3,), ("1.113",), 4, digits=30))
+            assert again.amplitudes == torus.amplitudes
+            assert (again.positions(0.3) == torus.positions(0.3)).all()
+            assert again.energy() == torus.energy()
+            assert (again.average_spectrum() == torus.average_spectrum()).all()
+            assert again.series.term(5, 2) == torus.series.term(5, 2)
+            assert again.certificate == torus.certificate
+
+
+def test_evaluations_carry_guard_digits(torus):
+    assert len(mpmath.nstr(torus.positions(0.3)[2], 60).strip("-0.")) >= 30 + GUARD_DIGITS - 2

@@ -1,0 +1,302 @@
+"""Exact tori of the printed frequencies: amplitudes by two routes, errors of the series by order and by mu, what a verdict says."""
+
+import csv
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from symfpu.breathers.balance import periodic_orbit
+from symfpu.chain.chain import Chain
+from symfpu.figures.drawing import draw_corrected
+from symfpu.paper import corrected
+from symfpu.paper.corrected import (
+    HEAVY,
+    CorrectedRow,
+    ScalingStudy,
+    SeriesErrors,
+    corrected_row,
+    corrected_rows,
+    decay,
+    left_out,
+    scaling_study,
+    series_errors,
+)
+from symfpu.paper.corrected_page import corrected_markdown, corrected_record, corrected_text, write_corrected_csv
+from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
+from symfpu.refinement.tori import refine
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
+from tests.tolerances import CONVERGED_DIGITS, RATE_OF_MU, SLOPE
+
+BY_LABEL = {row.label: row for row in (TWO_TORUS, *APPENDIX_F)}
+SMALL = replace(BY_LABEL["Fig. 7"], order=20)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """The row of Fig. 1, to order 12."""
+    return corrected_row(replace(TWO_TORUS, order=12))
+
+
+@pytest.fixture(scope="module")
+def breather():
+    return corrected_row(SMALL)
+
+
+@pytest.fixture(scope="module")
+def study(breather):
+    return scaling_study(breather.torus, "Fig. 7")
+
+
+@pytest.mark.parametrize("label", ["Fig. 7", "Fig. 8", "Fig. 9"])
+def test_a_breather_is_the_periodic_orbit(label):
+    """Two solvers: long doubles with Krylov steps, and harmonic balance in doubles."""
+    printed = replace(BY_LABEL[label], order=4)
+    row = corrected_row(printed)
+    orbit = periodic_orbit(printed.chain, printed.seeds[0], printed.frequencies[0])
+    (amplitude,) = row.torus.amplitudes.values()
+    assert amplitude == pytest.approx(orbit.amplitude, rel=CONVERGED_DIGITS)
+    assert row.energies["H"] == pytest.approx(orbit.energy, rel=CONVERGED_DIGITS)
+    assert row.energies["harmonic energy at t = 0"] == pytest.approx(orbit.harmonic_energy, rel=CONVERGED_DIGITS)
+    assert row.energies["harmonic energy, time average"] == pytest.approx(orbit.average_spectrum().sum(), rel=CONVERGED_DIGITS)
+    assert row.residual < 1e-13
+    assert row.digits == 12
+    assert row.deviations == {printed.seeds[0]: float(printed.amplitudes[0]) / amplitude - 1}
+    if label == "Fig. 9":  # docs/convergence.md, question (ii)
+        assert amplitude == pytest.approx(1.27153895251, rel=5e-12)
+
+
+def test_the_amplitudes_of_fig_1_do_not_depend_on_the_guess(pair):
+    """12 digits: another series as the guess, and another choice of harmonics."""
+    series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies, 12)
+    other = refine(solve_amplitudes(series), tolerance=1e-12)
+    assert len(other.harmonics) != len(pair.torus.harmonics)
+    assert pair.digits == 12
+    for q, a in pair.torus.amplitudes.items():
+        assert other.amplitudes[q] == pytest.approx(a, rel=CONVERGED_DIGITS)
+
+
+def test_errors_are_those_of_the_truncated_torus(pair):
+    """The table of all orders against positions of one truncated torus, at times of its own."""
+    series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies, 12)
+    cut = replace(solve_amplitudes(series, frequency_order=8, order=8), amplitudes=pair.torus.amplitudes)
+    t = np.linspace(0, 500, 400)
+    linear = TWO_TORUS.chain.frequencies()
+    apart = float((linear * np.abs(cut.positions(t) - pair.torus.positions(t))).max())
+    size = float((linear * np.abs(pair.torus.cosines)).max())
+    assert 1.0 <= apart / size / pair.errors.given[8] < 20  # a sum of coefficients in the place of the largest
+
+
+def test_errors_do_not_depend_on_the_sign_of_a_harmonic(pair):
+    """One of each pair +-nu is listed, whichever."""
+    series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies, 4)
+    signs = np.where(np.arange(len(pair.torus.harmonics)) % 2, -1, 1)[:, None]
+    turned = series_errors(series, replace(pair.torus, harmonics=signs * pair.torus.harmonics))
+    assert turned == series_errors(series, pair.torus)
+    assert turned.given[4] == pytest.approx(pair.errors.given[4], rel=CONVERGED_DIGITS)
+
+
+def test_an_exact_series_has_no_error():
+    """Fig. 8 at order 8: the torus is the series, all coefficients to rounding."""
+    row = corrected_row(replace(BY_LABEL["Fig. 8"], order=8))
+    assert row.errors.given[8] < 1e-15
+    assert row.errors.solved[8] < 1e-14
+    assert row.decays["given"].rounding
+    assert 1e-3 < row.decays["given"].factor < 1e-2
+
+
+def test_errors_of_the_amplitudes_are_those_of_the_history(breather):
+    series = lindstedt(SMALL.chain, SMALL.seeds, SMALL.frequencies, SMALL.order)
+    for K in (2, 6):
+        value = solve_amplitudes(series, frequency_order=K).amplitudes[1]
+        assert breather.errors.amplitudes[K] == abs(value / breather.torus.amplitudes[1] - 1)
+    assert 1 not in breather.errors.solved
+    assert breather.errors.solved[7] == pytest.approx(breather.errors.solved[6], rel=1e-3)  # omega^(7) is zero
+
+
+def test_fig_1_falls_to_order_9_and_then_grows(pair):
+    given = pair.decays["given"]
+    assert given.last == 9
+    assert given.least == pair.errors.given[9] < 1e-3
+    assert pair.errors.given[12] > given.least
+    assert "at order 9" in pair.verdict
+
+
+@pytest.mark.parametrize("K", [1, 2, 3, 4])
+def test_the_error_of_a_breather_falls_as_mu_to_the_next_order(study, K):
+    given, solved = study.rates[K]
+    assert given == pytest.approx(K + 1, abs=RATE_OF_MU)
+    if K == 1:
+        assert math.isnan(solved)
+    else:
+        assert solved == pytest.approx(K - K % 2, abs=RATE_OF_MU)
+
+
+def test_the_error_of_fig_1_falls_as_mu_to_the_next_order(pair, monkeypatch):
+    monkeypatch.setattr(corrected, "HALVINGS", 3)
+    rates = scaling_study(pair.torus, "Fig. 1").rates
+    assert [given for given, _ in rates.values()] == pytest.approx([2, 3, 4, 5], abs=SLOPE)
+    assert [rates[K][1] for K in (2, 3, 4)] == pytest.approx([2, 2, 4], abs=SLOPE)
+
+
+def test_a_beta_chain_is_compared_too():
+    """Its frequency series gains a term at every order."""
+    series = lindstedt(Chain(18, beta="0.6"), (3,), ("0.5251",), 6)
+    errors = series_errors(series, refine(solve_amplitudes(series)))
+    assert sorted(errors.solved) == sorted(errors.given) == sorted(errors.amplitudes) == list(range(1, 7))
+    assert errors.given[6] < errors.given[1] / 100
+
+
+GEOMETRIC = {k: 0.25**k for k in range(1, 9)}
+
+
+@pytest.mark.parametrize(
+    ("errors", "words"),
+    [
+        (GEOMETRIC, "falls by 0.25 an order to 1.5e-05 at order 8; the longest is 8"),
+        (
+            GEOMETRIC | {k: 0.25**8 * 2.0 ** (k - 8) for k in range(9, 21)},
+            "falls by 0.25 an order to 1.5e-05 at order 8, then grows, to 6.2e-02",
+        ),
+        (GEOMETRIC | dict.fromkeys(range(9, 21), 1.01 * 0.25**8), "falls by 0.25 an order to 1.5e-05 at order 8, then stays (order 20)"),
+        ({k: max(0.01**k, 1e-16) for k in range(1, 21)}, "falls by 0.01 an order and reaches rounding, 1e-16, at order 8"),
+        ({k: max(0.01**k, 1e-8 * 0.5**k) for k in range(1, 9)}, "falls by 0.061 an order (0.5 in the second half) to 3.9e-11 at order 8"),
+        ({k: 0.99**k for k in range(1, 9)}, "falls by 0.990 an order to 9.3e-01 at order 7; the longest is 8"),
+    ],
+    ids=["falling", "growing", "level", "rounding", "slower", "slow"],
+)
+def test_a_decay_says_how_far_it_goes(errors, words):
+    assert str(decay(errors)).startswith(words)
+
+
+def test_one_order_has_no_rate():
+    assert math.isnan(decay({2: 0.5}).factor)
+
+
+def test_a_rate_ignores_rounding():
+    scales = (1.0, 0.5, 0.25, 0.125)
+    given = {3: (1e-8, 1e-8 / 16, 1e-8 / 256, 5e-16), 4: (5e-16,) * 4}
+    rates = ScalingStudy("test", scales, given, {}).rates
+    assert rates[3][0] == pytest.approx(4.0)
+    assert math.isnan(rates[3][1])
+    assert math.isnan(rates[4][0])
+
+
+def test_a_row_that_takes_too_long_says_so(monkeypatch):
+    monkeypatch.setattr(corrected, "LIMIT", 0.0)
+    row = corrected_row(SMALL)
+    assert (row.torus, row.errors) == (None, None)
+    assert row.verdict.startswith("not refined: more than 0 s, the last step being: periodic orbit")
+
+
+def test_a_second_refinement_that_fails_leaves_the_first(monkeypatch):
+    monkeypatch.setattr(corrected, "TOLERANCES", (1e-10, 2.0))
+    row = corrected_row(SMALL)
+    assert row.torus is not None
+    assert row.digits == corrected.FEW_DIGITS
+    assert "to a residual of" in row.verdict
+    assert "tolerance" in row.verdict
+
+
+def test_a_torus_above_its_tolerance_is_not_an_exact_one(monkeypatch):
+    monkeypatch.setattr(corrected, "refine", lambda torus, **_: replace(refine(torus), warnings=("too few harmonics",)))
+    assert corrected_row(SMALL).verdict == "not refined: too few harmonics"
+
+
+def test_every_step_is_told():
+    lines = []
+    corrected_row(SMALL, lines.append)
+    assert all(line.startswith("corrected: Fig. 7: ") for line in lines)
+    assert any("step 1: residual" in line for line in lines)
+    assert any("errors with" in line for line in lines)
+
+
+def test_heavy_rows_are_computed_in_full_only(monkeypatch):
+    asked = []
+    monkeypatch.setattr(corrected, "corrected_row", lambda printed, step, *, series: asked.append(printed.label) or left_out(printed, ""))
+    known = dict.fromkeys(BY_LABEL.values())
+    rows = list(corrected_rows(known))
+    assert [row.printed.label for row in rows] == list(BY_LABEL)
+    assert set(asked) == set(BY_LABEL) - set(HEAVY)
+    assert all("--full" in row.verdict for row in rows if row.printed.label in HEAVY)
+    asked.clear()
+    list(corrected_rows(known, full=True))
+    assert asked == list(BY_LABEL)
+
+
+@pytest.fixture
+def two_rows(breather):
+    return [breather, left_out(BY_LABEL["Fig. 5b"], "more than 5 s")]
+
+
+def test_the_page_has_printed_and_exact_numbers(two_rows, study):
+    page = corrected_markdown(two_rows, [study])
+    row = two_rows[0]
+    assert "| Fig. 7 | 1 | 0.18574105489382606 | 0.185736029576 | +2.7e-05 |" in page
+    assert f"| Fig. 7 | 0.00016635 | {row.energies['H']:.12g} |" in page
+    assert "- Fig. 5b: not refined: more than 5 s." in page
+    assert f"- Fig. 7: {row.verdict}." in page
+    assert f"| Fig. 7 | 2 | {study.rates[2][0]:.3f} | 3 | {study.rates[2][1]:.3f} | 2 |" in page
+    assert f"| Fig. 7 | 3 | {study.rates[3][0]:.3f} | 4 | {study.rates[3][1]:.3f} | 2 |" in page
+    assert f"| Fig. 7 | 1 | {study.rates[1][0]:.3f} | 2 |  |  |" in page
+    assert all(page.count(f"![corrected-{c}](corrected-{c}.png)") == 1 for c in "abc")
+    assert "nan" not in page
+
+
+def test_the_record_is_strict_json(two_rows, study):
+    record = json.loads(json.dumps([corrected_record(two_rows[0], study), corrected_record(two_rows[1])], allow_nan=False))
+    assert record[1] == {"refined": False, "verdict": "not refined: more than 5 s"}
+    assert record[0]["amplitudes"] == {"1": "0.185736029576"}
+    assert float(record[0]["energies"]["H"]) == two_rows[0].energies["H"]
+    assert record[0]["errors"]["given"]["3"] == pytest.approx(two_rows[0].errors.given[3], rel=1e-14)
+    assert record[0]["exponents_of_mu"]["1"]["solved"] is None
+    assert record[0]["decays"]["given"]["last_falling_order"] == two_rows[0].decays["given"].last
+
+
+def test_zeros_at_the_end_of_an_amplitude_are_kept(breather):
+    torus = replace(breather.torus, amplitudes={1: 0.25})
+    assert "A_1 = 0.250000000000," in corrected_text(replace(breather, torus=torus))
+    assert "A_1 = 0.25000000," in corrected_text(replace(breather, torus=torus, digits=0))
+
+
+def test_data_and_pictures_are_written(two_rows, study, tmp_path):
+    paths = write_corrected_csv(two_rows, [study], tmp_path)
+    assert [path.name for path in paths] == [f"corrected-{c}.csv" for c in "abc"]
+    header, *lines = csv.reader(paths[0].read_text().splitlines())
+    assert header == ["K", "Fig. 7"]
+    assert {int(K): float(e) for K, e in lines} == two_rows[0].errors.solved
+    _, *lines = csv.reader(paths[1].read_text().splitlines())
+    assert {int(K): float(e) for K, e in lines} == two_rows[0].errors.given
+    header, *lines = csv.reader(paths[2].read_text().splitlines())
+    assert header == ["scale", *(f"given_{K}" for K in (1, 2, 3, 4)), *(f"solved_{K}" for K in (2, 3, 4))]
+    assert [float(line[1]) for line in lines] == list(study.given[1])
+    pictures = draw_corrected(two_rows, [study], tmp_path)
+    assert [path.name for path in pictures] == [f"corrected-{c}.{suffix}" for c in "abc" for suffix in ("png", "pdf")]
+    assert all(path.stat().st_size > 5000 for path in pictures)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("label", [row.label for row in APPENDIX_F if len(row.seeds) > 2 and row.label not in HEAVY])
+def test_the_series_tend_to_the_exact_tori(label):
+    row = corrected_row(BY_LABEL[label])
+    assert row.residual < 1e-13
+    assert row.digits >= 10
+    solved, given = row.decays["solved"], row.decays["given"]
+    assert given.rounding or given.last >= 0.9 * row.printed.order - 1
+    assert solved.least < 1e-4
+    assert min(row.errors.amplitudes.values()) < 1e-4
+
+
+def test_a_row_without_torus_has_no_numbers():
+    row = left_out(TWO_TORUS, "reason")
+    assert isinstance(row, CorrectedRow)
+    assert row.decays == row.energy_deviations == {}
+    assert corrected_text(row) == "  corrected: not refined: reason"
+
+
+def test_the_largest_deviation_is_named(breather):
+    row = replace(breather, deviations={1: 1e-9, 2: -3e-5}, errors=SeriesErrors({2: 0.5}, {1: 0.25}, {}))
+    assert row.verdict.startswith("printed amplitudes differ by up to 3.0e-05; the error of the series")

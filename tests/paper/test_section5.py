@@ -1,0 +1,85 @@
+"""Section 5 and Fig. 6: the real verdicts, and others where the rule is replaced by a wrong one."""
+
+from dataclasses import replace
+
+import pytest
+
+from symfpu.chain.propagation import excitation_sequence
+from symfpu.figures.panels import FAILS, HOLDS, PARTLY
+from symfpu.paper import section5
+from symfpu.paper.table import figure6
+from tests.paper.cases import quiet
+
+
+@pytest.fixture(scope="module")
+def section(tmp_path_factory):
+    return section5.section5(tmp_path_factory.mktemp("section5"), quiet)
+
+
+def test_every_example_of_section_5_is_judged(section):
+    verdicts = {claim.text.split(":")[0] + claim.text[-12:]: claim.verdict for claim in section.claims}
+    assert sum(claim.section == "5" for claim in section.claims) == 14
+    assert [claim.verdict for claim in section.claims[:2]] == [HOLDS, PARTLY]  # the proposition, alpha and beta
+    assert all(f"example {number}" in " ".join(verdicts) for number in ("i", "ii", "iii", "iv", "v"))
+    assert section.panels == ()
+
+
+def test_misprints_are_found_by_comparison(section):
+    """M_1 of example ii, the beta rules of iii and iv, example v, and D_3 of Example 4 are wrong as printed."""
+    wrong = [claim.text for claim in section.claims if claim.verdict == PARTLY]
+    assert [text.split(":")[0] for text in wrong] == [
+        "Proposition, beta model",
+        "example ii",
+        "example iii",
+        "example iv",
+        "example v",
+        "D_k of beta is D_2k of alpha for q-breathers",
+        "Example 4",
+    ]
+    example = next(claim for claim in section.claims if claim.text.startswith("Example 4"))
+    assert "D_3 differs in 60..68, which are in earlier sets" in example.ours
+    assert not any(claim.verdict == FAILS for claim in section.claims)
+
+
+def test_breathers_of_beta_are_not_always_those_of_alpha():
+    """N = 7, seed 2: mode 4 has order 2 in beta; in alpha it has come at order 1, and D_4 is empty."""
+    assert excitation_sequence(7, (2,), 2, model="beta")[2] == (4,)
+    assert excitation_sequence(7, (2,), 4)[4] == ()
+
+
+@pytest.fixture
+def wrong_rule(monkeypatch):
+    """Every set one mode too high."""
+
+    def shifted(N, seeds, order, *, model="alpha"):
+        first, *others = excitation_sequence(N, seeds, order, model=model)
+        return [first, *(tuple(q + 1 for q in modes) for modes in others)]
+
+    monkeypatch.setattr(section5, "excitation_sequence", shifted)
+
+
+def test_a_wrong_rule_is_seen(wrong_rule):
+    claims = [section5._breathers(), section5._parities(), *section5._two_seeds(), *map(section5._low_packets, ("alpha", "beta"))]
+    claims += [section5._high_packets("alpha"), section5._symmetric(), *section5._printed_sets()]
+    off = [claim for claim in claims if claim.verdict != FAILS]
+    assert [claim.text.split(":")[0] for claim in off] == ["example ii", "example ii", "example v"]  # M_1, M_2 and empty sets stay
+
+
+def test_a_proposition_without_proofs_does_not_hold(monkeypatch):
+    right = section5.prove_propagation
+
+    def without_verdict(N, seeds, order, model="alpha"):
+        return replace(right(N, seeds, order, model=model), verdict="undecided")
+
+    monkeypatch.setattr(section5, "prove_propagation", without_verdict)
+    assert section5._alpha_rule().verdict == FAILS
+
+
+def test_intervals_of_section_6_3():
+    data = figure6()
+    assert [claim.verdict for claim in section5.figure6_claims(data).claims] == [HOLDS] * 3
+    seeds, orders = data.panels["a"]
+    moved = replace(data, panels={"a": (tuple(q + 1 for q in seeds), orders)})
+    (claim,) = section5.figure6_claims(moved).claims
+    assert claim.verdict == FAILS
+    assert "all but [1, 2" in claim.ours

@@ -1,0 +1,153 @@
+"""The paper's discrete statements, each an exact test: section 5's examples, section 6's sequences and patterns."""
+
+from itertools import combinations
+
+import pytest
+from sympy import isprime
+
+from symfpu.chain.commensurability import frequency_rank
+from symfpu.chain.propagation import excitation_sequence, reachable_modes
+from symfpu.paper.printed import EXCITATIONS
+from symfpu.proofs.certificates import prove_propagation
+
+
+def span(first, last):
+    return tuple(range(first, last + 1))
+
+
+@pytest.mark.parametrize("model", ["alpha", "beta"])
+@pytest.mark.parametrize("N", [7, 12, 32])
+def test_breathers_excite_one_mode_an_order(model, N):
+    """Example i, Eq. qbre, up to the order where the sequence returns."""
+    for q0 in range(1, N):
+        seen = set()
+        for k, modes in enumerate(excitation_sequence(N, (q0,), 12, model=model)):
+            r = k + 1 if model == "alpha" else 2 * k + 1
+            qk = abs(2 * ((r * q0 + N - 1) // (2 * N)) * N - r * q0)
+            assert modes == ((qk,) if qk not in seen | {0, N} else ())
+            seen |= {qk}
+
+
+@pytest.mark.parametrize("q0", [2, 6, 10, 14])
+def test_even_breathers_excite_even_modes_only(q0):
+    for model in ("alpha", "beta"):
+        assert all(q % 2 == 0 for modes in excitation_sequence(32, (q0,), 20, model=model) for q in modes)
+
+
+def test_odd_breathers_excite_both_parities_in_alpha_and_odd_modes_in_beta():
+    assert {q % 2 for modes in excitation_sequence(32, (5,), 10) for q in modes} == {0, 1}
+    assert {q % 2 for modes in excitation_sequence(32, (5,), 10, model="beta") for q in modes} == {1}
+
+
+def test_two_seeds():
+    """Example ii."""
+    assert reachable_modes(100, (3, 5), 2)[1:] == [(2, 6, 8, 10), (1, 3, 5, 7, 9, 11, 13, 15)]
+    assert excitation_sequence(100, (3, 5), 2) == [(3, 5), (2, 6, 8, 10), (1, 7, 9, 11, 13, 15)]
+
+
+def test_printed_first_set_of_two_seeds_holds_the_seeds_by_mistake():
+    """Printed M_1 = {2, 3, 5, 6, 8, 10}: two signed odd seeds have an even sum, so 3 and 5 are not in M_1."""
+    assert not {3, 5} & set(reachable_modes(100, (3, 5), 1)[1])
+
+
+@pytest.mark.parametrize("s", range(2, 7))
+def test_low_packets(s):
+    """Example iii and its general rule, which needs s >= 2."""
+    alpha = excitation_sequence(200, span(1, s), 8)
+    beta = excitation_sequence(200, span(1, s), 4, model="beta")
+    for k in range(1, 9):
+        assert alpha[k] == span(k * s + 1, (k + 1) * s)
+    for k in range(1, 5):
+        assert beta[k] == span((2 * k - 1) * s + 1, (2 * k + 1) * s) == tuple(sorted(alpha[2 * k - 1] + alpha[2 * k]))
+
+
+@pytest.mark.parametrize(("N", "s"), [(32, 4), (100, 2), (101, 3), (200, 6)])
+def test_high_packets(N, s):
+    """Example iv: the alpha rule as printed; in beta D_k = {N-(2k+1)s .. N-(2k-1)s-1}, not the printed N-(k+1)s .. N-(k-1)s-1."""
+    seeds = span(N - s, N - 1)
+    alpha, beta = excitation_sequence(N, seeds, 6), excitation_sequence(N, seeds, 3, model="beta")
+    for k in range(1, min(7, (N - 1) // (2 * s) - 1)):
+        low, high = span((k - 1) * s + 1, (k + 1) * s), span(N - (k + 1) * s, N - (k - 1) * s - 1)
+        assert alpha[k] == (low if k % 2 else high)
+    for k in range(1, min(4, ((N - 1) // (2 * s) - 1) // 2 + 1)):
+        assert beta[k] == span(N - (2 * k + 1) * s, N - (2 * k - 1) * s - 1) == alpha[2 * k]
+        assert beta[k] != span(N - (k + 1) * s, N - (k - 1) * s - 1)
+
+
+def test_general_packet_rules_fail_for_one_seed():
+    """One seed excites one mode an order: {1} in beta gives {3}, not {2, 3}; {N-1} in alpha gives {2}, not {1, 2}."""
+    assert excitation_sequence(100, (1,), 1, model="beta")[1] == (3,)
+    assert excitation_sequence(100, (99,), 1)[1] == (2,)
+
+
+@pytest.mark.parametrize("N", [6, 12, 30])
+def test_discrete_symmetry_solutions(N):
+    """Example v: nothing but the seed is ever excited. By Eq. dk the later D_k are empty, not D_0 as printed."""
+    for model, q in (("alpha", N // 2), ("alpha", 2 * N // 3), ("beta", N // 2), ("beta", 2 * N // 3), ("beta", N // 3)):
+        assert excitation_sequence(N, (q,), 8, model=model) == [(q,)] + [()] * 8
+        assert prove_propagation(N, (q,), 3, model=model).verdict == "proved"
+    assert excitation_sequence(N, (N // 3,), 1)[1] == (2 * N // 3,)
+
+
+@pytest.mark.parametrize("N", [8, 9, 12])
+def test_relation_between_the_models(N):
+    """M_2k of alpha is M_k of beta; D_k of beta is D_2k of alpha where M_(2k-1) and M_2k of alpha are disjoint."""
+    both = 0
+    for s in (1, 2):
+        for seeds in combinations(range(1, N), s):
+            M = reachable_modes(N, seeds, 6)
+            assert M[::2] == reachable_modes(N, seeds, 3, model="beta")
+            alpha, beta = excitation_sequence(N, seeds, 6), excitation_sequence(N, seeds, 3, model="beta")
+            for k in range(1, 4):
+                if not set(M[2 * k - 1]) & set(M[2 * k]):
+                    both += 1
+                    assert beta[k] == alpha[2 * k]
+    assert both > 0
+
+
+@pytest.mark.parametrize("example", EXCITATIONS, ids=lambda e: e.label)
+def test_printed_sequences(example):
+    """Section 6: examples 1 to 4 and the q_0 = 25 breather, with the misprint of example 4 corrected in the data."""
+    sequence = excitation_sequence(example.N, example.seeds, len(example.sets))
+    assert tuple(sequence[1:]) == example.sets
+
+
+def test_printed_third_set_of_example_4_repeats_the_first():
+    """Printed {56 .. 72}, of which 60 .. 68 were excited at order 1 already."""
+    sequence = excitation_sequence(128, span(94, 98), 3)
+    assert not set(span(60, 68)) & set(sequence[3])
+    assert set(span(60, 68)) <= set(sequence[1])
+    assert set(span(56, 72)) - set(span(60, 68)) <= set(sequence[3])
+
+
+def around(N, center, width):
+    return {q for q in range(center - width, center + width + 1) if 0 < q < N}
+
+
+@pytest.mark.parametrize(("N", "w"), [(128, 2), (256, 4), (64, 0)])
+@pytest.mark.parametrize("quarter", [1, 2, 3])
+def test_patterns_around_quarters(N, w, quarter):
+    """Section 6.3: M_k of packets around kappa_0 = 1/4, 1/2, 3/4, exactly, for half-widths w in modes."""
+    M = reachable_modes(N, around(N, quarter * N // 4, w), 6)
+    for k in range(1, 7):
+        width = w * (k + 1)
+        low, middle, high = around(N, 0, width), around(N, N // 2, width), around(N, N, width)
+        quarters = around(N, N // 4, width) | around(N, 3 * N // 4, width)
+        if quarter == 2:
+            expected = low | high if k % 2 else middle
+        elif k == 1:
+            expected = low | middle
+        else:
+            expected = low | middle | high if k % 2 else quarters
+        assert set(M[k]) == expected
+
+
+@pytest.mark.parametrize("N", range(2, 61))
+def test_linear_frequencies_are_incommensurable_for_primes_and_powers_of_two(N):
+    """The paper has 'N-1 prime'; exactly, it is N that must be prime (or a power of two)."""
+    assert (frequency_rank(N) == N - 1) == (isprime(N) or N & (N - 1) == 0)
+
+
+def test_n_minus_one_prime_is_not_enough():
+    assert isprime(12 - 1)
+    assert frequency_rank(12) < 11

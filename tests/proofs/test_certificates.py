@@ -1,0 +1,131 @@
+"""Proofs and refutations of the propagation rule."""
+
+import json
+
+import pytest
+
+from symfpu.chain.chain import Chain
+from symfpu.chain.propagation import coupling_sequence, excitation_sequence
+from symfpu.errors import InputError, SymfpuError
+from symfpu.proofs.certificates import prove_propagation, random_point
+from symfpu.series.lindstedt import lindstedt
+
+
+def test_proved_case():
+    proof = prove_propagation(32, (1, 2, 3, 4), 4)
+    assert proof.verdict == "proved"
+    assert list(proof.actual) == excitation_sequence(32, (1, 2, 3, 4), 4)
+    assert proof.exceptions == ()
+    assert proof.undecided == ()
+
+
+@pytest.mark.parametrize(("N", "seeds", "mode"), [(6, (2, 3), 4), (8, (1, 4), 7), (8, (1, 2, 6), 7), (9, (1, 2, 7), 8)])
+def test_refuted_case_is_a_pair_with_sum_N_and_a_third_seed(N, seeds, mode):
+    proof = prove_propagation(N, seeds, 3, model="beta")
+    assert proof.verdict == "refuted"
+    assert [(e.mode, e.predicted, e.actual) for e in proof.exceptions] == [(mode, 1, 2)]
+    third = N - mode
+    assert third in seeds
+    assert any(l + m == N for l in seeds for m in seeds if third not in (l, m))
+
+
+@pytest.mark.parametrize(("N", "seeds", "model", "order"), [(6, (2, 3), "beta", 2), (7, (3, 5), "alpha", 3), (5, (1, 2), "alpha", 4)])
+def test_actual_orders_are_those_of_the_universal_form(N, seeds, model, order):
+    """By another ring: the first order at which a coefficient is not the zero polynomial in the L_q(nu)."""
+    series = lindstedt(Chain(N, **{model: 1}), seeds, order=order)
+    first = {}
+    for k, table in enumerate(series.coordinates):
+        for q in range(1, N):
+            if any(value != 0 for value in table[:, q - 1]):
+                first.setdefault(q, k)
+    proof = prove_propagation(N, seeds, order, model=model)
+    assert {q: k for k, modes in enumerate(proof.actual) for q in modes} == first
+
+
+def test_without_points_nothing_is_decided_but_what_the_couplings_forbid():
+    proof = prove_propagation(8, (1, 4), 2, model="beta", points=0)
+    assert proof.verdict == "undecided"
+    assert all(u.error_probability == 1 for u in proof.undecided)
+    assert {v.by for v in proof.vanishing} == {"couplings"}
+    assert 7 not in {q for u in proof.undecided for q in u.orders if 1 in u.orders}
+
+
+def test_identities_close_what_couplings_leave_open(monkeypatch):
+    """With couplings that forbid nothing, the zero term of an exception is proved by the universal form instead."""
+    everything = [(1, 2, 3, 4, 5)] * 3
+    monkeypatch.setattr("symfpu.proofs.certificates.coupled_modes", lambda *_, **__: everything)
+    proof = prove_propagation(6, (2, 3), 2, model="beta")
+    assert proof.verdict == "refuted"
+    assert [(v.mode, v.orders, v.by) for v in proof.vanishing] == [(4, (1,), "identity")]
+
+
+def test_zero_without_a_proof_is_undecided_with_a_probability(monkeypatch):
+    everything = [(1, 2, 3, 4, 5)] * 3
+    monkeypatch.setattr("symfpu.proofs.certificates.coupled_modes", lambda *_, **__: everything)
+    monkeypatch.setattr("symfpu.proofs.certificates.IDENTITY_TERMS", 0)
+    once, twice = (prove_propagation(6, (2, 3), 2, model="beta", points=n) for n in (1, 2))
+    assert once.verdict == twice.verdict == "undecided"
+    assert [(u.mode, u.orders) for u in once.undecided] == [(4, (1,))]
+    assert 0 < once.undecided[0].error_probability < 1e-6
+    assert twice.undecided[0].error_probability < once.undecided[0].error_probability ** 1.5
+
+
+def test_points_are_reproducible_and_independent():
+    a, b, c = (prove_propagation(12, (5,), 3, points=2, random_seed=seed) for seed in (1, 1, 2))
+    assert a == b
+    assert a.points != c.points
+    assert a.points[0].prime != a.points[1].prime
+    assert a.actual == c.actual
+
+
+def test_roots_of_points_are_primitive():
+    """Also where 4N has several prime factors."""
+    import random
+
+    for N in (6, 15, 30):
+        point = random_point(N, 2, 4, random.Random(N))
+        assert point.prime % (4 * N) == 1
+        powers = {pow(point.root, k, point.prime) for k in range(4 * N)}
+        assert len(powers) == 4 * N
+        assert pow(point.root, 4 * N, point.prime) == 1
+
+
+LARGER = [(24, (5, 7, 12), 3, "beta"), (40, (3, 20, 37), 2, "beta"), (64, (31, 32, 33), 3, "beta"), (30, (7, 15, 22), 5, "alpha")]
+
+
+@pytest.mark.parametrize(("N", "seeds", "order", "model"), LARGER)
+def test_corrected_rule_on_larger_cases(N, seeds, order, model):
+    assert prove_propagation(N, seeds, order, model=model).actual == tuple(coupling_sequence(N, seeds, order, model=model))
+
+
+def test_certificate_is_plain_json(tmp_path):
+    proof = prove_propagation(8, (1, 4), 3, model="beta")
+    proof.write(tmp_path / "c.json")
+    assert json.loads((tmp_path / "c.json").read_text()) == proof.certificate()
+    assert list(tmp_path.iterdir()) == [tmp_path / "c.json"]
+    with pytest.raises(InputError, match="output"):
+        proof.write(tmp_path / "missing" / "c.json")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ({"N": 1}, "N"),
+        ({"seeds": (8,)}, "seeds"),
+        ({"seeds": ()}, "seeds"),
+        ({"order": -1}, "order"),
+        ({"model": "alpha+beta"}, "model"),
+        ({"points": -1}, "points"),
+    ],
+)
+def test_bad_arguments_are_named(arguments, name):
+    with pytest.raises(InputError) as caught:
+        prove_propagation(**({"N": 8, "seeds": (1,), "order": 2} | arguments))
+    assert caught.value.argument == name
+
+
+def test_order_too_high_for_exact_sums_says_so():
+    import random
+
+    with pytest.raises(SymfpuError, match="take a lower order"):
+        random_point(4096, 8, 60, random.Random(1))

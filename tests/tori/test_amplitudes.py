@@ -1,0 +1,253 @@
+"""Amplitudes against reference values, periodic orbits, exactly solvable reductions, and what has no solution."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.chain.chain import Chain
+from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import amplitude_history, frequency_orders, shifts, solve_amplitudes
+from tests.oracles.oscillators import cubic_oscillator, duffing
+from tests.reference import BETA_BREATHER, PERIODIC_ORBITS, TWO_TORUS
+from tests.tolerances import AMPLITUDE, ELLIPTIC, PERIODIC_ORBIT, ROUNDING
+
+
+def reference_series(reference):
+    chain = Chain(reference.N, reference.alpha, reference.beta)
+    return lindstedt(chain, reference.seeds, reference.frequencies, max(reference.amplitudes))
+
+
+@pytest.fixture(scope="module")
+def two_torus():
+    return reference_series(TWO_TORUS)
+
+
+@pytest.mark.parametrize("reference", [TWO_TORUS, BETA_BREATHER], ids=["alpha, 2-torus", "beta, breather"])
+def test_amplitudes_are_the_reference_values_at_every_frequency_order(reference):
+    series = reference_series(reference)
+    history = amplitude_history(series)
+    for K, expected in reference.amplitudes.items():
+        torus = solve_amplitudes(series, frequency_order=K)
+        assert tuple(torus.amplitudes) == reference.seeds
+        assert list(torus.amplitudes.values()) == pytest.approx([float(a) for a in expected], rel=AMPLITUDE)
+        assert history.amplitudes[K] == pytest.approx(tuple(torus.amplitudes.values()), rel=AMPLITUDE)
+
+
+@pytest.mark.parametrize("orbit", PERIODIC_ORBITS, ids=lambda o: f"seed {o.seed}")
+def test_breathers_are_the_periodic_orbits(orbit):
+    series = lindstedt(Chain(orbit.N, orbit.alpha), (orbit.seed,), (orbit.frequency,), orbit.order)
+    torus = solve_amplitudes(series)
+    assert torus.amplitudes[orbit.seed] == pytest.approx(orbit.amplitude, rel=PERIODIC_ORBIT)
+    assert float(torus.energy()) == pytest.approx(orbit.energy, rel=PERIODIC_ORBIT)
+    assert torus.warnings == ()
+
+
+def test_the_lowest_order_is_linear():
+    """beta breather: A^2 = (omega - Omega) / (mu (3/8) Omega^3 C_qqqq), in closed form."""
+    chain, q, omega = Chain(16, beta="0.3"), 3, "0.59"
+    torus = solve_amplitudes(lindstedt(chain, (q,), (omega,), 1))
+    with mpmath.workdps(30):
+        Omega = 2 * mpmath.sin(q * mpmath.pi / 32)
+        squared = (mpmath.mpf(omega) - Omega) / (mpmath.mpf("0.3") / 32 * 3 / 8 * Omega**3 * chain.C(q, q, q, q))
+    assert torus.amplitudes[q] == pytest.approx(float(mpmath.sqrt(squared)), rel=ROUNDING)
+
+
+def test_the_lowest_order_of_two_seeds_solves_the_linear_equations(two_torus):
+    torus = solve_amplitudes(two_torus, frequency_order=2)
+    squares = np.array(list(torus.amplitudes.values())) ** 2
+    matrix = np.array([_coefficients_of_squares(two_torus, q) for q in (1, 2)])
+    assert np.allclose(two_torus.chain.mu**2 * matrix @ squares, shifts(two_torus), rtol=1e-12)
+
+
+def _coefficients_of_squares(series, q):
+    exponents, values = series.frequency_coefficients(q, 2)
+    table = {tuple(e): v for e, v in zip(exponents.tolist(), values, strict=True)}
+    return [table[2, 0], table[0, 2]]
+
+
+def test_the_root_solves_the_truncated_equations(two_torus):
+    for K in (2, 8, 20):
+        torus = solve_amplitudes(two_torus, frequency_order=K)
+        terms, _ = two_torus.frequency_terms([a**2 for a in torus.amplitudes.values()], K)
+        assert np.allclose(terms.sum(axis=0), [0.19626, 0.39046], rtol=ROUNDING, atol=0)
+        assert torus.root_residual < ROUNDING
+
+
+def test_the_two_orders_are_independent(two_torus):
+    tori = {(K, k): solve_amplitudes(two_torus, frequency_order=K, order=k) for K in (6, 12) for k in (3, 9)}
+    for K in (6, 12):
+        assert tori[K, 3].amplitudes == tori[K, 9].amplitudes
+        assert (tori[K, 3].frequency_order, tori[K, 3].order) == (K, 3)
+        assert len(tori[K, 3].harmonics) < len(tori[K, 9].harmonics)
+    assert tori[6, 9].amplitudes != tori[12, 9].amplitudes
+    default = solve_amplitudes(two_torus)
+    assert (default.frequency_order, default.order) == (20, 20)
+
+
+def test_history_has_every_order_of_a_correction(two_torus):
+    history = amplitude_history(two_torus)
+    assert frequency_orders(two_torus) == history.orders == tuple(range(2, 21, 2)) == tuple(history.amplitudes)
+    assert solve_amplitudes(two_torus, frequency_order=4).history == dict(history.amplitudes)
+    beta = reference_series(BETA_BREATHER)
+    assert tuple(amplitude_history(beta).amplitudes) == frequency_orders(beta) == tuple(range(1, 13))
+    assert "10 of 10 orders have a root" in repr(history)
+
+
+def test_differences_are_between_consecutive_orders(two_torus):
+    history = amplitude_history(two_torus)
+    differences = history.differences()
+    assert tuple(differences) == tuple(range(2, 19, 2))
+    for k, delta in differences.items():
+        assert delta == tuple(abs(b - a) for a, b in zip(history.amplitudes[k], history.amplitudes[k + 2], strict=True))
+
+
+def test_odd_frequency_orders_of_alpha_add_nothing(two_torus):
+    assert solve_amplitudes(two_torus, frequency_order=7).amplitudes == solve_amplitudes(two_torus, frequency_order=6).amplitudes
+
+
+def test_a_good_guess_changes_nothing(two_torus):
+    plain = solve_amplitudes(two_torus, frequency_order=8)
+    guessed = solve_amplitudes(two_torus, frequency_order=8, guess={1: 0.58, 2: 0.41})
+    assert list(guessed.amplitudes.values()) == pytest.approx(list(plain.amplitudes.values()), rel=AMPLITUDE)
+
+
+def test_a_bad_guess_without_a_real_root_says_so(two_torus):
+    with pytest.raises(NoRealAmplitude) as caught:
+        solve_amplitudes(two_torus, frequency_order=12, guess={1: 0.1, 2: 1.5})
+    assert "\n" not in str(caught.value)
+
+
+def test_a_root_of_the_truncated_polynomial_only_is_doubted(two_torus):
+    """From A = 5 Newton finds another root of order 12, far from that of order 10."""
+    torus = solve_amplitudes(two_torus, frequency_order=12, guess={1: 5.0, 2: 5.0})
+    assert torus.amplitudes[1] > 1
+    assert any("orders 10 and 12 differ" in warning for warning in torus.warnings)
+
+
+def test_no_root_at_all_carries_the_last_iterate():
+    """Order 2 of a beta breather, a A^2 - b A^4 with b > 0, is bounded: omega = 0.9 lies above its maximum."""
+    series = lindstedt(Chain(16, beta="0.3"), (3,), ("0.9",), 2)
+    with pytest.raises(DidNotConverge) as caught:
+        solve_amplitudes(series)
+    error = caught.value
+    assert error.frequency_order == 2
+    assert tuple(error.iterate) == (3,)
+    squared = np.sign(error.iterate[3]) * error.iterate[3] ** 2
+    terms, _ = series.frequency_terms([squared])
+    assert error.residual == pytest.approx(abs(0.9 - terms.sum()), rel=1e-6)
+    assert set(amplitude_history(series).failures) == {2}
+
+
+def test_no_real_amplitude_names_the_seed():
+    """Below its linear frequency a beta breather with beta > 0 has A^2 < 0."""
+    series = lindstedt(Chain(16, beta="0.3"), (3,), ("0.57",), 1)
+    with pytest.raises(NoRealAmplitude) as caught:
+        solve_amplitudes(series)
+    assert caught.value.seed == 3
+    assert caught.value.squared < 0
+    assert "A_3^2" in str(caught.value)
+    assert not isinstance(caught.value, InputError)
+
+
+def test_a_harmonic_mode_leaves_the_amplitude_undetermined():
+    """N = 16, seed 8, alpha: the mode N/2 does not feel the cubic force at all."""
+    series = lindstedt(Chain(16, alpha="0.3"), (8,), ("1.42",), 4)
+    with pytest.raises(UndeterminedAmplitudes) as caught:
+        solve_amplitudes(series)
+    assert caught.value.seeds == (8,)
+
+
+def test_neighbouring_orders_that_disagree_are_told():
+    """Far from the linear frequency the orders 2 and 4 differ much; near it they agree and nothing is said of them."""
+    chain = Chain(16, alpha="0.33")
+    far, near = (solve_amplitudes(lindstedt(chain, (1, 2), w, 4)) for w in (("0.1970", "0.3914"), ("0.1960345", "0.3901810")))
+    assert any("differ by" in warning for warning in far.warnings)
+    assert not any("differ by" in warning for warning in near.warnings)
+    assert far.warnings[0] in repr(far)
+
+
+def test_a_single_frequency_order_is_told():
+    (warning,) = solve_amplitudes(lindstedt(Chain(16, beta="0.3"), (3,), ("0.5806",), 1)).warnings
+    assert "only frequency order" in warning
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        ({"frequency_order": 21}, "frequency_order"),
+        ({"frequency_order": -1}, "frequency_order"),
+        ({"frequency_order": 1}, "frequency_order"),
+        ({"frequency_order": 2.0}, "frequency_order"),
+        ({"order": 21}, "order"),
+        ({"order": -1}, "order"),
+        ({"phases": {3: 0.1}}, "phases"),
+        ({"phases": {1: float("nan")}}, "phases"),
+        ({"guess": {1: 0.1}}, "guess"),
+        ({"guess": {1: 0.1, 3: 0.1}}, "guess"),
+    ],
+    ids=str,
+)
+def test_bad_arguments_are_refused_by_name(two_torus, arguments, named):
+    with pytest.raises(InputError) as caught:
+        solve_amplitudes(two_torus, **arguments)
+    assert caught.value.argument == named
+
+
+def test_series_without_numbers_or_corrections_are_refused():
+    with pytest.raises(InputError, match="universal form"):
+        solve_amplitudes(lindstedt(Chain(8, alpha=1), (1,), order=2))
+    with pytest.raises(InputError, match="frequency_order"):
+        solve_amplitudes(lindstedt(Chain(8, alpha=1), (1,), ("0.4",), 1))
+    assert issubclass(InputError, SymfpuError)
+
+
+@pytest.mark.parametrize(("N", "seed"), [(2, 1), (4, 2), (12, 6), (9, 6), (12, 8), (6, 2), (9, 3)])
+def test_one_mode_of_beta_is_the_duffing_oscillator(N, seed):
+    """N/2, 2N/3 and N/3: x'' + Omega^2 x + (beta / 2N) Omega^4 C_qqqq x^3 = 0, solved by elliptic functions."""
+    chain = Chain(N, beta="0.5")
+    with mpmath.workdps(30):
+        squared = chain.linear_frequency(seed) ** 2
+        omega, amplitude = duffing(squared, mpmath.mpf("0.5") / (2 * N) * squared**2 * chain.C(*[seed] * 4), mpmath.mpf("0.2"))
+        torus = solve_amplitudes(lindstedt(chain, (seed,), (mpmath.nstr(omega, 25),), 20))
+        assert abs(torus.amplitudes[seed] / amplitude - 1) < ELLIPTIC
+
+
+@pytest.mark.parametrize("N", [3, 6, 9])
+def test_two_thirds_of_alpha_is_the_cubic_oscillator(N):
+    """x'' + Omega^2 x + (alpha / sqrt(2N)) Omega^3 B_qqq x^2 = 0, solved by quadrature."""
+    chain, seed = Chain(N, alpha="0.4"), 2 * N // 3
+    with mpmath.workdps(30):
+        Omega = chain.linear_frequency(seed)
+        quadratic = mpmath.mpf("0.4") / mpmath.sqrt(2 * N) * Omega**3 * chain.B(seed, seed, seed)
+        omega, amplitude = cubic_oscillator(Omega**2, quadratic, mpmath.mpf("0.1"))
+        torus = solve_amplitudes(lindstedt(chain, (seed,), (mpmath.nstr(omega, 25),), 24))
+        assert abs(torus.amplitudes[seed] / amplitude - 1) < ELLIPTIC
+        assert [q for q in range(1, N) if torus.cosines[:, q - 1].any()] == [seed]
+
+
+def test_no_real_root_at_the_lowest_order_is_said_as_such():
+    """Two seeds whose shifts need negative squares at order 2, and no later order has a root either."""
+    series = lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3900", "0.7651"), 14)
+    with pytest.raises(NoRealAmplitude, match="A_1"):
+        solve_amplitudes(series)
+
+
+def test_commensurable_frequencies_are_refused_though_no_divisor_vanishes():
+    """2 omega_1 = omega_2: harmonics (3, 0) and (1, -2) .. coincide, and averages over them would be wrong."""
+    series = lindstedt(Chain(16, beta=1), (1, 2), ("0.2", "0.4"), 1)
+    with pytest.raises(InputError, match="incommensurable"):
+        solve_amplitudes(series)
+
+
+@pytest.mark.parametrize("arguments", [{"phases": [1]}, {"guess": {1: 1e200}}, {"guess": {1: 0}}, {"frequency_order": 0}])
+def test_odd_arguments_are_named(arguments):
+    series = lindstedt(Chain(8, beta=1), (1,), ("0.4",), 2)
+    with pytest.raises(InputError) as caught:
+        solve_amplitudes(series, **arguments)
+    assert caught.value.argument == next(iter(arguments))
+
+
+def test_linear_frequency_has_no_amplitude():
+    with pytest.raises(NoRealAmplitude, match="linear frequency"):
+        solve_amplitudes(lindstedt(Chain(3, beta=1), (1,), ("1",), 2))

@@ -1,0 +1,196 @@
+"""Amplitudes to frequencies: there and back, rates at small amplitudes, exactly solvable reductions, the paper's tori."""
+
+import numpy as np
+import pytest
+
+from symfpu.chain.chain import Chain
+from symfpu.chain.frequency_shift import frequency_shift
+from symfpu.errors import InputError, ResonantDivisor, SymfpuError, TooLarge
+from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori import frequencies
+from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.frequencies import NoSelfConsistentFrequencies, torus_at_amplitudes
+from tests.tolerances import ROUNDING, SLOPE, THERE_AND_BACK
+
+ROUND_TRIPS = [
+    (Chain(16, alpha="0.33"), {1: "0.58", 2: "0.41"}, 8),
+    (Chain(16, alpha="-0.33"), {1: "0.58", 2: "0.41"}, 7),
+    (Chain(9, alpha="0.4"), {8: "0.2"}, 6),
+    (Chain(2, beta=1), {1: "0.3"}, 10),
+    (Chain(16, beta="-0.3"), {3: "0.3", 5: "0.2"}, 5),
+    (Chain(16, beta="0.3"), {1: "0.3", 2: "0.2", 15: "0.05"}, 3),
+    (Chain(12, alpha="-0.25", beta="0.2"), {3: "0.2", 10: "0.1", 7: "0.1"}, 6),
+    (Chain(6, alpha="0.33"), {4: "0.1", 5: "0.1"}, 6),
+]
+
+
+@pytest.mark.parametrize(("chain", "amplitudes", "order"), ROUND_TRIPS, ids=str)
+def test_the_frequencies_give_the_amplitudes_back(chain, amplitudes, order):
+    torus = torus_at_amplitudes(chain, amplitudes, order)
+    assert torus.amplitudes == {q: float(amplitudes[q]) for q in sorted(amplitudes)}
+    back = solve_amplitudes(torus.series)
+    assert list(back.amplitudes.values()) == pytest.approx(list(torus.amplitudes.values()), rel=THERE_AND_BACK)
+    terms, _ = torus.series.frequency_terms([a**2 for a in torus.amplitudes.values()])
+    left = np.abs(terms.sum(axis=0) - [float(w) for w in torus.frequencies])
+    assert left.max() < ROUNDING
+    assert torus.root_residual < ROUNDING
+    assert torus.warnings == back.warnings
+    assert torus.history == back.history
+
+
+def test_many_digits_go_there_and_back():
+    torus = torus_at_amplitudes(Chain(16, alpha="0.33"), {1: "0.2", 2: "0.1"}, 6, digits=40)
+    assert torus.certificate.certified
+    back = solve_amplitudes(torus.series)
+    assert max(abs(back.amplitudes[q] / torus.amplitudes[q] - 1) for q in (1, 2)) < 1e-39
+    doubles = torus_at_amplitudes(Chain(16, alpha="0.33"), {1: "0.2", 2: "0.1"}, 6)
+    assert [float(w) for w in torus.frequencies] == pytest.approx([float(w) for w in doubles.frequencies], rel=ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("chain", "seeds", "order"),
+    [
+        (Chain(16, alpha="0.33"), (1, 2), 4),
+        (Chain(8, beta="-0.3"), (2, 3, 5), 2),
+        (Chain(8, alpha="-0.2", beta="0.3"), (3, 5), 4),
+    ],
+    ids=str,
+)
+def test_the_lowest_shift_is_met_with_an_error_of_the_fourth_power(chain, seeds, order):
+    """omega - Omega = shift(A) + O(A^4): the divisors moved by A^2, and the next correction is of the fourth degree."""
+    sizes = np.array([0.02, 0.03, 0.05])
+    differences = []
+    for size in sizes:
+        amplitudes = {q: size / (i + 1) for i, q in enumerate(seeds)}
+        torus = torus_at_amplitudes(chain, amplitudes, order)
+        lowest = frequency_shift(chain, amplitudes)
+        differences.append(
+            max(abs(float(w) - chain.frequencies()[q - 1] - lowest[q]) for q, w in zip(seeds, torus.frequencies, strict=True))
+        )
+    assert np.polyfit(np.log(sizes), np.log(differences), 1)[0] == pytest.approx(4, abs=2 * SLOPE)
+
+
+def test_printed_amplitudes_of_figure_2_have_the_printed_frequencies():
+    """At frequency order 4, which the amplitudes belong to; omega - Omega is 1.6e-6 .. 1.6e-7 and met to 1e-10 of it."""
+    printed = APPENDIX_F[0]
+    torus = torus_at_amplitudes(printed.chain, dict(zip(printed.seeds, printed.amplitudes, strict=True)), 6, frequency_order=4)
+    assert [float(w) for w in torus.frequencies] == pytest.approx([float(w) for w in printed.frequencies], rel=0, abs=1e-16)
+    assert (torus.frequency_order, torus.order) == (4, 6)
+
+
+@pytest.mark.parametrize(
+    ("printed", "order", "tolerance"),
+    [(APPENDIX_F[1], 6, 1e-10), (APPENDIX_F[4], 4, 1e-10), (TWO_TORUS, 14, 1e-4)],
+    ids=lambda value: getattr(value, "label", None),
+)
+def test_printed_tori_of_other_figures(printed, order, tolerance):
+    """Those of Appendix F have many digits; the seven of Fig. 1 are met up to the orders from 16 to 24."""
+    torus = torus_at_amplitudes(printed.chain, dict(zip(printed.seeds, printed.amplitudes, strict=True)), order)
+    for q, found, expected in zip(printed.seeds, torus.frequencies, printed.frequencies, strict=True):
+        shift = abs(float(expected) - printed.chain.frequencies()[q - 1])
+        assert abs(float(found) - float(expected)) < tolerance * shift
+
+
+def test_divisors_are_those_of_the_frequencies_found():
+    """Order 2 with the divisors of the linear frequencies is `frequency_shift`: the same amplitudes, other frequencies."""
+    chain, amplitudes = Chain(16, alpha="0.33"), {1: 0.58, 2: 0.41}
+    torus = torus_at_amplitudes(chain, amplitudes, 2)
+    at_linear, at_found = (
+        lindstedt(chain, (1, 2), w, 2).frequency_terms([0.58**2, 0.41**2])[0][2]
+        for w in (chain.frequencies()[:2].tolist(), torus.frequencies)
+    )
+    shift = np.array([float(w) for w in torus.frequencies]) - chain.frequencies()[:2]
+    assert list(frequency_shift(chain, amplitudes).values()) == pytest.approx(at_linear, rel=1e-9)
+    assert shift == pytest.approx(at_found, rel=1e-11)
+    assert np.abs(at_found / at_linear - 1).min() > 0.03
+
+
+def test_middle_mode_of_alpha_keeps_its_frequency():
+    torus = torus_at_amplitudes(Chain(16, alpha=1), {8: "0.3"}, 6)
+    assert float(torus.frequencies[0]) == pytest.approx(2**0.5, rel=1e-15)
+    assert "do not determine" in torus.warnings[0]
+
+
+def test_a_family_that_ends_says_where():
+    """Order 1 of a soft beta breather is omega = Omega (1 - c A^2): at A^2 = 1/c no frequency is left."""
+    chain, seed = Chain(8, beta=-1), 3
+    end = (-chain.frequencies()[seed - 1] / frequency_shift(chain, {seed: 1.0})[seed]) ** 0.5
+    with pytest.raises(NoSelfConsistentFrequencies) as caught:
+        torus_at_amplitudes(chain, {seed: 10}, 1)
+    error = caught.value
+    assert error.amplitudes == {seed: 10.0}
+    assert 0.97 * end < error.reached[seed] < end
+    assert "omega_3" in error.reason
+    assert set(error.frequencies) == {seed}
+    assert isinstance(error, SymfpuError)
+    assert "\n" not in str(error)
+    torus_at_amplitudes(chain, error.reached, 1)
+
+
+def test_a_resonant_trial_is_walked_around(monkeypatch):
+    """The first trial, straight from rest, meets a resonance; shorter steps have other trials."""
+    calls = []
+
+    def resonant(*arguments, **options):
+        calls.append(arguments)
+        if len(calls) == 1:
+            raise ResonantDivisor(3, (1, 1), (1, 2), 2, exact=True)
+        return lindstedt(*arguments, **options)
+
+    plain = torus_at_amplitudes(*ROUND_TRIPS[0])
+    monkeypatch.setattr(frequencies, "lindstedt", resonant)
+    torus = torus_at_amplitudes(*ROUND_TRIPS[0])
+    assert [float(w) for w in torus.frequencies] == pytest.approx([float(w) for w in plain.frequencies], rel=ROUNDING)
+
+
+def test_resonances_everywhere_are_the_reason(monkeypatch):
+    def resonant(*arguments, **options):
+        raise ResonantDivisor(3, (1, 1), (1, 2), 2, exact=True)
+
+    monkeypatch.setattr(frequencies, "lindstedt", resonant)
+    with pytest.raises(NoSelfConsistentFrequencies, match="commensurable") as caught:
+        torus_at_amplitudes(*ROUND_TRIPS[0])
+    assert caught.value.reached == {1: 0.0, 2: 0.0}
+
+
+def test_the_orders_and_phases_are_passed_on():
+    chain, amplitudes = Chain(16, alpha="0.33"), {1: "0.3", 2: "0.2"}
+    torus = torus_at_amplitudes(chain, amplitudes, 6, frequency_order=4, coordinate_order=3, phases={2: "0.5"})
+    assert (torus.series.order, torus.frequency_order, torus.order) == (6, 4, 3)
+    assert torus.phases == {1: 0.0, 2: 0.5}
+    same = torus_at_amplitudes(chain, amplitudes, 4)
+    assert torus.frequencies == same.frequencies
+
+
+def test_a_series_too_large_for_the_memory_is_refused_at_the_door():
+    with pytest.raises(TooLarge):
+        torus_at_amplitudes(Chain(64, alpha=1), dict.fromkeys((1, 2, 3, 4, 5), "0.001"), 60)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        ({"amplitudes": [0.1]}, "amplitudes"),
+        ({"amplitudes": {}}, "seeds"),
+        ({"amplitudes": {9: 0.1}}, "seeds"),
+        ({"amplitudes": {1: -0.1}}, "amplitudes, seed 1"),
+        ({"amplitudes": {1: 0}}, "amplitudes, seed 1"),
+        ({"amplitudes": {1: float("nan")}}, "amplitudes, seed 1"),
+        ({"amplitudes": {1: "1e-20"}}, "amplitudes"),
+        ({"order": 1}, "order"),
+        ({"order": 2.0}, "order"),
+        ({"frequency_order": 1}, "frequency_order"),
+        ({"frequency_order": 5}, "frequency_order"),
+        ({"coordinate_order": 5}, "coordinate_order"),
+        ({"coordinate_order": -1}, "coordinate_order"),
+        ({"phases": {2: 0.1}}, "phases"),
+        ({"digits": 0}, "digits"),
+        ({"chain": 8}, "chain"),
+    ],
+    ids=str,
+)
+def test_bad_arguments_are_refused_by_name(arguments, named):
+    with pytest.raises(InputError) as caught:
+        torus_at_amplitudes(**{"chain": Chain(8, alpha="0.3"), "amplitudes": {1: 0.1}, "order": 4} | arguments)
+    assert caught.value.argument == named

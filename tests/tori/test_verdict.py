@@ -1,0 +1,253 @@
+"""The verdict: its word for cases that are known, and each piece of its evidence against another way to compute it."""
+
+import itertools
+import json
+import math
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from symfpu.paper.printed import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.verdict import RATIO_ORDERS, LargestTerm, _growth, _root_uncertainty, assess, short
+from tests.tolerances import RESIDUAL_ROUNDING, ROUNDING, SAME_AS_DOUBLES
+
+
+def solved(printed, highest, *, digits=None, **options):
+    return solve_amplitudes(lindstedt(printed.chain, printed.seeds, printed.frequencies, highest, digits=digits), **options)
+
+
+def small_torus(digits=None):
+    """The torus of Fig. 1 with both frequencies a thousand times nearer to the linear ones."""
+    return solve_amplitudes(lindstedt(Chain(16, alpha="0.33"), (1, 2), ("0.1960345", "0.3901810"), 8, digits=digits))
+
+
+def beta_torus():
+    return solve_amplitudes(lindstedt(Chain(8, beta="0.3"), (1, 2), ("0.3925", "0.7695"), 5))
+
+
+def mixed_torus():
+    return solve_amplitudes(lindstedt(Chain(8, alpha="0.2", beta="0.3"), (1, 2), ("0.3925", "0.7695"), 6), phases={1: 0.3})
+
+
+CASES = {
+    "breather of Fig. 7": (lambda: solved(APPENDIX_F[-3], 30), "converged"),
+    "breather of Fig. 8": (lambda: solved(APPENDIX_F[-2], 30), "converged"),
+    "breather of Fig. 8, digits": (lambda: solved(APPENDIX_F[-2], 10, digits=30), "converged"),
+    "small torus": (small_torus, "converged"),
+    "small torus, digits": (lambda: small_torus(20), "converged"),
+    "torus of Fig. 1": (lambda: solved(TWO_TORUS, 30, frequency_order=24), "asymptotic, best at order 12"),
+    "torus of Fig. 1, whole series": (lambda: solved(TWO_TORUS, 30), "asymptotic, best at order 12"),
+    "torus of Fig. 1, digits": (lambda: solved(TWO_TORUS, 16, digits=20), "asymptotic, best at order 12"),
+    "order 2": (lambda: solved(TWO_TORUS, 2), "undecided"),
+    "order 2, digits": (lambda: solved(TWO_TORUS, 2, digits=20), "undecided"),
+    "order 1 of beta": (lambda: solve_amplitudes(lindstedt(Chain(8, beta="0.3"), (1,), ("0.3925",), 1)), "undecided"),
+    "coordinates cut at order 0": (lambda: solved(TWO_TORUS, 8, order=0), "undecided"),
+    "coordinates cut at order 1": (lambda: solved(APPENDIX_F[-2], 8, order=1), "undecided"),
+    "beta": (beta_torus, None),
+    "mixed": (mixed_torus, None),
+}
+
+
+@cache
+def judged(name):
+    """Torus and assessment of a case, made once."""
+    torus = CASES[name][0]()
+    return torus, assess(torus.series, torus)
+
+
+@pytest.mark.parametrize("name", [name for name in CASES if CASES[name][1]])
+def test_the_word_for_a_known_case(name):
+    _, assessment = judged(name)
+    assert assessment.headline == CASES[name][1]
+    assert assessment.word == CASES[name][1].split(",")[0]
+    assert repr(assessment).startswith(f"Assessment({assessment.headline}: residual of the equations of motion")
+
+
+def test_the_breather_of_fig_9_is_not_a_torus():
+    """Its series ends below the printed amplitude, at A = 1.287: the root at order 242 is one of the polynomial only."""
+    torus = solved(FIG9_BREATHER, FIG9_BREATHER.order)
+    assessment = assess(torus.series, torus)
+    assert assessment.headline == "not a torus"
+    assert "does not settle" in assessment.reasons[-1]
+    assert assessment.root_uncertainty > 1e-3
+    assert assessment.record()["verdict"] == "not a torus"
+    assert 0.99 < assessment.growth < 1.3009149 / 1.2869859  # terms grow by A / (end of the series), times k^-3/2 of a square root
+    assert assessment.pole_radius < 1.0
+
+
+@pytest.mark.parametrize("change", [1.01, 0.99])
+def test_other_amplitudes_are_not_those_of_a_torus(change):
+    torus, _ = judged("breather of Fig. 8")
+    moved = replace(torus, amplitudes={25: change * torus.amplitudes[25]})
+    assessment = assess(torus.series, moved)
+    assert assessment.word == "not a torus"
+    assert assessment.root_uncertainty == pytest.approx(abs(1 / change - 1), rel=1e-6)
+
+
+def test_a_torus_of_another_series_is_refused():
+    torus, _ = judged("order 2")
+    with pytest.raises(InputError, match="of another series"):
+        assess(replace(torus.series), torus)
+
+
+@pytest.mark.parametrize("name", ["torus of Fig. 1", "breather of Fig. 8, digits", "beta", "mixed"])
+def test_sums_are_those_of_the_series(name):
+    torus, assessment = judged(name)
+    assert tuple(assessment.sums) == torus.seeds
+    for q, ours in assessment.sums.items():
+        theirs = torus.series.absolute_sums(q, list(torus.amplitudes.values()), with_mu=True)
+        for row, expected in zip(ours, theirs, strict=True):
+            assert row.shape == (torus.order + 1,)
+            assert row == pytest.approx(expected, rel=ROUNDING, abs=0)
+
+
+@pytest.mark.parametrize(("name", "points"), [("torus of Fig. 1", 23), ("beta", 23), ("mixed", 23), ("breather of Fig. 7", 64)])
+def test_residuals_are_those_of_the_torus_cut_at_every_order(name, points):
+    torus, assessment = judged(name)
+    assert assessment.residuals.shape == (torus.order + 1,)
+    for k in range(0, torus.order + 1, 1 if torus.order < 10 else 5):
+        expected = replace(torus, order=k).residual(points)
+        assert assessment.residuals[k] == pytest.approx(expected, rel=RESIDUAL_ROUNDING, abs=ROUNDING)
+    assert assessment.best_order == int(np.argmin(assessment.residuals))
+
+
+def test_with_digits_residuals_go_on_where_doubles_end():
+    torus, assessment = judged("breather of Fig. 8, digits")
+    for k in (0, 3, 6, 10):
+        points = 16 if k > 3 else 64
+        assert assessment.residuals[k] == pytest.approx(replace(torus, order=k).residual(points), rel=RESIDUAL_ROUNDING)
+    assert (assessment.residuals[1:] < assessment.residuals[:-1]).all()
+    assert assessment.residuals[-1] < 1e-24
+    assert "certified" not in " ".join(assessment.reasons)
+    assert assessment.record()["certified"] is True
+
+
+@pytest.mark.parametrize("name", ["breather of Fig. 7", "breather of Fig. 8, digits"])
+def test_energy_errors_are_the_range_of_the_energy_along_the_orbit(name):
+    """One seed: the angles of the grid are times."""
+    torus, assessment = judged(name)
+    angles = 2 * np.pi * (3 * np.arange(64) + 1) / (3 * 64)
+    times = angles / float(torus.frequencies[0])
+    for k in range(5):
+        energies = replace(torus, order=k).energy(times).astype(float)
+        expected = (energies.max() - energies.min()) / energies.mean()
+        assert assessment.energy_errors[k] == pytest.approx(expected, rel=1e-6, abs=16 * ROUNDING)
+
+
+@pytest.mark.parametrize("name", ["torus of Fig. 1", "beta", "mixed", "small torus, digits"])
+def test_largest_terms_are_the_largest_and_have_their_divisors(name):
+    torus, assessment = judged(name)
+    amplitudes, chain = [torus.amplitudes[q] for q in torus.seeds], torus.chain
+    for term in assessment.terms:
+        nu, values = torus.series.harmonic_terms(amplitudes, term.order)
+        sizes = np.abs(values.astype(float)) * chain.frequencies()
+        row = int(np.flatnonzero((nu == term.harmonic).all(axis=1))[0])
+        assert term.size == sizes.max() == sizes[row, term.mode - 1]
+        with mpmath.workdps(40):
+            omega = [mpmath.mpf(w.numerator) / w.denominator for w in torus.frequencies]
+            linear = 2 * mpmath.sin(term.mode * mpmath.pi / (2 * chain.N))
+            base = dict(zip(torus.seeds, omega, strict=True)).get(term.mode, linear)
+            expected = base**2 - mpmath.fsum(n * w for n, w in zip(term.harmonic, omega, strict=True)) ** 2
+        assert term.divisor == pytest.approx(float(expected), rel=1e-15, abs=0)
+    assert [term.order for term in assessment.terms] == list(range(torus.order + 1))
+    assert (assessment.terms[0].mode, assessment.terms[0].harmonic, assessment.terms[0].divisor) in [(1, (1, 0), 0.0), (2, (0, 1), 0.0)]
+
+
+def test_the_torus_of_fig_1_is_undone_by_one_small_divisor():
+    _, assessment = judged("torus of Fig. 1")
+    last = assessment.terms[-1]
+    assert (last.mode, last.harmonic) == (3, (5, -4))
+    assert "mode 3, harmonic (5,-4), divisor 3.4e-05" in " ".join(assessment.reasons)
+    assert assessment.growth**2 == pytest.approx(1.494248, rel=1e-2)  # tests/paper/test_convergence.py
+    assert assessment.radius == 1 / assessment.growth
+    assert assessment.resummed_residual < 1e-5 < assessment.residuals.min()
+
+
+@pytest.mark.parametrize("rate", [0.25, 1.5])
+@pytest.mark.parametrize("step", [1, 2])
+def test_growth_of_a_geometric_sequence_is_its_rate(rate, step):
+    """With alpha, orders of the other parity may be of another size: only those of the last one's parity count."""
+    terms = [LargestTerm(k, rate**k * (7 if step == 2 and k % 2 else 3), 1, (1,), 1.0) for k in range(24)]
+    assert _growth(terms, step) == pytest.approx(rate, rel=1e-9)
+    bent = [*terms, *(replace(terms[-1], order=23 + j, size=terms[-1].size * 2.0**j) for j in range(1, step * RATIO_ORDERS + 1))]
+    assert _growth(bent, step) == pytest.approx(2.0, rel=1e-9)
+
+
+def test_growth_needs_two_orders_beyond_the_seeds_own():
+    one = LargestTerm(1, 0.5, 1, (1,), 1.0)
+    assert _growth([], 1) == _growth([one], 1) == _growth([replace(one, order=0), one], 1) == 0.0
+    assert _growth([one, replace(one, order=2)], 2) == 0.0
+    assert _growth([one, replace(one, order=2, size=0.125)], 1) == pytest.approx(0.25)
+    assert replace(judged("order 2")[1], growth=0.0).radius == math.inf
+
+
+@pytest.mark.parametrize("rate", [0.5, 0.1, -0.3])
+@pytest.mark.parametrize("count", [3, 6, 12])
+def test_the_root_uncertainty_bounds_the_error_of_geometric_amplitudes(rate, count):
+    """A(k) = 1 + rate^k / 100, whose limit is 1."""
+    history = {2 * k: (1 + 0.01 * rate**k,) for k in range(1, count + 1)}
+    orders = list(history)
+    differences = {a: (abs(history[b][0] - history[a][0]),) for a, b in itertools.pairwise(orders)}
+    torus = SimpleNamespace(amplitudes={1: history[orders[-1]][0]}, history=history)
+    error = abs(torus.amplitudes[1] - 1)
+    assert error < _root_uncertainty(torus, differences) < 40 * error
+
+
+def test_amplitudes_that_move_apart_are_as_uncertain_as_their_least_change():
+    differences = {2: (0.1, 0.1), 4: (0.001, 0.002), 6: (0.02, 0.01)}
+    torus = SimpleNamespace(amplitudes={1: 1.0, 2: 0.5}, history={4: (1.0, 0.5)})
+    assert _root_uncertainty(torus, differences) == pytest.approx(0.004)
+    assert _root_uncertainty(torus, {2: (0.1, 0.1)}) == math.inf
+    growing = {2: (0.1, 0.1), 4: (0.2, 0.3), 6: (0.3, 0.4)}
+    assert _root_uncertainty(torus, growing) == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_record_is_strict_json(name):
+    """No Infinity and no NaN, which JSON does not have; what is not finite is null."""
+    torus, assessment = judged(name)
+    record = json.loads(json.dumps(assessment.record(), allow_nan=False))
+    assert record["verdict"] == assessment.headline
+    assert record["reasons"] == list(assessment.reasons)
+    assert len(record["residuals"]) == len(record["energy_errors"]) == torus.order + 1
+    assert (record["order"], record["frequency_order"], record["best_order"]) == (torus.order, torus.frequency_order, assessment.best_order)
+    assert (record["root_uncertainty"] is None) == math.isinf(assessment.root_uncertainty)
+    assert (record["radius_by_poles"] is None) == math.isinf(assessment.pole_radius)
+    assert record["certified"] is (None if torus.digits is None else True)
+    written = record["amplitudes_by_frequency_order"][str(torus.frequency_order)]
+    assert [float(a) for a in written] == pytest.approx([float(a) for a in torus.amplitudes.values()], rel=ROUNDING)
+
+
+def test_short_numbers():
+    assert short(1 / 3) == 0.333333
+    assert short(math.inf) is short(math.nan) is short(-math.inf) is None
+
+
+@pytest.mark.parametrize(("doubles", "digits"), [("small torus", "small torus, digits"), ("order 2", "order 2, digits")])
+def test_digits_change_no_word_and_no_evidence(doubles, digits):
+    plain, precise = judged(doubles)[1], judged(digits)[1]
+    assert (plain.word, plain.frequency_order) == (precise.word, precise.frequency_order)
+    assert [(t.order, t.mode, t.harmonic) for t in plain.terms] == [(t.order, t.mode, t.harmonic) for t in precise.terms]
+    visible = plain.residuals > 1e-9
+    assert plain.residuals[visible] == pytest.approx(precise.residuals[visible], rel=1e-4)
+    for K, amplitudes in plain.amplitudes.items():
+        assert amplitudes == pytest.approx(tuple(map(float, precise.amplitudes[K])), rel=SAME_AS_DOUBLES)
+
+
+@pytest.mark.parametrize("name", ["small torus", "small torus, digits"])
+def test_progress_goes_from_the_first_order_to_the_end(name):
+    torus, _ = judged(name)
+    calls = []
+    assess(torus.series, torus, progress=lambda done, total: calls.append((done, total)))
+    assert {total for _, total in calls} == {(torus.order + 1) * (2 if torus.digits else 1)}
+    assert [done for done, _ in calls] == sorted(done for done, _ in calls)
+    assert calls[0][0] == 1
+    assert calls[-1][0] == calls[-1][1]
