@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from symfpu.families.continuation import Event, Member
     from symfpu.families.family import Family, NotInFamily, family
     from symfpu.files.archive import BundleError
+    from symfpu.localization.growth import GroupGrowth, GrowthExponents, growth_exponents
     from symfpu.localization.laws import (
         ProfileFit,
         ProfileLine,
@@ -52,19 +53,8 @@ if TYPE_CHECKING:
         profile_law,
         rounding_floor,
     )
-    from symfpu.localization.spectra import (
-        GroupGrowth,
-        GrowthExponents,
-        NoRecurrence,
-        ProfileDistance,
-        Recurrence,
-        fpu_trajectory,
-        growth_exponents,
-        normalised_averages,
-        packet_amplitudes,
-        profile_distance,
-        recurrence,
-    )
+    from symfpu.localization.profiles import ProfileDistance, fpu_trajectory, normalised_averages, packet_amplitudes, profile_distance
+    from symfpu.localization.recurrence import NoRecurrence, Recurrence, recurrence
     from symfpu.localization.trials import ProfileInvariance, Trend, profile_invariance, slope_by_energy
     from symfpu.proofs.certificates import PropagationProof, prove_propagation
     from symfpu.proofs.leading import leading_term, lemma_holds

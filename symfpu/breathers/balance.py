@@ -16,14 +16,13 @@ import mpmath
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain.chain import Chain, decimal
+from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
-from symfpu.numbers.typed import Number, exact, seed_modes
+from symfpu.numbers.typed import Number, decimal, exact, seed_modes
 
 Floats = NDArray[np.float64]
 Condition = Callable[[Floats], tuple[float, Floats]]  # of z: what has to vanish, relative to what it is made of, and its derivatives
-
 LARGEST_SYSTEM = 8192  # unknowns; a matrix of 512 MB
 TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonics may reach
 STEP, ROUNDING_STEP = 1e-14, 1e-9  # relative Newton step that ends the iteration, at once or when it no longer shrinks

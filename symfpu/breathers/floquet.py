@@ -15,17 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.balance import PeriodicOrbit
-from symfpu.chain.chain import decimal
 from symfpu.dynamics.kahan_li8 import ORDER, tangent_map_along
 from symfpu.errors import InputError
+from symfpu.numbers.typed import decimal
 
 Floats = NDArray[np.float64]
-
 ACCURACY = 1e-12  # of the tangent map, relative to its largest entry
 FIRST_STEP = 0.1  # over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
 DOUBLINGS = 5
 SAFETY = 8  # times the error that a kappa may have: what it may be off the circle
-
 TRIVIAL, ELLIPTIC = "trivial", "on the circle"
 TANGENT, DOUBLING, QUADRUPLE = "real > 0", "real < 0", "complex quadruple"
 

@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.breathers.balance import GROWTH, ITERATIONS, ROUNDING_STEP, STEP, detuning, lowest_amplitude, positive_frequency
-from symfpu.chain.chain import Chain, decimal
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.kahan_li8 import ORDER, tangent_flow
 from symfpu.errors import InputError, SymfpuError
-from symfpu.numbers.typed import Number, seed_modes
+from symfpu.numbers.typed import Number, decimal, seed_modes
 
 Floats = NDArray[np.float64]
-
 ACCURACY = 1e-15  # of the half period, relative to its largest number: a small omega - Omega magnifies errors
 FIRST_STEP = 0.1  # time of the coarser of the first two integrations
 DOUBLINGS = 5

@@ -35,14 +35,13 @@ from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.series.divisors import SmallDivisor
-from symfpu.series.lindstedt import shared_grading
+from symfpu.series.recursion import shared_grading
 from symfpu.series.series import LindstedtSeries, ResiduePoint
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus, RootCertificate
 
 Array = NDArray[Any]
 Shapes = tuple[list[tuple[int, ...]], list[tuple[int, ...]]]  # of the tables of coordinates and of corrections, by order
-
 PACKAGES = ("symfpu", "numpy", "scipy", "mpmath", "symengine", "sympy", "python-flint", "gmpy2", "numba", "llvmlite")
 DTYPES = {"float64": "<f8", "residue": "<f8", "fixedpoint": "<i8", "symbolic": "<i8", "nested": "<i8"}
 REFINED = "refined"  # kind of a torus without a series

@@ -13,12 +13,11 @@ import symengine as se
 from mpmath import libmp
 from numpy.typing import NDArray
 
-from symfpu.chain.chain import decimal, rational
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import text
+from symfpu.numbers.typed import decimal, rational
 
 Array = NDArray[Any]
-
 LONGEST_DECIMAL = 3000  # bits; longer fractions are written in hexadecimal, which no limit of Python concerns
 COMPOUND = {"sum": se.Add, "product": se.Mul, "power": se.Pow}
 

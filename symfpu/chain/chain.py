@@ -16,10 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import DOUBLES, Doubles, Numbers, arithmetic_of, sine_matrix
-from symfpu.numbers.typed import Number, exact, integer
+from symfpu.numbers.typed import Number, decimal, exact, integer, rational
 
 Floats = NDArray[np.float64]
-
 SMALLEST_COUPLING = Fraction(1, 10**50)
 LARGEST_EXPRESSION = 40  # bonds; the cubic coupling has about N^3 terms
 
@@ -211,27 +210,3 @@ def require_chain(chain: object) -> None:
     """InputError for what is no Chain."""
     if not isinstance(chain, Chain):
         raise InputError("chain", type(chain).__name__, "a Chain", "make one with Chain(N, alpha=..., beta=...)")
-
-
-def rational(value: Fraction) -> Any:
-    """The SymEngine number equal to an exact fraction."""
-    return se.Integer(value.numerator) / se.Integer(value.denominator)
-
-
-def decimal(value: Fraction) -> str:
-    """The shortest text that gives the exact number back: a finite decimal, or p/q.
-
-    >>> decimal(Fraction(33, 100)), decimal(Fraction(1, 3))
-    ('0.33', '1/3')
-    """
-    power, rest = 0, value.denominator
-    for prime in (2, 5):
-        count = 0
-        while rest % prime == 0:
-            rest, count = rest // prime, count + 1
-        power = max(power, count)
-    if rest != 1:
-        return str(value)
-    digits = f"{abs(value.numerator) * 10**power // value.denominator:0{power + 1}d}"
-    text = f"{digits[: len(digits) - power]}.{digits[len(digits) - power :]}" if power else digits
-    return f"-{text}" if value < 0 else text

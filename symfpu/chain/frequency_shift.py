@@ -18,9 +18,9 @@ from typing import Any
 
 import symengine as se
 
-from symfpu.chain.chain import Chain, rational
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.numbers.typed import exact, seed_modes
+from symfpu.numbers.typed import exact, rational, seed_modes
 
 
 def shift_coefficients(N: int, q: int, n: int) -> tuple[tuple[Fraction, Fraction], Fraction]:

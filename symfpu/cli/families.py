@@ -15,9 +15,9 @@ from symfpu.cli.terminal import BondsOption, JsonOption, SeedsOption, app, optio
 from symfpu.errors import InputError
 from symfpu.families.family import METHODS, Family, family
 from symfpu.figures.family import draw_family
+from symfpu.files.writing import output_file, output_folder
 from symfpu.refinement.tori import RefinedTorus, refine, refine_at_amplitudes, refine_at_energy
 from symfpu.reports.family import family_record, family_table, family_text, refined_record, refined_text
-from symfpu.reports.report import output_file, output_folder
 
 
 @app.command("refine", epilog="Example: symfpu refine torus.symfpu -o refined.symfpu")

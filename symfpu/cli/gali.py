@@ -9,12 +9,13 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.bundles.bundle import load
-from symfpu.chain.chain import decimal
 from symfpu.cli.terminal import JsonOption, app, number, optional, print_json, progress_bar, whole
 from symfpu.dynamics.alignment import SAMPLES, STEP, VECTORS, AlignmentIndices, alignment_indices, seconds_needed
 from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
-from symfpu.reports.report import fifteen_digits, output_folder
+from symfpu.files.writing import output_folder
+from symfpu.numbers.typed import decimal
+from symfpu.reports.tables import fifteen_digits
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")

@@ -15,12 +15,11 @@ from symfpu.bundles.bundle import load
 from symfpu.cli.terminal import JsonOption, app, number, print_json, progress_bar, whole
 from symfpu.dynamics.orbits import SCHEMES, Orbit, integrate
 from symfpu.errors import InputError
-from symfpu.proofs.certificates import write_text
-from symfpu.reports.report import fifteen_digits, output_file
+from symfpu.files.writing import output_file, write_text
+from symfpu.reports.tables import fifteen_digits
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Floats = NDArray[np.float64]
-
 LOST_ENERGY = 1e-3  # relative
 SHOWN = 8  # modes of the largest average harmonic energy
 

@@ -21,11 +21,12 @@ from symfpu.cli.terminal import (
     whole_numbers,
 )
 from symfpu.errors import InputError
-from symfpu.proofs.certificates import PropagationProof, prove_propagation, write_text
+from symfpu.files.writing import write_text
+from symfpu.proofs.certificates import PropagationProof, prove_propagation
 from symfpu.proofs.sweeps import sweep_propagation
 from symfpu.proofs.verify import CertificateError
 from symfpu.proofs.verify import verify as verify_certificate
-from symfpu.reports.report import sweep_markdown
+from symfpu.reports.sweep import sweep_markdown
 
 
 @app.command(epilog="Example: symfpu propagate -N 32 --model alpha --seeds 3,5 --order 4")

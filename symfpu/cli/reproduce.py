@@ -17,11 +17,10 @@ from symfpu.cli.terminal import (
     progress_bar,
 )
 from symfpu.errors import InputError
-from symfpu.figures.panels import PaperFigure
+from symfpu.files.writing import output_folder, write_text
+from symfpu.paper.claims import PaperFigure
 from symfpu.paper.claims_page import claims_markdown
 from symfpu.paper.targets import FULL, TARGETS, Page, full_estimate
-from symfpu.proofs.certificates import write_text
-from symfpu.reports.report import output_folder
 
 
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")

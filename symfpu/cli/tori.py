@@ -26,10 +26,11 @@ from symfpu.cli.terminal import (
 from symfpu.codegen.export import LANGUAGES
 from symfpu.codegen.export import export as export_source
 from symfpu.errors import InputError
+from symfpu.files.writing import output_file
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.family import refined_record, refined_text
-from symfpu.reports.report import assessment_text, output_file, torus_record
+from symfpu.reports.torus import assessment_text, torus_record
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.torus import QTorus

@@ -24,8 +24,8 @@ from symfpu.codegen.languages import (
 from symfpu.codegen.series_program import SeriesProgram, series_facts, series_program
 from symfpu.codegen.torus_program import TorusProgram, torus_facts, torus_program
 from symfpu.errors import InputError
+from symfpu.files.writing import write_text
 from symfpu.numbers.arithmetic import text
-from symfpu.proofs.certificates import write_text
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus

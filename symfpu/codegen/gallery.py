@@ -12,9 +12,10 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-from symfpu.chain.chain import Chain, decimal
+from symfpu.chain.chain import Chain
 from symfpu.codegen.export import LANGUAGES, export
-from symfpu.proofs.certificates import write_text
+from symfpu.files.writing import write_text
+from symfpu.numbers.typed import decimal
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.torus import QTorus

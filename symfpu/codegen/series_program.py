@@ -19,11 +19,11 @@ import numpy as np
 
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.polynomials import Polynomial, square_root
-from symfpu.chain.chain import decimal
 from symfpu.codegen.straight_line import STRAIGHT_LINE, StraightLine, numeric_statements, universal_statements
 from symfpu.codegen.torus_program import EXTRA_DIGITS, number
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, mpf, text
+from symfpu.numbers.typed import decimal
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import order_argument

@@ -16,12 +16,11 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain.chain import decimal
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text
+from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
 Ints = NDArray[np.int64]
-
 CHECK_PERIODS = (0.0, 0.37, 41.3)  # times of the embedded test vectors, in periods of the slowest seed
 EXTRA_DIGITS = 5
 SPLIT_DIGITS = 60  # from which omega / 2 pi is split into two doubles

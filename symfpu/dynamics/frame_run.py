@@ -9,16 +9,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain.chain import decimal
 from symfpu.dynamics.tangent import MovingFrame
 from symfpu.errors import SymfpuError
 from symfpu.files.archive import BundleError
 from symfpu.files.checkpoint import ADVICE, ALIGNMENT, digest, read_checkpoint, write_checkpoint
+from symfpu.numbers.typed import decimal
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Progress = Callable[[str, float], None]
-
 PORTION = 6_400_000  # moves of a particle with its lanes between two looks at the clock: half a second, about
 TRIAL = 0.2  # seconds of a measurement
 

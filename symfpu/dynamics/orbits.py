@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain.chain import Chain, decimal, require_chain
-from symfpu.dynamics.aba864 import ABA864
-from symfpu.dynamics.aba864_modes import ABA864_MODES
+from symfpu.chain.chain import Chain, require_chain
+from symfpu.dynamics.aba864 import ABA864, ABA864_MODES
 from symfpu.dynamics.averages import LOOKS, RunningAverages, steps_between_looks
 from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
@@ -28,11 +27,10 @@ from symfpu.dynamics.yoshida4 import YOSHIDA4
 from symfpu.errors import InputError
 from symfpu.files.archive import BundleError
 from symfpu.files.checkpoint import ADVICE, checkpoint_path, digest, read_checkpoint, write_checkpoint
-from symfpu.numbers.typed import integer
+from symfpu.numbers.typed import decimal, integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
 SCHEMES = {scheme.name: scheme for scheme in (YOSHIDA4, ABA864, BLANES_MOAN6, KAHAN_LI8, ABA864_MODES)}
 BLOCK = 50_000_000  # moves of one particle, or products of two modes, between two looks at the clock: a tenth of a second, about
 MOST_STEPS = 2**52

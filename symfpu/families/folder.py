@@ -11,16 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from symfpu.bundles.bundle import load, save
-from symfpu.chain.chain import Chain, decimal
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.continuation import FIRST_STEP, Event, Member, member
-from symfpu.numbers.typed import Number, exact, integer, seed_modes
-from symfpu.proofs.certificates import write_text
+from symfpu.files.writing import write_text
+from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.tori.torus import QTorus
 
 Json = dict[str, Any]
-
 BEGINNING = "1/1000"  # of the energy asked for, where a family begins by default
 SMALLEST, LARGEST = Fraction(1, 10**300), 10**300  # energies whose doubles are neither 0 nor infinite
 RECORD = "family.json"

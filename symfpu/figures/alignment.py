@@ -6,9 +6,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.figures.drawing import plot_panel, save_panel
-from symfpu.paper.dimensions import alignment_panel
+from symfpu.figures.panels import Curve, Panel
 
 Axes = Any
 FEW_DECADES = 0.5  # least height of the picture, for indices that stay where they are
@@ -41,3 +43,12 @@ def draw_alignment(found: AlignmentIndices, folder: Path, stem: str = "gali") ->
         for panel, (title, draw) in panels.items()
         for path in save_panel(partial(draw, found), f"{title} ({name})", folder / (panel if panel == stem else f"{stem}-{panel}"))
     ]
+
+
+def alignment_panel(name: str, title: str, found: AlignmentIndices) -> Panel:
+    """log10 G_k against log10 t."""
+    curves = tuple(
+        Curve(rf"$G_{{{s.k}}}$: ${s.value:.2f} \pm {s.error:.2f}$", np.log10(found.times), found.log10_gali[:, i], name=f"G_{s.k}")
+        for i, s in enumerate(found.slopes())
+    )
+    return Panel(name, title, r"$\log_{10} t$", r"$\log_{10} G_k$", curves, ("log10_t", "log10_G"), log_y=False)

@@ -1,4 +1,4 @@
-"""What a figure of the paper comes to: panels with their curves, and what the paper says of them beside what we find. Data only."""
+"""Panels and their curves, as data."""
 
 from __future__ import annotations
 
@@ -12,9 +12,6 @@ from numpy.typing import NDArray
 from symfpu.errors import InputError
 
 Floats = NDArray[np.float64]
-
-HOLDS, PARTLY, FAILS, OPEN = "holds", "holds in part", "does not hold", "undecided"
-VERDICTS = (HOLDS, PARTLY, FAILS, OPEN)
 STYLES = ("line", "points", "dots", "triangles", "rings", "law")
 
 
@@ -59,46 +56,3 @@ class Panel:
         """Header and rows: one row for each point of each curve."""
         rows = ([curve.name or curve.label, float(x), float(y)] for curve in self.curves for x, y in zip(curve.x, curve.y, strict=True))
         return ["curve", *self.axes], rows
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A statement or number of the paper and what became of it.
-
-    section : where the paper says it. text : what it says. printed : its number, if there is one. ours : what we find, with numbers.
-    verdict : one of VERDICTS.
-    """
-
-    section: str
-    text: str
-    printed: str
-    ours: str
-    verdict: str
-
-    def __post_init__(self) -> None:
-        if self.verdict not in VERDICTS:
-            raise InputError("verdict", self.verdict, ", ".join(VERDICTS), "choose one of them")
-
-    def record(self) -> dict[str, str]:
-        """For JSON."""
-        return {name: getattr(self, name) for name in ("section", "text", "printed", "ours", "verdict")}
-
-
-@dataclass(frozen=True)
-class PaperFigure:
-    """A figure of the paper computed anew. name : such as "fig2". remarks : how, in sentences."""
-
-    name: str
-    title: str
-    panels: tuple[Panel, ...]
-    claims: tuple[Claim, ...]
-    remarks: tuple[str, ...] = ()
-
-    def __repr__(self) -> str:
-        counts = ", ".join(f"{n} {verdict}" for verdict in VERDICTS if (n := sum(c.verdict == verdict for c in self.claims)))
-        return f"PaperFigure({self.name}, panels {', '.join(panel.name for panel in self.panels)}; claims: {counts or 'none'})"
-
-
-def judged(holds: bool, partly: bool = False) -> str:
-    """The verdict on a claim that can be decided."""
-    return HOLDS if holds else PARTLY if partly else FAILS

@@ -15,11 +15,10 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.localization.laws import FLOOR, ProfileFit, fit_profile, packet_groups, positive, rounding_floor
-from symfpu.localization.spectra import fpu_trajectory, packet_amplitudes
+from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.numbers.typed import Number, exact, integer
 
 Floats = NDArray[np.float64]
-
 ABOVE_ROUNDING = 10.0  # times the expected rounding noise: what noise adds to log10 e is 0.04 there
 POINTS = 3  # of a trend with an error bar
 PHASES = ("equal", "random")

@@ -7,11 +7,13 @@ from collections.abc import Iterable
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from numbers import Integral, Rational, Real
+from typing import Any
+
+import symengine as se
 
 from symfpu.errors import InputError
 
 LONGEST = 1000  # characters of a number, and the largest power of ten in it
-
 Number = int | float | str | Fraction | Decimal
 
 
@@ -72,3 +74,34 @@ def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
     if len(set(modes)) < len(modes):
         raise InputError("seeds", tuple(modes), allowed, "name every seed once")
     return tuple(modes)
+
+
+def rational(value: Fraction) -> Any:
+    """The SymEngine number equal to an exact fraction."""
+    return se.Integer(value.numerator) / se.Integer(value.denominator)
+
+
+def decimal(value: Fraction) -> str:
+    """The shortest text that gives the exact number back: a finite decimal, or p/q.
+
+    >>> decimal(Fraction(33, 100)), decimal(Fraction(1, 3))
+    ('0.33', '1/3')
+    """
+    power, rest = 0, value.denominator
+    for prime in (2, 5):
+        count = 0
+        while rest % prime == 0:
+            rest, count = rest // prime, count + 1
+        power = max(power, count)
+    if rest != 1:
+        return str(value)
+    digits = f"{abs(value.numerator) * 10**power // value.denominator:0{power + 1}d}"
+    text = f"{digits[: len(digits) - power]}.{digits[len(digits) - power :]}" if power else digits
+    return f"-{text}" if value < 0 else text
+
+
+def double(value: Number, name: str) -> float:
+    try:
+        return float(exact(value, name))
+    except OverflowError as error:
+        raise InputError(name, value, "a number within the range of doubles", "take a smaller one") from error

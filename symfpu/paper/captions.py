@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
-from symfpu.figures.panels import Claim, Curve, judged
+from symfpu.figures.panels import Curve
 from symfpu.localization.laws import ProfileLine, profile_law
+from symfpu.paper.claims import Claim, judged
 from symfpu.paper.printed import LINES, PrintedLine
 from symfpu.paper.table import rounds_to
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from symfpu.figures.panels import VERDICTS, Claim, PaperFigure
-from symfpu.reports.report import markdown_table, write_csv
+from symfpu.paper.claims import VERDICTS, Claim, PaperFigure
+from symfpu.reports.tables import markdown_table, write_csv
 
 
 def figure_markdown(figure: PaperFigure) -> str:

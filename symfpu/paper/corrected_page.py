@@ -11,7 +11,7 @@ from typing import Any
 from symfpu.paper.corrected import FEW_DIGITS, LIMIT, CorrectedRow, ScalingStudy, SeriesErrors
 from symfpu.paper.table import rounds_to
 from symfpu.refinement.tori import RefinedTorus
-from symfpu.reports.report import fifteen_digits, markdown_table, write_csv
+from symfpu.reports.tables import fifteen_digits, markdown_table, write_csv
 
 SHOWN_ORDERS = (2, 4, 6, 8, 10, 12, 16, 20, 30, 60, 120, 242)
 HEADING = "## Appendix F and Fig. 1 corrected: exact tori of the printed frequencies"

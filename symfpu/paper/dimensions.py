@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices, seconds_needed
-from symfpu.figures.panels import Curve, Panel
 from symfpu.paper.starts import Step, printed_row
 
 Floats = NDArray[np.float64]
-
 TIME, FULL_TIME = 1e7, 1e9  # default; the paper's, with --full
 VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}  # by figure: whose chain, and how many vectors
 GALI_STEP = 0.4  # of the tangent map
@@ -39,15 +37,6 @@ def indices(name: str, start: tuple[Floats, Floats], tell: Step, folder: Path, *
         file=file,
         progress=lambda label, done: tell(f"{name}: GALI, {label} of {T:.0e}"),
     )
-
-
-def alignment_panel(name: str, title: str, found: AlignmentIndices) -> Panel:
-    """log10 G_k against log10 t."""
-    curves = tuple(
-        Curve(rf"$G_{{{s.k}}}$: ${s.value:.2f} \pm {s.error:.2f}$", np.log10(found.times), found.log10_gali[:, i], name=f"G_{s.k}")
-        for i, s in enumerate(found.slopes())
-    )
-    return Panel(name, title, r"$\log_{10} t$", r"$\log_{10} G_k$", curves, ("log10_t", "log10_G"), log_y=False)
 
 
 def slopes_text(found: AlignmentIndices) -> str:

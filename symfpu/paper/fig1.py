@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.figures.panels import Claim, PaperFigure, judged
+from symfpu.figures.alignment import alignment_panel
 from symfpu.localization.laws import fit_profile
-from symfpu.paper.dimensions import FULL_TIME, alignment_panel, indices
+from symfpu.paper.claims import Claim, PaperFigure, judged
+from symfpu.paper.dimensions import FULL_TIME, indices
 from symfpu.paper.judgements import NEAR, cancellation_claim, dimension_claim, falls
-from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, FIG1_CANCELLATION_ORDER, FIG1_CLAIMS, TWO_TORUS
+from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, FIG1_CANCELLATION_ORDER, FIG1_CLAIMS, FIG1_DIGITS, TWO_TORUS
 from symfpu.paper.starts import Step
-from symfpu.paper.table import Figure1, rounds_to
+from symfpu.paper.table import rounds_to
 from symfpu.refinement.tori import RefinedTorus, refine
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.torus import QTorus
+from symfpu.tori.verdict import Assessment, assess
 
 Floats = NDArray[np.float64]
-
 SETTLED = (3e-9, 3e-7)  # "a minimum level of 1e-8 .. 1e-7", to a factor of three
 LINEAR = 0.5  # decades of scatter about a line that is one to the eye, over twenty decades
 TIMES = 3.0  # factor within which a size is the printed power of ten
@@ -135,3 +139,87 @@ def _localized(exact: RefinedTorus) -> Claim:
     fit = fit_profile(exact.chain, spectrum, len(exact.seeds), floor=0.0)
     holds = -fit.line.slope > 3 * fit.errors[0] and fit.scatter < LINEAR
     return Claim("3.2", "the energies E_q fall exponentially with q", "", f"{fit!r} (exact torus)", judged(holds))
+
+
+@dataclass(frozen=True)
+class Figure1:
+    """Data of Fig. 1 (a) to (d): the 2-torus of N = 16, alpha = 0.33, seeds 1 and 2.
+
+    assessment : verdict with amplitudes, sums and residuals by order. spectra, errors : by coordinate order, for the order of
+    least residual and for the amplitudes' own order. spectra : time averages of E_q over the total energy. errors : relative
+    errors in time (total, harmonic). rounding : largest relative error of the amplitudes of all orders if computed in doubles.
+    """
+
+    torus: QTorus
+    assessment: Assessment
+    spectra: dict[int, Floats]
+    times: Floats
+    errors: dict[int, tuple[Floats, Floats]]
+    rounding: float
+
+    @property
+    def sums(self) -> tuple[Floats, Floats]:
+        """mu^k S_1(k) and mu^k S_2(k) of mode 1."""
+        return self.assessment.sums[1]
+
+    @property
+    def differences(self) -> Mapping[int, tuple[float, ...]]:
+        """Delta A(k) of both seeds."""
+        return self.assessment.differences
+
+    @property
+    def residuals(self) -> dict[int, float]:
+        """Residual of the equations of motion by coordinate order."""
+        return {k: float(r) for k, r in enumerate(self.assessment.residuals) if k >= 2}
+
+    @property
+    def best_order(self) -> int:
+        """The coordinate order with the least residual of the equations of motion."""
+        return self.assessment.best_order
+
+    def claims(self) -> dict[str, str]:
+        """What the paper's text says of Fig. 1, in our numbers; the keys are those of paper.FIG1_CLAIMS."""
+        largest = {k: max(d) for k, d in self.differences.items()}
+        least = min(largest, key=lambda k: largest[k])
+        k = FIG1_CANCELLATION_ORDER
+        total, harmonic = (float(np.abs(e).max()) for e in self.errors[self.best_order])
+        late_total, late_harmonic = (float(np.abs(e).max()) for e in self.errors[FIG1_AMPLITUDE_ORDER])
+        return {
+            "best_difference": f"{largest[least]:.1e} at k = {least}; {largest[max(largest)]:.1e} at k = {max(largest)}",
+            "cancellation": f"{np.log10(self.sums[0][k] / self.sums[1][k]):.1f} orders of magnitude at k = {k}",
+            "term_size": f"{self.sums[1][k]:.1e} at k = {k} (with mu^k; {self.sums[1][k] / self._mu**k:.1e} without)",
+            "harmonic_error": f"{harmonic:.1e} at order {self.best_order}, {late_harmonic:.1e} at order {FIG1_AMPLITUDE_ORDER}",
+            "energy_error": f"{total:.1e} at order {self.best_order}, {late_total:.1e} at order {FIG1_AMPLITUDE_ORDER}",
+        }
+
+    @property
+    def _mu(self) -> float:
+        return self.torus.series.chain.mu
+
+
+def figure1(step: Step = lambda label: None) -> Figure1:
+    """Compute the data of Fig. 1 (a) to (d) from the printed frequencies, with FIG1_DIGITS digits.
+
+    Doubles run beside them show what precision is needed: they lose no more than `rounding`.
+    """
+    step("fig1: series")
+    printed = TWO_TORUS
+    series = lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order, digits=FIG1_DIGITS)
+    torus = solve_amplitudes(series, frequency_order=FIG1_AMPLITUDE_ORDER)
+    step("fig1: verdict")
+    assessment = assess(series, torus)
+    step("fig1: doubles")
+    doubles = amplitude_history(lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order)).amplitudes
+    pairs = [(a, b) for k, row in torus.history.items() for a, b in zip(row, doubles[k], strict=True)]
+    step("fig1: errors in time")
+    shown = sorted({assessment.best_order, FIG1_AMPLITUDE_ORDER})
+    tori = {k: replace(torus, order=k).in_doubles() for k in shown}
+    times = np.linspace(0.0, 1000.0, 2001)
+    return Figure1(
+        torus=torus,
+        assessment=assessment,
+        spectra={k: t.average_spectrum() / t.energy() for k, t in tori.items()},
+        times=times,
+        errors={k: (t.energy_error(times), t.energy_error(times, harmonic=True)) for k, t in tori.items()},
+        rounding=max(abs(float(b / a - 1)) for a, b in pairs),
+    )

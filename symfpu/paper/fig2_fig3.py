@@ -10,18 +10,14 @@ from numpy.typing import NDArray
 
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.dynamics.orbits import Orbit
-from symfpu.figures.panels import Claim, Curve, Panel, PaperFigure, judged
+from symfpu.figures.alignment import alignment_panel
+from symfpu.figures.panels import Curve, Panel
+from symfpu.localization.growth import GroupGrowth, GrowthExponents, growth_exponents
 from symfpu.localization.laws import fit_profile, middle_modes
-from symfpu.localization.spectra import (
-    GroupGrowth,
-    GrowthExponents,
-    fpu_trajectory,
-    growth_exponents,
-    normalised_averages,
-    profile_distance,
-)
+from symfpu.localization.profiles import fpu_trajectory, normalised_averages, profile_distance
 from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_line
-from symfpu.paper.dimensions import FULL_TIME, alignment_panel, indices, settled_after
+from symfpu.paper.claims import Claim, PaperFigure, judged
+from symfpu.paper.dimensions import FULL_TIME, indices, settled_after
 from symfpu.paper.judgements import (
     AGREEMENT,
     FLOOR,
@@ -41,7 +37,6 @@ from symfpu.refinement.tori import RefinedTorus, refine
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
-
 TIME = 1e6  # the paper's
 IDENTICAL = 1e-3  # of the largest coordinate: orbits that a picture cannot tell apart
 PAPER_EXPONENT = 1.5  # c_q(k) = (3/2) k + eps_q

@@ -10,17 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
-from symfpu.figures.panels import Claim, Curve, Panel, PaperFigure, judged
+from symfpu.figures.panels import Curve, Panel
 from symfpu.localization.laws import least_packet, middle_modes, packet_parameter
-from symfpu.localization.spectra import fpu_trajectory, packet_amplitudes
+from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.localization.trials import ProfileInvariance, Trend, profile_invariance, slope_by_energy
 from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_line
+from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import SIMILAR
 from symfpu.paper.printed import PrintedLine
 from symfpu.paper.starts import Step, follow
 
 Floats = NDArray[np.float64]
-
 TIME, RANDOM_TIME = 1e6, 1e5  # the paper's with phases 0; ours with random phases
 REALISATIONS = 4  # of random phases
 STILL = 0.15  # an exponent of N that is 0 within what edges of groups and few chains leave

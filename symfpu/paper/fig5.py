@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.propagation import excitation_sequence
-from symfpu.figures.panels import Claim, Panel, PaperFigure, judged
-from symfpu.localization.spectra import normalised_averages
+from symfpu.figures.panels import Panel
+from symfpu.localization.profiles import normalised_averages
+from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import AGREEMENT, groups_claim, parting_level, runs
 from symfpu.paper.starts import Step, follow, printed_row, printed_torus, profile_panel
 
 Floats = NDArray[np.float64]
-
 TIME = 1e5  # our choice; slow beats of the lowest modes average out by then
 EXAMPLES = {"Fig. 5a": "evenly spread seeds", "Fig. 5b": "the highest modes", "Fig. 5c": "the middle modes", "Fig. 5d": "at 3/4"}
 PRINTED_LEVELS = {"Fig. 5c": 1e-60}  # down to which the text says that both spectra agree

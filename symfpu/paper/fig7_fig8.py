@@ -12,9 +12,10 @@ from symfpu.breathers.balance import periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.dynamics.orbits import Orbit
-from symfpu.figures.panels import Claim, Curve, Panel, PaperFigure, judged
+from symfpu.figures.panels import Curve, Panel
 from symfpu.localization.laws import breather_law
-from symfpu.localization.spectra import fpu_trajectory, normalised_averages, profile_distance
+from symfpu.localization.profiles import fpu_trajectory, normalised_averages, profile_distance
+from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import SIMILAR, same_profile
 from symfpu.paper.printed import PrintedTorus
 from symfpu.paper.starts import (
@@ -30,7 +31,6 @@ from symfpu.paper.starts import (
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
-
 AVERAGING = 1e5  # time of the averages, our choice
 SHOWN = 8  # modes of Figs. 7 and 9
 TIME_7, TIME_8 = 1e5, 1000.0  # of the instantaneous energies, our choice

@@ -14,11 +14,13 @@ from symfpu.breathers.balance import periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
-from symfpu.figures.panels import Claim, PaperFigure, judged
+from symfpu.figures.alignment import alignment_panel
 from symfpu.localization.laws import natural_packet
-from symfpu.localization.spectra import fpu_trajectory, normalised_averages, packet_amplitudes, recurrence
+from symfpu.localization.profiles import fpu_trajectory, normalised_averages, packet_amplitudes
+from symfpu.localization.recurrence import recurrence
 from symfpu.numbers.typed import Number
-from symfpu.paper.dimensions import FULL_TIME, alignment_panel, indices, settled_after
+from symfpu.paper.claims import Claim, PaperFigure, judged
+from symfpu.paper.dimensions import FULL_TIME, indices, settled_after
 from symfpu.paper.fig7_fig8 import NARROW, SHOWN, SHOWN_ONLY, law_claim, law_curve, profiles_of, variation
 from symfpu.paper.judgements import SIMILAR, dimension_claim, same_profile
 from symfpu.paper.printed import FIG9_PACKETS, FIG9_RECURRENCE, PrintedTorus
@@ -27,7 +29,6 @@ from symfpu.paper.table import rounds_to
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
-
 TIME, LOOKS = 5e4, 12501  # of the instantaneous energies, our choice: four units of time between looks
 SHOWN_EVERY = 5  # of these looks, in the pictures
 PLATEAU = 5e7  # the time at which G_4 and G_5 become constant

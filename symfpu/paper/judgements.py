@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.dynamics.alignment import AlignmentIndices
-from symfpu.figures.panels import OPEN, Claim, Curve, Panel, judged
-from symfpu.localization.spectra import profile_distance
+from symfpu.figures.panels import Curve, Panel
+from symfpu.localization.profiles import profile_distance
+from symfpu.paper.claims import OPEN, Claim, judged
 from symfpu.paper.dimensions import slopes_text
 
 Floats = NDArray[np.float64]
-
 SIMILAR = 1.0  # decades in which profiles over thirty decades are alike
 AGREEMENT = 0.1  # decades in which profiles are the same to the eye: the height of a marker in the paper's pictures
 FLOOR = 1e-28  # of the energy: T + V leaves in a mode the squared rounding of all others

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from symfpu.chain.propagation import excitation_sequence, reachable_modes
-from symfpu.figures.panels import Claim, PaperFigure, judged
+from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import runs
 from symfpu.paper.printed import APPENDIX_F, EXCITATIONS, TWO_TORUS
 from symfpu.paper.starts import Step
-from symfpu.paper.table import Figure6
 from symfpu.proofs.certificates import prove_propagation
 
 PROVED_ORDER = 5  # to which the rule is proved for the paper's seeds, where their series are longer
@@ -190,31 +189,3 @@ def _printed_sets() -> Iterator[Claim]:
         section = "6.4.2" if example.label.startswith("q") else "6.2"
         text = f"{example.label}: the sets D_1 .. D_{len(printed)} of seeds {runs(example.seeds)}, N = {example.N}"
         yield Claim(section, text, "", ours, judged(not wrong, len(wrong) < len(printed)))
-
-
-def figure6_claims(data: Figure6) -> PaperFigure:
-    """The intervals M_k of section 6.3 against the rule."""
-    claims = tuple(_intervals(data, panel) for panel in data.panels)
-    return PaperFigure("fig6", "Fig. 6: what section 6.3 says of it", (), claims)
-
-
-def _intervals(data: Figure6, panel: str) -> Claim:
-    N, seeds = data.N, data.panels[panel][0]
-    center, width = (seeds[0] + seeds[-1]) // 2, (seeds[-1] - seeds[0]) // 2
-    last = N // (4 * width) - 1  # before the intervals meet
-    sets = reachable_modes(N, seeds, last)
-    wrong = [k for k in range(1, last + 1) if set(sets[k]) != _interval_modes(N, center, width * (k + 1), k)]
-    ours = f"N = {N}, packets of {len(seeds)} modes: M_k as stated for {'all' if not wrong else f'all but {wrong} of'} k = 1 .. {last}"
-    text = f"kappa_0 = {center / N:g}: M_k are intervals of half-width epsilon (k+1) around the places listed"
-    return Claim("6.3", text, "", ours, judged(not wrong))
-
-
-def _interval_modes(N: int, center: int, half: int, k: int) -> set[int]:
-    """Modes of the printed intervals of M_k."""
-    if k % 2 == 0:
-        places = [center] if 2 * center == N else [N // 4, 3 * N // 4]
-    elif 2 * center == N:
-        places = [0, N]
-    else:
-        places = [0, N // 2] + ([N] if k > 1 else [])
-    return {q for place in places for q in range(place - half, place + half + 1) if 1 <= q <= N - 1}

@@ -7,22 +7,21 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
-from symfpu.figures.drawing import draw_convergence, draw_corrected, draw_figure1, draw_figure6, draw_panels
-from symfpu.figures.panels import PaperFigure
+from symfpu.paper.claims import PaperFigure
 from symfpu.paper.claims_page import figure_markdown, figure_record, write_panel_csv
 from symfpu.paper.convergence import breather_study, cancellation_study
 from symfpu.paper.corrected import corrected_rows, scaling_study
 from symfpu.paper.corrected_page import corrected_markdown, corrected_record, corrected_text, write_corrected_csv
 from symfpu.paper.dimensions import VECTORS, full_seconds
-from symfpu.paper.fig1 import figure1_claims
+from symfpu.paper.drawings import draw_convergence, draw_corrected, draw_figure1, draw_figure6, draw_panels
+from symfpu.paper.fig1 import figure1, figure1_claims
 from symfpu.paper.fig2_fig3 import figure2, figure3
 from symfpu.paper.fig4 import figure4
 from symfpu.paper.fig5 import figure5
+from symfpu.paper.fig6 import figure6, figure6_claims
 from symfpu.paper.fig7_fig8 import figure7, figure8
 from symfpu.paper.fig9 import figure9
-from symfpu.paper.section5 import figure6_claims, section5
-from symfpu.paper.table import Step, amplitude_table, figure1, figure6
-from symfpu.reports.report import (
+from symfpu.paper.pages import (
     convergence_markdown,
     convergence_record,
     figure1_markdown,
@@ -34,6 +33,8 @@ from symfpu.reports.report import (
     write_figure1_csv,
     write_figure6_csv,
 )
+from symfpu.paper.section5 import section5
+from symfpu.paper.table import Step, amplitude_table
 
 SCALED = ("Fig. 1", "Fig. 7")  # rows whose errors are followed to smaller mu
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import random
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
@@ -23,8 +22,12 @@ from symfpu.algebra.residue import largest_modulus
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import coupled_modes, excitation_sequence
 from symfpu.errors import InputError, SymfpuError, VanishingResidue
+from symfpu.files.writing import write_text
 from symfpu.numbers.typed import integer, seed_modes
-from symfpu.series.lindstedt import Progress, check_size, lindstedt, residue_series, shared_grading
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.memory import check_size
+from symfpu.series.recursion import Progress, shared_grading
+from symfpu.series.residues import residue_series
 from symfpu.series.series import LindstedtSeries, ResiduePoint
 
 FORMAT, SCHEMA = "symfpu propagation certificate", 1
@@ -130,17 +133,6 @@ class PropagationProof:
     def write(self, path: Path | str) -> None:
         """Write the certificate as JSON, whole or not at all. Raises InputError if the file cannot be written."""
         write_text(Path(path), json.dumps(self.certificate(), indent=1) + "\n")
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file through a temporary one beside it, so that it is never half written."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        draft.write_text(text)
-        draft.replace(path)
-    except OSError as error:
-        draft.unlink(missing_ok=True)
-        raise InputError("output", str(path), "a file that can be written", f"choose another ({error.strerror})") from error
 
 
 def prove_propagation(

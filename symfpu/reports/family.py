@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.chain.chain import decimal
 from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
+from symfpu.numbers.typed import decimal
 from symfpu.refinement.tori import RefinedTorus
-from symfpu.reports.report import fifteen_digits
+from symfpu.reports.tables import fifteen_digits
 
 SHOWN_EVENTS = 12
 SHOWN_MEMBERS = 8  # besides the first; the last one is among them

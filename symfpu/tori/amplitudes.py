@@ -12,16 +12,14 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain.chain import decimal
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
 from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf
-from symfpu.numbers.typed import exact, integer
+from symfpu.numbers.typed import decimal, exact, integer
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.root_certificate import certify_root
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
-
 RESIDUAL_FLOOR = 1e-10  # relative residual below which growth with the order is no reason to doubt
 LARGEST_GUESS = 1e12
 LARGE_RESIDUAL = 1e-4  # relative residual above which the solution is doubtful whatever the orders say

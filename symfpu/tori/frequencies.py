@@ -19,7 +19,8 @@ from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, SymfpuError, UndeterminedAmplitudes
 from symfpu.numbers.arithmetic import DOUBLES, GUARD_DIGITS, MULTIPRECISION, Doubles, Numbers
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
-from symfpu.series.lindstedt import check_size, lindstedt
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.memory import check_size
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import amplitude_history, by_seed, frequency_orders, order_doubts, residual_doubts, shifts
 from symfpu.tori.broyden import Found, NotFound, solve, walk

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import symengine as se
 
+from symfpu.algebra.dense import predicted_bytes
 from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.selection import CosineModes
@@ -15,7 +16,8 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
 from symfpu.numbers.typed import exact
 from symfpu.series.divisors import Float64Divisors
-from symfpu.series.lindstedt import _run, lindstedt, predicted_bytes
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.recursion import run_recursion
 from tests.oracles.cases import CASES, SHALLOW
 from tests.oracles.mode_space import ModeSpaceSeries
 from tests.oracles.trigonometric import from_amplitudes, from_monomials
@@ -106,7 +108,7 @@ def test_threads_change_nothing_but_the_last_digits():
     for workers in (1, 2):
         space = CosineModes(32, seeds, Grading(3, 7))
         ring = Float64Ring(space, workers=workers)
-        _run(ring, Float64Divisors(chain, seeds, frequencies, 7), chain, 6, None)
+        run_recursion(ring, Float64Divisors(chain, seeds, frequencies, 7), chain, 6, None)
         results.append(ring.results()[0])
     assert all((one == two).all() for one, two in zip(*results, strict=True))
     assert np.abs(results[0][-1]).max() > 0

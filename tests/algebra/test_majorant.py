@@ -14,7 +14,9 @@ from symfpu.algebra.majorant import MajorantRing
 from symfpu.algebra.words import LIMB_BITS, IntegerTable, words_of
 from symfpu.chain.chain import Chain
 from symfpu.series.divisors import FixedPointDivisors, Float64Divisors
-from symfpu.series.lindstedt import _moduli, _run, _space, lindstedt
+from symfpu.series.fixed_point import _moduli
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.recursion import monomial_space, run_recursion
 from tests.oracles.cases import CASES, Case
 from tests.tolerances import NEAREST
 
@@ -43,19 +45,19 @@ def tables(space, series, precision):
     """All coordinates and corrections of a fixed-point run, as integers."""
     ring = FixedPointRing(space, precision)
     divisors = FixedPointDivisors(series.chain, series.seeds, series.frequencies, precision.bits)
-    _run(ring, divisors, series.chain, series.order, None)
+    run_recursion(ring, divisors, series.chain, series.order, None)
     coordinates, corrections, _ = ring.results()
     return [table.integers() for table in (*coordinates, *corrections)]
 
 
 def compared(case):
     series = lindstedt(Chain(case.N, case.alpha, case.beta), case.seeds, case.frequencies, case.order, digits=DIGITS)
-    space = _space(series.chain, series.seeds, series.order)
+    space = monomial_space(series.chain, series.seeds, series.order)
     ours = [table.integers() for table in (*series.coordinates, *series.corrections[1:])]
     exact = tables(space, series, Precision(series.bits + MORE_BITS, HEADROOM, series.unit))
     bound = MajorantRing(space, *_moduli(series, series.unit), series.unit, 2.0**-series.bits)
     moduli = FixedPointDivisors(series.chain, series.seeds, series.frequencies, series.bits).moduli()
-    _run(bound, moduli, series.chain, series.order, None)
+    run_recursion(bound, moduli, series.chain, series.order, None)
     coordinates, corrections, _ = bound.results()
     errors = [_in_units((a << MORE_BITS) - b) for a, b in zip(ours, exact, strict=True)]
     return Compared(series, errors, [*coordinates, *corrections])
@@ -124,7 +126,7 @@ def test_zero_radii_are_exact_coefficients(case, all_compared):
 def test_sums_stay_below_the_headroom(case, all_compared):
     """Where the primes do not reach, the ring says so instead of wrapping around."""
     series = all_compared[case.name].series
-    space = _space(series.chain, series.seeds, series.order)
+    space = monomial_space(series.chain, series.seeds, series.order)
     with pytest.raises(OverflowError):
         tables(space, series, Precision(series.bits, -40, series.unit))
 
@@ -141,11 +143,12 @@ def test_a_bound_for_fewer_bits_is_no_smaller_in_units():
     """epsilon multiplies products of two radii: it can only add."""
     case = CASES[2]
     series = lindstedt(Chain(case.N, case.alpha, case.beta), case.seeds, case.frequencies, case.order, digits=DIGITS)
-    space = _space(series.chain, series.seeds, series.order)
+    space = monomial_space(series.chain, series.seeds, series.order)
     found = []
     for epsilon in (0.0, 2.0**-100, 2.0**-8):
         ring = MajorantRing(space, *_moduli(series, series.unit), series.unit, epsilon)
-        _run(ring, Float64Divisors(series.chain, series.seeds, series.frequencies, space.grading.degree), series.chain, case.order, None)
+        divisors = Float64Divisors(series.chain, series.seeds, series.frequencies, space.grading.degree)
+        run_recursion(ring, divisors, series.chain, case.order, None)
         found.append(ring.results()[0])
     for none, few, many in zip(*found, strict=True):
         assert (none <= few).all()
@@ -221,12 +224,12 @@ ISOLATED = (
 def test_each_source_of_errors_is_bounded_alone(case, source, monkeypatch):
     """Only one kind of number is rounded, only its terms are in the bound: no other term can hide a missing one."""
     series = lindstedt(Chain(case.N, case.alpha, case.beta), case.seeds, case.frequencies, case.order, digits=DIGITS)
-    space = _space(series.chain, series.seeds, series.order)
+    space = monomial_space(series.chain, series.seeds, series.order)
     found = []
     for kind in ("", source):
         ring = Coarse(space, Precision(series.bits + MORE_BITS, HEADROOM, series.unit), kind)
         kinds = CoarseDivisors if kind == "multipliers" else FixedPointDivisors
-        _run(ring, kinds(series.chain, series.seeds, series.frequencies, ring.precision.bits), series.chain, series.order, None)
+        run_recursion(ring, kinds(series.chain, series.seeds, series.frequencies, ring.precision.bits), series.chain, series.order, None)
         found.append([table.integers() for part in ring.results()[:2] for table in part])
     errors = [_in_units(a - b) for a, b in zip(*found, strict=True)]
     if source != "multipliers":
@@ -241,7 +244,8 @@ def test_each_source_of_errors_is_bounded_alone(case, source, monkeypatch):
         monkeypatch.setattr(bound, "correct", lambda degree, radii: correct(degree, radii + NEAREST))
     if source == "bonds":
         monkeypatch.setattr(bound, "put", _without_noise(bound))
-    _run(bound, Float64Divisors(series.chain, series.seeds, series.frequencies, space.grading.degree), series.chain, series.order, None)
+    divisors = Float64Divisors(series.chain, series.seeds, series.frequencies, space.grading.degree)
+    run_recursion(bound, divisors, series.chain, series.order, None)
     coordinates, corrections, _ = bound.results()
     assert max(error.max(initial=0.0) for error in errors) > 0
     for error, radius in zip(errors, [*coordinates, *corrections], strict=True):

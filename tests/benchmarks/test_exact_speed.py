@@ -11,7 +11,7 @@ from symfpu.algebra.selection import CosineModes
 from symfpu.chain.chain import Chain
 from symfpu.proofs.certificates import prove_propagation, random_point
 from symfpu.proofs.sweeps import sweep_propagation
-from symfpu.series.lindstedt import residue_series
+from symfpu.series.residues import residue_series
 
 SEEDS = (94, 95, 96, 97, 98)
 

@@ -20,7 +20,8 @@ from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.proofs.certificates import prove_propagation, random_point
-from symfpu.series.lindstedt import lindstedt, residue_series
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.residues import residue_series
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.torus import RootCertificate
 

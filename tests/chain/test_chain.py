@@ -11,8 +11,9 @@ import symengine as se
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symfpu.chain.chain import LARGEST_EXPRESSION, Chain, decimal
+from symfpu.chain.chain import LARGEST_EXPRESSION, Chain
 from symfpu.errors import InputError
+from symfpu.numbers.typed import decimal
 from tests.tolerances import INTEGER, ROUNDING
 
 SIZES = range(2, 13)

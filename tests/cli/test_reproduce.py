@@ -10,9 +10,10 @@ import pytest
 from symfpu.cli.main import main
 from symfpu.dynamics.alignment import alignment_indices
 from symfpu.errors import SymfpuError
-from symfpu.figures.panels import VERDICTS
-from symfpu.localization.spectra import NoRecurrence, fpu_trajectory, packet_amplitudes
+from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
+from symfpu.localization.recurrence import NoRecurrence
 from symfpu.paper import dimensions, fig2_fig3, targets
+from symfpu.paper.claims import VERDICTS
 from symfpu.paper.starts import printed_row
 from tests.paper.cases import shorter_figure_9
 

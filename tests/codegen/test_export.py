@@ -11,7 +11,8 @@ from symfpu.codegen.evaluator import compile_evaluator
 from symfpu.codegen.export import LANGUAGES, export
 from symfpu.errors import InputError
 from symfpu.proofs.certificates import random_point
-from symfpu.series.lindstedt import lindstedt, residue_series
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.residues import residue_series
 from symfpu.tori.amplitudes import solve_amplitudes
 
 

@@ -6,15 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from symfpu.figures.drawing import (
-    plot_amplitude_differences,
-    plot_breather_roots,
-    plot_energy_errors,
-    plot_panel,
-    plot_spectrum,
-    plot_variants,
-    save_panel,
-)
+from symfpu.figures.drawing import plot_panel, plot_spectrum, save_panel
+from symfpu.paper.drawings import plot_amplitude_differences, plot_breather_roots, plot_energy_errors, plot_variants
 from symfpu.paper.judgements import sums_panel
 
 

@@ -9,9 +9,11 @@ import pytest
 from matplotlib.figure import Figure
 
 from symfpu.errors import InputError
-from symfpu.figures.drawing import draw_panels, plot_panel
-from symfpu.figures.panels import FAILS, HOLDS, OPEN, PARTLY, Claim, Curve, Panel, PaperFigure, judged
+from symfpu.figures.drawing import plot_panel
+from symfpu.figures.panels import Curve, Panel
+from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY, Claim, PaperFigure, judged
 from symfpu.paper.claims_page import claims_markdown, claims_table, figure_markdown, figure_record, write_panel_csv
+from symfpu.paper.drawings import draw_panels
 
 X = np.array([1.0, 2.0, 4.0])
 

@@ -23,7 +23,7 @@ from symfpu.localization.laws import (
     profile_law,
     rounding_floor,
 )
-from symfpu.localization.spectra import fpu_trajectory, packet_amplitudes
+from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.tori.at_energy import torus_at_energy
 from tests.tolerances import ROUNDING
 

@@ -7,16 +7,10 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
+from symfpu.localization.growth import growth_exponents
 from symfpu.localization.laws import fit_profile, profile_law
-from symfpu.localization.spectra import (
-    NoRecurrence,
-    fpu_trajectory,
-    growth_exponents,
-    normalised_averages,
-    packet_amplitudes,
-    profile_distance,
-    recurrence,
-)
+from symfpu.localization.profiles import fpu_trajectory, normalised_averages, packet_amplitudes, profile_distance
+from symfpu.localization.recurrence import NoRecurrence, recurrence
 from symfpu.paper.printed import APPENDIX_F, FIG9_BREATHER
 from tests.tolerances import ROUNDING
 

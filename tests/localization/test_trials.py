@@ -11,7 +11,7 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.localization.laws import profile_law
-from symfpu.localization.spectra import fpu_trajectory, packet_amplitudes
+from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.localization.trials import ProfileInvariance, profile_invariance, slope_by_energy
 from symfpu.tori.at_energy import torus_at_energy
 from tests.tolerances import ROUNDING

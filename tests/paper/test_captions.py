@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symfpu.figures.panels import FAILS, HOLDS, PARTLY
 from symfpu.localization.laws import profile_law
 from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_line, same_numbers
+from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.printed import LINES
 
 

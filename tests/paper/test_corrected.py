@@ -10,7 +10,6 @@ import pytest
 
 from symfpu.breathers.balance import periodic_orbit
 from symfpu.chain.chain import Chain
-from symfpu.figures.drawing import draw_corrected
 from symfpu.paper import corrected
 from symfpu.paper.corrected import (
     HEAVY,
@@ -25,6 +24,7 @@ from symfpu.paper.corrected import (
     series_errors,
 )
 from symfpu.paper.corrected_page import corrected_markdown, corrected_record, corrected_text, write_corrected_csv
+from symfpu.paper.drawings import draw_corrected
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt

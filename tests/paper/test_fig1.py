@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.figures.panels import FAILS, HOLDS, PARTLY
 from symfpu.paper import fig1
+from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from tests.paper.cases import exponential
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.figures.panels import FAILS, HOLDS, PARTLY
-from symfpu.localization.spectra import GroupGrowth
+from symfpu.localization.growth import GroupGrowth
 from symfpu.paper import fig2_fig3
 from symfpu.paper.captions import law_of, printed_line
+from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.starts import printed_row
 from tests.paper.cases import exponential, quiet, record
 

@@ -7,10 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from symfpu.figures.panels import FAILS, HOLDS, PARTLY
 from symfpu.localization.trials import ProfileInvariance
 from symfpu.paper import fig4
 from symfpu.paper.captions import caption_curve, printed_line
+from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from tests.paper.cases import quiet
 
 ALPHA, BETA = printed_line("Fig. 4a"), printed_line("Fig. 4b")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from symfpu.figures.panels import FAILS, HOLDS, PARTLY
 from symfpu.paper import fig5
+from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from tests.paper.cases import exponential, quiet
 
 

@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from symfpu.figures.panels import FAILS, HOLDS, PARTLY, Curve
+from symfpu.figures.panels import Curve
 from symfpu.paper import fig7_fig8
+from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.starts import printed_row
 from tests.paper.cases import exponential, quiet
 

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from symfpu.figures.panels import FAILS, HOLDS, OPEN, PARTLY
 from symfpu.paper import fig9
+from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY
 from symfpu.paper.starts import printed_row
 from tests.paper.cases import alignment, quiet, shorter_figure_9
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from symfpu.figures.panels import FAILS, HOLDS, OPEN, PARTLY
-from symfpu.paper.dimensions import alignment_panel, settled_after
+from symfpu.figures.alignment import alignment_panel
+from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY
+from symfpu.paper.dimensions import settled_after
 from symfpu.paper.judgements import (
     cancellation_claim,
     dimension_claim,

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from symfpu.chain.propagation import excitation_sequence
-from symfpu.figures.panels import FAILS, HOLDS, PARTLY
 from symfpu.paper import section5
-from symfpu.paper.table import figure6
+from symfpu.paper.claims import FAILS, HOLDS, PARTLY
+from symfpu.paper.fig6 import figure6
 from tests.paper.cases import quiet
 
 

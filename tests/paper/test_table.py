@@ -9,8 +9,9 @@ import pytest
 
 from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
+from symfpu.paper.fig1 import figure1
 from symfpu.paper.printed import APPENDIX_F, FIG1_DIGITS, TWO_TORUS, PrintedTorus
-from symfpu.paper.table import MET_DIGITS, agreement_digits, amplitude_row, energies, figure1, rounds_to
+from symfpu.paper.table import MET_DIGITS, agreement_digits, amplitude_row, energies, rounds_to
 from tests.reference import BETA_BREATHER, PERIODIC_ORBITS
 from tests.reference import TWO_TORUS as REFERENCE
 from tests.tolerances import AMPLITUDE, PERIODIC_ORBIT, ROUNDING

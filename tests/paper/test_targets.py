@@ -15,10 +15,10 @@ from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.families.continuation import Member
 from symfpu.families.family import Family
-from symfpu.figures.drawing import draw_convergence
 from symfpu.paper.convergence import BreatherStudy, CancellationStudy, SchemeLimit, Variant
+from symfpu.paper.drawings import draw_convergence
+from symfpu.paper.pages import breather_markdown, cancellation_markdown, convergence_markdown, convergence_record, write_convergence_csv
 from symfpu.paper.targets import TARGETS
-from symfpu.reports.report import breather_markdown, cancellation_markdown, convergence_markdown, convergence_record, write_convergence_csv
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.verdict import assess

@@ -8,7 +8,7 @@ import pytest
 
 from symfpu.errors import InputError
 from symfpu.proofs.sweeps import sweep_propagation
-from symfpu.reports.report import sweep_markdown
+from symfpu.reports.sweep import sweep_markdown
 
 
 @pytest.fixture(scope="module")

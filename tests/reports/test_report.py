@@ -10,17 +10,11 @@ import pytest
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.paper.table import Figure1
-from symfpu.reports.report import (
-    assessment_text,
-    figure1_markdown,
-    figure1_record,
-    markdown_table,
-    output_file,
-    output_folder,
-    torus_record,
-    write_figure1_csv,
-)
+from symfpu.files.writing import output_file, output_folder
+from symfpu.paper.fig1 import Figure1
+from symfpu.paper.pages import figure1_markdown, figure1_record, write_figure1_csv
+from symfpu.reports.tables import markdown_table
+from symfpu.reports.torus import assessment_text, torus_record
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.verdict import assess

@@ -1,4 +1,4 @@
-"""The C99 of exported series that numbers do not change; words in braces or dollars are filled in by symfpu.codegen.languages.c99_series."""
+"""The C99 of exported series that numbers do not change; words in braces or dollars are filled in by c99_series."""
 
 HEADER = """\
 /* Machine-written: quasi-periodic solutions of an FPU chain as a series with free amplitudes A,

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from symfpu.chain.chain import decimal
 from symfpu.codegen.languages.numpy_source import module_docstring, text_constant
 from symfpu.codegen.torus_program import TOLERANCE, TorusProgram, number
 from symfpu.numbers.arithmetic import text
+from symfpu.numbers.typed import decimal
 
 EXTENSION = "py"
-
 FUNCTIONS = '''
 
 def _rational(text):

@@ -1,119 +1,19 @@
-"""Results as text: JSON with numbers that lose no digit, Markdown, CSV. Computes nothing."""
+"""The table, Figs. 1 and 6 and the convergence study as Markdown, JSON and CSV."""
 
 from __future__ import annotations
 
-import csv
-import math
-import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from symfpu.chain.chain import decimal
-from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import text
+from symfpu.numbers.typed import decimal
 from symfpu.paper.convergence import BreatherStudy, CancellationStudy
+from symfpu.paper.fig1 import Figure1
+from symfpu.paper.fig6 import Figure6
 from symfpu.paper.printed import FIG1_CLAIMS
-from symfpu.paper.table import AmplitudeRow, Figure1, Figure6
-from symfpu.proofs.sweeps import Sweep, SweepCase
-from symfpu.tori.torus import QTorus
-from symfpu.tori.verdict import Assessment
-
-
-def output_folder(path: Path) -> Path:
-    """The folder, made if missing; InputError if it cannot be written."""
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-        if not os.access(path, os.W_OK):
-            raise PermissionError("no permission to write")
-    except OSError as error:
-        raise InputError(
-            "output", str(path), "a folder that can be written", f"choose another with -o ({error.strerror or error})"
-        ) from error
-    return path
-
-
-def output_file(path: Path) -> Path:
-    """The path, if a file can be written there; InputError before anything is computed otherwise."""
-    if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise InputError("output", str(path), "a file in a folder that exists and can be written", "choose another with -o")
-    return path
-
-
-def fifteen_digits(value: float) -> float:
-    """A measure of size to 15 digits, the most that a number in JSON has; what needs more is written as a string."""
-    return float(f"{value:.15g}")
-
-
-def number_text(value: Any, digits: int | None) -> str:
-    """A number that loses no digit: the shortest decimal of a double, or so many digits of an mpf."""
-    return repr(float(value)) if digits is None else text(value, digits)
-
-
-def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[str, Any]:
-    """A torus for JSON: keys of the command line, numbers of more than 15 digits as strings."""
-    series, digits = torus.series, torus.digits
-    energies = {
-        "energy": torus.energy(),
-        "harmonic_energy": torus.harmonic_energies().sum(),
-        "average_harmonic_energy": torus.average_spectrum().sum(),
-    }
-    judged = {} if assessment is None else {"verdict": assessment.headline, "assessment": assessment.record()}
-    return {
-        "N": series.chain.N,
-        "alpha": decimal(series.chain.alpha),
-        "beta": decimal(series.chain.beta),
-        "seeds": list(series.seeds),
-        "frequencies": {str(q): decimal(w) for q, w in zip(series.seeds, series.frequencies or (), strict=True)},
-        "order": torus.order,
-        "frequency_order": torus.frequency_order,
-        "digits": digits,
-        "guard_digits": None if digits is None else series.guard_digits,
-        "amplitudes": {str(q): number_text(a, digits) for q, a in torus.amplitudes.items()},
-        "certified": None if torus.certificate is None else torus.certificate.certified,
-        "history": {str(k): [number_text(a, digits) for a in values] for k, values in torus.history.items()},
-        **{name: number_text(value, digits) for name, value in energies.items()},
-        "residual": fifteen_digits(torus.residual()),
-        "root_residual": fifteen_digits(torus.root_residual),
-        "smallest_divisors": [
-            {"size": fifteen_digits(d.size), "mode": d.mode, "harmonic": list(d.harmonic), "order": d.order}
-            for d in series.smallest_divisors
-        ],
-        "warnings": list(torus.warnings),
-        **judged,
-    }
-
-
-def assessment_text(found: Assessment) -> str:
-    """The evidence of a verdict: reasons, radii, and a line for some of the orders (all of them are in the JSON)."""
-    lines = [f"  {reason}" for reason in found.reasons]
-    poles = "no pole" if math.isinf(found.pole_radius) else f"{found.pole_radius:.3g}"
-    lines.append(
-        f"  radius of convergence in units of mu: {found.radius:.3g} by ratio of terms, {poles} by Pade poles of the frequencies (a hint)"
-    )
-    seed = next(iter(found.sums))
-    head = ("order", f"A_{seed}(k)", "dA(k)", f"S_1, S_2 of Q_{seed}", "residual", "energy error", "largest term: mode, harmonic, divisor")
-    rows = [_order_line(found, seed, k) for k in _some(found)]
-    widths = [max(len(row[i]) for row in (head, *rows)) for i in range(len(head))]
-    lines += ["  " + "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in (head, *rows)]
-    return "\n".join(lines)
-
-
-def _some(found: Assessment) -> list[int]:
-    """At most about a dozen orders: the first, the best, the last, and some between."""
-    step = max(1, found.order // 10)
-    return sorted({*range(0, found.order + 1, step), found.best_order, found.order})
-
-
-def _order_line(found: Assessment, seed: int, k: int) -> tuple[str, ...]:
-    first, second = (sums[k] for sums in found.sums[seed])
-    term = next((t for t in found.terms if t.order == k), None)
-    largest = "" if term is None else f"{term.size:.1e}: {term.mode}, ({','.join(map(str, term.harmonic))}), {term.divisor:.1e}"
-    position = list(found.sums).index(seed)
-    amplitude = f"{float(found.amplitudes[k][position]):.10g}" if k in found.amplitudes else ""
-    change = f"{max(found.differences[k]):.1e}" if k in found.differences else ""
-    sums, errors = f"{first:.1e}, {second:.1e}", (f"{found.residuals[k]:.1e}", f"{found.energy_errors[k]:.1e}")
-    return (str(k), amplitude, change, sums, *errors, largest)
+from symfpu.paper.table import AmplitudeRow
+from symfpu.reports.tables import fifteen_digits, markdown_table, write_csv
+from symfpu.reports.torus import torus_record
 
 
 def row_record(row: AmplitudeRow) -> dict[str, Any]:
@@ -140,12 +40,6 @@ def figure1_record(data: Figure1) -> dict[str, Any]:
     ours = data.claims()
     judged = {"digits": data.torus.digits, "rounding_of_doubles": fifteen_digits(data.rounding), "assessment": data.assessment.record()}
     return {"best_order": data.best_order, **judged, "claims": {key: {"printed": FIG1_CLAIMS[key], "computed": ours[key]} for key in ours}}
-
-
-def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table."""
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def table_markdown(rows: Sequence[AmplitudeRow]) -> str:
@@ -348,42 +242,3 @@ def write_convergence_csv(cancellation: CancellationStudy, breather: BreatherStu
         },
         folder,
     )
-
-
-def write_csv(tables: Mapping[str, tuple[Sequence[str], Iterable[Sequence[Any]]]], folder: Path) -> list[Path]:
-    """Tables by name, each with its header, as CSV files in a folder."""
-    paths = []
-    for name, (header, lines) in tables.items():
-        path = folder / f"{name}.csv"
-        with path.open("w", newline="") as file:
-            csv.writer(file).writerows([header, *lines])
-        paths.append(path)
-    return paths
-
-
-def sweep_markdown(sweep: Sweep) -> str:
-    """A sweep of the propagation rule: how often it holds by N and number of seeds, and every exception."""
-    groups: dict[tuple[int, int], list[SweepCase]] = {}
-    for case in sweep.cases:
-        groups.setdefault((case.N, len(case.seeds)), []).append(case)
-    rows = [
-        [str(N), str(s), str(len(cases)), *(str(sum(c.verdict == v for c in cases)) for v in ("proved", "refuted", "undecided"))]
-        for (N, s), cases in groups.items()
-    ]
-    exceptions = [
-        [str(case.N), ", ".join(map(str, case.seeds)), "; ".join(f"{q}: {p} -> {a}" for q, p, a in case.exceptions)]
-        for case in sweep.exceptions
-    ]
-    holds = sum(case.corrected_rule_holds for case in sweep.cases)
-    parts = [
-        f"## {sweep.model} model, order {sweep.order}",
-        f"{len(sweep.cases)} seed sets. The proposition holds in {sum(c.verdict == 'proved' for c in sweep.cases)}; "
-        f"the corrected rule predicts the actual sets in {holds}.",
-        markdown_table(["N", "seeds", "sets", "proved", "refuted", "undecided"], rows),
-    ]
-    if exceptions:
-        parts += [
-            "Exceptions (mode: predicted order -> actual order):",
-            markdown_table(["N", "seeds", "exceptions"], exceptions),
-        ]
-    return "\n\n".join(parts) + "\n"

@@ -1,0 +1,5 @@
+"""python -m symfpu: the command line."""
+
+from symfpu.cli.main import run
+
+run()

@@ -1,0 +1,39 @@
+"""Writing results: whole or not at all, and into folders that exist."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from symfpu.errors import InputError
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file through a temporary one beside it, so that it is never half written."""
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        draft.write_text(text)
+        draft.replace(path)
+    except OSError as error:
+        draft.unlink(missing_ok=True)
+        raise InputError("output", str(path), "a file that can be written", f"choose another ({error.strerror})") from error
+
+
+def output_folder(path: Path) -> Path:
+    """The folder, made if missing; InputError if it cannot be written."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        if not os.access(path, os.W_OK):
+            raise PermissionError("no permission to write")
+    except OSError as error:
+        raise InputError(
+            "output", str(path), "a folder that can be written", f"choose another with -o ({error.strerror or error})"
+        ) from error
+    return path
+
+
+def output_file(path: Path) -> Path:
+    """The path, if a file can be written there; InputError before anything is computed otherwise."""
+    if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
+        raise InputError("output", str(path), "a file in a folder that exists and can be written", "choose another with -o")
+    return path

@@ -1,0 +1,135 @@
+"""Energy profiles of orbits: FPU-trajectories, packets, normalised spectra, distances (sections 3.2, 4.1).
+
+An `Orbit` integrated with averages=True is a running spectrum: its `averages` are Ebar_q(t), its `harmonic_energies()` E_q(t). The closed
+form of a torus is `torus.average_spectrum(T)`; PLn is the orbit from `torus.positions(0)` and `torus.momenta(0)`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.chain.chain import Chain, require_chain
+from symfpu.dynamics.orbits import Orbit
+from symfpu.errors import InputError
+from symfpu.numbers.typed import Number, double, seed_modes
+
+Floats = NDArray[np.float64]
+SHARES = ("energy", "amplitude")
+
+
+def fpu_trajectory(chain: Chain, amplitudes: Mapping[int, Number], phases: Mapping[int, Number] | None = None) -> tuple[Floats, Floats]:
+    """Initial conditions (Q, P) of the FPU-trajectory with these seeds, each of shape (N-1,) (Definition 4 of the paper).
+
+    Q_q = A_q cos phi_q, P_q = -A_q Omega_q sin phi_q for the seeds, exactly 0 for other modes. amplitudes, phases : by seed; phases left
+    out are 0. Raises InputError.
+
+    >>> fpu_trajectory(Chain(N=4, alpha=1), {1: 0.5, 3: "0.25"})
+    (array([0.5 , 0.  , 0.25]), array([0., 0., 0.]))
+    """
+    require_chain(chain)
+    seeds = seed_modes(_mapping(amplitudes, "amplitudes"), chain.N)
+    angles = _mapping({} if phases is None else phases, "phases")
+    for key in angles:
+        if key not in amplitudes:
+            raise InputError("phases", key, f"phases of the seeds {seeds}", "give that mode an amplitude, or leave its phase out")
+    Q, P = np.zeros(chain.N - 1), np.zeros(chain.N - 1)
+    for q in seeds:
+        A, phi = double(amplitudes[q], f"amplitudes[{q}]"), double(angles.get(q, 0), f"phases[{q}]")
+        Q[q - 1], P[q - 1] = A * math.cos(phi), 0.0 - A * chain.frequencies()[q - 1] * math.sin(phi)
+    return Q, P
+
+
+def packet_amplitudes(chain: Chain, seeds: Sequence[int], energy: Number, *, share: str = "energy") -> dict[int, float]:
+    """Amplitudes A_q by seed whose harmonic energy, the sum of A_q^2 Omega_q^2 / 2, is `energy`, for `fpu_trajectory` with any phases.
+
+    share : energy, the same E_q for all seeds; or amplitude, the same A_q. This is not H, which adds the anharmonic energy of the phases
+    chosen. Raises InputError.
+
+    >>> packet_amplitudes(Chain(N=3, alpha=1), (1, 2), 2, share="amplitude")  # Omega^2 = 1, 3
+    {1: 1.0, 2: 1.0}
+    """
+    require_chain(chain)
+    modes = seed_modes(seeds, chain.N)
+    total = double(energy, "energy")
+    if not total > 0:
+        raise InputError("energy", energy, "a positive number", "pass the harmonic energy of the packet")
+    if share not in SHARES:
+        raise InputError("share", share, ", ".join(SHARES), "choose one of them")
+    linear = chain.frequencies()[np.array(modes) - 1]
+    squared = 2 * total / len(modes) / linear**2 if share == "energy" else np.full(len(modes), 2 * total / np.sum(linear**2))
+    return {q: float(A) for q, A in zip(modes, np.sqrt(squared), strict=True)}
+
+
+def normalised_averages(orbit: Orbit) -> Floats:
+    """Running averages of the harmonic energies over the total energy, Ebar_q(t)/H; shape (S, ..., N-1).
+
+    orbit : integrated with averages=True; its last row is the paper's normalised averaged spectrum. Raises InputError.
+    """
+    if getattr(orbit, "averages", None) is None:
+        raise InputError("orbit", repr(orbit), "an orbit with running averages", "integrate with averages=True")
+    if not (orbit.energies[0] > 0).all():
+        raise InputError("orbit", repr(orbit), "an orbit of positive energy", "divide its averages by another number")
+    return np.asarray(orbit.averages / orbit.energies[0][..., None])
+
+
+@dataclass(frozen=True)
+class ProfileDistance:
+    """Largest |log10(a_q/b_q)| of two profiles, the mode where it is reached, and how many modes of either lie above the floor."""
+
+    distance: float
+    mode: int
+    modes: int
+
+    def __repr__(self) -> str:
+        return f"ProfileDistance({self.distance:.4g} decades at mode {self.mode}, {self.modes} modes above the floor)"
+
+
+def profile_distance(a: ArrayLike, b: ArrayLike, floor: float) -> ProfileDistance:
+    """How far two spectra differ: the largest |log10(a_q/b_q)|, where values below the floor count as the floor.
+
+    a, b : energies by mode, shape (N-1,), not negative. floor : positive, in their units; below it energies are rounding, and two modes
+    there do not differ. Raises InputError.
+
+    >>> profile_distance([1, 1e-2, 1e-20], [1, 1e-3, 1e-25], 1e-12)
+    ProfileDistance(1 decades at mode 2, 2 modes above the floor)
+    """
+    first, second, least = mode_energies(a, "a"), mode_energies(b, "b"), double(floor, "floor")
+    if first.ndim != 1 or first.shape != second.shape or not first.size:
+        raise InputError("a, b", (first.shape, second.shape), "two spectra of the same modes, (N-1,)", "pass one row of each")
+    if not least > 0:
+        raise InputError("floor", floor, "a positive energy", "pass what rounding leaves, such as 1e-30 of the whole")
+    ratios = np.abs(np.log10(np.maximum(first, least)) - np.log10(np.maximum(second, least)))
+    mode = int(np.argmax(ratios))
+    return ProfileDistance(float(ratios[mode]), mode + 1, int(np.sum(np.maximum(first, second) > least)))
+
+
+def energy_record(times: ArrayLike, values: ArrayLike, name: str) -> tuple[Floats, Floats]:
+    """Times and what was sampled at them, as arrays; raises InputError."""
+    array = mode_energies(values, name)
+    t = mode_energies(times, "times")
+    if t.ndim != 1 or len(t) < 3 or not (np.diff(t) > 0).all():
+        raise InputError("times", t.shape, "three increasing times or more, (S,)", "pass orbit.times")
+    if array.ndim != 2 or len(array) != len(t):
+        raise InputError(name, array.shape, f"one row for each of the {len(t)} times, (S, N-1)", "pass those of one orbit")
+    return t, array
+
+
+def mode_energies(values: ArrayLike, name: str) -> Floats:
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(name, values, "an array of numbers", "pass those of an orbit") from error
+    if not (np.isfinite(array) & (array >= 0)).all():
+        raise InputError(name, "an array with nan, infinity or negative numbers", "finite numbers, 0 or more", "pass those of an orbit")
+    return array
+
+
+def _mapping(values: object, name: str) -> Mapping[int, Number]:
+    if not isinstance(values, Mapping):
+        raise InputError(name, values, "a mapping from mode to number, such as {1: 0.5}", "pass a dict")
+    return values

@@ -1,0 +1,38 @@
+"""What a series needs, said before it is allocated."""
+
+from __future__ import annotations
+
+import math
+
+import psutil
+
+from symfpu.algebra.dense import predicted_bytes
+from symfpu.algebra.residue import PRIME_BITS
+from symfpu.chain.chain import Chain
+from symfpu.errors import TooLarge
+from symfpu.series.series import LOG10_2
+
+EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60  # digits, an order and at most, for the prediction of memory only
+OTHER_STAGES = 6  # series in doubles that the stages before and after a fixed-point series hold, with their radii
+CONSTANT_BYTES = 2**24
+SYMBOLIC_GROWTH = 4  # factor by which an expanded coefficient grows with the order, about
+
+
+def check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str, digits: int = 0) -> None:
+    """Refuse an order whose arrays would not fit, before anything is allocated."""
+    free = psutil.virtual_memory().available
+    if _needed(chain, len(seeds), order, ring, digits) <= free:
+        return
+    largest = -1
+    while _needed(chain, len(seeds), largest + 1, ring, digits) <= free:
+        largest += 1
+    raise TooLarge(order, _needed(chain, len(seeds), order, ring, digits), free, largest)
+
+
+def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int:
+    size = predicted_bytes(chain.N, seeds, 1 + chain.degree_step * order, cubic=chain.beta != 0)
+    if ring == "fixedpoint":
+        guard = EXPECTED_GUARD + min(EXPECTED_LOSS * order, MOST_EXPECTED)
+        primes = math.ceil((digits + guard) / LOG10_2 * 2 / (PRIME_BITS - 2))
+        return CONSTANT_BYTES + size * (primes + OTHER_STAGES)
+    return size * SYMBOLIC_GROWTH ** min(order, 100) if ring in ("symbolic", "nested") else size

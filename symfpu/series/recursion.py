@@ -1,0 +1,77 @@
+"""The recursion of the Poincare-Lindstedt series (Eqs. moda, modb), written once for every ring and both models.
+
+With u_q = Omega_q Q_q and multipliers L_q(nu), degree by degree in the seed amplitudes:
+    u_q[nu] = L_q(nu) (sum_n W_q^(n) u_q^(k-n) - a sum B u u - b sum C u u u)[nu],
+and W_q^(k) makes the bracket vanish at the secular harmonic nu = e_q of a seed, where u_q gets no term (the gauge of A_q).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from symfpu.algebra.grading import Grading
+from symfpu.algebra.ring import Ring
+from symfpu.algebra.selection import CosineModes
+from symfpu.chain.chain import Chain
+from symfpu.series.series import LindstedtSeries
+
+Progress = Callable[[int, int], None]
+Frequencies = tuple[Fraction, ...] | None
+
+
+def run_recursion(ring: Ring, divisors: Any, chain: Chain, order: int, progress: Progress | None) -> None:
+    """The recursion itself: fills the ring degree by degree."""
+    quadratic, cubic = chain.relative_couplings
+    ring.put(1, ring.seed_terms())
+    for k in range(1, order + 1):
+        degree = 1 + chain.degree_step * k
+        parts = []
+        if quadratic:
+            parts.append((ring.number(quadratic), ring.square(degree)))
+        if cubic and degree >= 3:
+            parts.append((ring.number(cubic), ring.cube(degree)))
+        force = ring.project(degree, parts)
+        ring.correct(degree - 1, ring.secular(degree, force))
+        harmonics, _ = ring.space.grading.harmonics(degree)
+        multipliers = divisors.multipliers(harmonics, ring.space.mask_by_harmonic(degree), k)
+        ring.put(degree, ring.solve(degree, ring.corrected(degree), force, multipliers))
+        if progress:
+            progress(k, order)
+
+
+def ring_series(
+    chain: Chain, frequencies: tuple[Fraction, ...] | None, order: int, arithmetic: Ring, divisors: Any, progress: Progress | None
+) -> LindstedtSeries:
+    """Run the recursion and collect what the ring holds."""
+    run_recursion(arithmetic, divisors, chain, order, progress)
+    modes, corrections, unit = arithmetic.results()
+    seeds = arithmetic.space.seeds
+    return LindstedtSeries(
+        chain=chain,
+        seeds=seeds,
+        frequencies=frequencies,
+        order=order,
+        ring=arithmetic.name,
+        grading=arithmetic.space.grading,
+        coordinates=tuple(modes),
+        corrections=(np.zeros((0, len(seeds))), *corrections),
+        unit=unit,
+        smallest_divisors=divisors.smallest(),
+        multiply_adds=getattr(arithmetic, "multiply_adds", 0),
+    )
+
+
+def monomial_space(chain: Chain, seeds: tuple[int, ...], order: int) -> CosineModes:
+    """Modes and monomials of a series; its first order is a plain product of the seeds."""
+    return CosineModes(chain.N, seeds, shared_grading(len(seeds), 1 + chain.degree_step * order), 1 + chain.degree_step)
+
+
+@lru_cache(maxsize=4)
+def shared_grading(seeds: int, degree: int) -> Grading:
+    """The grading of so many seeds; kept, because tables do not depend on the chain."""
+    return Grading(seeds, degree)
