@@ -167,7 +167,7 @@ def test_figure_1_reads_its_evidence_from_the_verdict(torus):
 
 
 def test_the_page_on_fig_1_has_claims_verdict_and_pictures(torus, monkeypatch):
-    monkeypatch.setattr("symfpu.paper.table.FIG1_CANCELLATION_ORDER", 1)
+    monkeypatch.setattr("symfpu.paper.fig1.FIG1_CANCELLATION_ORDER", 1)
     data = figure_of(torus)
     page, record = figure1_markdown(data), figure1_record(data)
     assert "| energy error | about 1e-4 | 1.0e-02 at order 4, 1.0e-03 at order 24 |" in page
