@@ -70,12 +70,12 @@ class DenseRing(ABC):
         self._slices = -(-self._points // self._lanes)
         rows, seed_slices = int(self.grading.first_row[-1]), -(-len(space.seeds) // 8)
         self._bonds = np.zeros((self._slices, rows, self._lanes))
-        self._squares: Floats | None = None
+        self._powers: dict[int, Floats] = {}  # of the bonds, as far as higher powers need them
         self._seed_modes = np.zeros((seed_slices, rows, 8))
         self._corrections = np.zeros((seed_slices, rows, 8))
         self._active = np.zeros(rows, dtype=np.bool_)
         self._degrees: list[int] = []
-        self._square_degrees: list[int] = []
+        self._power_degrees: dict[int, list[int]] = {}
         self._correction_degrees: list[int] = []
         self._modes: list[Floats] = []
         self._diagonal: list[Floats] = []
@@ -196,8 +196,12 @@ class DenseRing(ABC):
             self.multiply_adds += count
         return self._reduced(out)
 
-    def square(self, degree: int) -> Floats:
-        out = self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
+    def power(self, power: int, degree: int) -> Floats:
+        if power == 2:
+            out = self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
+        else:
+            splits = self._power_splits(power, degree)
+            out = self._product(self._powers[power - 1], self._bonds, degree, splits)
         return self._times(out, float(np.ldexp(2.0, -self.exponent)))
 
     def _canonical_points(self, degree: int, values: Floats) -> Floats:
@@ -208,26 +212,24 @@ class DenseRing(ABC):
     def _square_splits(self, degree: int) -> list[tuple[int, int]]:
         return [(d, degree - d) for d in self._degrees if d <= degree - d and degree - d in self._degrees]
 
-    def _cube_splits(self, degree: int) -> list[tuple[int, int]]:
-        """Splits into a square and a single; squares that are still missing are made first."""
-        if self._squares is None:
-            self._squares = np.zeros_like(self._bonds)
-        for d in range(2, degree):
-            if d not in self._square_degrees:
-                self._put_square(d)
-        return [(d, degree - d) for d in self._square_degrees if degree - d in self._degrees]
+    def _power_splits(self, power: int, degree: int) -> list[tuple[int, int]]:
+        """Splits into a lower power and a single; lower powers that are still missing are made first."""
+        lower = power - 1
+        for d in range(lower, degree):
+            if d not in self._power_degrees.get(lower, ()):
+                self._put_power(lower, d)
+        return [(d, degree - d) for d in self._power_degrees.get(lower, ()) if degree - d in self._degrees]
 
-    def cube(self, degree: int) -> Floats:
-        splits = self._cube_splits(degree)
-        assert self._squares is not None
-        out = self._product(self._squares, self._bonds, degree, splits)
-        return self._times(out, float(np.ldexp(2.0, -self.exponent)))
+    def _put_power(self, power: int, degree: int) -> None:
+        self._store_power(power, degree, self._canonical_points(degree, self.power(power, degree)))
 
-    def _put_square(self, degree: int) -> None:
-        assert self._squares is not None
-        values = self._canonical_points(degree, self.square(degree))
-        self._square_degrees.append(degree)
-        self._store(self._squares, degree, np.arange(len(values)), values)
+    def _store_power(self, power: int, degree: int, values: Floats) -> None:
+        """Keep a power of the bonds at a degree, (canonical, points), as a factor of higher powers."""
+        if power not in self._powers:
+            self._powers[power], self._power_degrees[power] = np.zeros_like(self._bonds), []
+        if degree not in self._power_degrees[power]:
+            self._power_degrees[power].append(degree)
+        self._store(self._powers[power], degree, np.arange(len(values)), values)
 
     def project(self, degree: int, parts: Sequence[tuple[float, Floats]]) -> Floats:
         canonical = self.grading.canonical(degree)

@@ -65,18 +65,11 @@ class _Image(ResidueRing):
     def store_bonds(self, degree: int, rows: Ints, values: Floats) -> None:
         self._store(self._bonds, degree, rows, values)
 
-    def store_square(self, degree: int, values: Floats) -> None:
-        if self._squares is None:
-            self._squares = np.zeros_like(self._bonds)
-        if degree not in self._square_degrees:
-            self._square_degrees.append(degree)
-        self._store(self._squares, degree, np.arange(len(values)), values)
+    def store_power(self, power: int, degree: int, values: Floats) -> None:
+        self._store_power(power, degree, values)
 
-    def canonical_square(self, degree: int) -> Floats:
-        return self._canonical_points(degree, self.square(degree))
-
-    def canonical_cube(self, degree: int) -> Floats:
-        return self._canonical_points(degree, self.cube(degree))
+    def canonical_power(self, power: int, degree: int) -> Floats:
+        return self._canonical_points(degree, self.power(power, degree))
 
     def add_projection(self, degree: int, total: Floats, values: Floats, back: Floats) -> None:
         """Add the modes of values on bonds (canonical, points)."""
@@ -99,7 +92,7 @@ class FixedPointRing:
         self._points = self._images[0]._slices * self._images[0]._lanes
         self._to_bonds = self._cosines(np.ones(space.half))
         self._back: dict[Fraction, Floats] = {}
-        self._squares: list[int] = []
+        self._stored: set[tuple[int, int]] = set()  # powers of the bonds, and their degrees
         self._modes: list[IntegerTable] = []
         self._corrections: list[IntegerTable] = []
 
@@ -183,19 +176,16 @@ class FixedPointRing:
         values, _ = self._rounded(stack.reshape(len(self.basis), -1))
         return Bonds(values.reshape(stack.shape), power)
 
-    def square(self, degree: int) -> Bonds:
-        return self._bonds(self._each(lambda _, image: image.canonical_square(degree)), 1)
+    def power(self, power: int, degree: int) -> Bonds:
+        for d in range(power - 1, degree if power > 2 else 0):
+            if (power - 1, d) not in self._stored:
+                self._put_power(power - 1, d)
+        return self._bonds(self._each(lambda _, image: image.canonical_power(power, degree)), power - 1)
 
-    def cube(self, degree: int) -> Bonds:
-        for d in range(2, degree):
-            if d not in self._squares:
-                self._put_square(d)
-        return self._bonds(self._each(lambda _, image: image.canonical_cube(degree)), 2)
-
-    def _put_square(self, degree: int) -> None:
-        values = self.square(degree).residues
-        self._squares.append(degree)
-        self._each(lambda i, image: image.store_square(degree, values[i]))
+    def _put_power(self, power: int, degree: int) -> None:
+        values = self.power(power, degree).residues
+        self._stored.add((power, degree))
+        self._each(lambda i, image: image.store_power(power, degree, values[i]))
 
     def project(self, degree: int, parts: Sequence[tuple[Fraction, Bonds]]) -> Modes:
         total = np.zeros((len(self.basis), len(self.grading.canonical(degree)), self.space.N - 1))

@@ -53,7 +53,6 @@ class Float64Ring(DenseRing):
         for n, corrections in zip(self._correction_degrees, self._diagonal, strict=True):
             np.ldexp(corrections, -shift * n, out=corrections)
         for d in range(1, degree + 1):
-            for array in (self._bonds, self._seed_modes, self._squares):
-                if array is not None:
-                    array[:, self._rows(d)] = np.ldexp(array[:, self._rows(d)], -shift * (d - 1))
+            for array in (self._bonds, self._seed_modes, *self._powers.values()):
+                array[:, self._rows(d)] = np.ldexp(array[:, self._rows(d)], -shift * (d - 1))
             self._corrections[:, self._rows(d)] = np.ldexp(self._corrections[:, self._rows(d)], -shift * d)

@@ -51,7 +51,7 @@ class MajorantRing(Float64Ring):
         self._unit, self._epsilon = float(unit), epsilon
         self._radii = np.zeros_like(self._bonds)
         self._sums = np.zeros_like(self._bonds)  # 2 |u| + epsilon r
-        self._square_radii: Floats | None = None
+        self._power_radii: dict[int, Floats] = {}
         self._seed_radii = np.zeros_like(self._seed_modes)
         self._correction_radii = np.zeros_like(self._corrections)
         self.largest = 1.0
@@ -112,30 +112,32 @@ class MajorantRing(Float64Ring):
         self._note(sums)
         return Bounds(2 * self._canonical_points(degree, radii) + fresh, sums, power)
 
-    def square(self, degree: int) -> Bounds:  # type: ignore[override]
-        ordered = [(d, degree - d) for d in self._degrees if degree - d in self._degrees]
-        radii = self._product(self._sums, self._radii, degree, ordered)
-        sizes = self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
-        return self._bounds(degree, radii, sizes, 1)
+    def power(self, power: int, degree: int) -> Bounds:  # type: ignore[override]
+        if power == 2:
+            ordered = [(d, degree - d) for d in self._degrees if degree - d in self._degrees]
+            radii = self._product(self._sums, self._radii, degree, ordered)
+            return self._bounds(degree, radii, self._square_sizes(degree), 1)
+        splits = self._power_splits(power, degree)
+        left, single = self._powers[power - 1], self._bonds + self._epsilon * self._radii
+        radii = self._product(left, self._radii, degree, splits)
+        radii += self._product(self._power_radii[power - 1], single, degree, splits)
+        return self._bounds(degree, radii, self._product(left, self._bonds, degree, splits), power - 1)
 
-    def _put_square(self, degree: int) -> None:
-        assert self._squares is not None
-        assert self._square_radii is not None
-        sizes = self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
-        radii = self.square(degree).radii
-        self._square_degrees.append(degree)
-        rows = np.arange(len(radii))
-        self._store(self._squares, degree, rows, 2 * self._canonical_points(degree, sizes))
-        self._store(self._square_radii, degree, rows, radii)
+    def _square_sizes(self, degree: int) -> Floats:
+        return self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
 
-    def cube(self, degree: int) -> Bounds:  # type: ignore[override]
-        if self._square_radii is None:
-            self._square_radii = np.zeros_like(self._bonds)
-        splits = self._cube_splits(degree)
-        assert self._squares is not None
-        radii = self._product(self._squares, self._radii, degree, splits)
-        radii += self._product(self._square_radii, self._bonds + self._epsilon * self._radii, degree, splits)
-        return self._bounds(degree, radii, self._product(self._squares, self._bonds, degree, splits), 2)
+    def _sizes(self, power: int, degree: int) -> Floats:
+        """Moduli of a power, half of it."""
+        if power == 2:
+            return self._square_sizes(degree)
+        return self._product(self._powers[power - 1], self._bonds, degree, self._power_splits(power, degree))
+
+    def _put_power(self, power: int, degree: int) -> None:
+        radii = self.power(power, degree).radii
+        self._store_power(power, degree, 2 * self._canonical_points(degree, self._sizes(power, degree)))
+        if power not in self._power_radii:
+            self._power_radii[power] = np.zeros_like(self._bonds)
+        self._store(self._power_radii[power], degree, np.arange(len(radii)), radii)
 
     def project(self, degree: int, parts: Sequence[tuple[float, Bounds]]) -> Floats:  # type: ignore[override]
         mask = self.space.mask(degree)

@@ -31,11 +31,8 @@ class Ring(Protocol):
     def put(self, degree: int, modes: Any) -> None:
         """Store the modes of a degree and make them available to products."""
 
-    def square(self, degree: int) -> Any:
-        """Bonds of sum c o c over all pairs of stored degrees with this sum."""
-
-    def cube(self, degree: int) -> Any:
-        """Bonds of sum (c o c) o c over all triples of stored degrees with this sum."""
+    def power(self, power: int, degree: int) -> Any:
+        """Bonds of sum (c o c) o ... o c, `power` factors from 2 up, over all stored degrees with this sum."""
 
     def project(self, degree: int, parts: Sequence[tuple[Any, Any]]) -> Any:
         """Modes of sum coefficient * bonds, selection rules applied; parts are pairs (coefficient, bonds)."""

@@ -31,6 +31,7 @@ class SymbolicRing:
         self.space, self.grading = space, space.grading
         self._modes: dict[int, Objects] = {}
         self._bonds: dict[int, dict[Monomial, Cosines]] = {}
+        self._powers: dict[int, dict[int, dict[Monomial, Cosines]]] = {}  # powers of the bonds, by degree
         self._corrections: dict[int, Objects] = {}
 
     def _monomials(self, degree: int) -> list[Monomial]:
@@ -56,12 +57,14 @@ class SymbolicRing:
             bonds[monomial] = bonds[conjugate(monomial)] = cosines
         self._bonds[degree] = bonds
 
-    def square(self, degree: int) -> dict[Monomial, Cosines]:
-        return self._sum(self._bonds, self._bonds, degree)
-
-    def cube(self, degree: int) -> dict[Monomial, Cosines]:
-        squares = {d: self.square(d) for d in range(2, degree)}
-        return self._sum(squares, self._bonds, degree)
+    def power(self, power: int, degree: int) -> dict[Monomial, Cosines]:
+        if power == 2:
+            return self._sum(self._bonds, self._bonds, degree)
+        known = self._powers.setdefault(power - 1, {})
+        for d in range(power - 1, degree):
+            if d not in known:
+                known[d] = self.power(power - 1, d)
+        return self._sum(known, self._bonds, degree)
 
     def _sum(self, left: dict[int, Any], right: dict[int, Any], degree: int) -> dict[Monomial, Cosines]:
         result: dict[Monomial, Cosines] = defaultdict(lambda: defaultdict(lambda: se.Integer(0)))

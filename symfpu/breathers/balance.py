@@ -16,6 +16,7 @@ import mpmath
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
@@ -138,11 +139,11 @@ class Balance:
 
     def system(self, z: Floats) -> tuple[Floats, Floats]:
         """The equations, shape (n,), and their derivatives by z, shape (n, n+1)."""
-        alpha, beta = float(self.chain.alpha), float(self.chain.beta)
+        law = self.chain.law()
         diagonal = self.detuning + self.n**2 * z[-1]
         r = self.table[:, : self.harmonics + 1] @ self.cosines(z) @ self.stretch
-        force = -(self.analysis @ (r**2 * (alpha + r * beta)) @ self.stretch.T)
-        slope = self.analysis @ (r * (2 * alpha + 3 * beta * r))
+        force = -(self.analysis @ bonds.anharmonic_tension(law, r) @ self.stretch.T)
+        slope = self.analysis @ bonds.anharmonic_stiffness(law, r)
         slope[1:] /= 2  # coefficients of exp(i k theta), k of both signs
         stiffness = np.einsum("kj,pj,qj->kpq", slope, self.stretch, self.stretch, optimize=True)
         n, q = self.n[:, None], self.q[:, None]

@@ -58,11 +58,11 @@ class FixedForce:
         return np.negative(self._product(tension, self.modes))
 
     def _tension(self, r: Sequence[int], harmonics: int) -> list[int]:
-        """Cosine coefficients of alpha r^2 + beta r^3 of one bond: d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0."""
+        """Cosine coefficients of c_3 r^2 + c_4 r^3 + ... of one bond: d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0."""
         degree, total = len(r) - 1, np.zeros(harmonics + 1, dtype=object)
         twice = flint.fmpz_poly([*r[:0:-1], 2 * r[0], *r[1:]])
         power = twice
-        for k, coupling in ((2, self.chain.alpha), (3, self.chain.beta)):
+        for k, coupling in enumerate(self.chain.couplings, 2):
             power = self._lowered(power * twice)
             if coupling:
                 part = power.coeffs()[k * degree : k * degree + harmonics + 1]

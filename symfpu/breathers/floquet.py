@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.balance import PeriodicOrbit
+from symfpu.chain import bonds
 from symfpu.dynamics.kahan_li8 import ORDER, tangent_map_along
 from symfpu.errors import InputError
 from symfpu.numbers.typed import decimal
@@ -87,13 +88,14 @@ def monodromy(orbit: PeriodicOrbit) -> Floats:
 def floquet(orbit: PeriodicOrbit) -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
-    A kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its error to first order:
-    the error of B^T C over the cosine between its left and right eigenvector. Raises InputError.
+        A kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its error to first order:
+        the error of B^T C over the cosine between its left and right eigenvector. Raises InputError.
 
-    >>> from symfpu.chain.chain import Chain
-    >>> from symfpu.breathers.balance import breather_at_amplitude
-    >>> floquet(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")).stable
-    True
+        >>> from symfpu.chain import bonds
+    from symfpu.chain.chain import Chain
+        >>> from symfpu.breathers.balance import breather_at_amplitude
+        >>> floquet(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")).stable
+        True
     """
     from scipy.linalg import eig
 
@@ -134,7 +136,7 @@ def _half(orbit: PeriodicOrbit) -> tuple[Floats, float]:
     """The tangent map over half a period and its estimated error, in the spectral norm."""
     chain, duration = orbit.chain, np.pi / float(orbit.frequency)
     r = chain.stretches(orbit.positions(np.linspace(0, duration, 2 * len(orbit.cosines))))
-    stiffest = float(np.max(np.abs(1 + r * (2 * float(chain.alpha) + r * (3 * float(chain.beta))))))
+    stiffest = float(np.max(np.abs(bonds.stiffness(chain.law(), r))))
     steps = int(np.ceil(duration * np.sqrt(stiffest) / FIRST_STEP))
     coefficients = chain.stretches(orbit.cosines)
     rates = np.arange(len(coefficients)) * float(orbit.frequency)

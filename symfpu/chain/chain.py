@@ -14,6 +14,7 @@ import numpy as np
 import symengine as se
 from numpy.typing import ArrayLike, NDArray
 
+from symfpu.chain import bonds
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import DOUBLES, Doubles, Numbers, arithmetic_of, sine_matrix
 from symfpu.numbers.typed import Number, decimal, exact, integer, rational
@@ -70,9 +71,21 @@ class Chain:
         return float(self.alpha) / (2 * self.N) ** 0.5 if self.alpha else float(self.beta / (2 * self.N))
 
     @property
-    def relative_couplings(self) -> tuple[Fraction, Fraction]:
-        """Coefficients of the quadratic and the cubic force in units of mu and, if alpha is not zero, of mu^2."""
-        return (Fraction(1), self.beta / self.alpha**2) if self.alpha else (Fraction(0), Fraction(1))
+    def couplings(self) -> tuple[Fraction, ...]:
+        """(c_3, c_4) = (alpha, beta) of the bond law V = r^2/2 + c_3 r^3/3 + c_4 r^4/4."""
+        return self.alpha, self.beta
+
+    def law(self, numbers: Doubles = DOUBLES) -> bonds.Law:
+        """The couplings in an arithmetic, as the functions of symfpu.chain.bonds take them."""
+        return tuple(numbers.number(coupling) for coupling in self.couplings)
+
+    @property
+    def relative_couplings(self) -> dict[int, Fraction]:
+        """By power n of the force r^n, the coupling in units of mu^(n-1) (alpha in the chain) or mu^((n-1)/2) (beta alone)."""
+        if not self.alpha:
+            return {3: Fraction(1)}
+        relative = {2: Fraction(1), 3: self.beta / self.alpha**2}
+        return {power: coupling for power, coupling in relative.items() if coupling}
 
     def linear_frequency(self, q: int) -> mpmath.mpf:
         """Omega_q = 2 sin(q pi / 2N) at the working precision of mpmath."""
@@ -117,8 +130,7 @@ class Chain:
     def energy(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
         """Total energy H (Eq. fpuham) of mode coordinates and momenta; shapes (..., N-1) to (...)."""
         r, (P, numbers) = self.stretches(Q), self._state(P, "P")
-        alpha, beta = numbers.number(self.alpha), numbers.number(self.beta)
-        potential = r**2 * (0.5 + r * (alpha / 3 + r * beta / 4))
+        potential = bonds.potential(self.law(numbers), r)
         return np.asarray(0.5 * np.sum(P**2, axis=-1) + np.sum(potential, axis=-1))
 
     def harmonic_energies(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
@@ -130,7 +142,7 @@ class Chain:
         """Second time derivative of every mode coordinate (Eq. eqmo); shapes (..., N-1)."""
         r = self.stretches(Q)
         numbers = arithmetic_of(r)
-        tension = r * (1 + r * (numbers.number(self.alpha) + r * numbers.number(self.beta)))
+        tension = bonds.tension(self.law(numbers), r)
         return self.positions(np.diff(tension, axis=-1))
 
     def _state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Doubles]:

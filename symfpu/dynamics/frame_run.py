@@ -116,7 +116,7 @@ def carried(frame: MovingFrame, steps: int, block: int, longest: int, columns: F
     """Moves a frame and the product of its factors; returns the block to go on with."""
     from symfpu.dynamics.tangent_loops import carry_frame  # lazy: numba takes longer to import than all the rest
 
-    state = (frame.x, frame.p, frame.dx, frame.dp, *frame.couplings, frame.kicks, frame.drifts)
+    state = (frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts)
     return int(carry_frame(*state, steps, block, longest, columns, diagonal, norms))
 
 

@@ -14,6 +14,7 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
 from symfpu.errors import InputError
@@ -61,11 +62,11 @@ def flow(chain: Chain, Q: ArrayLike, P: ArrayLike, duration: float, steps: int) 
     0.5
     """
     (x, p), h, shape = _padded(chain, Q, P), _time(duration) / integer(steps, "steps", 1), np.shape(Q)
-    alpha, beta, inner_x, inner_p = float(chain.alpha), float(chain.beta), x[1:-1], p[1:-1]
+    law, inner_x, inner_p = chain.law(), x[1:-1], p[1:-1]
     inner_x += ENTRY * h * inner_p
     for kick, drift in itertools.islice(itertools.cycle(zip(KICKS, DRIFTS, strict=True)), steps * len(KICKS)):
         r = x[1:] - x[:-1]
-        tension = r * (1 + r * (alpha + r * beta))
+        tension = bonds.tension(law, r)
         inner_p += kick * h * (tension[1:] - tension[:-1])
         inner_x += drift * h * inner_p
     inner_x -= ENTRY * h * inner_p
@@ -86,7 +87,7 @@ def tangent_flow(
     x, p = np.hstack([x, dx]), np.hstack([p, dp])
     h = _time(duration) / integer(steps, "steps", 1)
     x[1:-1] += ENTRY * h * p[1:-1]
-    carry_along(x, p, float(chain.alpha), float(chain.beta), steps, h * np.array(KICKS), h * np.array(DRIFTS))
+    carry_along(x, p, chain.law(), steps, h * np.array(KICKS), h * np.array(DRIFTS))
     x[1:-1] -= ENTRY * h * p[1:-1]
     Q, P = _modes(chain, x), _modes(chain, p)
     return Q[0], P[0], Q[1:], P[1:]
@@ -103,13 +104,12 @@ def tangent_map_along(chain: Chain, stretches: Callable[[Floats], Floats], durat
     n, steps = chain.N - 1, integer(steps, "steps", 1)
     h, identity = _time(duration) / steps, np.eye(2 * n)
     x, p = _padded(chain, identity[:, :n], identity[:, n:])
-    alpha, beta = float(chain.alpha), float(chain.beta)
     inside = np.cumsum((ENTRY, *DRIFTS[:-1]))  # times of the kicks in a step of length 1
     portion = max(1, TABLE // (len(KICKS) * chain.N))
     x[1:-1] += ENTRY * h * p[1:-1]
     for first in range(0, steps, portion):
         r = stretches(h * np.add.outer(np.arange(first, min(first + portion, steps)), inside).reshape(-1))
-        carry(x, p, 1 + r * (2 * alpha + r * (3 * beta)), h * np.array(KICKS), h * np.array(DRIFTS))
+        carry(x, p, bonds.stiffness(chain.law(), r), h * np.array(KICKS), h * np.array(DRIFTS))
     x[1:-1] -= ENTRY * h * p[1:-1]
     return np.vstack([_modes(chain, x).T, _modes(chain, p).T])
 

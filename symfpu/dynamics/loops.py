@@ -11,7 +11,10 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from symfpu.chain.bonds import stiffness, tension
+
 _compiled = njit(nogil=True, cache=True, fastmath={"contract"})
+_tension, _stiffness = _compiled(tension), _compiled(stiffness)
 
 
 @_compiled
@@ -36,18 +39,18 @@ def carry(x: Any, p: Any, slopes: Any, kicks: Any, drifts: Any) -> None:
 
 
 @_compiled
-def carry_along(x: Any, p: Any, alpha: float, beta: float, steps: int, kicks: Any, drifts: Any) -> None:
+def carry_along(x: Any, p: Any, law: Any, steps: int, kicks: Any, drifts: Any) -> None:
     """Column 0 under the forces of the chain, the other columns as deviations from it."""
     bonds = x.shape[0] - 1
     tension = np.empty(x.shape[1])
     for i in range(steps * len(kicks)):
         kick, drift = kicks[i % len(kicks)], drifts[i % len(kicks)]
         r = x[1, 0]
-        tension[:] = (1 + r * (2 * alpha + r * (3 * beta))) * x[1]
-        own = r * (1 + r * (alpha + r * beta))
+        tension[:] = _stiffness(law, r) * x[1]
+        own = _tension(law, r)
         for j in range(1, bonds):
             r = x[j + 1, 0] - x[j, 0]
-            right = r * (1 + r * (alpha + r * beta))
+            right = _tension(law, r)
             position, momentum = x[j, 0], p[j, 0] + kick * (right - own)
-            _move(x, p, j, 1 + r * (2 * alpha + r * (3 * beta)), tension, kick, drift)
+            _move(x, p, j, _stiffness(law, r), tension, kick, drift)
             x[j, 0], p[j, 0], own = position + drift * momentum, momentum, right

@@ -20,7 +20,7 @@ class Motion:
     def __init__(self, chain: Chain, scheme: Scheme, step: float, bounds: Floats) -> None:
         self.chain, self.scheme, self.bounds = chain, scheme, bounds
         self.entry, self.kicks, self.drifts = scheme.merged(step)
-        self.couplings = float(chain.alpha), float(chain.beta)
+        self.law = chain.law()
         self.Omega = np.concatenate([[0.0], chain.frequencies()])
         self.unit = (2 * chain.N) ** 0.5
 
@@ -62,7 +62,7 @@ class Motion:
         return done, Q.reshape(len(state), looks, -1), P.reshape(len(state), looks, -1)
 
     def _arguments(self, row: Floats, bounds: Floats, steps: int) -> tuple[Any, ...]:
-        rates = (row[0], row[1], *self.couplings, steps, self.entry, self.kicks, self.drifts)
+        rates = (row[0], row[1], self.law, steps, self.entry, self.kicks, self.drifts)
         if self.scheme.in_modes:
             return (*rates, self.Omega, 0.5 * float(np.max(np.abs(bounds))) ** 2)
         return (*rates, bounds[0], bounds[1])

@@ -12,14 +12,15 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from symfpu.chain.bonds import tension
+
 _ONE = np.uint64(1)
 _compiled = njit(nogil=True, cache=True, error_model="numpy")
+_tension = _compiled(tension)
 
 
 @_compiled
-def move_particles(
-    x: Any, p: Any, alpha: float, beta: float, steps: int, entry: float, kicks: Any, drifts: Any, least: float, most: float
-) -> int:
+def move_particles(x: Any, p: Any, law: Any, steps: int, entry: float, kicks: Any, drifts: Any, least: float, most: float) -> int:
     """Displacements and momenta between walls, shape (N+1,), rows of the walls zero, under the forces of all springs.
 
     Kick and drift are one pass: the tension of a bond needs both its ends before they move, and is carried to the next particle.
@@ -32,10 +33,10 @@ def move_particles(
         for i in range(kicks.shape[0]):
             kick, drift = kicks[i], drifts[i]
             r = x[one]
-            left = r * (1.0 + r * (alpha + r * beta))
+            left = _tension(law, r)
             for j in range(one, bonds):
                 r = x[j + one] - x[j]
-                right = r * (1.0 + r * (alpha + r * beta))
+                right = _tension(law, r)
                 momentum = p[j] + kick * (right - left)
                 p[j] = momentum
                 x[j] += drift * momentum
@@ -54,11 +55,11 @@ def move_particles(
 
 @_compiled
 def look_at_particles(
-    x: Any, p: Any, alpha: float, beta: float, stride: int, entry: float, kicks: Any, drifts: Any, least: float, most: float, seen: Any
+    x: Any, p: Any, law: Any, stride: int, entry: float, kicks: Any, drifts: Any, least: float, most: float, seen: Any
 ) -> int:
     """Moves as many times as `seen`, shape (looks, 2, N+1), has rows, by `stride` steps, and copies the state there each time."""
     for i in range(seen.shape[0]):
-        done = move_particles(x, p, alpha, beta, stride, entry, kicks, drifts, least, most)
+        done = move_particles(x, p, law, stride, entry, kicks, drifts, least, most)
         seen[i, 0] = x
         seen[i, 1] = p
         if done < stride:
@@ -110,29 +111,33 @@ def _rotate(v: Any, w: Any, halves: Any, sines: Any) -> None:
 
 
 @_compiled
-def move_modes(
-    v: Any, w: Any, alpha: float, beta: float, steps: int, entry: float, kicks: Any, drifts: Any, Omega: Any, most: float
-) -> int:
+def move_modes(v: Any, w: Any, law: Any, steps: int, entry: float, kicks: Any, drifts: Any, Omega: Any, most: float) -> int:
     """v_q = Omega_q Q_q / sqrt(2N) and w_q = P_q / sqrt(2N), shape (N,) with entries 0 for q = 0: the coefficients of the bond stretches
-    are v, those of tensions beyond the harmonic ones g = alpha v v + beta v v v, and dw_q/dt = -Omega_q (v_q + g_q)."""
+    are v, those of tensions beyond the harmonic ones g = c_3 v v + c_4 v v v + ..., and dw_q/dt = -Omega_q (v_q + g_q)."""
     N, stages = v.shape[0], kicks.shape[0]
     halves, sines = np.empty((stages + 1, N)), np.empty((stages + 1, N))
     for i in range(stages + 1):
         drift = entry if i == stages else drifts[i]
         for q in range(N):
             halves[i, q], sines[i, q] = np.tan(0.5 * drift * Omega[q]), np.sin(drift * Omega[q])
-    wide, square, cube = np.zeros(3 * N + 2), np.zeros(N), np.zeros(N)
+    terms = len(law)
+    while terms > 1 and law[terms - 1] == 0.0:
+        terms -= 1
+    wide, power, next_power, pull = np.zeros(3 * N + 2), np.zeros(N), np.zeros(N), np.zeros(N)
     done = 0
     _rotate(v, w, halves[stages], sines[stages])
     while done < steps:
         for i in range(stages):
-            _extend(v, wide)
-            _product(v, wide, square)
-            if beta != 0.0:
-                _extend(square, wide)
-                _product(v, wide, cube)
+            power[:] = v
+            pull[:] = 0.0
+            for n in range(terms):
+                _extend(power, wide)
+                _product(v, wide, next_power)
+                power, next_power = next_power, power
+                for q in range(1, N):
+                    pull[q] += law[n] * power[q]
             for q in range(1, N):
-                w[q] -= kicks[i] * Omega[q] * (alpha * square[q] + beta * cube[q])
+                w[q] -= kicks[i] * Omega[q] * pull[q]
             _rotate(v, w, halves[i], sines[i])
         done += 1
         total = 0.0
@@ -145,12 +150,10 @@ def move_modes(
 
 
 @_compiled
-def look_at_modes(
-    v: Any, w: Any, alpha: float, beta: float, stride: int, entry: float, kicks: Any, drifts: Any, Omega: Any, most: float, seen: Any
-) -> int:
+def look_at_modes(v: Any, w: Any, law: Any, stride: int, entry: float, kicks: Any, drifts: Any, Omega: Any, most: float, seen: Any) -> int:
     """The same for modes; seen (looks, 2, N)."""
     for i in range(seen.shape[0]):
-        done = move_modes(v, w, alpha, beta, stride, entry, kicks, drifts, Omega, most)
+        done = move_modes(v, w, law, stride, entry, kicks, drifts, Omega, most)
         seen[i, 0] = v
         seen[i, 1] = w
         if done < stride:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
 from symfpu.errors import SymfpuError
@@ -54,7 +55,7 @@ def require_stable(chain: Chain, scheme: Scheme, step: float, energy: float) -> 
 
 def potential(chain: Chain, r: float) -> float:
     """V(r) of one bond."""
-    return r * r * (0.5 + r * (float(chain.alpha) / 3 + r * float(chain.beta) / 4))
+    return float(bonds.potential(chain.law(), r))
 
 
 def stretch_bounds(chain: Chain, energy: float) -> tuple[float, float, bool]:

@@ -14,6 +14,7 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from symfpu.chain.bonds import Law
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.blanes_moan6 import DRIFTS, KICKS
 from symfpu.errors import InputError
@@ -40,9 +41,9 @@ class MovingFrame:
     drifts: Floats
 
     @property
-    def couplings(self) -> tuple[float, float]:
-        """alpha and beta."""
-        return float(self.chain.alpha), float(self.chain.beta)
+    def law(self) -> Law:
+        """Of the bonds, in doubles."""
+        return self.chain.law()
 
     def orbit(self) -> tuple[Floats, Floats]:
         """Mode coordinates and momenta of the orbit, (N-1,) each."""
@@ -83,7 +84,7 @@ def tangent_steps(
 
     frame = moving_frame(chain, Q, P, dQ, dP, step, drifts=drifts, kicks=kicks)
     count = integer(steps, "steps", 0)
-    advance(frame.x, frame.p, frame.dx, frame.dp, *frame.couplings, frame.kicks, frame.drifts, count)
+    advance(frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts, count)
     return *frame.orbit(), *frame.deviations()
 
 

@@ -12,14 +12,17 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from symfpu.chain.bonds import stiffness, tension
+
 LANES = 8  # deviation vectors moved by one instruction stream
 LENGTHEN, SHORTEN = 1e-3, 1e-5  # least ratio of a diagonal entry of R to its column, above and below which the block changes
 
 _compiled = njit(nogil=True, cache=True, error_model="numpy")
+_tension, _stiffness = _compiled(tension), _compiled(stiffness)
 
 
 @_compiled
-def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, kick: float, drift: float, forces: Any) -> None:
+def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, law: Any, kick: float, drift: float, forces: Any) -> None:
     """One kick, one drift, and their derivatives: bond j has the tension r + alpha r^2 + beta r^3, its slope 1 + 2 alpha r + 3 beta r^2.
 
     dx, dp : flat blocks, (blocks, (N+1) LANES). forces : room for the impulses of the bonds on the orbit (N,) and on the lanes
@@ -31,8 +34,8 @@ def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, 
     ahead = x[1:]
     for j in range(bonds):
         r = ahead[j] - x[j]
-        tension[j] = kick * (r * (1 + r * (alpha + r * beta)))
-        stiffness[j] = kick * (1 + r * (2 * alpha + r * (3 * beta)))
+        tension[j] = kick * _tension(law, r)
+        stiffness[j] = kick * _stiffness(law, r)
     inner_x, inner_p, after = x[1:], p[1:], tension[1:]
     for j in range(bonds - 1):
         inner_p[j] += after[j] - tension[j]
@@ -51,7 +54,7 @@ def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, 
 
 
 @_compiled
-def advance(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, kicks: Any, drifts: Any, steps: int) -> None:
+def advance(x: Any, p: Any, dx: Any, dp: Any, law: Any, kicks: Any, drifts: Any, steps: int) -> None:
     """So many steps of a splitting; kicks (stages,) and drifts (stages + 1,) are lengths of time, drifts that meet are one."""
     bonds, blocks = len(x) - 1, dx.shape[0]
     forces = (np.empty(bonds), np.empty(bonds * LANES), np.empty(bonds), np.empty(bonds * LANES))
@@ -66,7 +69,7 @@ def advance(x: Any, p: Any, dx: Any, dp: Any, alpha: float, beta: float, kicks: 
             drift = drifts[i + 1]
             if i == len(kicks) - 1 and step < steps - 1:
                 drift += drifts[0]
-            kick_and_drift(x, p, flat_dx, flat_dp, alpha, beta, kicks[i], drift, forces)
+            kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces)
 
 
 @_compiled
@@ -125,8 +128,7 @@ def carry_frame(
     p: Any,
     dx: Any,
     dp: Any,
-    alpha: float,
-    beta: float,
+    law: Any,
     kicks: Any,
     drifts: Any,
     steps: int,
@@ -144,7 +146,7 @@ def carry_frame(
     rows, R = np.empty((m, 2 * (len(x) - 2))), np.zeros((m, m))
     while steps > 0:
         now = min(block, steps)
-        advance(x, p, dx, dp, alpha, beta, kicks, drifts, now)
+        advance(x, p, dx, dp, law, kicks, drifts, now)
         least = orthonormalise(dx, dp, rows, R)
         accumulate(R, columns, diagonal, norms)
         steps -= now

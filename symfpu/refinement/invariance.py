@@ -18,6 +18,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 
 Floats = NDArray[Any]
@@ -147,16 +148,16 @@ class InvarianceEquation:
         self.mask = parity if chain.alpha else parity & (harmonics.sum(axis=1) % 2 == 1)[:, None]
         self.seed_rows = np.array([int(np.flatnonzero((harmonics == e).all(axis=1))[0]) for e in np.eye(len(seeds), dtype=np.int64)])
         self.seed_columns = np.array(seeds) - 1
-        bonds = np.arange((N + 1) // 2)
+        half = np.arange((N + 1) // 2)
         with mpmath.workdps(2 * DIGITS):
             linear = [chain.linear_frequency(q) for q in modes.tolist()]
             cosines = np.array([long(mpmath.cospi(mpmath.mpf(k) / (2 * N))) for k in range(4 * N)])
             norm = long(mpmath.sqrt(mpmath.mpf(2) / N))
         self.linear = np.array([long(w) for w in linear])
         self._all_bonds = norm * self.linear[:, None] * cosines[np.outer(modes, 2 * np.arange(N) + 1) % (4 * N)]
-        self._stretch = self._all_bonds[:, : len(bonds)]
-        self._back = self._stretch * np.where(2 * bonds + 1 == N, 1, 2)
-        self._couplings = long(chain.alpha), long(chain.beta)
+        self._stretch = self._all_bonds[:, : len(half)]
+        self._back = self._stretch * np.where(2 * half + 1 == N, 1, 2)
+        self._law = tuple(long(coupling) for coupling in chain.couplings)
         high, low = (np.array(part) for part in zip(*map(_halves, linear), strict=True))
         with mpmath.workdps(2 * DIGITS):
             exact = [mpmath.fdot(nu, [linear[q - 1] for q in seeds]) for nu in harmonics.tolist()]
@@ -177,38 +178,34 @@ class InvarianceEquation:
         return np.asarray(self.harmonics @ (self.linear[self.seed_columns] + shifts))
 
     def _portions(self) -> list[slice]:
-        step, bonds = max(1, PORTION // self.grid.points), self._stretch.shape[1]
-        return [slice(j, j + step) for j in range(0, bonds, step)]
+        step, count = max(1, PORTION // self.grid.points), self._stretch.shape[1]
+        return [slice(j, j + step) for j in range(0, count, step)]
 
     def force(self, cosines: Floats) -> Floats:
         """N_q[nu] of coefficients (H, N-1), in their precision; zero where the mask does not hold."""
         kind = cosines.dtype
-        alpha, beta = (x.astype(kind) for x in self._couplings)
+        law = tuple(coupling.astype(kind) for coupling in self._law)
         total = np.zeros(cosines.shape, dtype=kind)
         for part in self._portions():
             r = self.grid.values(cosines @ self._stretch[:, part].astype(kind))
-            total += self.grid.coefficients(r * r * (alpha + beta * r)) @ self._back[:, part].T.astype(kind)
+            total += self.grid.coefficients(bonds.anharmonic_tension(law, r)) @ self._back[:, part].T.astype(kind)
         return np.asarray(total * self.mask)
 
     def potential(self, Q: Floats) -> np.longdouble:
         """The potential energy of mode coordinates (N-1,), by all bonds."""
-        alpha, beta = self._couplings
-        r = Q @ self._all_bonds
-        return np.longdouble((r * r * (0.5 + r * (alpha / 3 + r * beta / 4))).sum())
+        return np.longdouble(bonds.potential(self._law, Q @ self._all_bonds).sum())
 
     def potential_slope(self, Q: Floats) -> Floats:
         """Its gradient; shape (N-1,)."""
-        alpha, beta = self._couplings
-        r = Q @ self._all_bonds
-        return np.asarray(self._all_bonds @ (r * (1 + r * (alpha + r * beta))))
+        return np.asarray(self._all_bonds @ bonds.tension(self._law, Q @ self._all_bonds))
 
     def slopes(self, cosines: Floats) -> Floats:
-        """2 alpha r + 3 beta r^2 on the lattice, in doubles; shape (bonds, points)."""
-        alpha, beta = (float(x) for x in self._couplings)
+        """V''(r) - 1 on the lattice, in doubles; shape (bonds, points)."""
+        law = self.chain.law()
         result = np.empty((self._stretch.shape[1], self.grid.points))
         for part in self._portions():
             r = self.grid.values(np.asarray(cosines @ self._stretch[:, part]).astype(float))
-            result[part] = r * (2 * alpha + 3 * beta * r)
+            result[part] = bonds.anharmonic_stiffness(law, r)
         return result
 
     def force_change(self, slopes: Floats, change: Floats) -> Floats:

@@ -26,15 +26,11 @@ Frequencies = tuple[Fraction, ...] | None
 
 def run_recursion(ring: Ring, divisors: Any, chain: Chain, order: int, progress: Progress | None) -> None:
     """The recursion itself: fills the ring degree by degree."""
-    quadratic, cubic = chain.relative_couplings
+    couplings = {power: ring.number(coupling) for power, coupling in chain.relative_couplings.items()}
     ring.put(1, ring.seed_terms())
     for k in range(1, order + 1):
         degree = 1 + chain.degree_step * k
-        parts = []
-        if quadratic:
-            parts.append((ring.number(quadratic), ring.square(degree)))
-        if cubic and degree >= 3:
-            parts.append((ring.number(cubic), ring.cube(degree)))
+        parts = [(coupling, ring.power(power, degree)) for power, coupling in couplings.items() if power <= degree]
         force = ring.project(degree, parts)
         ring.correct(degree - 1, ring.secular(degree, force))
         harmonics, _ = ring.space.grading.harmonics(degree)
