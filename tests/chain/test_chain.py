@@ -197,9 +197,9 @@ def test_decimal_text_gives_the_number_back(value):
 @pytest.mark.parametrize(
     ("couplings", "model", "step", "mu", "relative"),
     [
-        ({"alpha": "0.5"}, "alpha", 1, 0.125, (1, 0)),
-        ({"beta": "0.5"}, "beta", 2, 0.03125, (0, 1)),
-        ({"alpha": "0.5", "beta": "0.5"}, "alpha+beta", 1, 0.125, (1, 2)),
+        ({"alpha": "0.5"}, "alpha", 1, 0.125, {2: 1}),
+        ({"beta": "0.5"}, "beta", 2, 0.03125, {3: 1}),
+        ({"alpha": "0.5", "beta": "0.5"}, "alpha+beta", 1, 0.125, {2: 1, 3: 2}),
     ],
 )
 def test_small_parameter_and_degrees(couplings, model, step, mu, relative):
