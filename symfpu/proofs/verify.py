@@ -1,21 +1,38 @@
 """Independent checker of propagation certificates: mode space, the tensors B and C summed directly, Python integers only.
 
-m = (p_1, n_1, ..) are the exponents of w_i = Omega_i z_i and conj w_i, nu = p - n, u_q = Omega_q Q_q, S = sum B u u or sum C u u u:
-u_q^(k)[m] = L_q(nu) (sum_n W_q^(n) u_q^(k-n) - S_q^(k))[m], W_q^(n)[f] = S_q^(n)[f w_q] (Eqs. moda, modb). A coefficient that is not
-0 modulo p proves a mode excited for generic frequencies; with symbols for the L_q(nu), a polynomial that is 0 proves a zero.
+m = (p_1, n_1, ..) are the exponents of w_i = Omega_i z_i and conj w_i, nu = p - n, u_q = Omega_q Q_q, S = sum B u u
+or sum C u u u (Eqs. moda, modb):
+
+    u_q^(k)[m] = L_q(nu) (sum_n W_q^(n) u_q^(k-n) - S_q^(k))[m],    W_q^(n)[f] = S_q^(n)[f w_q].
+
+A coefficient that is not 0 modulo p proves a mode excited for generic frequencies; with symbols for the L_q(nu), a
+polynomial that is 0 proves a zero. Written to be audited: one claim a function, in the order in which `verify` calls them.
+The file shares no code with the prover and imports nothing but the standard library.
 """
 
 import hashlib
 import json
 import re
+from collections.abc import Iterable, Iterator
 from itertools import combinations_with_replacement, product
 from operator import mul, sub
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-PROBABILITY = re.compile(r"1(\.0+)?(e[+-]?0+)?|0\.0*[1-9][0-9]*|[1-9](\.[0-9]+)?e-0*[1-9][0-9]*")  # decimal, above 0 and up to 1
+LARGEST_FILE = 2**26  # bytes
+MOST_VALUES = 10**6
+MOST_STEPS = 2 * 10**6
+MOST_SEEDS = 64
+MOST_POINTS = 256
+LARGEST_N = 4096
+PROBABILITY = re.compile(r"1(\.0+)?(e[+-]?0+)?|0\.0*[1-9][0-9]*|[1-9](\.[0-9]+)?e-0*[1-9][0-9]*")  # above 0, up to 1
 BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41)  # with these Miller-Rabin is a proof below 3.3e24
+UNREADABLE = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError)
+
+Json = dict[str, Any]
+Monomial = tuple[int, ...]
 Polynomial = dict[tuple[Any, ...], int]  # sorted symbols -> coefficient; a residue is a constant
+ByMode = dict[int, Polynomial]
 
 
 class CertificateError(ValueError):
@@ -23,128 +40,460 @@ class CertificateError(ValueError):
 
 
 def verify(path: str | Path) -> list[str]:
-    """Lines that say what was checked in the certificate of a file; raises CertificateError, with the reason, if it is not right."""
+    """Lines that say what was checked in the certificate of a file.
+
+    Raises CertificateError, with the reason, if it is not right.
+    """
     try:
-        return Checker(Path(path)).report()
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
-        raise error if isinstance(error, CertificateError) else CertificateError(f"no readable certificate: {error!r:.200}") from None
+        return check_certificate(read_certificate(Path(path)))
+    except CertificateError:
+        raise
+    except UNREADABLE as error:
+        raise CertificateError(f"no readable certificate: {error!r:.200}") from None
 
 
 def need(condition: object, reason: str) -> None:
+    """Refuse the certificate unless the condition holds."""
     if not condition:
         raise CertificateError(reason)
 
 
-def couplings(N: int, *modes: int) -> list[tuple[int, int]]:
-    """Each q with B_qlm or C_qlmn, where that is not zero: Eq. transa, with the sums -2N that it leaves out."""
-    sums = [sum(map(mul, modes, signs)) for signs in product((1, -1), repeat=len(modes))]
-    values = {q: sums.count(-q) - sums.count(2 * N - q) - sums.count(-2 * N - q) for q in {-t % (2 * N) for t in sums}}
-    return [(q, value) for q, value in values.items() if value and 0 < q < N]
+# --- the file
 
 
-class Checker:
-    def __init__(self, path: Path) -> None:
-        """Reads the file, sizes bounded first; as neither floats, booleans nor minus signs are let in, == and < are exact later."""
-        need(path.stat().st_size <= 2**26 and path.is_file(), "not a regular file of at most 64 MB")
-        text = path.read_text("ascii", "replace")
-        bare = re.sub(r'"[^"\\]*"', '"', text)
-        need(sum(map(bare.count, ',[{"')) <= 10**6, "the file has more than 10^6 values")
-        need(not re.search(r'[^\s0-9{}\[\],:nul"]|[0-9]{21}', bare), "not JSON of plain strings, null and integers of at most 20 digits")
-        self.data = data = json.loads(text)
-        need(data["format"] == "symfpu propagation certificate", "not a propagation certificate")
-        need(data["schema"] == 1, f"schema version {data['schema']!r:.40} is unknown: this checker supports version 1")
-        body = json.dumps({key: data[key] for key in data if key != "digest"}, sort_keys=True, separators=(",", ":"))
-        need(data["digest"] == hashlib.sha256(body.encode()).hexdigest(), "the digest is not that of the contents")
-        rows = data["exceptions"] + data["undecided"] + data["points"] + data["vanishing"] + data["excited"]
-        need(bare.count(":") == 15 + 3 * len(rows) + 2 * len(data["excited"]), "a key is missing, unknown or there twice")
-        self.N, self.K, self.seeds, self.step, self.steps = data["N"], data["order"], data["seeds"], 1 + (data["model"] == "beta"), 0
-        need(1 < self.N <= 4096 and max(1000, self.N) * self.K <= 10**6 and data["model"] in ("alpha", "beta"), "wrong N, order or model")
-        need(self.seeds == sorted({q for q in self.seeds if 0 < q < self.N})[:64] != [], "seeds are not 1 to 64 ascending modes")
-        self.point = 0, 0, list[int](), dict[Any, Any]()  # prime (0: symbols), root, frequencies, terms so far
+def read_certificate(path: Path) -> Json:
+    """The contents of a file, its size bounded first.
 
-    def counted(self, items: Any) -> Any:
+    As neither floats nor booleans nor minus signs are let in, == and < are exact afterwards.
+    """
+    small = path.stat().st_size <= LARGEST_FILE and path.is_file()
+    need(small, "not a regular file of at most 64 MB")
+    text = path.read_text("ascii", "replace")
+    bare = re.sub(r'"[^"\\]*"', '"', text)  # without what stands in strings
+    values = sum(map(bare.count, ',[{"'))
+    need(values <= MOST_VALUES, "the file has more than 10^6 values")
+    strange = re.search(r'[^\s0-9{}\[\],:nul"]|[0-9]{21}', bare)
+    need(not strange, "not JSON of plain strings, null and integers of at most 20 digits")
+    data: Json = json.loads(text)
+    check_header(data)
+    check_digest(data)
+    check_keys(data, bare.count(":"))
+    return data
+
+
+def check_header(data: Json) -> None:
+    """It is a certificate of this kind, of the version that this checker knows."""
+    need(data["format"] == "symfpu propagation certificate", "not a propagation certificate")
+    schema = data["schema"]
+    need(schema == 1, f"schema version {schema!r:.40} is unknown: this checker supports version 1")
+
+
+def check_digest(data: Json) -> None:
+    """The digest is that of everything else."""
+    contents = {key: data[key] for key in data if key != "digest"}
+    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    need(data["digest"] == digest, "the digest is not that of the contents")
+
+
+def check_keys(data: Json, colons: int) -> None:
+    """No key is missing, unknown or there twice: those we read are as many as the file has."""
+    of_three = data["exceptions"] + data["undecided"] + data["points"] + data["vanishing"]
+    of_five = data["excited"]
+    expected = 15 + 3 * len(of_three) + 5 * len(of_five)
+    need(colons == expected, "a key is missing, unknown or there twice")
+
+
+# --- the case
+
+
+class Case(NamedTuple):
+    """N, the last order, the seeds, and the number of factors of the force: 2 (alpha) or 3 (beta)."""
+
+    N: int
+    order: int
+    seeds: list[int]
+    factors: int
+
+    @property
+    def step(self) -> int:
+        """How much the degree in the amplitudes grows with the order."""
+        return self.factors - 1
+
+    def degree(self, k: int) -> int:
+        """Of order k in the amplitudes."""
+        return 1 + k * self.step
+
+
+def read_case(data: Json) -> Case:
+    """The chain and its seeds, their sizes bounded."""
+    N, order, model, seeds = data["N"], data["order"], data["model"], data["seeds"]
+    fits = 1 < N <= LARGEST_N and max(1000, N) * order <= 10**6
+    need(fits and model in ("alpha", "beta"), "wrong N, order or model")
+    modes = sorted({q for q in seeds if 0 < q < N})
+    need(seeds == modes[:MOST_SEEDS] != [], "seeds are not 1 to 64 ascending modes")
+    return Case(N, order, seeds, 3 if model == "beta" else 2)
+
+
+class Budget:
+    """Counts steps, and refuses a certificate that would take too many."""
+
+    def __init__(self) -> None:
+        self.steps = 0
+
+    def counted(self, items: Iterable[Any]) -> Iterator[Any]:
+        """The items, each a step."""
         for item in items:
             self.steps += 1
-            need(self.steps <= 2 * 10**6, "checking it would take more than 2 million steps")
+            need(self.steps <= MOST_STEPS, "checking it would take more than 2 million steps")
             yield item
 
-    def add(self, total: dict[int, Polynomial], q: int, x: Polynomial, y: Polynomial, sign: int = 1) -> Polynomial:
-        value, p = total.setdefault(q, {}), self.point[0]
-        for (a, s), (b, t) in self.counted(product(x.items(), y.items())):
-            c = value.get(key := tuple(sorted(a + b)), 0) + sign * s * t
-            value[key] = c % p if p else c
+
+def couplings(N: int, *modes: int) -> list[tuple[int, int]]:
+    """Each q with B_qlm or C_qlmn, where that is not zero: Eq. transa, with the sums -2N that it leaves out."""
+    signs = product((1, -1), repeat=len(modes))
+    sums = [sum(map(mul, modes, chosen)) for chosen in signs]
+    found = []
+    for q in {-total % (2 * N) for total in sums}:
+        value = sums.count(-q) - sums.count(2 * N - q) - sums.count(-2 * N - q)
+        if value and 0 < q < N:
+            found.append((q, value))
+    return found
+
+
+# --- the recursion
+
+
+class Point(NamedTuple):
+    """A prime, an element of order 4N and frequencies modulo it; prime 0 stands for symbols instead of residues."""
+
+    prime: int
+    root: int
+    frequencies: list[int]
+
+
+SYMBOLS = Point(0, 0, [])
+
+
+class Recursion:
+    """Coefficients u_q[m] at a point, each computed where it is first asked for."""
+
+    def __init__(self, case: Case, point: Point, budget: Budget) -> None:
+        self.case, self.point, self.budget = case, point, budget
+        self.known: dict[Monomial, tuple[ByMode, ByMode]] = {}
+
+    def coefficients(self, m: Monomial) -> ByMode:
+        """u_q[m] by mode, zeros left out."""
+        return self.term(m)[0]
+
+    def term(self, m: Monomial) -> tuple[ByMode, ByMode]:
+        """By mode, u[m] and its bracket, which is -W at the harmonic of a seed itself."""
+        degree = sum(m)
+        if degree == 1:
+            seed = self.case.seeds[m.index(1) // 2]
+            return {seed: {(): 1}}, {}
+        if degree < 1 or (degree - 1) % self.case.step:
+            return {}, {}
+        if m not in self.known:
+            self.known[m] = {}, {}
+            self.fill(m, *self.known[m])
+        return self.known[m]
+
+    def fill(self, m: Monomial, u: ByMode, bracket: ByMode) -> None:
+        """The recursion: forces and frequency corrections, times the multiplier L_q(nu)."""
+        self.add_forces(m, bracket)
+        self.add_corrections(m, bracket)
+        nu = harmonic(m)
+        secular = {q for q, e in zip(self.case.seeds, nu, strict=True) if abs(e) == 1 == sum(map(abs, nu))}
+        for q in bracket.keys() - secular:
+            self.add(u, q, self.multiplier(q, nu), bracket[q])
+
+    def add_forces(self, m: Monomial, bracket: ByMode) -> None:
+        """- sum B u u, or - sum C u u u."""
+        for modes, value in self.products(self.case.factors, m):
+            for q, coupling in couplings(self.case.N, *modes):
+                self.add(bracket, q, {(): 1}, value, -coupling)
+
+    def add_corrections(self, m: Monomial, bracket: ByMode) -> None:
+        """+ sum W_q u_q over the monomials f = |w|^(2e) that divide m, neither of them trivial."""
+        for f in divisors_of(m):
+            diagonal = f[::2] == f[1::2]
+            if not diagonal or not 0 < sum(f) < sum(m) - 1:
+                continue
+            rest = self.coefficients(quotient(m, f))
+            for i, q in enumerate(self.case.seeds):
+                if rest.get(q):
+                    secular = self.term(raised(f, i))[1].get(q, {})
+                    self.add(bracket, q, secular, rest[q], -1)
+
+    def products(self, factors: int, m: Monomial) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
+        """Modes l1 .. lr and value of each u_l1 .. u_lr at monomial m; its degree fixes the sum of the orders."""
+        if factors == 1:
+            for q, value in self.coefficients(m).items():
+                yield (q,), value
+            return
+        for f in self.budget.counted(divisors_of(m)):
+            if not 0 < sum(f) < sum(m):
+                continue
+            for q, value in self.coefficients(f).items():
+                for modes, others in self.products(factors - 1, quotient(m, f)):
+                    yield (q, *modes), self.add({}, q, value, others)
+
+    def add(self, total: ByMode, q: int, x: Polynomial, y: Polynomial, sign: int = 1) -> Polynomial:
+        """total[q] += sign x y; returns total[q]."""
+        value, prime = total.setdefault(q, {}), self.point.prime
+        for (a, s), (b, t) in self.budget.counted(product(x.items(), y.items())):
+            symbols = tuple(sorted(a + b))
+            c = value.get(symbols, 0) + sign * s * t
+            value[symbols] = c % prime if prime else c
         return value
 
-    def products(self, r: int, m: tuple[int, ...]) -> Any:
-        """Modes l1 .. lr and value of each u_l1 .. u_lr at monomial m; its degree fixes the sum of the orders."""
-        if r == 1:
-            yield from (((q,), x) for q, x in self.term(m)[0].items())
-        for f in self.counted(product(*(range(e + 1) for e in m))) if r > 1 else ():
-            for q, x in self.term(f)[0].items() if 0 < sum(f) < sum(m) else ():
-                yield from (((q, *modes), self.add({}, q, x, y)) for modes, y in self.products(r - 1, tuple(map(sub, m, f))))
+    def multiplier(self, q: int, nu: tuple[int, ...]) -> Polynomial:
+        """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2), as a residue or as a symbol; L_q(-nu) is the same."""
+        p, g, omega = self.point
+        if not p:
+            opposite = tuple(-n for n in nu)
+            return {((q, max(nu, opposite)),): 1}
+        linear = 2 - pow(g, 2 * q, p) - pow(g, -2 * q, p)  # Omega_q^2 = 2 - 2 cos(q pi / N)
+        seeds = self.case.seeds
+        own = omega[seeds.index(q)] ** 2 if q in seeds else linear
+        divisor = own - sum(map(mul, nu, omega)) ** 2
+        need(divisor % p, f"the divisor of mode {q} at harmonic {nu} is zero modulo {p}")
+        return {(): linear * pow(divisor, -1, p)}
 
-    def term(self, m: tuple[int, ...]) -> Any:
-        """By mode, u[m] and its bracket, computed where first asked for; the bracket is -W at the harmonic of a seed itself."""
-        (p, g, omega, terms), nu = self.point, tuple(map(sub, m[::2], m[1::2]))
-        if m in terms or sum(m) <= 1 or (sum(m) - 1) % self.step:
-            return terms.get(m, ({self.seeds[m.index(1) // 2]: {(): 1}} if sum(m) == 1 else {}, {}))
-        u, bracket = terms.setdefault(m, ({}, {}))
-        for modes, x in self.products(self.step + 1, m):
-            for q, coupling in couplings(self.N, *modes):
-                self.add(bracket, q, {(): 1}, x, -coupling)
-        for f, (i, q) in product(product(*(range(e + 1) for e in m)), enumerate(self.seeds)):
-            if f[::2] == f[1::2] and 0 < sum(f) < sum(m) - 1 and (x := self.term(tuple(map(sub, m, f)))[0].get(q)):
-                self.add(bracket, q, self.term((*f[: 2 * i], f[2 * i] + 1, *f[2 * i + 1 :]))[1].get(q, {}), x, -1)
-        for q in bracket.keys() - {q for q, e in zip(self.seeds, nu, strict=True) if abs(e) == 1 == sum(map(abs, nu))}:
-            L: Polynomial = {((q, max(nu, tuple(-n for n in nu))),): 1}
-            if p:
-                square = 2 - pow(g, 2 * q, p) - pow(g, -2 * q, p)  # Omega_q^2 = 2 - 2 cos(q pi / N)
-                divisor = (omega[self.seeds.index(q)] ** 2 if q in self.seeds else square) - sum(map(mul, nu, omega)) ** 2
-                need(divisor % p, f"the divisor of mode {q} at harmonic {nu} is zero modulo {p}")
-                L = {(): square * pow(divisor, -1, p)}
-            self.add(u, q, L, bracket[q])
-        return u, bracket
 
-    def report(self) -> list[str]:
-        """Compares what is said of the orders with what follows from it; then checks zeros, points and witnesses."""
-        data, N, K, s, seeds = self.data, self.N, self.K, len(self.seeds), self.seeds
-        points, excited, zeros, doubts = (data[key] for key in ("points", "excited", "vanishing", "undecided"))
-        order = {e["mode"]: e["order"] for e in excited} | dict.fromkeys(seeds, 0)
-        for names in ([(e["mode"], e["by"]) for e in zeros], *([e["mode"] for e in rows] for rows in (doubts, excited))):
-            need(names == sorted(set(names)), f"not ascending, or twice: {names!r:.200}")
-        claims = sorted((e["mode"], j) for e in zeros + doubts for j in e["orders"] or [0] if e["orders"] == sorted(e["orders"]))
-        need(claims == [(q, j) for q in range(1, N) for j in range(1, order.get(q, K + 1))], "vanishing, undecided: wrong orders")
-        need(all(PROBABILITY.fullmatch(e["error_probability"]) for e in doubts), "an error_probability is not in (0, 1]")
-        M, shifts = [set(seeds)], {sum(t) for t in product([*seeds, *(-q for q in seeds)], repeat=self.step)}
-        for _ in range(K):
-            M.append({min(t % (2 * N), -t % (2 * N)) for t in map(sum, self.counted(product(M[-1], shifts)))})
-        rule = [sorted(modes.difference({0, N}, *M[:k])) for k, modes in enumerate(M)]  # Eqs. app, dk, folded at every order
-        places, unsure = {q: k for k, modes in enumerate(rule) for q in modes}, {e["mode"] for e in doubts}
-        exceptions = [{"mode": q, "predicted": places.get(q), "actual": order.get(q)} for q in range(1, N) if places.get(q) != order.get(q)]
-        verdict = "refuted" if {e["mode"] for e in exceptions} - unsure else "undecided" if unsure else "proved"
-        actual = [sorted(q for q in order if order[q] == k) for k in range(K + 1)]
-        for key, value in (("rule", rule), ("actual", actual), ("exceptions", exceptions), ("verdict", verdict)):
-            need(data[key] == value, f"{key} is not {value!r:.200}")
-        need(len(order) == s + len(excited) == sum(map(len, actual)), "excited: a mode is a seed, or beyond the order")
-        M = [set(seeds)]  # M_k: what B or C couples to the sets before; and seeds reached before, kept by frequency corrections
-        for k in range(1, 1 + max((j for e in zeros if e["by"] == "couplings" for j in e["orders"]), default=0)):
-            M.append({q for q in seeds if any(q in modes for modes in M[1:])})
-            for ls in (ls for ls in self.counted(combinations_with_replacement(range(k), self.step + 1)) if sum(ls) == k - 1):
-                M[k].update(q for modes in self.counted(product(*(M[l] for l in ls))) for q, _ in couplings(N, *modes))
-        for q, by, j in ((e["mode"], e["by"], j) for e in zeros for j in e["orders"]):
-            need(by == "identity" or (by == "couplings" and q not in M[j]), f"mode {q} at order {j} does not vanish by {by!r:.40}")
-            for c in combinations_with_replacement(range(2 * s), 1 + j * self.step) if by == "identity" else ():
-                need(not any(self.term(tuple(map(c.count, range(2 * s))))[0].get(q, {}).values()), f"mode {q} at order {j} is not zero")
-        need(len(points) < 257 and all(e["point"] < len(points) for e in excited) and all(points.count(e) < 2 for e in points), "points")
-        for i, (p, g, omega) in enumerate((e["prime"], e["root"], e["frequencies"]) for e in points):
-            powers = ([pow(a, p - 1 >> h, p) for h in range(1, ((p - 1) & (1 - p)).bit_length())] for a in BASES)
-            need(2**16 < p < 2**64 and p % (4 * N) == 1 and all(x[-1] == 1 or p - 1 in x for x in powers), f"{p} is no prime of use")
-            need(g < p and [d for d in range(1, 4 * N + 1) if 4 * N % d == 0 == pow(g, d, p) - 1] == [4 * N], f"{g} is not of order 4N")
-            need(omega == [w for w in omega if w < p] and len(omega) == s, f"frequencies are not residues modulo {p}")
-            self.point = p, g, omega, {}
-            for q, k, m, r in ((e["mode"], e["order"], e["monomial"], e["residue"]) for e in excited if e["point"] == i):
-                need(len(m) == 2 * s and sum(m) == 1 + k * self.step, f"mode {q}: the monomial has not the degree of order {k}")
-                need(0 < r == self.term(tuple(m))[0].get(q, {}).get(()), f"mode {q}: the residue is not {r}")
-        about = f"{data['model']} chain, N = {N}, seeds {seeds}, orders to {K}: rule, orders and exceptions follow; {verdict}"
-        witnesses = f"{len(excited)} modes excited: residues computed again, modulo {[e['prime'] for e in points]}, in {self.steps} steps"
-        return [about, witnesses, f"{len(claims)} zeros before: by couplings or identity; undecided, not checked: modes {sorted(unsure)}"]
+def harmonic(m: Monomial) -> tuple[int, ...]:
+    """nu = p - n."""
+    return tuple(map(sub, m[::2], m[1::2]))
+
+
+def divisors_of(m: Monomial) -> Iterator[Monomial]:
+    """All monomials that divide m, 1 and m among them."""
+    return product(*(range(e + 1) for e in m))
+
+
+def quotient(m: Monomial, f: Monomial) -> Monomial:
+    """m / f."""
+    return tuple(map(sub, m, f))
+
+
+def raised(f: Monomial, i: int) -> Monomial:
+    """f w_i."""
+    return (*f[: 2 * i], f[2 * i] + 1, *f[2 * i + 1 :])
+
+
+# --- the claims
+
+
+def check_certificate(data: Json) -> list[str]:
+    """Every claim in turn; what was checked, in three lines."""
+    case, budget = read_case(data), Budget()
+    check_names(data)
+    orders = excitation_orders(data, case)
+    zeros = check_zeros_are_complete(data, case, orders)
+    check_probabilities(data)
+    rule = propagation_rule(case, budget)
+    verdict = check_conclusions(data, case, rule, orders)
+    check_zeros_by_couplings(data, case, budget)
+    check_zeros_by_identity(data, case, budget)
+    check_points(data, case)
+    check_witnesses(data, case, budget)
+    return report(data, case, verdict, zeros, budget.steps)
+
+
+def check_names(data: Json) -> None:
+    """Each mode is named once in a list, in ascending order; of zeros, once for each way to show them."""
+    check_ascending([(e["mode"], e["by"]) for e in data["vanishing"]])
+    check_ascending([e["mode"] for e in data["undecided"]])
+    check_ascending([e["mode"] for e in data["excited"]])
+
+
+def check_ascending(names: list[Any]) -> None:
+    """In ascending order, none twice."""
+    need(names == sorted(set(names)), f"not ascending, or twice: {names!r:.200}")
+
+
+def excitation_orders(data: Json, case: Case) -> dict[int, int]:
+    """The order at which each mode is said to be excited: 0 for seeds."""
+    witnessed = {e["mode"]: e["order"] for e in data["excited"]}
+    return witnessed | dict.fromkeys(case.seeds, 0)
+
+
+def check_zeros_are_complete(data: Json, case: Case, orders: dict[int, int]) -> int:
+    """At each order before its own, a mode is said to vanish or to be undecided; returns how many zeros that are."""
+    claimed = []
+    for e in data["vanishing"] + data["undecided"]:
+        if e["orders"] == sorted(e["orders"]):
+            claimed += [(e["mode"], k) for k in e["orders"] or [0]]
+    expected = []
+    for q in range(1, case.N):
+        last = orders.get(q, case.order + 1)
+        expected += [(q, k) for k in range(1, last)]
+    need(sorted(claimed) == expected, "vanishing, undecided: wrong orders")
+    return len(expected)
+
+
+def check_probabilities(data: Json) -> None:
+    """Each undecided zero has its probability of error."""
+    texts = [e["error_probability"] for e in data["undecided"]]
+    need(all(map(PROBABILITY.fullmatch, texts)), "an error_probability is not in (0, 1]")
+
+
+def propagation_rule(case: Case, budget: Budget) -> list[list[int]]:
+    """D_0 .. D_K of the paper's proposition (Eqs. app, dk), folded at every order."""
+    signed = [*case.seeds, *(-q for q in case.seeds)]
+    shifts = {sum(chosen) for chosen in product(signed, repeat=case.step)}
+    reached, rule, seen = set(case.seeds), [], {0, case.N}
+    for k in range(case.order + 1):
+        if k:
+            pairs = budget.counted(product(reached, shifts))
+            reached = {folded(q + shift, case.N) for q, shift in pairs}
+        rule.append(sorted(reached - seen))
+        seen |= reached
+    return rule
+
+
+def folded(total: int, N: int) -> int:
+    """The wave number from 0 to N that is the same as total on the chain."""
+    return min(total % (2 * N), -total % (2 * N))
+
+
+def check_conclusions(data: Json, case: Case, rule: list[list[int]], orders: dict[int, int]) -> str:
+    """Rule, actual sets, exceptions and verdict follow from the rest; returns the verdict."""
+    predicted = {q: k for k, modes in enumerate(rule) for q in modes}
+    unsure = {e["mode"] for e in data["undecided"]}
+    exceptions = find_exceptions(case, predicted, orders)
+    decided = {e["mode"] for e in exceptions} - unsure
+    verdict = "refuted" if decided else "undecided" if unsure else "proved"
+    actual = [sorted(q for q in orders if orders[q] == k) for k in range(case.order + 1)]
+    conclusions = {"rule": rule, "actual": actual, "exceptions": exceptions, "verdict": verdict}
+    for key, value in conclusions.items():
+        need(data[key] == value, f"{key} is not {value!r:.200}")
+    named = len(case.seeds) + len(data["excited"])
+    need(len(orders) == named == sum(map(len, actual)), "excited: a mode is a seed, or beyond the order")
+    return verdict
+
+
+def find_exceptions(case: Case, predicted: dict[int, int], orders: dict[int, int]) -> list[Json]:
+    """Modes whose order is not the predicted one."""
+    found: list[Json] = []
+    for q in range(1, case.N):
+        expected, actual = predicted.get(q), orders.get(q)
+        if expected != actual:
+            found.append({"mode": q, "predicted": expected, "actual": actual})
+    return found
+
+
+def check_zeros_by_couplings(data: Json, case: Case, budget: Budget) -> None:
+    """Where a zero is said to follow from the couplings, they leave the mode nothing at that order."""
+    zeros = [e for e in data["vanishing"] if e["by"] == "couplings"]
+    last = max((k for e in zeros for k in e["orders"]), default=0)
+    sets = coupled_sets(case, last, budget)
+    for e in data["vanishing"]:
+        q, by = e["mode"], e["by"]
+        for k in e["orders"]:
+            shown = by == "identity" or (by == "couplings" and q not in sets[k])
+            need(shown, f"mode {q} at order {k} does not vanish by {by!r:.40}")
+
+
+def coupled_sets(case: Case, last: int, budget: Budget) -> list[set[int]]:
+    """M_0 .. M_last: what B or C couples to the sets before; and seeds reached before, kept by frequency corrections."""
+    sets = [set(case.seeds)]
+    for k in range(1, last + 1):
+        reached = {q for q in case.seeds if any(q in modes for modes in sets[1:])}
+        orders = combinations_with_replacement(range(k), case.factors)
+        for chosen in budget.counted(orders):
+            if sum(chosen) == k - 1:
+                reached |= coupled_modes(case, [sets[j] for j in chosen], budget)
+        sets.append(reached)
+    return sets
+
+
+def coupled_modes(case: Case, factors: list[set[int]], budget: Budget) -> set[int]:
+    """The modes that products of one mode of each set drive."""
+    found = set()
+    for modes in budget.counted(product(*factors)):
+        found |= {q for q, _ in couplings(case.N, *modes)}
+    return found
+
+
+def check_zeros_by_identity(data: Json, case: Case, budget: Budget) -> None:
+    """Where a zero is said to be an identity, every coefficient is the zero polynomial in the symbols L_q(nu)."""
+    recursion = Recursion(case, SYMBOLS, budget)
+    for e in data["vanishing"]:
+        if e["by"] == "identity":
+            for k in e["orders"]:
+                check_identity(recursion, e["mode"], k)
+
+
+def check_identity(recursion: Recursion, q: int, k: int) -> None:
+    """The term of mode q at order k is zero, monomial by monomial."""
+    variables = range(2 * len(recursion.case.seeds))
+    degree = recursion.case.degree(k)
+    for chosen in combinations_with_replacement(variables, degree):
+        m = tuple(map(chosen.count, variables))
+        polynomial = recursion.coefficients(m).get(q, {})
+        need(not any(polynomial.values()), f"mode {q} at order {k} is not zero")
+
+
+def check_points(data: Json, case: Case) -> None:
+    """Points are few, distinct, and each is one at which residues prove something."""
+    points = data["points"]
+    distinct = all(points.count(e) == 1 for e in points)
+    named = all(e["point"] < len(points) for e in data["excited"])
+    need(len(points) <= MOST_POINTS and distinct and named, "points")
+    for e in points:
+        check_point(case, Point(e["prime"], e["root"], e["frequencies"]))
+
+
+def check_point(case: Case, point: Point) -> None:
+    """p is a prime = 1 mod 4N, the root has order 4N, the frequencies are residues."""
+    p, g, omega = point
+    useful = 2**16 < p < 2**64 and p % (4 * case.N) == 1
+    need(useful and is_prime(p), f"{p} is no prime of use")
+    divisors = [d for d in range(1, 4 * case.N + 1) if 4 * case.N % d == 0]
+    need(g < p and [d for d in divisors if pow(g, d, p) == 1] == [4 * case.N], f"{g} is not of order 4N")
+    residues = [w for w in omega if w < p]
+    need(omega == residues and len(omega) == len(case.seeds), f"frequencies are not residues modulo {p}")
+
+
+def is_prime(p: int) -> bool:
+    """By Miller and Rabin's test with bases that decide every odd number below 3.3e24."""
+    twos = ((p - 1) & (1 - p)).bit_length() - 1  # p - 1 = 2^twos times an odd number
+    for base in BASES:
+        powers = [pow(base, p - 1 >> h, p) for h in range(1, twos + 1)]
+        if powers[-1] != 1 and p - 1 not in powers:
+            return False
+    return True
+
+
+def check_witnesses(data: Json, case: Case, budget: Budget) -> None:
+    """Each excited mode has a coefficient that is not zero modulo its prime: it is computed again."""
+    for i, e in enumerate(data["points"]):
+        point = Point(e["prime"], e["root"], e["frequencies"])
+        recursion = Recursion(case, point, budget)
+        for witness in data["excited"]:
+            if witness["point"] == i:
+                check_witness(recursion, witness)
+
+
+def check_witness(recursion: Recursion, witness: Json) -> None:
+    """The monomial belongs to the order, and its coefficient is the stated residue, which is not zero."""
+    q, k, residue = witness["mode"], witness["order"], witness["residue"]
+    m, case = tuple(witness["monomial"]), recursion.case
+    fits = len(m) == 2 * len(case.seeds) and sum(m) == case.degree(k)
+    need(fits, f"mode {q}: the monomial has not the degree of order {k}")
+    computed = recursion.coefficients(m).get(q, {}).get(())
+    need(0 < residue == computed, f"mode {q}: the residue is not {residue}")
+
+
+def report(data: Json, case: Case, verdict: str, zeros: int, steps: int) -> list[str]:
+    """What was checked."""
+    unsure = sorted({e["mode"] for e in data["undecided"]})
+    primes = [e["prime"] for e in data["points"]]
+    chain = f"{data['model']} chain, N = {case.N}, seeds {case.seeds}, orders to {case.order}"
+    return [
+        f"{chain}: rule, orders and exceptions follow; {verdict}",
+        f"{len(data['excited'])} modes excited: residues computed again, modulo {primes}, in {steps} steps",
+        f"{zeros} zeros before: by couplings or identity; undecided, not checked: modes {unsure}",
+    ]
