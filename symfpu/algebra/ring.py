@@ -22,6 +22,10 @@ class Ring(Protocol):
     name: str
     space: CosineModes
 
+    @property
+    def multiply_adds(self) -> int:
+        """Multiply-adds of all products so far; 0 where they are not counted."""
+
     def number(self, value: Fraction) -> Any:
         """An exact rational number as an element of the ring."""
 

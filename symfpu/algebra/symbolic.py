@@ -27,7 +27,7 @@ class SymbolicRing:
 
     def __init__(self, space: CosineModes, *, nested: bool = False) -> None:
         self.name = "nested" if nested else "symbolic"
-        self.nested = nested
+        self.nested, self.multiply_adds = nested, 0
         self.space, self.grading = space, space.grading
         self._modes: dict[int, Objects] = {}
         self._bonds: dict[int, dict[Monomial, Cosines]] = {}

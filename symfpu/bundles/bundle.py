@@ -12,10 +12,9 @@ import contextlib
 import json
 import os
 import platform
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
-from functools import partial
 from math import comb, pi, prod
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -24,26 +23,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.grading import canonical_count
-from symfpu.algebra.words import IntegerTable
-from symfpu.bundles.entries import ExpressionNodes, expressions_of, fraction, fraction_text, number, number_entry
+from symfpu.bundles.entries import number, number_entry
 from symfpu.bundles.refined import refined_entries, refined_from
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.archive import FORMAT, SCHEMA, Archive, BundleError, Json, digest_of, member_digest, write_archive
 from symfpu.files.checkpoint import KINDS
 from symfpu.numbers.arithmetic import text
-from symfpu.numbers.typed import integer, seed_modes
+from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.series.divisors import SmallDivisor
 from symfpu.series.recursion import shared_grading
+from symfpu.series.rings import FIXED_POINT, RINGS, RingKind
 from symfpu.series.series import LindstedtSeries, ResiduePoint
+from symfpu.series.tables import Shapes
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus, RootCertificate
 
 Array = NDArray[Any]
-Shapes = tuple[list[tuple[int, ...]], list[tuple[int, ...]]]  # of the tables of coordinates and of corrections, by order
 PACKAGES = ("symfpu", "numpy", "scipy", "mpmath", "symengine", "sympy", "python-flint", "gmpy2", "numba", "llvmlite")
-DTYPES = {"float64": "<f8", "residue": "<f8", "fixedpoint": "<i8", "symbolic": "<i8", "nested": "<i8"}
+RADII = "<f8"
 REFINED = "refined"  # kind of a torus without a series
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
@@ -188,23 +187,19 @@ def _by_seed(entries: Mapping[str, Any], seeds: Sequence[int]) -> dict[int, Any]
 
 def _tables(series: LindstedtSeries) -> tuple[dict[str, Array], Json]:
     """The flat arrays by name, and what else is needed to cut them into tables again."""
-    layout: Json = {}
-    tables = {"coordinates": series.coordinates, "corrections": series.corrections[1:]}
-    if series.ring == "fixedpoint":
-        tables = {name: tuple(table.words for table in parts) for name, parts in tables.items()}
-        layout["words"] = {name: [int(words.shape[2]) for words in parts] for name, parts in tables.items()}
-        if series.radii:
-            tables["coordinate_radii"] = (np.array([radius for radius, _ in series.radii]),)
-            tables["correction_radii"] = tuple(radii for _, radii in series.radii)
-    if series.symbolic:
-        expressions = ExpressionNodes()
-        tables = {name: tuple(expressions.places(table) for table in parts) for name, parts in tables.items()}
-        layout["expressions"] = expressions.nodes
-    members = {}
-    for name, parts in tables.items():
-        dtype = "<f8" if name.endswith("radii") else DTYPES[series.ring]
-        members[name] = np.concatenate([np.empty(0, dtype), *(np.ravel(part) for part in parts)]).astype(dtype, copy=False)
+    parts = {"coordinates": series.coordinates, "corrections": series.corrections[1:]}  # order 0 has no corrections
+    arrays, layout = series.tables.pack(parts)
+    members = {name: _flat(tables, series.tables.dtype) for name, tables in arrays.items()}
+    if series.radii:
+        largest = np.array([radius for radius, _ in series.radii])
+        members["coordinate_radii"] = _flat([largest], RADII)
+        members["correction_radii"] = _flat([radii for _, radii in series.radii], RADII)
     return members, layout
+
+
+def _flat(parts: Iterable[Array], dtype: str) -> Array:
+    """Row after row, order after order."""
+    return np.concatenate([np.empty(0, dtype), *map(np.ravel, parts)]).astype(dtype, copy=False)
 
 
 def _series_entries(series: LindstedtSeries) -> Json:
@@ -226,21 +221,24 @@ def _series_entries(series: LindstedtSeries) -> Json:
     }
 
 
-def _shapes(body: Json, chain: Chain, seeds: int, order: int, most: int) -> Shapes:
-    """The shapes of all tables; ValueError as soon as they need more than `most` rows, so that no count grows without bound."""
-    shapes: Shapes = ([], [])
+def _shapes(chain: Chain, seeds: int, order: int, most: int) -> tuple[Shapes, Shapes]:
+    """The shapes of the tables of coordinates, and of corrections from order 1 on.
+
+    ValueError as soon as they need more than `most` rows, so that no count grows without bound.
+    """
+    coordinates: Shapes = []
+    corrections: Shapes = []
     for k in range(order + 1):
         degree = chain.degree_step * k
-        shapes[0].append((canonical_count(seeds, degree + 1), chain.N - 1))
-        shapes[1].append((0 if degree % 2 or not k else comb(degree // 2 + seeds - 1, seeds - 1), seeds))
-        most -= shapes[0][-1][0]
+        rows = canonical_count(seeds, degree + 1)
+        most -= rows
         if most < 0:
             raise ValueError(f"order {order} of {seeds} seeds needs more rows than the file holds")
-    if body["ring"] == "fixedpoint":
-        for tables, name, first in zip(shapes, ("coordinates", "corrections"), (0, 1), strict=True):
-            counts = [integer(n, "words", 1) for n in body["words"][name]]
-            tables[first:] = [(*shape, n) for shape, n in zip(tables[first:], counts, strict=True)]
-    return shapes
+        coordinates.append((rows, chain.N - 1))
+        if k:
+            diagonal = 0 if degree % 2 else comb(degree // 2 + seeds - 1, seeds - 1)
+            corrections.append((diagonal, seeds))
+    return coordinates, corrections
 
 
 def _split(flat: Array, shapes: Iterable[tuple[int, ...]]) -> list[Array]:
@@ -251,28 +249,46 @@ def _split(flat: Array, shapes: Iterable[tuple[int, ...]]) -> list[Array]:
     return parts
 
 
-def _read_tables(archive: Archive, body: Json, chain: Chain, seeds: int, order: int) -> Json:
-    """Coordinates, corrections and radii as a series holds them."""
-    shapes = _shapes(body, chain, seeds, order, archive.entries("coordinates"))
+class _Reader:
+    """Tables of a series out of the flat arrays of a file."""
 
-    def tables(name: str, dtype: str, shapes: Sequence[tuple[int, ...]]) -> list[Array]:
-        return _split(archive.array(name, dtype, sum(map(prod, shapes))), shapes)
+    def __init__(self, archive: Archive, body: Json, chain: Chain, seeds: int, order: int) -> None:
+        self.archive, self.body, self.seeds, self.order = archive, body, seeds, order
+        self.shapes = _shapes(chain, seeds, order, archive.entries("coordinates"))
+        self.tables = _kind(body).tables(None, 0)
 
-    ring = body["ring"]
-    wrap: Callable[[Array], Any] = np.asarray
-    radii: tuple[Any, ...] = ()
-    if ring == "fixedpoint":
-        wrap = IntegerTable
-        if "coordinate_radii" in archive.digests:
-            largest = archive.array("coordinate_radii", "<f8", order + 1).tolist()
-            radii = tuple(zip(largest, tables("correction_radii", "<f8", [shape[:2] for shape in shapes[1]]), strict=True))
-    elif ring in ("symbolic", "nested"):
-        wrap = partial(_looked_up, expressions_of(body["expressions"]))
-    return {
-        "coordinates": tuple(map(wrap, tables("coordinates", DTYPES[ring], shapes[0]))),
-        "corrections": (np.zeros((0, seeds)), *map(wrap, tables("corrections", DTYPES[ring], shapes[1][1:]))),  # order 0 has none
-        "radii": radii,
-    }
+    def parts(self) -> Json:
+        """Coordinates, corrections and radii as a series holds them."""
+        coordinates, corrections = self.shapes
+        kept = self._read("coordinates", coordinates) + self._read("corrections", corrections)
+        tables = self.tables.unpack(kept, self.body)
+        count = len(coordinates)
+        none = np.zeros((0, self.seeds))  # order 0 has no corrections
+        return {
+            "coordinates": tuple(tables[:count]),
+            "corrections": (none, *tables[count:]),
+            "radii": self._radii(corrections),
+        }
+
+    def _read(self, name: str, shapes: Shapes) -> list[Array]:
+        return self._arrays(name, self.tables.dtype, self.tables.shapes(name, shapes, self.body))
+
+    def _arrays(self, name: str, dtype: str, shapes: Shapes) -> list[Array]:
+        size = sum(map(prod, shapes))
+        return _split(self.archive.array(name, dtype, size), shapes)
+
+    def _radii(self, shapes: Shapes) -> tuple[Any, ...]:
+        if "coordinate_radii" not in self.archive.digests:
+            return ()
+        largest = self.archive.array("coordinate_radii", RADII, self.order + 1).tolist()
+        of_corrections = self._arrays("correction_radii", RADII, [(0, self.seeds), *shapes])
+        return tuple(zip(largest, of_corrections, strict=True))
+
+
+def _kind(body: Json) -> RingKind:
+    if body["ring"] not in RINGS:
+        raise ValueError(f"no ring {body['ring']!r:.40}")
+    return RINGS[body["ring"]]
 
 
 def _series(archive: Archive, body: Json) -> LindstedtSeries:
@@ -282,11 +298,9 @@ def _series(archive: Archive, body: Json) -> LindstedtSeries:
     frequencies = None if chosen is None else tuple(fraction(w) for w in chosen)
     if list(seeds) != sorted(seeds) or (frequencies is not None and (len(frequencies) != len(seeds) or min(frequencies) <= 0)):
         raise ValueError(f"seeds {seeds} and frequencies {chosen} do not go together")
-    if (frequencies is not None, digits is not None, point is not None) != {
-        "float64": (True, False, False),
-        "fixedpoint": (True, True, False),
-        "residue": (False, False, True),
-    }.get(body["ring"], (False, False, False)):
+    kind = _kind(body)
+    expected = (kind.numeric, kind.name == FIXED_POINT.name, kind.exact_point)
+    if (frequencies is not None, digits is not None, point is not None) != expected:
         raise ValueError(f"frequencies, digits and point do not fit the ring {body['ring']!r:.40}")
     return LindstedtSeries(
         chain=chain,
@@ -294,7 +308,7 @@ def _series(archive: Archive, body: Json) -> LindstedtSeries:
         frequencies=frequencies,
         order=order,
         ring=body["ring"],
-        **_read_tables(archive, body, chain, len(seeds), order),
+        **_Reader(archive, body, chain, len(seeds), order).parts(),
         grading=shared_grading(len(seeds), 1 + chain.degree_step * order),
         unit=fraction(body["unit"]),
         smallest_divisors=tuple(
@@ -306,12 +320,6 @@ def _series(archive: Archive, body: Json) -> LindstedtSeries:
         bits=integer(body["bits"], "bits", 0),
         point=point and ResiduePoint(int(point["prime"]), int(point["root"]), tuple(int(w) for w in point["frequencies"])),
     )
-
-
-def _looked_up(expressions: Array, places: Array) -> Array:
-    if places.size and not 0 <= places.min() <= places.max() < len(expressions):
-        raise ValueError("a coefficient is none of the expressions")
-    return np.asarray(expressions[places])
 
 
 # the torus

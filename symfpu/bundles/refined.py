@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.bundles.entries import fraction, fraction_text
 from symfpu.chain.chain import Chain
 from symfpu.files.archive import Archive, Json
-from symfpu.numbers.typed import integer, seed_modes
+from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
 from symfpu.refinement.newton import NewtonStep
 from symfpu.refinement.tori import NearResonance, RefinedTorus
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import bonds
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import DOUBLES, Doubles, Numbers, arithmetic_of, sine_matrix
+from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers, arithmetic_of, sine_matrix
 from symfpu.numbers.typed import Number, decimal, exact, integer, rational
 
 Floats = NDArray[np.float64]
@@ -75,7 +75,7 @@ class Chain:
         """(c_3, c_4) = (alpha, beta) of the bond law V = r^2/2 + c_3 r^3/3 + c_4 r^4/4."""
         return self.alpha, self.beta
 
-    def law(self, numbers: Doubles = DOUBLES) -> bonds.Law:
+    def law(self, numbers: Arithmetic = DOUBLES) -> bonds.Law:
         """The couplings in an arithmetic, as the functions of symfpu.chain.bonds take them."""
         return tuple(numbers.number(coupling) for coupling in self.couplings)
 
@@ -91,7 +91,7 @@ class Chain:
         """Omega_q = 2 sin(q pi / 2N) at the working precision of mpmath."""
         return 2 * mpmath.sinpi(mpmath.mpf(q) / (2 * self.N))
 
-    def small_parameter(self, numbers: Doubles = DOUBLES) -> Any:
+    def small_parameter(self, numbers: Arithmetic = DOUBLES) -> Any:
         """mu in the given arithmetic."""
         if numbers is DOUBLES:
             return self.mu
@@ -99,7 +99,7 @@ class Chain:
             return numbers.number(self.alpha) / mpmath.sqrt(2 * self.N)
         return numbers.number(self.beta / (2 * self.N))
 
-    def frequencies(self, numbers: Doubles = DOUBLES) -> Numbers:
+    def frequencies(self, numbers: Arithmetic = DOUBLES) -> Numbers:
         """Linear frequencies Omega_q, q = 1 .. N-1, correctly rounded, or in another arithmetic; shape (N-1,)."""
         if numbers is DOUBLES:
             return linear_frequencies(self.N)
@@ -145,7 +145,7 @@ class Chain:
         tension = bonds.tension(self.law(numbers), r)
         return self.positions(np.diff(tension, axis=-1))
 
-    def _state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Doubles]:
+    def _state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
         numbers = arithmetic_of(values)
         try:
             array = numbers.array(values)

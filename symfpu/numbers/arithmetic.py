@@ -21,8 +21,8 @@ Numbers = NDArray[Any]  # doubles, or mpf
 GUARD_DIGITS = 15  # carried beyond the asked digits by every evaluation
 
 
-class Doubles:
-    """Arrays of float64."""
+class Arithmetic:
+    """Arrays of float64; Multiprecision overrides what differs."""
 
     def context(self, digits: int | None) -> AbstractContextManager[Any]:
         """Nothing to set and to restore."""
@@ -61,7 +61,7 @@ class Doubles:
         return np.pi
 
 
-class Multiprecision(Doubles):
+class Multiprecision(Arithmetic):
     """Object arrays of mpf at mpmath's working precision; `context` sets it and restores it."""
 
     def context(self, digits: int | None) -> AbstractContextManager[Any]:
@@ -103,10 +103,10 @@ class Multiprecision(Doubles):
         return +mpmath.pi
 
 
-DOUBLES, MULTIPRECISION = Doubles(), Multiprecision()
+DOUBLES, MULTIPRECISION = Arithmetic(), Multiprecision()
 
 
-def arithmetic_of(values: Any) -> Doubles:
+def arithmetic_of(values: Any) -> Arithmetic:
     """Multiprecision for arrays with an mpf in them, else doubles."""
     array = np.asarray(values)
     return MULTIPRECISION if array.dtype == object and any(isinstance(x, mpmath.mpf) for x in array.flat) else DOUBLES

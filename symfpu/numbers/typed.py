@@ -13,6 +13,7 @@ import symengine as se
 
 from symfpu.errors import InputError
 
+LONGEST_DECIMAL = 3000  # bits; longer fractions are written in hexadecimal, which no limit of Python concerns
 LONGEST = 1000  # characters of a number, and the largest power of ten in it
 Number = int | float | str | Fraction | Decimal
 
@@ -105,3 +106,20 @@ def double(value: Number, name: str) -> float:
         return float(exact(value, name))
     except OverflowError as error:
         raise InputError(name, value, "a number within the range of doubles", "take a smaller one") from error
+
+
+def fraction_text(value: Fraction) -> str:
+    """The exact number as text that `fraction` reads: a decimal or p/q, in hexadecimal where it is long."""
+    if value.numerator.bit_length() + value.denominator.bit_length() <= LONGEST_DECIMAL:
+        return decimal(value)
+    return f"{value.numerator:#x}/{value.denominator:#x}"
+
+
+def fraction(written: str) -> Fraction:
+    """The exact number that `fraction_text` wrote; ValueError for anything else."""
+    if re.fullmatch(r"-?0x[0-9a-f]+/0x[0-9a-f]+", written, re.ASCII):
+        numerator, denominator = written.split("/")
+        return Fraction(int(numerator, 16), int(denominator, 16))
+    if re.fullmatch(r"-?\d+(\.\d+|/\d+)?", written, re.ASCII):
+        return Fraction(written)
+    raise ValueError(f"{written!r:.40} is no exact number")

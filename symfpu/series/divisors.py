@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
-from typing import Any
+from typing import Any, Protocol
 
 import mpmath
 import numpy as np
@@ -37,6 +37,19 @@ class SmallDivisor:
 
     def __repr__(self) -> str:
         return f"{self.size:.2g} at mode {self.mode}, harmonic ({','.join(map(str, self.harmonic))}), order {self.order}"
+
+
+class Divisors(Protocol):
+    """The multipliers L_q(nu) of a chain and its chosen frequencies, as the ring of the series takes them."""
+
+    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Any:
+        """L_q(nu) where the selection rules let mode q carry nu, zero elsewhere and in the gauge term nu = e_q of a seed.
+
+        harmonics : (H, s). carried : (H, N-1), as the result. Raises where a divisor vanishes.
+        """
+
+    def smallest(self) -> tuple[SmallDivisor, ...]:
+        """The smallest divisors met so far, smallest first; none where they have no size."""
 
 
 class Float64Divisors:
@@ -157,6 +170,10 @@ class MultiplierModuli:
         """|L_q(nu)|, enlarged by more than the rounding to a double; shape (H, N-1)."""
         whole = self._divisors.multipliers(harmonics, carried, order)
         return np.asarray(np.abs((whole / 2**self._divisors.bits).astype(np.float64)) * (1 + 1e-12))
+
+    def smallest(self) -> tuple[SmallDivisor, ...]:
+        """None: bounds are not divisors."""
+        return ()
 
 
 class ResidueDivisors:

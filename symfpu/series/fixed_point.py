@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +13,15 @@ from numpy.typing import NDArray
 from symfpu.algebra.fixedpoint import FixedPointRing, Precision
 from symfpu.algebra.majorant import MajorantRing
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.words import LIMB_BITS, IntegerTable
+from symfpu.algebra.words import LIMB_BITS
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
-from symfpu.series.divisors import FixedPointDivisors, Float64Divisors
+from symfpu.series.divisors import Divisors, FixedPointDivisors, Float64Divisors
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import Frequencies, Progress, monomial_space, ring_series, run_recursion
-from symfpu.series.rings import chosen_frequencies, float64_series
-from symfpu.series.series import LOG10_2, LindstedtSeries
+from symfpu.series.recursion import Progress, monomial_space, named_series, ring_series, run_recursion
+from symfpu.series.rings import FLOAT64, Frequencies, chosen_frequencies
+from symfpu.series.series import LindstedtSeries
+from symfpu.series.tables import LOG10_2
 
 SPARE_DIGITS = 6  # beyond the promised ones, for what is computed from the coefficients
 ATTEMPTS = 4
@@ -39,7 +40,7 @@ def fixed_point_series(
     def stage(number: int) -> Progress | None:
         return None if progress is None else lambda done, _: progress(min(number, 3) * order + done, 4 * order)
 
-    known = float64_series(chain, space, chosen, order, stage(0))
+    known = named_series(FLOAT64, chain, space, chosen, order, stage(0))
     unit = _fitting_unit(known)
     bounds = _rounding_bounds(known, space, unit, Float64Divisors(chain, seeds, chosen, space.grading.degree), stage(1))
     for attempt in range(ATTEMPTS):
@@ -72,7 +73,7 @@ def _moduli(series: LindstedtSeries, unit: Fraction) -> tuple[dict[int, NDArray[
     tables, corrections = {}, {}
     for k in range(series.order + 1):
         degree = series.degree(k)
-        doubles = [t.floats(-series.bits) if isinstance(t, IntegerTable) else t for t in (series.coordinates[k], series.corrections[k])]
+        doubles = [series.tables.doubles(table) for table in (series.coordinates[k], series.corrections[k])]
         tables[degree], corrections[degree - 1] = (np.abs(t) * 2.0 ** (ratio * (degree - 1)) for t in doubles)
     return tables, corrections
 
@@ -89,7 +90,7 @@ def _fitting_unit(series: LindstedtSeries) -> Fraction:
 
 
 def _rounding_bounds(
-    series: LindstedtSeries, space: CosineModes, unit: Fraction, divisors: Any, progress: Progress | None
+    series: LindstedtSeries, space: CosineModes, unit: Fraction, divisors: Divisors, progress: Progress | None
 ) -> _RoundingBounds:
     """How far the coefficients can be off, in units of the last place."""
     chain, order = series.chain, series.order

@@ -10,8 +10,8 @@ from symfpu.errors import InputError
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.series.fixed_point import fixed_point_series
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import Progress, monomial_space
-from symfpu.series.rings import RINGS
+from symfpu.series.recursion import Progress, monomial_space, named_series
+from symfpu.series.rings import BY_NAME, RINGS, Frequencies
 from symfpu.series.series import LindstedtSeries
 
 MOST_DIGITS = 10_000
@@ -51,11 +51,11 @@ def lindstedt(
     if digits is not None:
         return fixed_point_series(chain, seeds, exact_frequencies, order, _digits(digits, ring), progress)
     ring = ring or ("symbolic" if frequencies is None else "float64")
-    if ring not in RINGS:
-        raise InputError("ring", ring, f"one of {', '.join(RINGS)}", "name a ring or leave it out")
+    if ring not in BY_NAME:
+        raise InputError("ring", ring, f"one of {', '.join(BY_NAME)}", "name a ring or leave it out")
     check_size(chain, seeds, order, ring)
     space = monomial_space(chain, seeds, order)
-    return RINGS[ring](chain, space, exact_frequencies, order, progress)
+    return named_series(RINGS[ring], chain, space, exact_frequencies, order, progress)
 
 
 def _digits(digits: int, ring: str | None) -> int:
@@ -80,7 +80,7 @@ def _frequencies(frequencies: Sequence[Number], seeds: tuple[int, ...]) -> tuple
     return values
 
 
-def _ascending(seeds: tuple[int, ...], frequencies: tuple[Fraction, ...] | None) -> tuple[tuple[int, ...], tuple[Fraction, ...] | None]:
+def _ascending(seeds: tuple[int, ...], frequencies: Frequencies) -> tuple[tuple[int, ...], Frequencies]:
     """Seeds in ascending order, each with its own frequency."""
     order = sorted(range(len(seeds)), key=lambda i: seeds[i])
     return tuple(seeds[i] for i in order), None if frequencies is None else tuple(frequencies[i] for i in order)

@@ -10,12 +10,12 @@ from symfpu.algebra.dense import predicted_bytes
 from symfpu.algebra.residue import PRIME_BITS
 from symfpu.chain.chain import Chain
 from symfpu.errors import TooLarge
-from symfpu.series.series import LOG10_2
+from symfpu.series.rings import RINGS
+from symfpu.series.tables import LOG10_2
 
 EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60  # digits, an order and at most, for the prediction of memory only
 OTHER_STAGES = 6  # series in doubles that the stages before and after a fixed-point series hold, with their radii
 CONSTANT_BYTES = 2**24
-SYMBOLIC_GROWTH = 4  # factor by which an expanded coefficient grows with the order, about
 
 
 def check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str, digits: int = 0) -> None:
@@ -35,4 +35,4 @@ def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int
         guard = EXPECTED_GUARD + min(EXPECTED_LOSS * order, MOST_EXPECTED)
         primes = math.ceil((digits + guard) / LOG10_2 * 2 / (PRIME_BITS - 2))
         return CONSTANT_BYTES + size * (primes + OTHER_STAGES)
-    return size * SYMBOLIC_GROWTH ** min(order, 100) if ring in ("symbolic", "nested") else size
+    return int(size * RINGS[ring].growth ** min(order, 100))

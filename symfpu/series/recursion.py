@@ -8,9 +8,7 @@ and W_q^(k) makes the bracket vanish at the secular harmonic nu = e_q of a seed,
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -18,13 +16,14 @@ from symfpu.algebra.grading import Grading
 from symfpu.algebra.ring import Ring
 from symfpu.algebra.selection import CosineModes
 from symfpu.chain.chain import Chain
+from symfpu.series.divisors import Divisors
+from symfpu.series.rings import Frequencies, RingKind
 from symfpu.series.series import LindstedtSeries
 
 Progress = Callable[[int, int], None]
-Frequencies = tuple[Fraction, ...] | None
 
 
-def run_recursion(ring: Ring, divisors: Any, chain: Chain, order: int, progress: Progress | None) -> None:
+def run_recursion(ring: Ring, divisors: Divisors, chain: Chain, order: int, progress: Progress | None) -> None:
     """The recursion itself: fills the ring degree by degree."""
     couplings = {power: ring.number(coupling) for power, coupling in chain.relative_couplings.items()}
     ring.put(1, ring.seed_terms())
@@ -41,7 +40,7 @@ def run_recursion(ring: Ring, divisors: Any, chain: Chain, order: int, progress:
 
 
 def ring_series(
-    chain: Chain, frequencies: tuple[Fraction, ...] | None, order: int, arithmetic: Ring, divisors: Any, progress: Progress | None
+    chain: Chain, frequencies: Frequencies, order: int, arithmetic: Ring, divisors: Divisors, progress: Progress | None
 ) -> LindstedtSeries:
     """Run the recursion and collect what the ring holds."""
     run_recursion(arithmetic, divisors, chain, order, progress)
@@ -58,8 +57,19 @@ def ring_series(
         corrections=(np.zeros((0, len(seeds))), *corrections),
         unit=unit,
         smallest_divisors=divisors.smallest(),
-        multiply_adds=getattr(arithmetic, "multiply_adds", 0),
+        multiply_adds=arithmetic.multiply_adds,
     )
+
+
+def named_series(
+    kind: RingKind, chain: Chain, space: CosineModes, frequencies: Frequencies, order: int, progress: Progress | None
+) -> LindstedtSeries:
+    """The series over a ring that a name is enough for."""
+    assert kind.ring is not None
+    assert kind.divisors is not None
+    divisors = kind.divisors(chain, space, frequencies)
+    given = frequencies if kind.numeric else None
+    return ring_series(chain, given, order, kind.ring(space), divisors, progress)
 
 
 def monomial_space(chain: Chain, seeds: tuple[int, ...], order: int) -> CosineModes:

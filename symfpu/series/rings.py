@@ -1,44 +1,87 @@
-"""The rings that a series can be asked for by name."""
+"""The rings of a series in one list: each with its divisors, its tables, and how it grows.
+
+A new ring is a file in symfpu/algebra with the methods of `Ring`, its divisors and its tables, and one line here.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
 from symfpu.algebra.float64 import Float64Ring
+from symfpu.algebra.ring import Ring
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.symbolic import SymbolicRing
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.series.divisors import Float64Divisors, UniversalDivisors
-from symfpu.series.recursion import Frequencies, Progress, ring_series
-from symfpu.series.series import LindstedtSeries
+from symfpu.series.divisors import Divisors, Float64Divisors, UniversalDivisors
+from symfpu.series.tables import DoubleTables, ExpressionTables, FixedPointTables, Tables
+
+Frequencies = tuple[Fraction, ...] | None
+SYMBOLIC_GROWTH = 4  # factor by which an expanded coefficient grows with the order, about
 
 
-def float64_series(chain: Chain, space: CosineModes, frequencies: Frequencies, order: int, progress: Progress | None) -> LindstedtSeries:
-    """Coefficients as doubles."""
-    divisors = Float64Divisors(chain, space.seeds, chosen_frequencies(frequencies, "float64"), space.grading.degree)
-    return ring_series(chain, frequencies, order, Float64Ring(space), divisors, progress)
+@dataclass(frozen=True)
+class RingKind:
+    """A ring that series are made over.
+
+    tables : of its coefficients, from digits and bits. ring, divisors : how they are made; None where that takes more than a
+    name: residues want a point, fixed-point numbers their precision. growth : factor of memory by order, beside doubles.
+    numeric, exact_point : whether a series has frequencies, or a point where its residues were taken.
+    """
+
+    name: str
+    tables: Callable[[int | None, int], Tables]
+    ring: Callable[[CosineModes], Ring] | None = None
+    divisors: Callable[[Chain, CosineModes, Frequencies], Divisors] | None = None
+    growth: int = 1
+    numeric: bool = False
+    exact_point: bool = False
 
 
-def _symbolic(chain: Chain, space: CosineModes, _: Frequencies, order: int, progress: Progress | None) -> LindstedtSeries:
-    """Coefficients as expanded polynomials in the multipliers."""
-    return ring_series(chain, None, order, SymbolicRing(space), UniversalDivisors(chain, space.seeds), progress)
+def _double_divisors(chain: Chain, space: CosineModes, frequencies: Frequencies) -> Divisors:
+    chosen = chosen_frequencies(frequencies, "float64")
+    return Float64Divisors(chain, space.seeds, chosen, space.grading.degree)
 
 
-def _nested(chain: Chain, space: CosineModes, _: Frequencies, order: int, progress: Progress | None) -> LindstedtSeries:
-    """Coefficients as nested expressions in the multipliers."""
-    return ring_series(chain, None, order, SymbolicRing(space, nested=True), UniversalDivisors(chain, space.seeds), progress)
+def _universal_divisors(chain: Chain, space: CosineModes, _: Frequencies) -> Divisors:
+    return UniversalDivisors(chain, space.seeds)
 
 
-RINGS: dict[str, Callable[[Chain, CosineModes, Frequencies, int, Progress | None], LindstedtSeries]] = {
-    "float64": float64_series,
-    "symbolic": _symbolic,
-    "nested": _nested,
-}
+def _double_tables(digits: int | None, bits: int) -> Tables:
+    return DoubleTables()
+
+
+def _expression_tables(digits: int | None, bits: int, *, expanded: bool) -> Tables:
+    return ExpressionTables(expanded)
+
+
+FLOAT64 = RingKind("float64", _double_tables, Float64Ring, _double_divisors, numeric=True)
+SYMBOLIC = RingKind(
+    "symbolic",
+    partial(_expression_tables, expanded=True),
+    SymbolicRing,
+    _universal_divisors,
+    growth=SYMBOLIC_GROWTH,
+)
+NESTED = RingKind(
+    "nested",
+    partial(_expression_tables, expanded=False),
+    partial(SymbolicRing, nested=True),
+    _universal_divisors,
+    growth=SYMBOLIC_GROWTH,
+)
+FIXED_POINT = RingKind("fixedpoint", FixedPointTables, numeric=True)
+RESIDUE = RingKind("residue", _double_tables, exact_point=True)
+
+RINGS = {kind.name: kind for kind in (FLOAT64, SYMBOLIC, NESTED, FIXED_POINT, RESIDUE)}
+BY_NAME = tuple(name for name, kind in RINGS.items() if kind.ring)  # those that a series can be asked for by name
 
 
 def chosen_frequencies(frequencies: Frequencies, ring: str) -> tuple[Fraction, ...]:
+    """The frequencies; InputError where there are none."""
     if frequencies is None:
         advice = "give frequencies=, or ring='symbolic'"
         raise InputError("frequencies", None, f"one number for each seed in the {ring} ring", advice)

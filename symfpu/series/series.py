@@ -14,16 +14,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.grading import Grading, Ints
 from symfpu.algebra.polynomials import Polynomial, evaluate, powers_of, rescaled, square_root
-from symfpu.algebra.words import IntegerTable
 from symfpu.chain.chain import Chain
-from symfpu.errors import InputError, SymfpuError
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Doubles, Numbers, from_integers, integers
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, from_integers, integers
 from symfpu.numbers.typed import integer
 from symfpu.series.divisors import SmallDivisor
+from symfpu.series.rings import RINGS
+from symfpu.series.tables import LOG10_2, Exponents, Tables
 
 Floats = NDArray[np.float64]
-
-LOG10_2 = 0.30102999566398120
 
 
 @dataclass(frozen=True)
@@ -74,10 +73,15 @@ class LindstedtSeries:
             f"{self.coefficient_count:,} coefficients ({self.precision}){smallest})"
         )
 
+    @cached_property
+    def tables(self) -> Tables:
+        """What the tables hold, and in which arithmetic."""
+        return RINGS[self.ring].tables(self.digits, self.bits)
+
     @property
     def symbolic(self) -> bool:
         """Whether the coefficients are expressions in the symbols L_q(nu) (the universal form)."""
-        return self.ring in ("symbolic", "nested")
+        return self.tables.symbolic
 
     @property
     def precision(self) -> str:
@@ -92,9 +96,9 @@ class LindstedtSeries:
         return int(self.bits * LOG10_2) - (self.digits or 0)
 
     @property
-    def numbers(self) -> Doubles:
+    def numbers(self) -> Arithmetic:
         """The arithmetic of numeric results."""
-        return DOUBLES if self.digits is None else MULTIPRECISION
+        return self.tables.numbers
 
     def _context(self) -> Any:
         return self.numbers.context(self.digits)
@@ -124,26 +128,12 @@ class LindstedtSeries:
         return self.seeds.index(q)
 
     def _linear(self, q: int) -> Any:
-        return self.chain.frequencies(self.numbers)[q - 1] if not self.symbolic else se.Symbol(f"Omega_{q}")
+        return self.tables.linear(self.chain, q)
 
-    def _entries(self, table: Any, columns: Any = slice(None)) -> NDArray[Any]:
-        """Entries of a table as the numbers they denote: doubles, mpf or expressions."""
-        if isinstance(table, IntegerTable):
-            return from_integers(table.integers(columns), np.asarray(-self.bits))
-        return np.asarray(table[:, columns])
-
-    def _times(self, values: NDArray[Any], powers: Ints, units: int, halves: int = 0) -> NDArray[Any]:
+    def _scaled(self, values: NDArray[Any], powers: Ints, units: int, halves: int = 0) -> NDArray[Any]:
         """values times prod Omega_i^powers unit^units 2^-halves, in numbers or in symbols."""
-        if self.symbolic or self.digits:
-            unit = self.numbers.number(self.unit) if self.digits else se.Integer(1)
-            scale = unit**units / (2 if self.digits else se.Integer(2)) ** halves
-            factors = [np.prod([self._linear(q) ** int(e) for q, e in zip(self.seeds, row, strict=True)]) * scale for row in powers]
-            return np.array([v * f for v, f in zip(values, factors, strict=True)], dtype=object)
-        linear = np.array([self._linear(q) for q in self.seeds])
-        logarithm = powers @ np.log2(linear) + units * np.log2(float(self.unit)) - halves
-        whole = np.floor(logarithm).astype(int)
-        with np.errstate(over="ignore", under="ignore"):
-            return np.asarray(np.ldexp(values * np.exp2(logarithm - whole), whole))
+        linear = [self._linear(q) for q in self.seeds]
+        return self.tables.scaled(values, linear, powers, Exponents(self.unit, units, halves))
 
     def coefficients(self, q: int, order: int) -> tuple[Ints, NDArray[Any]]:
         """Q_q^(k), without mu^k, as a polynomial in z_i = (A_i/2) exp(i theta_i) and conj z_i (Eq. qser).
@@ -154,11 +144,11 @@ class LindstedtSeries:
         """
         degree, column = self.degree(order), self._mode(q) - 1
         with self._context():
-            values = self._entries(self.coordinates[order], [column])[:, 0]
+            values = self.tables.entries(self.coordinates[order], [column])[:, 0]
             at = np.flatnonzero(values != 0)
             exponents = self.grading.exponents(degree)[self.grading.canonical(degree)[at]]
-            result = self._times(values[at] / self._linear(q), self.grading.powers(degree)[at], degree - 1)
-            return exponents, self._finite(result, f"Q_{q}^({order})")
+            result = self._scaled(values[at] / self._linear(q), self.grading.powers(degree)[at], degree - 1)
+            return exponents, self.tables.finite(result, f"Q_{q}^({order})")
 
     def frequency_coefficients(self, q: int, order: int, *, squared: bool = False) -> tuple[Ints, NDArray[Any]]:
         """omega_q^(k), or [omega_q^2]^(k) if squared, without mu^k, as a polynomial in the amplitudes (Eq. omeser).
@@ -174,11 +164,9 @@ class LindstedtSeries:
                 polynomials = square_root(polynomials, self._linear(q))
             chosen = {e: c for e, c in polynomials[order].items() if c != 0}
             exponents = np.array(list(chosen), dtype=np.int64).reshape(len(chosen), len(self.seeds)) * 2
-            values = np.array(list(chosen.values()), dtype=object if self.symbolic or self.digits else float)
-            if self.ring == "symbolic":
-                values = np.array([se.expand(v) for v in values], dtype=object)
-            result = self._times(values, exponents, degree, degree)
-            return exponents, self._finite(result, f"omega_{q}^({order})")
+            values = np.array(list(chosen.values()), dtype=self.tables.kind)
+            result = self._scaled(self.tables.simplified(values), exponents, degree, degree)
+            return exponents, self.tables.finite(result, f"omega_{q}^({order})")
 
     def squared_polynomial(self, i: int, order: int) -> Polynomial:
         """[omega_q^2]^(k) as {powers of w_i^2: coefficient}, scaled as the tables are."""
@@ -186,13 +174,8 @@ class LindstedtSeries:
         if order == 0:
             return {(0,) * len(self.seeds): linear**2}
         diagonal = self.grading.diagonal(self.chain.degree_step * order)
-        column = self._entries(self.corrections[order], [i])[:, 0] if len(diagonal) else ()
+        column = self.tables.entries(self.corrections[order], [i])[:, 0] if len(diagonal) else ()
         return {tuple(map(int, e)): linear**2 * c for e, c in zip(diagonal, column, strict=True)}
-
-    def _finite(self, values: NDArray[Any], what: str) -> NDArray[Any]:
-        if not self.symbolic and not self.digits and not np.isfinite(values).all():
-            raise SymfpuError(f"{what} has coefficients beyond the range of doubles; evaluate at amplitudes (harmonic_terms) instead")
-        return values
 
     def term(self, q: int, order: int) -> Any:
         """Q_q^(k), without mu^k, as a SymEngine expression in A_i and theta_i (Eq. qser); it prints as LaTeX in a notebook.
@@ -208,7 +191,7 @@ class LindstedtSeries:
             scalar = se.Integer(2 if any(nu) else 1) / se.Integer(2) ** sum(powers)
             amplitude = se.Mul(*(a**e for a, e in zip(A, powers, strict=True)))
             angle = se.Add(*(n * angle for n, angle in zip(nu, theta, strict=True)))
-            terms.append(scalar * self._symbol(value) * amplitude * se.cos(angle))
+            terms.append(scalar * self.tables.symbol(value) * amplitude * se.cos(angle))
         return se.Add(*terms)
 
     def frequency_correction(self, q: int, order: int) -> Any:
@@ -223,16 +206,10 @@ class LindstedtSeries:
         A, _ = self._amplitude_symbols()
         return se.Add(
             *(
-                self._symbol(value) * se.Mul(*(a ** int(e) for a, e in zip(A, row, strict=True)))
+                self.tables.symbol(value) * se.Mul(*(a ** int(e) for a, e in zip(A, row, strict=True)))
                 for row, value in zip(exponents, values, strict=True)
             )
         )
-
-    def _symbol(self, value: Any) -> Any:
-        """A coefficient as a SymEngine number; with digits, of that precision."""
-        if isinstance(value, se.Basic):
-            return value
-        return se.RealDouble(float(value)) if self.digits is None else se.Float(mpmath.nstr(value, self.digits + 2), dps=self.digits + 2)
 
     def _amplitude_symbols(self) -> tuple[list[Any], list[Any]]:
         return [se.Symbol(f"A{q}") for q in self.seeds], [se.Symbol(f"theta{q}") for q in self.seeds]
@@ -268,7 +245,7 @@ class LindstedtSeries:
         degree = self.degree(order)
         nu, index = self.grading.harmonics(degree)
         with self._context():
-            values = self._entries(self.coordinates[order]) * (self._sign(order) / self._kappa) / self.chain.frequencies(self.numbers)
+            values = self.tables.entries(self.coordinates[order]) * (self._sign(order) / self._kappa) / self.chain.frequencies(self.numbers)
             values[(nu != 0).any(axis=1)[index]] *= 2
         return nu[index], self.grading.powers(degree), values
 
@@ -304,8 +281,7 @@ class LindstedtSeries:
 
     def _doubles(self, amplitudes: ArrayLike, order: int) -> Floats:
         """Every coefficient of an order times its monomial, as doubles."""
-        table = self.coordinates[order]
-        values = table.floats(-self.bits) if isinstance(table, IntegerTable) else table
+        values = self.tables.doubles(self.coordinates[order])
         seeds = self.scaled_seeds(amplitudes).astype(float)
         return np.asarray(values * np.prod(seeds ** self.grading.powers(self.degree(order)), axis=1)[:, None])
 

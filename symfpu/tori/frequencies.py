@@ -17,7 +17,7 @@ import numpy as np
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, SymfpuError, UndeterminedAmplitudes
-from symfpu.numbers.arithmetic import DOUBLES, GUARD_DIGITS, MULTIPRECISION, Doubles, Numbers
+from symfpu.numbers.arithmetic import DOUBLES, GUARD_DIGITS, MULTIPRECISION, Arithmetic, Numbers
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
@@ -83,7 +83,7 @@ class Frequencies:
         self.rest = Point(np.zeros(len(seeds)), np.zeros(len(seeds)), slopes, -np.eye(len(seeds)))
 
     @property
-    def numbers(self) -> Doubles:
+    def numbers(self) -> Arithmetic:
         """The arithmetic of the shifts."""
         return DOUBLES if self.digits is None else MULTIPRECISION
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Doubles, Numbers
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -42,7 +42,7 @@ class QuasiPeriodic:
     digits: int | None
 
     @property
-    def numbers(self) -> Doubles:
+    def numbers(self) -> Arithmetic:
         """The arithmetic of the results."""
         return DOUBLES if self.digits is None else MULTIPRECISION
 

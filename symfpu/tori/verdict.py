@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Doubles, Numbers, text
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, text
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders
@@ -185,7 +185,7 @@ class _Order(NamedTuple):
     energy_error: float
 
 
-def _by_order(torus: QTorus, numbers: Doubles) -> Iterator[_Order]:
+def _by_order(torus: QTorus, numbers: Arithmetic) -> Iterator[_Order]:
     series = torus.series
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     number = max(2, min(64, round((GRID_POINTS if numbers is DOUBLES else GRID_POINTS_DIGITS) ** (1 / len(torus.seeds)))))

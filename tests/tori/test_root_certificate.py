@@ -11,7 +11,7 @@ import pytest
 
 from symfpu.chain.chain import Chain
 from symfpu.series.lindstedt import lindstedt
-from symfpu.series.series import LOG10_2
+from symfpu.series.tables import LOG10_2
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.root_certificate import ball, certify_root, frequency_balls
 

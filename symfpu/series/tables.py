@@ -1,0 +1,302 @@
+"""What the tables of a series hold, by ring: the numbers they denote, in which arithmetic, and how a file keeps them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Protocol
+
+import mpmath
+import numpy as np
+import symengine as se
+from numpy.typing import NDArray
+
+from symfpu.algebra.grading import Ints
+from symfpu.algebra.words import IntegerTable
+from symfpu.chain.chain import Chain
+from symfpu.errors import SymfpuError
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, from_integers
+from symfpu.numbers.typed import integer
+from symfpu.series.expressions import ExpressionNodes, expressions_of
+
+Array = NDArray[Any]
+Floats = NDArray[np.float64]
+Json = dict[str, Any]
+Shapes = list[tuple[int, ...]]
+Parts = dict[str, tuple[Any, ...]]  # tables by order: "coordinates" and "corrections"
+
+LOG10_2 = 0.30102999566398120
+SYMBOL_DIGITS = 2  # of a number in an expression, beyond the promised ones
+
+
+class Tables(Protocol):
+    """The arithmetic of the tables of one series. digits : promised; None for doubles and symbols. bits : binary places.
+
+    symbolic : whether coefficients are expressions in the symbols L_q(nu). dtype : of the array that a file keeps.
+    """
+
+    @property
+    def digits(self) -> int | None: ...
+    @property
+    def bits(self) -> int: ...
+    @property
+    def symbolic(self) -> bool: ...
+    @property
+    def dtype(self) -> str: ...
+
+    @property
+    def numbers(self) -> Arithmetic:
+        """The arithmetic of numeric results."""
+
+    @property
+    def kind(self) -> Any:
+        """The dtype of an array of coefficients."""
+
+    def linear(self, chain: Chain, q: int) -> Any:
+        """Omega_q, as a number or as a symbol."""
+
+    def entries(self, table: Any, columns: Any = slice(None)) -> Array:
+        """Entries of a table as the numbers they denote: doubles, mpf or expressions."""
+
+    def doubles(self, table: Any) -> Floats:
+        """Entries of a table as doubles."""
+
+    def scaled(self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents) -> Array:
+        """values times prod linear^powers, unit and halves; powers (count, s)."""
+
+    def simplified(self, values: Array) -> Array:
+        """Coefficients in the normal form of the ring."""
+
+    def finite(self, values: Array, what: str) -> Array:
+        """The values; raises SymfpuError where they exceed the range of doubles."""
+
+    def symbol(self, value: Any) -> Any:
+        """A coefficient as a SymEngine number."""
+
+    def pack(self, parts: Parts) -> tuple[Parts, Json]:
+        """Arrays that a file keeps, by name and order, and what else is needed to read them."""
+
+    def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
+        """Shapes of the arrays of a file, from those of the tables."""
+
+    def unpack(self, arrays: Sequence[Array], body: Json) -> list[Any]:
+        """Tables from the arrays of a file. Raises ValueError."""
+
+
+@dataclass(frozen=True)
+class Exponents:
+    """The power of the unit of a table, and how many halvings, that belong to all its coefficients."""
+
+    unit: Fraction
+    units: int
+    halves: int
+
+
+@dataclass(frozen=True)
+class DoubleTables:
+    """Arrays of doubles; residues modulo a prime are kept as such, too."""
+
+    digits: int | None = None
+    bits: int = 0
+    symbolic: bool = False
+    dtype: str = "<f8"
+
+    @property
+    def numbers(self) -> Arithmetic:
+        """Doubles."""
+        return DOUBLES
+
+    @property
+    def kind(self) -> Any:
+        """float."""
+        return float
+
+    def linear(self, chain: Chain, q: int) -> Any:
+        """Omega_q."""
+        return chain.frequencies()[q - 1]
+
+    def entries(self, table: Any, columns: Any = slice(None)) -> Array:
+        """As they are."""
+        return np.asarray(table[:, columns])
+
+    def doubles(self, table: Any) -> Floats:
+        """As they are."""
+        return np.asarray(table)
+
+    def scaled(self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents) -> Array:
+        """By logarithms to base two, whose whole part cannot overflow."""
+        logarithm = powers @ np.log2(np.array(linear))
+        logarithm = logarithm + exponents.units * np.log2(float(exponents.unit)) - exponents.halves
+        whole = np.floor(logarithm).astype(int)
+        with np.errstate(over="ignore", under="ignore"):
+            return np.asarray(np.ldexp(values * np.exp2(logarithm - whole), whole))
+
+    def simplified(self, values: Array) -> Array:
+        """As they are."""
+        return values
+
+    def finite(self, values: Array, what: str) -> Array:
+        """The values, if doubles hold them."""
+        if not np.isfinite(values).all():
+            advice = "evaluate at amplitudes (harmonic_terms) instead"
+            raise SymfpuError(f"{what} has coefficients beyond the range of doubles; {advice}")
+        return values
+
+    def symbol(self, value: Any) -> Any:
+        """A double."""
+        return se.RealDouble(float(value))
+
+    def pack(self, parts: Parts) -> tuple[Parts, Json]:
+        """As they are."""
+        return parts, {}
+
+    def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
+        """Those of the tables."""
+        return shapes
+
+    def unpack(self, arrays: Sequence[Array], body: Json) -> list[Any]:
+        """As they are."""
+        return list(map(np.asarray, arrays))
+
+
+@dataclass(frozen=True)
+class FixedPointTables:
+    """Tables of integers in units of 2^-bits, whose numbers are mpf of so many digits."""
+
+    digits: int | None
+    bits: int
+    symbolic: bool = False
+    dtype: str = "<i8"
+
+    @property
+    def numbers(self) -> Arithmetic:
+        """mpf."""
+        return MULTIPRECISION
+
+    @property
+    def kind(self) -> Any:
+        """object."""
+        return object
+
+    def linear(self, chain: Chain, q: int) -> Any:
+        """Omega_q at the working precision."""
+        return chain.frequencies(MULTIPRECISION)[q - 1]
+
+    def entries(self, table: IntegerTable, columns: Any = slice(None)) -> Array:
+        """mpf at the working precision."""
+        return from_integers(table.integers(columns), np.asarray(-self.bits))
+
+    def doubles(self, table: Any) -> Floats:
+        """Rounded; the corrections of order 0 are an array without rows."""
+        return table.floats(-self.bits) if isinstance(table, IntegerTable) else np.asarray(table)
+
+    def scaled(self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents) -> Array:
+        """In mpf."""
+        scale = MULTIPRECISION.number(exponents.unit) ** exponents.units / 2**exponents.halves
+        return multiplied(values, linear, powers, scale)
+
+    def simplified(self, values: Array) -> Array:
+        """As they are."""
+        return values
+
+    def finite(self, values: Array, what: str) -> Array:
+        """mpf have no largest number."""
+        return values
+
+    def symbol(self, value: Any) -> Any:
+        """A number of the promised digits and some more."""
+        assert self.digits is not None
+        digits = self.digits + SYMBOL_DIGITS
+        return se.Float(mpmath.nstr(value, digits), dps=digits)
+
+    def pack(self, parts: Parts) -> tuple[Parts, Json]:
+        """Words of integers, and how many words an entry has."""
+        words = {name: tuple(table.words for table in tables) for name, tables in parts.items()}
+        counts = {name: [int(part.shape[2]) for part in tables] for name, tables in words.items()}
+        return words, {"words": counts}
+
+    def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
+        """With the number of words of each table."""
+        counts = [integer(n, "words", 1) for n in body["words"][name]]
+        return [(*shape, n) for shape, n in zip(shapes, counts, strict=True)]
+
+    def unpack(self, arrays: Sequence[Array], body: Json) -> list[Any]:
+        """Tables of integers."""
+        return list(map(IntegerTable, arrays))
+
+
+@dataclass(frozen=True)
+class ExpressionTables:
+    """Tables of SymEngine expressions in the symbols L_q(nu). expanded : whether every coefficient is an expanded polynomial."""
+
+    expanded: bool
+    digits: int | None = None
+    bits: int = 0
+    symbolic: bool = True
+    dtype: str = "<i8"
+
+    @property
+    def numbers(self) -> Arithmetic:
+        """Doubles, where numbers are asked for."""
+        return DOUBLES
+
+    @property
+    def kind(self) -> Any:
+        """object."""
+        return object
+
+    def linear(self, chain: Chain, q: int) -> Any:
+        """The symbol Omega_q."""
+        return se.Symbol(f"Omega_{q}")
+
+    def entries(self, table: Any, columns: Any = slice(None)) -> Array:
+        """As they are."""
+        return np.asarray(table[:, columns])
+
+    def doubles(self, table: Any) -> Floats:
+        """Numbers only: what is left without symbols. Raises SymEngine's RuntimeError for others."""
+        return np.asarray(table, dtype=np.float64)
+
+    def scaled(self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents) -> Array:
+        """In symbols; their unit is one."""
+        return multiplied(values, linear, powers, se.Integer(1) / se.Integer(2) ** exponents.halves)
+
+    def simplified(self, values: Array) -> Array:
+        """Expanded, if the tables are."""
+        return np.array([se.expand(v) for v in values], dtype=object) if self.expanded else values
+
+    def finite(self, values: Array, what: str) -> Array:
+        """Expressions have no size."""
+        return values
+
+    def symbol(self, value: Any) -> Any:
+        """The expression."""
+        return value
+
+    def pack(self, parts: Parts) -> tuple[Parts, Json]:
+        """Places in a list of expressions, and the list."""
+        nodes = ExpressionNodes()
+        places = {name: tuple(nodes.places(table) for table in tables) for name, tables in parts.items()}
+        return places, {"expressions": nodes.nodes}
+
+    def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
+        """Those of the tables."""
+        return shapes
+
+    def unpack(self, arrays: Sequence[Array], body: Json) -> list[Any]:
+        """Tables of expressions, rebuilt from the list."""
+        expressions = expressions_of(body["expressions"])
+        for places in arrays:
+            if places.size and not 0 <= places.min() <= places.max() < len(expressions):
+                raise ValueError("a coefficient is none of the expressions")
+        return [np.asarray(expressions[places]) for places in arrays]
+
+
+def multiplied(values: Array, linear: Sequence[Any], powers: Ints, scale: Any) -> Numbers:
+    """values times prod linear^powers times scale, one after the other."""
+    products = []
+    for value, row in zip(values, powers, strict=True):
+        factor = np.prod([x ** int(e) for x, e in zip(linear, row, strict=True)]) * scale
+        products.append(value * factor)
+    return np.array(products, dtype=object)
