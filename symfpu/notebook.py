@@ -20,7 +20,16 @@ def latex(expression: Any) -> str:
 
 
 def init_printing() -> None:
-    """Print SymEngine expressions as LaTeX wherever a notebook shows them. Done on import of symfpu; harmless elsewhere."""
+    """Notebooks show SymEngine expressions, such as the terms of a series, as formulas from now on.
+
+    Importing symfpu does it where IPython is loaded already; where IPython comes later it is for the user to call.
+    Harmless outside of notebooks, and a second time. Takes and gives nothing; numbers print as before. Ours.
+
+    >>> import symengine
+    >>> init_printing()
+    >>> print(symengine.sympify("A1**2/2")._repr_latex_())
+    $\\frac{A1^2}{2}$
+    """
     se.init_printing()
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython else None

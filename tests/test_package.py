@@ -1,27 +1,78 @@
 """The public face: light to import, documented, and complete."""
 
+import ast
+import importlib
 import inspect
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 import pytest
 
 import symfpu
 
-HEAVY = ("numba", "matplotlib", "scipy")
+ROOT = Path(symfpu.__file__).parent
+HEAVY = ("numpy", "symengine", "sympy", "numba", "matplotlib", "scipy", "IPython")
+IMPORT_SECONDS = 0.3  # ten times what it takes: a machine may be busy
+
+
+def _run(code):
+    """What a fresh interpreter prints."""
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
 
 
 def test_importing_the_package_loads_nothing_heavy():
-    code = f"import sys, symfpu; print([name for name in {HEAVY} if name in sys.modules])"
-    finished = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert finished.stdout.strip() == "[]"
+    assert _run(f"import sys, symfpu; print([name for name in {HEAVY} if name in sys.modules])") == "[]"
+
+
+def test_importing_the_package_takes_no_time():
+    code = "import time; start = time.perf_counter(); import symfpu; print(time.perf_counter() - start)"
+    assert min(float(_run(code)) for _ in range(3)) < IMPORT_SECONDS
+
+
+def test_importing_the_package_changes_how_terms_print_only_inside_ipython():
+    shown = "import symengine; print(symengine.sympify('x/2')._repr_latex_())"
+    assert _run(f"import symfpu; {shown}") == "None"
+    assert _run(f"import symfpu; symfpu.init_printing(); {shown}") == r"$\frac{x}{2}$"
+    assert _run(f"import IPython, symfpu; {shown}") == r"$\frac{x}{2}$"
+
+
+def test_every_public_name_stands_once_in_the_stub_and_is_what_it_says():
+    stub = ast.parse((ROOT / "__init__.pyi").read_text())
+    lines = [line for line in stub.body if isinstance(line, ast.ImportFrom)]
+    names = [alias.name for line in lines for alias in line.names]
+    assert sorted(names) == symfpu.__all__ == sorted(set(names))
+    assert all(alias.asname == alias.name for line in lines for alias in line.names)  # re-exported, for type checkers
+    for line in lines:
+        for alias in line.names:
+            thing = getattr(symfpu, alias.name)
+            assert thing is getattr(importlib.import_module(line.module), alias.name)
+            assert thing.__module__ == line.module
+
+
+def test_the_stub_is_part_of_the_package():
+    data = tomllib.loads((ROOT.parent / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]
+    assert "*.pyi" in data["symfpu"]
+    assert "py.typed" in data["symfpu"]
+
+
+def test_type_checkers_know_the_types_of_public_names(tmp_path):
+    script = tmp_path / "user.py"
+    script.write_text("from symfpu import Chain, lindstedt\nreveal_type(lindstedt(Chain(8, alpha=1), (1,)))\n")
+    command = [sys.executable, "-m", "mypy", str(script)]  # with the cache of the check of types before
+    finished = subprocess.run(command, capture_output=True, text=True, cwd=ROOT.parent)
+    assert 'Revealed type is "symfpu.series.series.LindstedtSeries"' in finished.stdout
+    assert finished.returncode == 0
 
 
 def test_no_public_name_is_hidden_by_a_module_of_the_same_name():
+    rooms = {path.stem for path in ROOT.iterdir()}
+    assert not rooms & set(symfpu.__all__)
     code = "import symfpu, types; print([n for n in symfpu.__all__ if isinstance(getattr(symfpu, n), types.ModuleType)], dir(symfpu)[0])"
-    finished = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert finished.stdout.split()[0] == "[]"
+    assert _run(code).split()[0] == "[]"
     assert symfpu.__all__ == sorted(set(symfpu.__all__), key=lambda name: (not name[0].isupper(), name))
+    assert set(symfpu.__all__) <= set(dir(symfpu))
     with pytest.raises(AttributeError, match="no attribute 'lindsted'"):
         _ = symfpu.lindsted
 

@@ -1,0 +1,140 @@
+"""The public names of symfpu, each once, by what they are about; a new one is a line here.
+
+Type checkers read this file; symfpu/__init__.py loads each name from its module when it is first used.
+"""
+
+# the chain, and what its couplings alone decide
+from symfpu.chain.chain import Chain as Chain
+from symfpu.chain.commensurability import frequency_rank as frequency_rank
+from symfpu.chain.frequency_shift import frequency_shift as frequency_shift
+from symfpu.chain.frequency_shift import frequency_shift_formula as frequency_shift_formula
+from symfpu.chain.propagation import coupling_sequence as coupling_sequence
+from symfpu.chain.propagation import excitation_sequence as excitation_sequence
+from symfpu.chain.propagation import reachable_modes as reachable_modes
+
+# series
+from symfpu.series.lindstedt import lindstedt as lindstedt
+from symfpu.series.series import LindstedtSeries as LindstedtSeries
+
+# tori from series
+from symfpu.tori.amplitudes import AmplitudeHistory as AmplitudeHistory
+from symfpu.tori.amplitudes import amplitude_history as amplitude_history
+from symfpu.tori.amplitudes import solve_amplitudes as solve_amplitudes
+from symfpu.tori.at_energy import torus_at_energy as torus_at_energy
+from symfpu.tori.frequencies import torus_at_amplitudes as torus_at_amplitudes
+from symfpu.tori.quasiperiodic import FourierTorus as FourierTorus
+from symfpu.tori.resummation import PadeSum as PadeSum
+from symfpu.tori.resummation import ResummedTorus as ResummedTorus
+from symfpu.tori.resummation import pade_amplitudes as pade_amplitudes
+from symfpu.tori.resummation import pade_frequencies as pade_frequencies
+from symfpu.tori.resummation import pade_poles as pade_poles
+from symfpu.tori.resummation import resum as resum
+from symfpu.tori.torus import QTorus as QTorus
+from symfpu.tori.torus import RootCertificate as RootCertificate
+from symfpu.tori.verdict import Assessment as Assessment
+from symfpu.tori.verdict import assess as assess
+
+# tori by Newton's method
+from symfpu.refinement.tori import RefinedTorus as RefinedTorus
+from symfpu.refinement.tori import refine as refine
+from symfpu.refinement.tori import refine_at_amplitudes as refine_at_amplitudes
+from symfpu.refinement.tori import refine_at_energy as refine_at_energy
+
+# breathers
+from symfpu.breathers.at_energy import breather_at_energy as breather_at_energy
+from symfpu.breathers.balance import PeriodicOrbit as PeriodicOrbit
+from symfpu.breathers.balance import breather_at_amplitude as breather_at_amplitude
+from symfpu.breathers.balance import periodic_orbit as periodic_orbit
+from symfpu.breathers.digits import PreciseOrbit as PreciseOrbit
+from symfpu.breathers.digits import periodic_orbit_digits as periodic_orbit_digits
+from symfpu.breathers.floquet import Floquet as Floquet
+from symfpu.breathers.floquet import floquet as floquet
+from symfpu.breathers.shooting import ShotOrbit as ShotOrbit
+from symfpu.breathers.shooting import shoot as shoot
+
+# families in energy
+from symfpu.families.continuation import Event as Event
+from symfpu.families.continuation import Member as Member
+from symfpu.families.family import Family as Family
+from symfpu.families.family import family as family
+
+# dynamics: orbits and alignment indices
+from symfpu.dynamics.alignment import AlignmentIndices as AlignmentIndices
+from symfpu.dynamics.alignment import alignment_indices as alignment_indices
+from symfpu.dynamics.alignment import seconds_needed as seconds_needed
+from symfpu.dynamics.orbits import Orbit as Orbit
+from symfpu.dynamics.orbits import integrate as integrate
+
+# localization: laws, profiles, growth, recurrence, trials
+from symfpu.localization.growth import GroupGrowth as GroupGrowth
+from symfpu.localization.growth import GrowthExponents as GrowthExponents
+from symfpu.localization.growth import growth_exponents as growth_exponents
+from symfpu.localization.laws import ProfileFit as ProfileFit
+from symfpu.localization.laws import ProfileLine as ProfileLine
+from symfpu.localization.laws import breather_law as breather_law
+from symfpu.localization.laws import fit_profile as fit_profile
+from symfpu.localization.laws import group_energy as group_energy
+from symfpu.localization.laws import least_packet as least_packet
+from symfpu.localization.laws import middle_modes as middle_modes
+from symfpu.localization.laws import natural_packet as natural_packet
+from symfpu.localization.laws import packet_groups as packet_groups
+from symfpu.localization.laws import packet_parameter as packet_parameter
+from symfpu.localization.laws import profile_law as profile_law
+from symfpu.localization.laws import rounding_floor as rounding_floor
+from symfpu.localization.profiles import ProfileDistance as ProfileDistance
+from symfpu.localization.profiles import fpu_trajectory as fpu_trajectory
+from symfpu.localization.profiles import normalised_averages as normalised_averages
+from symfpu.localization.profiles import packet_amplitudes as packet_amplitudes
+from symfpu.localization.profiles import profile_distance as profile_distance
+from symfpu.localization.recurrence import Recurrence as Recurrence
+from symfpu.localization.recurrence import recurrence as recurrence
+from symfpu.localization.trials import ProfileInvariance as ProfileInvariance
+from symfpu.localization.trials import Trend as Trend
+from symfpu.localization.trials import profile_invariance as profile_invariance
+from symfpu.localization.trials import slope_by_energy as slope_by_energy
+
+# proofs
+from symfpu.proofs.certificates import PropagationProof as PropagationProof
+from symfpu.proofs.certificates import prove_propagation as prove_propagation
+from symfpu.proofs.leading import leading_term as leading_term
+from symfpu.proofs.leading import lemma_holds as lemma_holds
+from symfpu.proofs.sweeps import Sweep as Sweep
+from symfpu.proofs.sweeps import sweep_propagation as sweep_propagation
+
+# files
+from symfpu.bundles.bundle import Bundle as Bundle
+from symfpu.bundles.bundle import load as load
+from symfpu.bundles.bundle import save as save
+
+# code generation
+from symfpu.codegen.evaluator import Evaluator as Evaluator
+from symfpu.codegen.evaluator import compile_evaluator as compile_evaluator
+from symfpu.codegen.export import export as export
+
+# notebooks
+from symfpu.notebook import init_printing as init_printing
+
+# errors
+from symfpu.breathers.at_energy import NoBreatherAtEnergy as NoBreatherAtEnergy
+from symfpu.breathers.balance import NoPeriodicOrbit as NoPeriodicOrbit
+from symfpu.breathers.shooting import ShootingFailed as ShootingFailed
+from symfpu.dynamics.frame_run import OrbitLost as OrbitLost
+from symfpu.dynamics.stopping import EscapedOrbit as EscapedOrbit
+from symfpu.dynamics.stopping import OrbitStopped as OrbitStopped
+from symfpu.dynamics.stopping import UnstableStep as UnstableStep
+from symfpu.errors import DidNotConverge as DidNotConverge
+from symfpu.errors import InputError as InputError
+from symfpu.errors import NoRealAmplitude as NoRealAmplitude
+from symfpu.errors import ResonantDivisor as ResonantDivisor
+from symfpu.errors import SymfpuError as SymfpuError
+from symfpu.errors import TooLarge as TooLarge
+from symfpu.errors import UndeterminedAmplitudes as UndeterminedAmplitudes
+from symfpu.families.family import NotInFamily as NotInFamily
+from symfpu.files.archive import BundleError as BundleError
+from symfpu.localization.recurrence import NoRecurrence as NoRecurrence
+from symfpu.refinement.tori import NoTorus as NoTorus
+from symfpu.tori.at_energy import NoTorusAtEnergy as NoTorusAtEnergy
+from symfpu.tori.frequencies import NoSelfConsistentFrequencies as NoSelfConsistentFrequencies
+
+__version__: str
+__all__: list[str]
