@@ -9,11 +9,18 @@ from collections.abc import Mapping, Sequence
 
 
 class SymfpuError(Exception):
-    """Base of every error that this package raises on purpose."""
+    """Base of every error that this package raises on purpose.
+
+    Raised itself where no more precise one exists. Ours. The message is one line: what, where, next step.
+    """
 
 
 class InputError(SymfpuError, ValueError):
-    """An argument outside its range; the message names it, its value, what is allowed and what to do."""
+    """An argument outside its range; raised by public functions, which check what they are given first.
+
+    argument : its name; value : as given; allowed : what is; advice : what to do. The message says all four.
+        A ValueError too. Ours.
+    """
 
     def __init__(self, argument: str, value: object, allowed: str, advice: str) -> None:
         self.argument, self.value, self.allowed, self.advice = argument, value, allowed, advice
@@ -21,7 +28,12 @@ class InputError(SymfpuError, ValueError):
 
 
 class TooLarge(InputError):
-    """A series whose arrays would not fit into the free memory."""
+    """A series whose arrays would not fit into the free memory; raised before anything is allocated.
+
+    Raised by `lindstedt` and its users. Ours.
+
+    order : asked for; needed, free : bytes; largest : order that fits, negative if none does.
+    """
 
     def __init__(self, order: int, needed: int, free: int, largest: int) -> None:
         self.order, self.needed, self.free, self.largest = order, needed, free, largest
@@ -30,7 +42,13 @@ class TooLarge(InputError):
 
 
 class ResonantDivisor(InputError):
-    """A divisor lambda_q - (nu.omega)^2 that is exactly zero, or too small to tell from zero in the ring at hand."""
+    """A divisor lambda_q - (nu.omega)^2 that is zero, or cannot be told from zero.
+
+    Raised by `lindstedt` at the first one.
+
+    mode, harmonic, order : q, nu and k of Eqs. moda, modb. exact : whether it is exactly zero, or too small
+        to tell from zero in the ring at hand. All dimensionless integers.
+    """
 
     def __init__(self, mode: int, harmonic: Sequence[int], seeds: Sequence[int], order: int, *, exact: bool) -> None:
         self.mode, self.harmonic, self.order, self.exact = mode, tuple(harmonic), order, exact
@@ -46,7 +64,12 @@ class ResonantDivisor(InputError):
 
 
 class NoRealAmplitude(SymfpuError):
-    """The frequencies ask for a negative squared amplitude."""
+    """The frequencies ask for a negative squared amplitude in Eq. omeser.
+
+    Raised by `solve_amplitudes` and its sisters.
+
+    seed : the mode; squared : its A^2, dimensionless; frequency_order : K of the truncation.
+    """
 
     def __init__(self, seed: int, squared: float, frequency_order: int) -> None:
         self.seed, self.squared, self.frequency_order = seed, squared, frequency_order
@@ -59,7 +82,11 @@ class NoRealAmplitude(SymfpuError):
 
 
 class DidNotConverge(SymfpuError):
-    """Root finding ended without a root; carries the last iterate and its residual."""
+    """Root finding of Eq. omeser ended without a root; raised by `solve_amplitudes` and `pade_amplitudes`.
+
+    frequency_order : K of the truncation. iterate : the last amplitudes by seed; residual : |omega - series|
+        there; both dimensionless.
+    """
 
     def __init__(self, frequency_order: int, iterate: Mapping[int, float], residual: float) -> None:
         self.frequency_order, self.iterate, self.residual = frequency_order, dict(iterate), residual
@@ -71,7 +98,12 @@ class DidNotConverge(SymfpuError):
 
 
 class UndeterminedAmplitudes(SymfpuError):
-    """The lowest frequency correction does not determine the squared amplitudes."""
+    """The lowest frequency correction does not determine the squared amplitudes: its matrix is singular.
+
+    Of Eq. omeser. Raised by `solve_amplitudes` and its sisters.
+
+    seeds : the modes; frequency_order : of the correction, an integer.
+    """
 
     def __init__(self, seeds: Sequence[int], frequency_order: int) -> None:
         self.seeds, self.frequency_order = tuple(seeds), frequency_order

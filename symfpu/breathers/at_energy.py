@@ -22,9 +22,12 @@ SMALLEST_START = 1e-12  # of the energy asked for: the least at which a first me
 
 
 class NoBreatherAtEnergy(SymfpuError):
-    """The family of a seed mode, followed from rest, ends below the energy; carries how far it went and why it ended.
+    """No breather of this energy: raised by `breather_at_energy` where the family from rest ends below it.
 
-    energy : asked for. reached, frequency, amplitude : of the member with the largest energy. reason : of the last failure.
+    seed : the mode. energy : asked for; harmonic : whether it is sum E_q.
+    reached, frequency, amplitude : of the member with the largest energy, all dimensionless; frequency None
+        if there was none.
+    reason : of the last failure. Ours.
     """
 
     def __init__(self, seed: int, energy: float, harmonic: bool, member: PeriodicOrbit | None, failure: NoPeriodicOrbit) -> None:
@@ -67,9 +70,15 @@ def breather_at_energy(
 ) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given energy; frequency and amplitude are found.
 
-    energy : H, or with harmonic=True the harmonic energy sum E_q at t = 0, when every momentum vanishes; a positive exact number.
-    guess : a member nearby; None follows the family from rest, with A > 0. Raises InputError; NoBreatherAtEnergy if the family from
-    rest ends before; with a guess NoPeriodicOrbit.
+    chain, seed : the model and the mode; all quantities are dimensionless.
+    energy : H, or with harmonic=True the harmonic energy sum E_q at t = 0, when every momentum vanishes; a
+        positive exact number.
+    harmonic : which of the two.
+    guess : a member nearby; None follows the family from rest, with A > 0.
+
+    Harmonic balance, as `periodic_orbit`; the breathers of section 6.4 by their energy, where the paper gives
+    frequencies.
+    Raises InputError; NoBreatherAtEnergy if the family from rest ends before; with a guess NoPeriodicOrbit.
 
     >>> orbit = breather_at_energy(Chain(N=32, alpha="0.33"), 25, "0.00465")
     >>> round(float(orbit.frequency), 12), round(orbit.energy, 15)

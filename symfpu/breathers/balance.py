@@ -34,7 +34,11 @@ SMALLEST_PART = 1 / 64  # of the way from rest, in one step
 
 
 class NoPeriodicOrbit(SymfpuError):
-    """Newton's method found no periodic orbit; carries the iterate with the smallest residual, its frequency and that residual."""
+    """Newton's method found no periodic orbit: raised by `periodic_orbit` and its sisters.
+
+    seed : the mode. iterate : the one with the smallest residual, cosine coefficients, shape (H+1, N-1).
+    frequency, residual : of it, dimensionless; the residual relative to the largest acceleration. Ours.
+    """
 
     def __init__(self, balance: Balance, reason: str, z: Floats) -> None:
         self.seed, self.iterate, self.frequency = balance.seed, balance.cosines(z), balance.frequency(z)
@@ -48,10 +52,19 @@ class NoPeriodicOrbit(SymfpuError):
 
 @dataclass(frozen=True, eq=False)
 class PeriodicOrbit:
-    """The periodic orbit Q_q(t) = sum_n c[n, q-1] cos(n omega t) of a chain.
+    """The periodic orbit Q_q(t) = sum_n c[n, q-1] cos(n omega t) of a chain; dimensionless.
 
-    cosines : c, shape (H+1, N-1). residual : largest |Q'' - force| between the collocation points, relative to the largest
-    acceleration. iterations : Newton steps on the way. sigma : omega^2 - Omega_seed^2.
+    Made by `periodic_orbit`, `breather_at_amplitude` and `breather_at_energy`: Eq. qser with s = 1, exact
+    where the paper cuts it (section 6.4).
+
+    chain, seed : the model and the mode. frequency : omega, exact. cosines : c, shape (H+1, N-1).
+    residual : largest |Q'' - force| between the collocation points, relative to the largest acceleration.
+    iterations : Newton steps on the way. sigma : omega^2 - Omega_seed^2.
+
+    >>> from symfpu import periodic_orbit
+    >>> periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905")
+    PeriodicOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, A=0.4051586230417, H=0.012798422083, 13 harmonics,
+    residual ...)
     """
 
     chain: Chain
@@ -200,10 +213,15 @@ def residual(chain: Chain, omega: float, cosines: Floats) -> float:
 def periodic_orbit(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = None) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given frequency.
 
-    frequency : omega, an exact number. guess : cosine coefficients, shape (H+1, N-1), of which those that the symmetry forbids
-    are dropped; None follows the family from rest, with the amplitude of the lowest order. The orbit is one near the guess: a
-    frequency may have several. Raises InputError; without a guess NoRealAmplitude or UndeterminedAmplitudes if the lowest order
-    has no amplitude; NoPeriodicOrbit with the best iterate.
+    chain, seed : the model and the mode; all quantities are dimensionless.
+    frequency : omega, an exact number.
+    guess : cosine coefficients, shape (H+1, N-1), of which those that the symmetry forbids are dropped; None
+        follows the family from rest, with the amplitude of the lowest order.
+
+    Newton's method on the Fourier coefficients of Eq. eqmo (harmonic balance), where the paper has the series
+    of section 6.4. The orbit is one near the guess: a frequency may have several.
+    Raises InputError; without a guess NoRealAmplitude or UndeterminedAmplitudes if the lowest order has no
+    amplitude; NoPeriodicOrbit with the best iterate.
 
     >>> round(periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537").energy, 12)
     0.004649999361
@@ -243,10 +261,17 @@ def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
 
 
 def breather_at_amplitude(chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | None = None) -> PeriodicOrbit:
-    """The q-breather of a seed mode with the given A, the coefficient of cos(omega t) in Q_seed; its frequency is found.
+    """The q-breather of a seed mode with the given amplitude; its frequency is found.
 
-    guess : cosine coefficients, shape (H+1, N-1); None follows the family from rest. Raises InputError, and NoPeriodicOrbit
-    with the best iterate.
+    chain, seed : the model and the mode; all quantities are dimensionless.
+    amplitude : A, the coefficient of cos(omega t) in Q_seed, an exact number, not 0.
+    guess : cosine coefficients, shape (H+1, N-1); None follows the family from rest.
+
+    Harmonic balance with A among the equations: the gauge of Eq. qq0, A is not Q_seed(0).
+    Raises InputError, and NoPeriodicOrbit with the best iterate.
+
+    >>> round(float(breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4").frequency), 9)
+    0.390491915
     """
     (seed,), A = seed_modes((seed,), chain.N), float(exact(amplitude, "amplitude"))
     if A == 0:

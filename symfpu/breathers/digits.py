@@ -37,10 +37,23 @@ DOUBLE_BITS = 1000  # of an integer that goes into a double
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PreciseOrbit(FourierTorus):
-    """A periodic orbit with many digits: a torus of one frequency, with cosines as mpf of shape (H+1, N-1), harmonic 0 first.
+    """A periodic orbit with many digits: a torus of one frequency; dimensionless.
 
-    bound : above |Q'' - force| of every mode at every time, relative to the largest acceleration: the sum of the sizes of all Fourier
-    coefficients of the residual, up to harmonic 3H, taken with 64 bits more than the orbit has. sweeps : corrections made.
+    Made by `periodic_orbit_digits`. Ours: the breathers of section 6.4 beyond doubles.
+
+    chain, seeds : the model and its one seed. frequencies : omega, exact, shape (1,).
+    harmonics : 0 .. H, shape (H+1, 1). cosines : mpf, shape (H+1, N-1), harmonic 0 first. phases : 0 of the
+        seed, radians.
+    digits : of the largest coefficient.
+    bound : above |Q'' - force| of every mode at every time, relative to the largest acceleration: the sum of
+        the sizes of all Fourier coefficients of the residual, up to harmonic 3H, taken with 64 bits more than
+        the orbit has.
+    sweeps : corrections made.
+
+    >>> from symfpu import Chain, periodic_orbit, periodic_orbit_digits
+    >>> periodic_orbit_digits(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"), 30)
+    PreciseOrbit(N=8, alpha=0.3, seed 1, omega=0.3905.., A=0.405158623041734.., 30 digits, 46 harmonics,
+    residual below ...)
     """
 
     bound: Any = field(default=mpmath.inf)
@@ -74,8 +87,13 @@ def periodic_orbit_digits(
 ) -> PreciseOrbit:
     """A periodic orbit refined to so many digits of its largest coefficient.
 
-    orbit : in doubles. frequency, amplitude : exact numbers, at most one of them; the member with that omega or that A near the orbit.
-    Neither: the frequency of the orbit. digits : 1 .. 1000. Raises InputError, and NoPeriodicOrbit if the sweeps gain no digits.
+    orbit : in doubles; all quantities are dimensionless.
+    digits : 1 .. 1000.
+    frequency, amplitude : exact numbers, at most one of them; the member with that omega or that A near the
+        orbit. Neither: the frequency of the orbit.
+
+    Newton-like sweeps on harmonic balance, Eq. eqmo; ours. Raises InputError, and NoPeriodicOrbit if the
+    sweeps gain no digits.
 
     >>> from symfpu.chain.chain import Chain
     >>> orbit = periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")

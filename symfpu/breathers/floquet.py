@@ -31,14 +31,24 @@ TANGENT, DOUBLING, QUADRUPLE = "real > 0", "real < 0", "complex quadruple"
 
 @dataclass(frozen=True, eq=False)
 class Floquet:
-    """Multipliers of a periodic orbit.
+    """Multipliers of a periodic orbit; dimensionless.
 
-    pairs : (lambda, 1/lambda), |lambda| >= 1, shape (N-1, 2), the trivial pair (1, 1) first, then by falling size and growing angle.
-    kinds : of every pair: "trivial", "on the circle", "real > 0" (tangent bifurcation at +1), "real < 0" (period doubling at -1),
-    "complex quadruple" (Krein collision; two pairs make one quadruple). kappa : (lambda + 1/lambda - 2)/4, tolerance : how far each may
-    be off because of the errors of map and orbit; both (N-1,). monodromy : M in modes, rows and columns Q_1 .., P_1 ..; shape (2(N-1),
-    2(N-1)). symplecticity : largest entry of M^T J M - J. map_error : estimated error of the half-period map. trivial_error : by how
-    much the trivial pair of the computed map misses kappa = 0.
+    Made by `floquet`. Ours.
+
+    orbit : the orbit.
+    pairs : (lambda, 1/lambda), |lambda| >= 1, shape (N-1, 2), the trivial pair (1, 1) first, then by falling
+        size and growing angle.
+    kinds : of every pair: "trivial", "on the circle", "real > 0" (tangent bifurcation at +1), "real < 0"
+        (period doubling at -1), "complex quadruple" (Krein collision; two pairs make one quadruple).
+    kappa : (lambda + 1/lambda - 2)/4; tolerance : how far each may be off because of the errors of map and
+        orbit; both (N-1,).
+    monodromy : M in modes, rows and columns Q_1 .., P_1 ..; shape (2(N-1), 2(N-1)).
+    symplecticity : largest entry of M^T J M - J. map_error : estimated error of the half-period map.
+    trivial_error : by how much the trivial pair of the computed map misses kappa = 0.
+
+    >>> from symfpu import Chain, periodic_orbit
+    >>> floquet(periodic_orbit(Chain(N=4, beta=1), 2, "1.4168"))
+    Floquet(N=4, beta=1, seed 2, omega=1.4168, stable, largest |multiplier| 1, symplecticity error ...)
     """
 
     orbit: PeriodicOrbit
@@ -88,14 +98,17 @@ def monodromy(orbit: PeriodicOrbit) -> Floats:
 def floquet(orbit: PeriodicOrbit) -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
-        A kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its error to first order:
-        the error of B^T C over the cosine between its left and right eigenvector. Raises InputError.
+    orbit : from `periodic_orbit` or its sisters; dimensionless.
 
-        >>> from symfpu.chain import bonds
-    from symfpu.chain.chain import Chain
-        >>> from symfpu.breathers.balance import breather_at_amplitude
-        >>> floquet(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")).stable
-        True
+    The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time; ours. A
+    kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its
+    error to first order: the error of B^T C over the cosine between its left and right eigenvector. Raises
+    InputError.
+
+    >>> from symfpu.chain.chain import Chain
+    >>> from symfpu.breathers.balance import breather_at_amplitude
+    >>> floquet(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")).stable
+    True
     """
     from scipy.linalg import eig
 

@@ -26,7 +26,11 @@ DOUBLINGS = 5
 
 
 class ShootingFailed(SymfpuError):
-    """Newton's method on the half period found no orbit; carries the start Q(0) with the smallest residual, and the residuals."""
+    """Newton's method on the half period found no orbit: raised by `shoot`.
+
+    seed : the mode. reason : why it ended. iterate : Q(0) with the smallest residual, shape (N-1,).
+    residuals : of every step; residual : the smallest, relative to omega max|Q|, dimensionless. Ours.
+    """
 
     def __init__(self, seed: int, reason: str, start: Floats, residuals: tuple[float, ...]) -> None:
         self.seed, self.reason, self.iterate, self.residuals = seed, reason, start, residuals
@@ -39,11 +43,20 @@ class ShootingFailed(SymfpuError):
 
 @dataclass(frozen=True, eq=False)
 class ShotOrbit:
-    """A periodic orbit as its start at rest.
+    """A periodic orbit as its start at rest; dimensionless.
 
-    start : Q(0), shape (N-1,); P(0) = 0. residual : the distance of (omega Q, P) after a whole period from the start, over omega max|Q|,
-    with steps half as long as those of the search. history : max|P(T/2)| / (omega max|Q|) of the guess and after every Newton step.
+    Made by `shoot`, a route to the breathers of section 6.4 independent of harmonic balance. Ours.
+
+    chain, seed : the model and the mode. frequency : omega, exact. start : Q(0), shape (N-1,); P(0) = 0.
+    residual : the distance of (omega Q, P) after a whole period from the start, over omega max|Q|, with steps
+        half as long as those of the search.
+    history : max|P(T/2)| / (omega max|Q|) of the guess and after every Newton step.
     steps : of the composition in half a period.
+
+    >>> from symfpu import Chain, shoot
+    >>> shoot(Chain(N=8, alpha="0.3"), 1, "0.3905")
+    ShotOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, Q_1(0)=0.4052474469027, H=0.012798422083, 5 Newton
+    steps, residual ...)
     """
 
     chain: Chain
@@ -80,9 +93,14 @@ class ShotOrbit:
 def shoot(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = None) -> ShotOrbit:
     """The q-breather of a seed mode with the given frequency, by Newton's method on Q(0).
 
-    frequency : omega, an exact number. guess : Q(0), shape (N-1,), of which the modes that the symmetry forbids are dropped; None for
-    the seed alone with the amplitude of the lowest order, good for small ones. Raises InputError; without a guess
-    NoRealAmplitude or UndeterminedAmplitudes; ShootingFailed with the best start.
+    chain, seed : the model and the mode; all quantities are dimensionless.
+    frequency : omega, an exact number.
+    guess : Q(0), shape (N-1,), of which the modes that the symmetry forbids are dropped; None for the seed
+        alone with the amplitude of the lowest order, good for small ones.
+
+    Integrates Eq. eqmo from rest over half a period, at whose end an orbit is at rest again. Ours: an
+    independent check of `periodic_orbit`. Raises InputError; without a guess NoRealAmplitude or
+    UndeterminedAmplitudes; ShootingFailed with the best start.
 
     >>> shot = shoot(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
     >>> round(shot.energy, 12), shot.residual < 1e-13

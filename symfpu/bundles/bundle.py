@@ -58,8 +58,20 @@ class OrbitPoint(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Bundle:
-    """What a file held. series : None for a refined torus. torus, verdict : None if none was saved. provenance : created (UTC),
-    command, versions by package. test_vectors : a few points of the torus as it was when it was saved."""
+    """What a file held. Made by `load`; numbers are as they were saved, to the last bit or digit.
+
+    All is dimensionless; the format is ours.
+
+    series : None for a refined torus. torus, verdict : None if none was saved.
+    provenance : created (UTC), command, versions by package.
+    test_vectors : a few points of the torus as it was when it was saved: t, Q and P, (N-1,), as decimals.
+
+    >>> import tempfile
+    >>> from symfpu import lindstedt
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     load(save(f"{folder}/a", lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2)))
+    Bundle(LindstedtSeries(N=8, beta=0.1, ...), no torus, no verdict, saved ... by symfpu ...)
+    """
 
     series: LindstedtSeries | None
     torus: QTorus | RefinedTorus | None
@@ -85,16 +97,21 @@ def save(
     command: str | None = None,
     created: datetime | None = None,
 ) -> Path:
-    """Write a series, a torus with its series, or a refined torus as one file, whole or not at all; returns its path.
+    """Write a series, a torus with its series, or a refined torus as one file; returns its path.
 
-    verdict : any dictionary that JSON gives back unchanged. command : what made the result. created : default now.
-    A torus is evaluated at a few times, which go into the file as test vectors.
-    Raises InputError for other arguments and for a file that cannot be written; an existing file stays as it was then.
+    path : of the file, which is written whole or not at all.
+    result : what to keep, with all its digits; dimensionless.
+    verdict : any dictionary that JSON gives back unchanged. command : what made the result. created : default
+        now.
+
+    A torus is evaluated at a few times, which go into the file as test vectors. The format is ours.
+    Raises InputError for other arguments and for a file that cannot be written; an existing file stays as it
+    was then.
 
     >>> import tempfile
     >>> from symfpu.series.lindstedt import lindstedt
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     load(save(f"{folder}/breather", lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2))).series.seeds
+    ...     load(save(f"{folder}/a", lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2))).series.seeds
     (3,)
     """
     path = _path(path)
@@ -124,8 +141,18 @@ def save(
 def load(path: Path | str) -> Bundle:
     """The series and the torus that `save` wrote, exactly as they were; nothing in the file is executed.
 
-    Raises BundleError for a file that is damaged, foreign, newer than this symfpu or too large for the free memory;
-    OSError for one that is missing or not to be read.
+    path : of the file. Everything in it is dimensionless but for the date. The format is ours.
+
+    Raises BundleError for a file that is damaged, foreign, newer than this symfpu or too large for the free
+    memory; OSError for one that is missing or not to be read.
+
+    >>> import tempfile
+    >>> from symfpu.series.lindstedt import lindstedt
+    >>> series = lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     kept = load(save(f"{folder}/breather", series)).series
+    >>> all((a == b).all() for a, b in zip(kept.coordinates, series.coordinates, strict=True))
+    True
     """
     path = _path(path)
     with path.open("rb") as stream:

@@ -28,8 +28,12 @@ LARGEST_EXPRESSION = 40  # bonds; the cubic coupling has about N^3 terms
 class Chain:
     """FPU chain of N bonds (N - 1 moving particles, fixed ends), Eq. fpuham; all quantities dimensionless.
 
-    N : number of bonds, at least 2. alpha, beta : cubic and quartic coupling, exact numbers (see symfpu.numbers.typed); at least
-    one is not zero. Raises InputError. A changed chain is dataclasses.replace(chain, beta="1/10").
+    N : number of bonds, at least 2; modes are q = 1 .. N-1.
+    alpha, beta : cubic and quartic coupling, exact numbers (see symfpu.numbers.typed); at least one is not
+        zero. "0.33" and Fraction(33, 100) are what they say, a float is read by its shortest decimal.
+
+    The paper has one coupling at a time; here both may act. A changed chain is
+    dataclasses.replace(chain, beta="1/10"). Raises InputError for an argument outside its range.
 
     >>> Chain(N=32, alpha="0.33")
     Chain(N=32, alpha=0.33)

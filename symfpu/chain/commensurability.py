@@ -8,8 +8,13 @@ from symfpu.numbers.typed import integer
 def frequency_rank(N: int) -> int:
     """Rank over the rationals of Omega_1 .. Omega_(N-1); N - 1 if no commensurability relation holds.
 
-    Omega_q = -i (x^q - x^-q) with x a primitive 4N-th root of unity; dropping the common factor, each frequency is an
-    integer vector of powers of x modulo the cyclotomic polynomial of 4N, and the rank is exact. Raises InputError.
+    N : number of bonds, at least 2. The rank is a dimensionless integer, exact.
+
+    Omega_q = -i (x^q - x^-q) with x a primitive 4N-th root of unity; dropping the common factor, each
+    frequency is an integer vector of powers of x modulo the cyclotomic polynomial of 4N. The paper states
+    that no relation holds where N - 1 is prime (section 3.1); it is N that must be: N = 6 has rank 4, N = 7
+    rank 6.
+    Raises InputError.
 
     >>> frequency_rank(7), frequency_rank(8), frequency_rank(6)
     (6, 7, 4)

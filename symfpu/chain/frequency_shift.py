@@ -38,7 +38,11 @@ def shift_coefficients(N: int, q: int, n: int) -> tuple[tuple[Fraction, Fraction
 def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, float]:
     """omega_q - Omega_q of every seed to lowest order, for seed amplitudes by mode; dimensionless.
 
-    Both couplings may act; alpha counts with alpha^2, beta with its first power. Raises InputError for modes outside the
+    chain : alpha, beta or both; alpha counts with alpha^2, beta with its first power.
+    amplitudes : A_q by seed, of cos(omega_q t + phi_q) in Q_q.
+
+    Returns the shifts by seed, the lowest terms of Eq. omeser with the linear frequencies in the divisors. In
+    closed form, ours: the sums over modes of the recursion are done. Raises InputError for modes outside the
     chain or amplitudes that are not finite numbers.
 
     >>> round(frequency_shift(Chain(N=2, beta=1), {1: 0.1})[1], 12)  # sqrt(2)/4 3/4 2 0.01
@@ -62,7 +66,13 @@ def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, 
 
 
 def frequency_shift_formula(chain: Chain, seeds: Sequence[int]) -> dict[int, Any]:
-    """The same as SymEngine expressions in Omega_q and A{q}, with the chain's exact couplings.
+    """omega_q - Omega_q of every seed to lowest order, as SymEngine expressions in Omega_q and A{q}.
+
+    chain : its exact couplings stand in the formulas.
+    seeds : distinct modes, whose amplitudes A{q} are symbols; all is dimensionless.
+
+    Returns expressions by seed, the closed form (ours) of the lowest terms of Eq. omeser, whose numbers
+    `frequency_shift` gives. Raises InputError for modes outside the chain or repeated.
 
     >>> frequency_shift_formula(Chain(N=12, alpha=1, beta="2/3"), (1, 5))
     {1: (1/24)*A1**2*Omega_1, 5: (1/24)*A5**2*Omega_5}

@@ -20,10 +20,13 @@ MODELS = ("alpha", "beta", "alpha+beta")
 
 
 def reachable_modes(N: int, seeds: Iterable[int], order: int, *, model: str = "alpha") -> list[tuple[int, ...]]:
-    """The sets M_0 .. M_order of Eq. app as ascending tuples, with the values 0 and N, which are no modes, left out.
+    """The sets M_0 .. M_order of Eq. app as ascending tuples, without the values 0 and N, which are no modes.
+
+    N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
+    model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers.
 
     M_k holds the folded sums of r signed seeds, r = k + 1 (alpha; alpha and beta together), 2k + 1 (beta).
-    Raises InputError.
+    Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an unknown model.
 
     >>> reachable_modes(32, (3, 5), 1)
     [(3, 5), (2, 6, 8, 10)]
@@ -48,7 +51,10 @@ def reachable_modes(N: int, seeds: Iterable[int], order: int, *, model: str = "a
 def excitation_sequence(N: int, seeds: Iterable[int], order: int, *, model: str = "alpha") -> list[tuple[int, ...]]:
     """The sets D_0 .. D_order of Eq. dk: the modes that the rule excites at each order, as ascending tuples.
 
-    This is the rule of the proposition; which modes are excited in fact is a question for exact arithmetic.
+    N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
+    model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers.
+
+    This is the rule of the Proposition; which modes are excited in fact is a question for exact arithmetic.
     Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an unknown model.
 
     >>> excitation_sequence(32, (1, 2, 3, 4), 2)
@@ -94,7 +100,14 @@ def coupled_modes(N: int, seeds: Iterable[int], order: int, *, model: str = "alp
 
 
 def coupling_sequence(N: int, seeds: Iterable[int], order: int, *, model: str = "alpha") -> list[tuple[int, ...]]:
-    """The corrected rule: modes by the first order at which the couplings B, C let them in. Arguments as `coupled_modes`.
+    """The corrected rule: modes by the first order at which the couplings B, C of Eq. transa let them in.
+
+    N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
+    model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers.
+
+    Differs from the Proposition in the beta model where two seeds have the sum N: there opposite terms of C
+    cancel.
+    Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an unknown model.
 
     >>> excitation_sequence(6, (2, 3), 2, model="beta"), coupling_sequence(6, (2, 3), 2, model="beta")
     ([(2, 3), (1, 4, 5), ()], [(2, 3), (1, 5), (4,)])

@@ -42,10 +42,20 @@ class Backend(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Evaluator:
-    """A torus to be evaluated in doubles at many times. Made by `compile_evaluator`; `torus` is what it was made of.
+    """A torus to be evaluated in doubles at many times.
 
-    t : a number or an array (T,). phases : an angle in radians for each seed, a mapping by seed or an array (s,) in the order of
-    torus.seeds; seeds left out of a mapping, and None, keep the phases of the torus. Raises InputError for others.
+    Made by `compile_evaluator`; gives Q_q(t), P_q(t), E_q(t) and H of Eqs. qser, harmonicene, fpuham2.
+
+    torus : what it was made of. backend : 'c' or 'numpy'. functions : of the backend.
+
+    In its methods t is a number or an array (T,), dimensionless; phases is an angle in radians for each seed,
+    a mapping by seed or an array (s,) in the order of torus.seeds; seeds left out of a mapping, and None,
+    keep the phases of the torus. They raise InputError for others.
+
+    >>> from symfpu import Chain, lindstedt, solve_amplitudes
+    >>> torus = solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 4))
+    >>> compile_evaluator(torus, backend="numpy")
+    Evaluator(Chain(N=8, alpha=0.3), seeds=1, 6 harmonics, backend='numpy')
     """
 
     torus: QuasiPeriodic = field(repr=False)
@@ -108,16 +118,20 @@ def _finite(argument: str, values: Any, allowed: str) -> Floats:
 def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Evaluator:
     """The torus as fast functions of time and phases, in doubles.
 
-    backend : 'c' writes C99, compiles it by $CC or the first of cc, gcc, clang in PATH, and loads it; 'numpy' needs no compiler;
-    None takes 'c' if there is a compiler. The C functions keep the digits of omega t at any t; NumPy rounds omega t.
+    torus : any quasi-periodic solution with numbers for amplitudes (Eqs. qser, serabs1); dimensionless,
+        phases in radians.
+    backend : 'c' writes C99, compiles it by $CC or the first of cc, gcc, clang in PATH, and loads it; 'numpy'
+        needs no compiler; None takes 'c' if there is a compiler. The C functions keep the digits of omega t
+        at any t; NumPy rounds omega t.
 
-    Raises InputError for an unknown backend and for a series without amplitudes; SymfpuError if 'c' finds no compiler, or with the
-    compiler's first line if it fails.
+    Raises InputError for an unknown backend and for a series without amplitudes; SymfpuError if 'c' finds no
+    compiler, or with the compiler's first line if it fails.
 
     >>> from symfpu.chain.chain import Chain
     >>> from symfpu.tori.quasiperiodic import FourierTorus
     >>> from fractions import Fraction
-    >>> mode = FourierTorus(Chain(4, alpha=1), (1,), (Fraction(1, 2),), np.array([[1]]), np.array([[1.0, 0.0, 0.0]]), {1: 0.0})
+    >>> cosines = np.array([[1.0, 0.0, 0.0]])
+    >>> mode = FourierTorus(Chain(4, alpha=1), (1,), (Fraction(1, 2),), np.array([[1]]), cosines, {1: 0.0})
     >>> compile_evaluator(mode, backend="numpy").momenta(0.0, phases={1: 1.5707963267948966}).tolist()
     [-0.5, 0.0, 0.0]
     """

@@ -62,13 +62,27 @@ def export(
 ) -> Path:
     """Write a torus or a series as a source file that needs nothing of this package; returns its path.
 
-    solution : a torus gives Q(t), P(t), E_q(t), H(t), with phases to choose; a series gives Q(t; A, phi), P, omega(A) and its
-    Jacobian, with amplitudes, phases and frequencies to choose. In universal form the frequencies of the divisors are free too.
-    language : one of LANGUAGES. path : the file; its name without the extension names the functions or the module, and the
-    extension may be left out. order, frequency_order : of a series only, where coordinates and frequencies are cut; default
-    series.order. force : replace an existing file. command : what the header says made it.
-    Raises InputError for an unknown language, a name that is no identifier, an existing file, an order above the series' order
-    or given for a torus, and a universal series too large for straight-line code.
+    solution : a torus gives Q(t), P(t), E_q(t), H(t), with phases (radians) to choose; a series gives Q(t; A,
+        phi), P, omega(A) and its Jacobian, with amplitudes, phases and frequencies to choose (Eqs. qser,
+        omeser). In universal form the frequencies of the divisors are free too. All but phases is
+        dimensionless.
+    language : one of LANGUAGES.
+    path : the file; its name without the extension names the functions or the module, and the extension may
+        be left out.
+    order, frequency_order : of a series only, where coordinates and frequencies are cut; default
+        series.order.
+    force : replace an existing file.
+    command : what the header says made it.
+
+    Raises InputError for an unknown language, a name that is no identifier, an existing file, an order above
+    the series' order or given for a torus, and a universal series too large for straight-line code.
+
+    >>> import tempfile
+    >>> from symfpu.chain.chain import Chain
+    >>> from symfpu.series.lindstedt import lindstedt
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     export(lindstedt(Chain(N=4, beta=1), (1,), ("0.8",), 1), "c", f"{folder}/mode").name
+    'mode.c'
     """
     if language not in LANGUAGES:
         raise InputError("language", language, f"one of {', '.join(LANGUAGES)}", "name one of these")

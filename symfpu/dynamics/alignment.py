@@ -71,10 +71,20 @@ class TorusDimension:
 
 @dataclass(frozen=True, eq=False)
 class AlignmentIndices:
-    """log10 GALI_k and Lyapunov exponent of an orbit in time.
+    """log10 GALI_k and Lyapunov exponent of an orbit in time (section 3.2, Fig. 1(e)).
 
-    Made by `alignment_indices`. times (S,), spaced evenly in log t; log10_gali (S, vectors-1) for k = 2 .. vectors; lyapunov (S,):
-    log |v_1| / t of the first vector. energy_error : |H(T) - H(0)| / H(0) of the orbit.
+    Made by `alignment_indices`; times are dimensionless, in units of the chain.
+
+    chain : the model. times : (S,), spaced evenly in log t.
+    log10_gali : (S, vectors-1), for k = 2 .. vectors. lyapunov : (S,), log |v_1| / t of the first vector.
+    step : of the integrator. energy_error : |H(T) - H(0)| / H(0) of the orbit.
+
+    >>> from symfpu import Chain, alignment_indices
+    >>> found = alignment_indices(Chain(N=4, alpha=1), [0.1, 0, 0], [0, 0, 0], 1e3, vectors=2)
+    >>> found.times.shape, found.log10_gali.shape, found.lyapunov.shape
+    ((274,), (274, 1), (274,))
+    >>> found
+    AlignmentIndices(N=4, alpha=1, t = 1e+03, ... energy error ...)
     """
 
     chain: Chain
@@ -180,25 +190,41 @@ def alignment_indices(
     every: float = 10.0,
     progress: Progress | None = None,
 ) -> AlignmentIndices:
-    """GALI_2 .. GALI_vectors of the orbit of a state up to time T, and its maximal Lyapunov exponent.
+    """GALI_2 .. GALI_vectors and the maximal Lyapunov exponent of an orbit (section 3.2, Fig. 1(e)).
 
-    Q, P : the state, (N-1,). vectors : 2 to 2(N-1), default VECTORS or as many as there are, orthonormal at random at t = 0, by `seed`.
-    step : of the integrator, Blanes-Moan 6 on T + V. Its orbit lies on tori of the integrator, off those of the chain by a part step^6:
-    near a torus of low dimension it shows this dimension up to some time only, a longer one with a shorter step; the energy error is in
-    the result. samples : times, even in log t from 1 to T; each is a whole number of steps. block : the most steps between two
-    orthonormalisations, halved where the frame is squeezed. file : written every so many seconds and at the end, whole or not at all; with
-    the same arguments a killed run goes on from it and ends in the same bits; another T has other samples and is another run. progress :
-    called as (label, fraction done). Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint;
+    chain : the model; Q, P, T and step are dimensionless.
+    Q, P : the state, mode coordinates and momenta, (N-1,).
+    T : the last time.
+    vectors : 2 to 2(N-1), default VECTORS or as many as there are, orthonormal at random at t = 0.
+    step : of the integrator, Blanes-Moan 6 on T + V. Its orbit lies on tori of the integrator, off those of
+        the chain by a part step^6: near a torus of low dimension it shows this dimension up to some time
+        only, a longer one with a shorter step; the energy error is in the result.
+    samples : times, even in log t from 1 to T; each is a whole number of steps.
+    seed : of numpy's default generator, for the vectors.
+    block : the most steps between two orthonormalisations, halved where the frame is squeezed.
+    file : written every so many seconds and at the end, whole or not at all; with the same arguments a killed
+        run goes on from it and ends in the same bits; another T has other samples and is another run.
+    every : those seconds.
+    progress : called as (label, fraction done).
+
+    Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint;
     OrbitLost.
 
-    Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they are, vectors give GALI down to about
-    1e-16 for a direction, and an upper bound after that. So a frame is evolved instead: M_i B_(i-1) = B_i R_i, a QR factorisation
-    after each block, and the vectors are V = B R with R = R_i ... R_1. R is upper triangular, so the first k columns of V span the
-    volume R_11 ... R_kk, and with unit columns
+    Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they are, vectors
+    give GALI down to about 1e-16 for a direction, and an upper bound after that. So a frame is evolved
+    instead: M_i B_(i-1) = B_i R_i, a QR factorisation after each block, and the vectors are V = B R with R =
+    R_i ... R_1. R is upper triangular, so the first k columns of V span the volume R_11 ... R_kk, and with
+    unit columns
         log GALI_k = sum_{j<=k} (log R_jj - log |R e_j|),    log |v_1| = log R_11.
-    The diagonal of the product is the product of the diagonals: sums of logarithms, which neither underflow nor cancel. The columns
-    R e_j are propagated as unit vectors with their lengths in logarithms; a column loses entries below 1e-300 of its length, which
-    do not count for its length. Each block's R_jj is right to EPS times the squeeze of the frame in one block, kept above 1e-5.
+    The diagonal of the product is the product of the diagonals: sums of logarithms, which neither underflow
+    nor cancel. The columns R e_j are propagated as unit vectors with their lengths in logarithms; a column
+    loses entries below 1e-300 of its length, which do not count for its length. Each block's R_jj is right to
+    EPS times the squeeze of the frame in one block, kept above 1e-5.
+
+    >>> from symfpu import Chain
+    >>> found = alignment_indices(Chain(N=4, alpha=1), [0.1, 0, 0], [0, 0, 0], 1e3, vectors=2)
+    >>> bool(found.lyapunov[-1] < 1e-3)
+    True
     """
     require_chain(chain)
     n, h = chain.N - 1, abs(step_length(step))
@@ -219,9 +245,18 @@ def alignment_indices(
 
 
 def seconds_needed(chain: Chain, T: float, *, vectors: int | None = None, step: float = STEP) -> float:
-    """Processor time in seconds that `alignment_indices` of such a chain will take, from a trial of a fraction of a second.
+    """Processor time in seconds that `alignment_indices` of such a chain will take.
 
-    The trial is a small oscillation: an orbit so chaotic that it squeezes the frame within BLOCK steps takes longer. Raises InputError.
+    chain : the model. T : the last time, step : of the integrator, both dimensionless.
+    vectors : 2 to 2(N-1), default as there.
+
+    From a trial of a fraction of a second, a small oscillation: an orbit so chaotic that it squeezes the
+    frame within BLOCK steps takes longer. Ours.
+    Raises InputError.
+
+    >>> from symfpu import Chain
+    >>> 0 < seconds_needed(Chain(N=4, alpha=1), 1e4, vectors=2) < 60
+    True
     """
     require_chain(chain)
     n, h = chain.N - 1, abs(step_length(step))

@@ -23,7 +23,12 @@ TRIAL = 0.2  # seconds of a measurement
 
 
 class OrbitLost(SymfpuError):
-    """An orbit that went to infinity, as orbits of the alpha model over its barrier do, or a step too long."""
+    """An orbit that went to infinity, as orbits of the alpha model over its barrier do, or a step too long.
+
+    Raised by `alignment_indices`. Ours.
+
+    time : before which it was lost; step : of the integrator; both dimensionless.
+    """
 
     def __init__(self, time: float, step: float) -> None:
         self.time, self.step = time, step

@@ -39,9 +39,20 @@ WHOLE = 1e-9  # of a step: a time that is a multiple of the step but for roundin
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """An orbit, or several, at sampled times. times (S,), multiples of the step, from 0. Q, P : mode coordinates and momenta, shape
-    (S, ..., N-1). energies : total energy H, shape (S, ...). averages : time averages of the E_q from 0 to each sample, shape
-    (S, ..., N-1), if asked for. seconds : of this run, without what a checkpoint brought."""
+    """An orbit, or several, at sampled times. Made by `integrate`; dimensionless.
+
+    chain : the model. scheme : of the integrator, its coefficients. step : signed, as taken.
+    times : (S,), multiples of the step, from 0. Q, P : mode coordinates and momenta (Eq. lintra), shape
+        (S, ..., N-1).
+    energies : total energy H (Eq. fpuham2), shape (S, ...).
+    averages : time averages of the E_q (Eq. harmonicene) from 0 to each sample, shape (S, ..., N-1), if asked
+        for.
+    seconds : of this run, without what a checkpoint brought.
+
+    >>> from symfpu import Chain, integrate
+    >>> integrate(Chain(N=4, beta=1), [0.1, 0, 0], [0, 0, 0], 100, step=0.125)
+    Orbit(N=4, beta=1, T=100, kahan_li8, step 0.125, 129 samples, H=0.00293214917955, energy error ...)
+    """
 
     chain: Chain
     scheme: Scheme
@@ -86,17 +97,27 @@ def integrate(
     workers: int = 1,
     progress: Callable[[int, int], None] | None = None,
 ) -> Orbit:
-    """The orbit from mode coordinates Q and momenta P at time 0 to T, sampled at times that are multiples of the step.
+    """The orbit from mode coordinates Q and momenta P at time 0 to T, sampled at multiples of the step.
 
-    Q, P : shapes (..., N-1), many orbits at once. T : a time, negative for the past. step : its length is cut to a whole number of steps.
-    scheme : of SCHEMES; aba864_modes splits harmonic + anharmonic, others T + V. samples : about how many, log-spaced from one step to T
-    and 0; or times between 0 and T, each moved to the nearest step. averages : of E_q, by the trapezoid rule over looks
-    at every LOOK time units, or every step if longer; samples are then moved to looks. file : written every so many seconds and at the
-    end, whole or not at all; with the same arguments a killed run goes on from it and ends in the same bits. workers : threads, among
-    which orbits are shared out. progress : called as (steps done, steps).
+    chain : the model; Q, P, T and step are dimensionless.
+    Q, P : shapes (..., N-1), many orbits at once.
+    T : a time, negative for the past.
+    step : its length is cut to a whole number of steps.
+    scheme : of SCHEMES; aba864_modes splits harmonic + anharmonic, others T + V.
+    samples : about how many, log-spaced from one step to T and 0; or times between 0 and T, shape (S,), each
+        moved to the nearest step.
+    averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if longer;
+        samples are then moved to looks.
+    file : written every so many seconds and at the end, whole or not at all; with the same arguments a killed
+        run goes on from it and ends in the same bits.
+    every : those seconds.
+    workers : threads, among which orbits are shared out.
+    progress : called as (steps done, steps).
 
-    Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint; UnstableStep and EscapedOrbit with
-    time, mode and energy.
+    Solves Eq. eqmo, in particles or in modes. Section 3.2 averages P^2 + Omega^2 Q^2 without the factor 1/2;
+    the averages here are of Eq. harmonicene, with it.
+    Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint;
+    UnstableStep and EscapedOrbit with time, mode and energy.
 
     >>> integrate(Chain(N=2, beta=1), [0.0], [1.0], 100, step=0.125, samples=4).times
     array([  0.   ,   0.125,   1.125,  10.75 , 100.   ])

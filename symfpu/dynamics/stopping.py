@@ -21,8 +21,13 @@ BISECTIONS = 60
 
 
 class OrbitStopped(SymfpuError):
-    """An orbit that cannot be followed further: time, mode of the largest (growth of) harmonic energy, total energy; orbit is its place
-    among several, () for one."""
+    """An orbit that cannot be followed further; base of EscapedOrbit and UnstableStep.
+
+    Raised by `integrate` and its users. Ours.
+
+    time : of the stop; mode : of the largest (growth of) harmonic energy; energy : total; dimensionless.
+    orbit : its place among several, () for one.
+    """
 
     def __init__(self, reason: str, advice: str, *, time: float, mode: int, energy: float, orbit: tuple[int, ...] = ()) -> None:
         self.time, self.mode, self.energy, self.orbit = time, mode, energy, orbit
@@ -31,11 +36,21 @@ class OrbitStopped(SymfpuError):
 
 
 class EscapedOrbit(OrbitStopped):
-    """A bond went over a barrier of its potential, beyond which it falls without bound."""
+    """A bond went over a barrier of its potential, beyond which it falls without bound.
+
+    Raised by `integrate`; the potential is that of Eq. fpuham.
+
+    time, mode, energy, orbit : as in OrbitStopped; dimensionless.
+    """
 
 
 class UnstableStep(OrbitStopped):
-    """The step is beyond the stability of the scheme, or so coarse that energy is no longer conserved."""
+    """The step is beyond the stability of the scheme, or so coarse that energy is no longer conserved.
+
+    Raised by `integrate`. Ours.
+
+    time, mode, energy, orbit : as in OrbitStopped; dimensionless.
+    """
 
 
 def require_stable(chain: Chain, scheme: Scheme, step: float, energy: float) -> None:

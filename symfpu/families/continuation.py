@@ -39,7 +39,19 @@ UNRESOLVED = 1e-6  # residual beyond which a torus is no member
 
 @dataclass(frozen=True, eq=False)
 class Member:
-    """One torus of a family. energy : H, harmonic_energy : sum E_q, both at the angles zero. multipliers : of a breather, if asked for."""
+    """One torus of a family; dimensionless.
+
+    torus : the solution. amplitudes : by seed. energy : H, harmonic_energy : sum E_q, both at the angles
+        zero.
+    residual : of the equations of motion, relative to the largest acceleration. warnings : reasons to doubt
+        it.
+    multipliers : of a breather, if asked for. Ours; Appendix A has the linear specific energy of Eq. linespe
+        instead.
+
+    >>> from symfpu import Chain, family
+    >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").members[0]
+    Member(torus, H=0.0005004912021, omega_1=0.390193414744, A_1=0.081046503, residual ...)
+    """
 
     torus: QuasiPeriodic
     amplitudes: Mapping[int, float]
@@ -64,11 +76,16 @@ class Member:
 
 @dataclass(frozen=True)
 class Event:
-    """Something on the way between the members `after` and `after` + 1.
+    """Something on the way between the members `after` and `after` + 1 of a family; dimensionless. Ours.
 
-    kind : 'fold' (what : the quantity that turns), 'resonance' (a divisor changes its sign; mode, harmonic) or 'stability' (what :
-    the instability that begins or ends). energy : H there. value : of the quantity that turns, or of the divisor's coefficient.
+    kind : 'fold' (what : the quantity that turns), 'resonance' (a divisor changes its sign; mode, harmonic)
+        or 'stability' (what : the instability that begins or ends).
+    energy : H there. value : of the quantity that turns, or of the divisor's coefficient.
+    mode, harmonic : q and nu, integers, shape (s,), of a resonance; else 0 and ().
     interpolated : between the members, not found by Newton's method: good to some per cent of their distance.
+
+    >>> Event("resonance", "", 3, 0.0125, 1e-9, mode=5, harmonic=(3,))
+    resonance of mode 5 with harmonic (3) at H = 0.0125, coefficient 1e-09
     """
 
     kind: str

@@ -35,7 +35,12 @@ APPENDIX_MEMBERS = 20  # about how many steps lead with Appendix A from the begi
 
 
 class NotInFamily(SymfpuError):
-    """An energy or a frequency that no member of a family has; carries the range that was reached and why the family ended."""
+    """No member of a family has this energy or frequency: raised by `family` and the methods of Family.
+
+    quantity : its name; value : asked for; reached : the range of the members, (least, largest);
+        dimensionless.
+    ending : why the family was not followed further. Ours.
+    """
 
     def __init__(self, quantity: str, value: float, reached: tuple[float, float], ending: str) -> None:
         self.quantity, self.value, self.reached, self.ending = quantity, value, reached, ending
@@ -49,9 +54,18 @@ class NotInFamily(SymfpuError):
 class Family:
     """Tori of growing energy with one ratio of amplitudes or mode energies, and what happens on the way.
 
-    Made by `family`. members : in order of the way. events : folds, resonances and changes of stability, between members.
-    ending : why the family was not followed further. harmonic : whether its goal was a harmonic energy. energy_ratio : of the averaged
-    mode energies by seed, where it is these that keep their ratio.
+    Made by `family`; dimensionless. Ours, or Appendix A.
+
+    chain, seeds : the model and the s modes. members : in order of the way.
+    events : folds, resonances and changes of stability, between members. ending : why it was not followed
+        further.
+    harmonic : whether its goal was a harmonic energy.
+    energy_ratio : of the averaged mode energies by seed, where it is these that keep their ratio.
+
+    >>> from symfpu import Chain, family
+    >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
+    Family(N=8, alpha=0.3, seeds=1, 4 members, H = 0.000500491 .. 0.00105223, no events; it reached the
+    energy asked for)
     """
 
     chain: Chain
@@ -135,20 +149,34 @@ def family(
 ) -> Family:
     """The family of tori of these seeds from small energy to `to_energy`.
 
-    method : 'arclength', Newton's method and pseudo-arclength continuation; or 'appendix-a', the algorithm of the paper's Appendix A,
-    corrected, whose members are truncated series of `order` and whose mode energies grow alike (no ratio is kept).
+    chain, seeds : the model and distinct modes; energies, amplitudes and frequencies are dimensionless.
+    to_energy : the goal, an exact number.
+    harmonic : whether energies are sum E_q at the angles zero instead of H.
+    amplitude_ratio, energy_ratio : by seed, at most one; energy_ratio is of mode energies averaged over the
+        torus. Default equal mode energies.
+    from_energy : where it begins, by the linear estimate; default a thousandth of the goal, a tenth with
+        'appendix-a', or where the family in the folder began; where the series there lead to no torus it
+        begins with the last member below of a family that is followed up to it.
+    members : the most.
+    multipliers : of breathers, with changes of stability. tolerance : as for `refine`. Both only with
+        'arclength'.
+    method : 'arclength', Newton's method and pseudo-arclength continuation; or 'appendix-a', the algorithm of
+        the paper's Appendix A, corrected, whose members are truncated series of `order` and whose mode
+        energies grow alike (no ratio is kept).
+    order : of those series.
+    folder : every member is kept there as a file at once; an interrupted family goes on from it, with other
+        goals too.
+    progress : called as (label, fraction done).
 
-    harmonic : whether energies are sum E_q at the angles zero instead of H. amplitude_ratio or energy_ratio (of mode energies
-    averaged over the torus) : by seed, default equal mode energies. from_energy : where it begins, by the linear estimate; default a
-    thousandth of the goal, a tenth with 'appendix-a', or where the family in the folder began; where the series there lead to no torus
-    it begins with the last member below of a family that is followed up to it. members : the most. multipliers : of
-    breathers, with changes of stability. tolerance : as for `refine`; both only with 'arclength'. folder : every member is kept there
-    as a file at once; an interrupted family goes on from it, with other goals too. progress : called as (label, fraction done).
+    The last member is the first one beyond the goal; `Family.at_energy` gives the torus at it. A family that
+    cannot be followed to its goal is returned as far as it went; `ending` says why it ended. One that comes
+    back to the linear limit ends there.
+    Raises InputError for arguments out of range and for a folder that holds another family; where there is no
+    first member, NoTorus, or NotInFamily if the family turns or ends below `from_energy`.
 
-    The last member is the first one beyond the goal; `Family.at_energy` gives the torus at it.
-    A family that cannot be followed to its goal is returned as far as it went; `ending` says why it ended.
-    A family that comes back to the linear limit ends there. Raises InputError for arguments out of range and for a folder that holds
-    another family; where there is no first member, NoTorus, or NotInFamily if the family turns or ends below `from_energy`.
+    >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
+    >>> [round(member.energy, 6) for member in tori.members]
+    [0.0005, 0.000606, 0.000773, 0.001052]
     """
     if method not in METHODS:
         raise InputError("method", method, f"one of {', '.join(METHODS)}", "name one of these")

@@ -32,7 +32,12 @@ DOCUMENT_GROWTH = 20  # bytes of memory for a byte of JSON, about
 
 
 class BundleError(SymfpuError):
-    """A file that cannot be loaded: damaged, foreign, newer or too large."""
+    """A file that cannot be loaded: damaged, foreign, newer or too large.
+
+    Raised by `load` and where checkpoints are read. Ours.
+
+    path : of the file; problem : what is wrong; advice : what to do.
+    """
 
     def __init__(self, path: Path, problem: str, advice: str) -> None:
         self.path, self.problem, self.advice = path, problem, advice

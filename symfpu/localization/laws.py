@@ -26,7 +26,17 @@ BLOCKS = 2  # groups of modes, at least, for a line with an error bar
 
 @dataclass(frozen=True)
 class ProfileLine:
-    """log10 e_kappa = slope * kappa + intercept + power * log10 kappa, with kappa = q/N. Call it with kappa."""
+    """log10 e_kappa = slope * kappa + intercept + power * log10 kappa, with kappa = q/N.
+
+    Call it with kappa, a number or an array, for log10 e_kappa in its shape.
+
+    slope : in decades for a unit of kappa. intercept : log10 e_kappa at kappa = 0. power : 2 in Eq. eksa2, 0
+        in Eq. eksp2. kappa and e_kappa, a share of the whole energy, are dimensionless.
+
+    >>> line = ProfileLine(-78.6, -1.2)
+    >>> line, line([0.25, 0.5]).round(6)
+    (log10 e = -78.6 kappa - 1.2, array([-20.85, -40.5 ]))
+    """
 
     slope: float
     intercept: float
@@ -42,9 +52,15 @@ class ProfileLine:
 
 
 def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
-    """lambda of seeds 1 .. s: alpha^2 eps / (pi M)^4 (below Eq. eksa2), or beta eps / (pi M)^2 (below Eq. eksp2), with M = s/N.
+    """lambda of seeds 1 .. s: alpha^2 eps / (pi M)^4 or beta eps / (pi M)^2, below Eqs. eksa2 and eksp2.
 
-    specific_energy : eps = E/N. The laws are for lambda well below 1. Raises InputError, also for a chain with both couplings.
+    chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N; M = s/N. All
+        dimensionless.
+
+    The laws are for lambda well below 1. Raises InputError, also for a chain with both couplings.
+
+    >>> round(packet_parameter(Chain(N=256, beta="0.3"), 16, 1.5625e-6), 9)
+    1.2159e-05
     """
     s, epsilon = _packet(chain, s, specific_energy)
     width = math.pi * s / chain.N
@@ -52,9 +68,16 @@ def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
 
 
 def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> Floats:
-    """E^(k), the energy of the middle mode of D_k for seeds 1 .. s; Eqs. eksa (alpha) and eksp (beta). Arguments as `packet_parameter`.
+    """E^(k), the energy of the middle mode of D_k for seeds 1 .. s; Eqs. eksa (alpha) and eksp (beta).
+
+    chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N. k : 0, 1, ..., a number
+        or an array (n,). All dimensionless; returns energies of the shape of k.
 
     Estimates of magnitude. At k = 0 a seed has eps/M, which Eq. eksa gives a quarter of.
+    Raises InputError, also for a chain with both couplings.
+
+    >>> group_energy(Chain(N=256, beta="0.3"), 16, 1.5625e-6, [0, 1])
+    array([2.50000000e-05, 3.69575361e-15])
     """
     parameter, M, k = packet_parameter(chain, s, specific_energy), s / chain.N, np.asarray(k, dtype=np.float64)
     front = specific_energy / M
@@ -62,10 +85,14 @@ def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> 
 
 
 def profile_law(chain: Chain, s: int, specific_energy: float, *, denominator: int | None = None) -> ProfileLine:
-    """log10 e_kappa of seeds 1 .. s, Eqs. eksa2 (alpha) and eksp2 (beta): `group_energy` over E = N eps, at k + 1/2, or 2k, = kappa/M.
+    """log10 e_kappa of seeds 1 .. s, Eqs. eksa2 (alpha) and eksp2 (beta), as a ProfileLine.
 
-    The slope depends on M and eps alone, the intercept on N too: e_kappa is a share of the whole energy, and falls as 1/N. denominator :
-    of kappa = q/denominator, default N; the line of Fig. 4(a) has N-1. Raises InputError.
+    chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N; all dimensionless.
+    denominator : of kappa = q/denominator, default N; the line of Fig. 4(a) has N-1.
+
+    It is `group_energy` over E = N eps, at k + 1/2, or 2k, = kappa/M. The slope depends on M and eps alone,
+    the intercept on N too: e_kappa is a share of the whole energy, and falls as 1/N. Raises InputError, also
+    for a chain with both couplings.
 
     >>> profile_law(Chain(N=256, beta="0.3"), 16, 1.5625e-6)  # Fig. 4(b)
     log10 e = -78.6419 kappa - 1.20412
@@ -78,9 +105,15 @@ def profile_law(chain: Chain, s: int, specific_energy: float, *, denominator: in
 
 
 def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) -> Floats:
-    """E_q of the breather with seed 1, alpha model, Eq. brelaw: gamma^(q-1) q^2 E_1, gamma = alpha^2 N^4 eps / pi^4, eps = energy/N.
+    """E_q of the breather with seed 1, alpha model, Eq. brelaw: gamma^(q-1) q^2 E_1; shape (N-1,).
 
-    seed_energy : E_1, default the energy. Shape (N-1,). Raises InputError.
+    chain : the alpha model. energy : E; gamma = alpha^2 N^4 eps / pi^4 with eps = energy/N.
+    seed_energy : E_1, default the energy. All dimensionless.
+
+    Raises InputError, also for a chain with beta, for which the law is not stated.
+
+    >>> breather_law(Chain(N=4, alpha="0.33"), 0.01).round(9)
+    array([1.000e-02, 2.862e-05, 4.600e-08])
     """
     require_chain(chain)
     if chain.model != "alpha":
@@ -91,37 +124,85 @@ def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) 
 
 
 def least_packet(chain: Chain, specific_energy: float) -> float:
-    """The width s at which lambda = 1: alpha^(1/2) eps^(1/4) N / pi, or (beta eps)^(1/2) N / pi. The paper leaves out the 1/pi."""
+    """The width s at which lambda = 1: alpha^(1/2) eps^(1/4) N / pi, or (beta eps)^(1/2) N / pi.
+
+    chain : one coupling. specific_energy : eps = E/N. Both and the width, a number of modes, are
+        dimensionless.
+
+    lambda is that of Eqs. eksa2 and eksp2. Section 6.1 leaves out the 1/pi.
+    Raises InputError, also for a chain with both couplings.
+
+    >>> round(least_packet(Chain(N=32, alpha="0.33"), 1e-4), 6)
+    0.585136
+    """
     return float(packet_parameter(chain, 1, specific_energy) ** (0.25 if chain.alpha else 0.5))
 
 
 def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") -> float:
-    """Width of the natural packet of the alpha model in section 6.4.3: alpha^(1/2) eps^(1/4) N, or with "1/5" alpha^(2/5) eps^(1/5) N."""
+    """Width of the natural packet of the alpha model in section 6.4.3: (alpha^2 eps)^(1/4) N, or with 1/5.
+
+    chain : the alpha model. specific_energy : eps = E/N. Both and the width, a number of modes, are
+        dimensionless.
+    exponent : of eps, '1/4' or '1/5'.
+
+    Raises InputError, also for a chain with beta.
+
+    >>> round(natural_packet(Chain(N=32, alpha="0.33"), 1e-4), 6)
+    1.83826
+    """
     if chain.model != "alpha" or exponent not in ("1/4", "1/5"):
         raise InputError("chain, exponent", (chain, exponent), "the alpha model, '1/4' or '1/5'", "the widths are stated for these")
     return float(chain.N * (float(chain.alpha) ** 2 * positive(specific_energy, "specific_energy")) ** float(Fraction(exponent)))
 
 
 def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
-    """D_0, D_1, ... of seeds 1 .. s: {ks+1 .. (k+1)s} (alpha), {(2k-1)s+1 .. (2k+1)s} (beta), the last one cut at N-1."""
+    """D_0, D_1, ... of seeds 1 .. s: {ks+1 .. (k+1)s} (alpha), {(2k-1)s+1 .. (2k+1)s} (beta).
+
+    chain : alpha, beta or both, which counts as alpha. s : how many seeds, 1 .. N-1. All are dimensionless
+        integers.
+
+    Eq. dk for the packets of section 6.1, as ranges of modes, the last one cut at N-1. Raises InputError for
+    s outside 1 .. N-1.
+
+    >>> packet_groups(Chain(N=8, alpha=1), 2)
+    (range(1, 3), range(3, 5), range(5, 7), range(7, 8))
+    """
     step = packet_width(chain, s) * chain.degree_step
     ends = [0, *range(s, chain.N - 1, step), chain.N - 1]
     return tuple(range(a + 1, b + 1) for a, b in pairwise(ends))
 
 
 def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
-    """The middle modes of D_1, D_2, ...: ks + [s/2] (alpha; (k+1) for s = 1, where the paper's formula leaves D_k), 2ks (beta)."""
+    """The middle modes of D_1, D_2, ... of seeds 1 .. s: ks + [s/2] (alpha), 2ks (beta), below N.
+
+    chain : alpha, beta or both, which counts as alpha. s : how many seeds, 1 .. N-1. All are dimensionless
+        integers.
+
+    Differs from section 6.1.1 for s = 1: k + 1, where the paper's formula leaves D_k. Raises InputError for s
+    outside 1 .. N-1.
+
+    >>> middle_modes(Chain(N=12, alpha=1), 3)
+    (4, 7, 10)
+    """
     step = packet_width(chain, s) * chain.degree_step
     offset = (s // 2 or 1) if chain.alpha else 0
     return tuple(range(step + offset, chain.N, step))
 
 
 def rounding_floor(chain: Chain, spectrum: ArrayLike, T: float, *, step: float, scheme: str = "kahan_li8") -> Floats:
-    """Energy that rounding is expected to put into the running average of every mode until T, on T + V; shape (N-1,).
+    """Energy that rounding is expected to put into the running average of every mode until T; shape (N-1,).
 
-    spectrum : mean E_q of the orbit, (N-1,). Every drift and kick rounds each x_j and p_j once, at random, with the mean square EPS^2/12
-    over the square of the mantissa: white in modes, so that E_q grows by (EPS^2/12) <1/m^2> (Omega_q^2 <x^2> + <p^2>)/2 a stage. The
-    average has half of the last. Zero for aba864_modes, whose modes do not share their rounding. Raises InputError.
+    chain : the model. spectrum : mean E_q of the orbit, (N-1,). T : the time, step : of the integrator; all
+        dimensionless.
+    scheme : of SCHEMES, as for `integrate`.
+
+    On T + V every drift and kick rounds each x_j and p_j once, at random, with the mean square EPS^2/12 over
+    the square of the mantissa: white in modes, so that E_q grows by (EPS^2/12) <1/m^2> (Omega_q^2 <x^2> +
+    <p^2>)/2 a stage. The average has half of the last. Zero for aba864_modes, whose modes do not share their
+    rounding. Ours. Raises InputError.
+
+    >>> float(rounding_floor(Chain(N=4, alpha=1), [1.0, 0, 0], 1e6, step=0.1).max()) < 1e-20
+    True
     """
     E, T, step = _spectrum(chain, spectrum), positive(T, "T"), positive(step, "step")
     if scheme not in SCHEMES:
@@ -135,8 +216,16 @@ def rounding_floor(chain: Chain, spectrum: ArrayLike, T: float, *, step: float, 
 
 @dataclass(frozen=True, eq=False)
 class ProfileFit:
-    """A line through a profile. errors : standard errors of slope, intercept and power (0 if fixed). scatter : rms residual, in decades,
-    over the degrees of freedom. modes, residuals : (n,)."""
+    """A line through a profile. Made by `fit_profile`; kappa and e_kappa are dimensionless.
+
+    line : a ProfileLine, the form of Eqs. eksa2 and eksp2. errors : standard errors of slope, intercept and
+        power (0 if fixed). scatter : rms residual, in decades, over the degrees of freedom.
+    modes, residuals : those used, and log10 e_kappa minus the line, in decades; (n,).
+
+    >>> q = np.arange(1, 32)
+    >>> fit_profile(Chain(N=32, beta=1), 10.0 ** (-20 * q / 32 + 0.1 * np.sin(q)), 2, floor=0)
+    ProfileFit(log10 e = (-20.005 +- 0.067) kappa + (0.42305 +- 0.047), 29 modes 3..31, scatter 0.072)
+    """
 
     line: ProfileLine
     errors: tuple[float, float, float]
@@ -163,14 +252,23 @@ def fit_profile(
     power: float | None = 0.0,
     floor: float | ArrayLike = FLOOR,
 ) -> ProfileFit:
-    """Regression of log10 e_kappa on kappa beyond the seeds 1 .. s, all modes alike; e_kappa is the spectrum over its sum.
+    """Regression of log10 e_kappa on kappa beyond the seeds 1 .. s; e_kappa is the spectrum over its sum.
 
-    spectrum : E_q in any unit, (N-1,). modes : tail, all q > s; middle, those of `middle_modes`; or a list. power : of kappa, a number, or
-    None for a fitted one. floor : modes at or below it are left out; a number, relative to the largest E_q, or energies (N-1,) in the
-    unit of the spectrum (`rounding_floor`). For spectra in closed form pass 0.
+    chain : the model. spectrum : E_q in any unit, (N-1,). s : how many seeds, 1 .. N-1.
+    modes : tail, all q > s; middle, those of `middle_modes`; or a list.
+    power : of kappa, a dimensionless number, or None for a fitted one: 2 in Eq. eksa2, 0 in Eq. eksp2.
+    floor : modes at or below it are left out; a number, relative to the largest E_q, or energies (N-1,) in
+        the unit of the spectrum (`rounding_floor`). For spectra in closed form pass 0.
 
-    Errors: jackknife over the groups D_k, since within a group the residuals are a common staircase; they know of no systematic bend. A
-    part of a group at the end of the tail counts as one. Raises InputError, also if modes in other groups do not fix the line.
+    All modes count alike. Errors: jackknife over the groups D_k, since within a group the residuals are a
+    common staircase; they know of no systematic bend. A part of a group at the end of the tail counts as one.
+    Ours.
+    Raises InputError, also if modes in other groups do not fix the line.
+
+    >>> spectrum = 10.0 ** (-20 * np.arange(1, 32) / 32)
+    >>> fit = fit_profile(Chain(N=32, beta=1), spectrum, 2, floor=0)
+    >>> round(fit.line.slope, 9), round(fit.scatter, 9)
+    (-20.0, 0.0)
     """
     E, s = _spectrum(chain, spectrum), packet_width(chain, s)
     power = None if power is None else finite(power, "power")

@@ -23,10 +23,12 @@ SHARES = ("energy", "amplitude")
 
 
 def fpu_trajectory(chain: Chain, amplitudes: Mapping[int, Number], phases: Mapping[int, Number] | None = None) -> tuple[Floats, Floats]:
-    """Initial conditions (Q, P) of the FPU-trajectory with these seeds, each of shape (N-1,) (Definition 4 of the paper).
+    """Initial conditions (Q, P) of the FPU-trajectory with these seeds, each of shape (N-1,) (Definition 4).
 
-    Q_q = A_q cos phi_q, P_q = -A_q Omega_q sin phi_q for the seeds, exactly 0 for other modes. amplitudes, phases : by seed; phases left
-    out are 0. Raises InputError.
+    chain : the model. amplitudes, phases : by seed, dimensionless and in radians; phases left out are 0.
+
+    Q_q = A_q cos phi_q, P_q = -A_q Omega_q sin phi_q for the seeds, exactly 0 for other modes. Raises
+    InputError.
 
     >>> fpu_trajectory(Chain(N=4, alpha=1), {1: 0.5, 3: "0.25"})
     (array([0.5 , 0.  , 0.25]), array([0., 0., 0.]))
@@ -45,10 +47,13 @@ def fpu_trajectory(chain: Chain, amplitudes: Mapping[int, Number], phases: Mappi
 
 
 def packet_amplitudes(chain: Chain, seeds: Sequence[int], energy: Number, *, share: str = "energy") -> dict[int, float]:
-    """Amplitudes A_q by seed whose harmonic energy, the sum of A_q^2 Omega_q^2 / 2, is `energy`, for `fpu_trajectory` with any phases.
+    """Amplitudes by seed of a given harmonic energy, the sum of A_q^2 Omega_q^2 / 2; for `fpu_trajectory`.
 
-    share : energy, the same E_q for all seeds; or amplitude, the same A_q. This is not H, which adds the anharmonic energy of the phases
-    chosen. Raises InputError.
+    chain, seeds : the model and distinct modes. energy : positive, dimensionless.
+    share : energy, the same E_q (Eq. harmonicene) for all seeds; or amplitude, the same A_q.
+
+    Holds for any phases. This is not H, which adds the anharmonic energy of the phases chosen. Ours. Raises
+    InputError.
 
     >>> packet_amplitudes(Chain(N=3, alpha=1), (1, 2), 2, share="amplitude")  # Omega^2 = 1, 3
     {1: 1.0, 2: 1.0}
@@ -68,7 +73,16 @@ def packet_amplitudes(chain: Chain, seeds: Sequence[int], energy: Number, *, sha
 def normalised_averages(orbit: Orbit) -> Floats:
     """Running averages of the harmonic energies over the total energy, Ebar_q(t)/H; shape (S, ..., N-1).
 
-    orbit : integrated with averages=True; its last row is the paper's normalised averaged spectrum. Raises InputError.
+    orbit : integrated with averages=True; its last row is the paper's normalised averaged spectrum (section
+        6), dimensionless.
+
+    Harmonic energies are those of Eq. harmonicene, with the 1/2 that the paper's average leaves out. Raises
+    InputError.
+
+    >>> from symfpu.dynamics.orbits import integrate
+    >>> orbit = integrate(Chain(N=4, beta=1), [0.1, 0, 0], [0, 0, 0], 100, step=0.125, averages=True)
+    >>> normalised_averages(orbit)[-1].round(3)
+    array([1., 0., 0.])
     """
     if getattr(orbit, "averages", None) is None:
         raise InputError("orbit", repr(orbit), "an orbit with running averages", "integrate with averages=True")
@@ -79,7 +93,14 @@ def normalised_averages(orbit: Orbit) -> Floats:
 
 @dataclass(frozen=True)
 class ProfileDistance:
-    """Largest |log10(a_q/b_q)| of two profiles, the mode where it is reached, and how many modes of either lie above the floor."""
+    """How far two spectra differ. Made by `profile_distance`. Ours.
+
+    distance : largest |log10(a_q/b_q)|, in decades. mode : where it is reached. modes : how many of either
+        lie above the floor.
+
+    >>> ProfileDistance(1.0, 2, 2)
+    ProfileDistance(1 decades at mode 2, 2 modes above the floor)
+    """
 
     distance: float
     mode: int
@@ -90,10 +111,13 @@ class ProfileDistance:
 
 
 def profile_distance(a: ArrayLike, b: ArrayLike, floor: float) -> ProfileDistance:
-    """How far two spectra differ: the largest |log10(a_q/b_q)|, where values below the floor count as the floor.
+    """How far two spectra differ: the largest |log10(a_q/b_q)|, in decades, as a ProfileDistance.
 
-    a, b : energies by mode, shape (N-1,), not negative. floor : positive, in their units; below it energies are rounding, and two modes
-    there do not differ. Raises InputError.
+    a, b : energies by mode, shape (N-1,), not negative.
+    floor : positive, in their units; values below it, rounding, count as the floor, and two modes there
+        do not differ.
+
+    Ours. Raises InputError.
 
     >>> profile_distance([1, 1e-2, 1e-20], [1, 1e-3, 1e-25], 1e-12)
     ProfileDistance(1 decades at mode 2, 2 modes above the floor)

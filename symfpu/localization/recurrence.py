@@ -15,7 +15,11 @@ NEAR, FAR = 1 / 3, 2 / 3  # of the largest distance: apart, so that wiggles do n
 
 
 class NoRecurrence(SymfpuError):
-    """The mode energies did not come back within the record."""
+    """The mode energies did not come back within the record: raised by `recurrence`.
+
+    T : the end of the record, dimensionless. excursion : the largest fraction of the energy that was
+        elsewhere. Ours.
+    """
 
     def __init__(self, T: float, excursion: float) -> None:
         self.T, self.excursion = T, excursion
@@ -27,9 +31,15 @@ class NoRecurrence(SymfpuError):
 
 @dataclass(frozen=True, eq=False)
 class Recurrence:
-    """Returns of an orbit to its first mode energies. times, returned : (R,), of each visit, in order of time. excursion : the farthest.
+    """Returns of an orbit to its first mode energies. Made by `recurrence` (section 6.4.3).
 
-    returned : fraction of the harmonic energy that is back in its modes, 1 for all of it.
+    times : (R,), of each visit, in order, in units of the chain (dimensionless).
+    returned : (R,), fraction of the harmonic energy that is back in its modes, 1 for all of it.
+    excursion : the farthest, the largest fraction that was elsewhere.
+
+    >>> Recurrence(np.array([157.0, 315.0]), np.array([0.97, 0.99]), 0.8)
+    Recurrence(2 returns, first at t=157 of 97.0000%, best at t=315 of 99.0000%, up to 0.8 of the energy
+    away)
     """
 
     times: Floats = field(repr=False)
@@ -56,11 +66,15 @@ class Recurrence:
 
 
 def recurrence(times: ArrayLike, energies: ArrayLike) -> Recurrence:
-    """When the mode energies come back: d(t) = sum |E_q(t) - E_q(0)| / (2 sum E_q(0)), the fraction of the energy that is elsewhere.
+    """When the mode energies come back, by the fraction of the energy that is elsewhere, d(t).
 
-    times (S,), energies (S, N-1) : E_q(t), sampled densely (`orbit.harmonic_energies()` with samples=np.arange(...)); E_q(0) is the first
-    row. A return is the deepest minimum of d, refined by a parabola, of a visit: a time below a third of the largest d, after and before
-    one above two thirds. The last visit may lack its end, but not its minimum. Raises InputError, NoRecurrence.
+    times, energies : (S,) and (S, N-1), E_q(t) sampled densely (`orbit.harmonic_energies()` with
+        samples=np.arange(...)); E_q(0) is the first row. Times in units of the chain, energies in any unit.
+
+    d(t) = sum |E_q(t) - E_q(0)| / (2 sum E_q(0)), dimensionless. A return is the deepest minimum of d,
+    refined by a parabola, of a visit: a time below a third of the largest d, after and before one above two
+    thirds. The last visit may lack its end, but not its minimum. Ours, for the recurrences of section 6.4.3.
+    Raises InputError, NoRecurrence.
 
     >>> t = np.linspace(0, 15, 151)
     >>> recurrence(t, np.stack([1 + np.cos(t), 1 - np.cos(t)], axis=-1)).first

@@ -26,7 +26,16 @@ PHASES = ("equal", "random")
 
 @dataclass(frozen=True, eq=False)
 class Trend:
-    """Rate of y with x by least squares, all points alike, and its standard error."""
+    """Rate of y with x by least squares, all points alike, and its standard error.
+
+    Made by `slope_by_energy` and others. Ours.
+
+    x, y : the points, (n,). rate : dy/dx, in units of y over x (dimensionless for the logarithms here).
+        error : of it.
+
+    >>> Trend(np.array([0.0, 1, 2]), np.array([0.0, 2.1, 3.9]), 1.95, 0.087)
+    Trend(1.95 +- 0.087, 3 points)
+    """
 
     x: Floats
     y: Floats
@@ -55,10 +64,22 @@ def slope_by_energy(
     power: float | None = None,
     floor: float | ArrayLike = FLOOR,
 ) -> Trend:
-    """Rate of the fitted slope with log10 eps; Eqs. eksa2 and eksp2 say 1/M = N/s.
+    """Rate of the fitted slope with log10 eps, as a Trend; Eqs. eksa2 and eksp2 say 1/M = N/s.
 
-    specific_energies (n,), three or more; spectra (n, N-1), of trajectories or tori with the seeds 1 .. s. power : default the law's own, 2
-    (alpha) or 0 (beta). The others as `fit_profile`; floor one for all. Raises InputError.
+    chain : the model. s : how many seeds, 1 .. N-1; all is dimensionless.
+    specific_energies : eps = E/N, (n,), three or more.
+    spectra : (n, N-1), of trajectories or tori with the seeds 1 .. s.
+    modes, floor : as for `fit_profile`; one floor for all.
+    power : of kappa; default the law's own, 2 (alpha) or 0 (beta).
+
+    Ours. Raises InputError.
+
+    >>> from symfpu.localization.laws import profile_law
+    >>> chain, energies = Chain(N=32, beta=1), (1e-5, 1e-4, 1e-3)
+    >>> kappa = np.arange(1, 32) / 32
+    >>> spectra = [10 ** profile_law(chain, 4, e)(kappa) for e in energies]
+    >>> round(slope_by_energy(chain, 4, energies, spectra, floor=0).rate, 9)
+    8.0
     """
     energies = np.array([positive(energy, "specific_energies") for energy in specific_energies])
     try:
@@ -74,9 +95,18 @@ def slope_by_energy(
 
 @dataclass(frozen=True, eq=False)
 class ProfileInvariance:
-    """Profiles of packets of the same M and eps in chains of several lengths.
+    """Profiles of packets of the same M and eps in chains of several lengths (section 6.1); dimensionless.
 
-    spectra : by size, e_kappa of every realisation, (R, N-1). fits : of their mean, with the power of the law. floors : by size, (N-1,).
+    Made by `profile_invariance`. fraction : M = s/N. specific_energy : eps. T : the time averaged over.
+    phases : equal or random. chains : by size.
+    spectra : by size, e_kappa of every realisation, (R, N-1). fits : of their mean, with the power of the
+        law.
+    floors : by size, (N-1,).
+
+    >>> from symfpu import profile_invariance
+    >>> profile_invariance(Chain(N=16, beta=1), "1/8", 1e-2, (16, 32, 48), 1e4)
+    ProfileInvariance(N=16, 32, 48, M=1/8, eps=0.01, T=10000, equal phases, 1 realisations: E_q/eps ~ N^c,
+    c = D_1 1.73 +- 0.17, ...; d slope/d log10 N = Trend(... 3 points))
     """
 
     fraction: Fraction
@@ -171,12 +201,23 @@ def profile_invariance(
     step: float = 0.5,
     workers: int = 1,
 ) -> ProfileInvariance:
-    """Does the profile stay put as N grows at fixed M and eps? Time-averaged spectra of FPU-trajectories (Definition 4) to T.
+    """Does the profile stay put as N grows at fixed M and eps? By orbits of packets (Definition 4).
 
-    chain : its couplings, alpha or beta. fraction : M, with M N whole for each of the sizes, the N, three or more. Seeds 1 .. M N of equal
-    harmonic energies, eps N together. phases : equal, all 0; or random, uniform, `realisations` orbits from numpy's default generator at
-    (seed, N). scheme, step, workers : of `integrate`. Modes within ABOVE_ROUNDING of `rounding_floor` count as below the floor.
-    Raises InputError, OrbitStopped.
+    chain : its couplings, alpha or beta. All is dimensionless.
+    fraction : M, with M N whole for each of the sizes. specific_energy : eps = E/N.
+    sizes : the N, three or more. Seeds 1 .. M N of equal harmonic energies, eps N together.
+    T : the time averaged over.
+    phases : equal, all 0; or random, uniform in 0 .. 2 pi radians.
+    realisations : orbits of random phases, from numpy's default generator at (seed, N). seed : of it.
+    scheme, step, workers : of `integrate`.
+
+    Spectra are averaged over 0 .. T. Section 6.1 says of the normalised profiles that they stay as they are;
+    e_kappa falls as 1/N. Modes within ABOVE_ROUNDING of `rounding_floor` count as below the floor. Raises
+    InputError, OrbitStopped.
+
+    >>> found = profile_invariance(Chain(N=16, beta=1), "1/8", 1e-2, (16, 32, 48), 1e4)
+    >>> [spectra.shape for spectra in found.spectra]
+    [(1, 15), (1, 31), (1, 47)]
     """
     M, sizes, epsilon = exact(fraction, "fraction"), [integer(N, "sizes", 2) for N in sizes], positive(specific_energy, "specific_energy")
     if len(set(sizes)) < POINTS or not 0 < M < 1 or any((M * N).denominator != 1 for N in sizes):

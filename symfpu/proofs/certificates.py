@@ -80,9 +80,21 @@ class RuleException:
 
 @dataclass(frozen=True)
 class PropagationProof:
-    """The proposition's D_k beside the actual ones up to an order, and everything that shows it.
+    """The Proposition's D_k beside the actual ones up to an order, and everything that shows it.
 
-    verdict : 'proved', 'refuted' (some exception is decided) or 'undecided'. rule, actual : modes by order.
+    Made by `prove_propagation`.
+
+    N, model, seeds, order : the case. rule, actual : modes by order, 0 .. order.
+    verdict : 'proved', 'refuted' (some exception is decided) or 'undecided'.
+    exceptions : modes whose order is not the predicted one. undecided : modes and orders that nothing
+        decides.
+    points : primes, roots and frequencies of the runs. excited : a coefficient that is not zero, for every
+        excited mode.
+    vanishing : modes and orders that are identically zero, and by what. All dimensionless integers, exact.
+
+    >>> from symfpu import prove_propagation
+    >>> prove_propagation(8, (1, 4), 3, model="beta")
+    PropagationProof(N=8, beta, seeds=1,4, order 3: refuted; mode 7 predicted at 1, actually 2)
     """
 
     N: int
@@ -146,11 +158,18 @@ def prove_propagation(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> PropagationProof:
-    """Prove or refute the propagation rule (Eqs. app, dk) for given N, seeds and model, up to an order.
+    """Prove or refute the Proposition (Eqs. app, dk) for given N, seeds and model, up to an order.
 
-    points : independent primes and random frequencies, each a run of the recursion; with 0 nothing can be shown excited.
-    random_seed : the same seed gives the same points. progress : called as (orders done, orders in all).
+    N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k. model : 'alpha', 'beta'
+        or 'alpha+beta'. All are dimensionless integers, exact.
+    points : independent primes and random frequencies, each a run of the recursion; with 0 nothing can be
+        shown excited.
+    random_seed : the same seed gives the same points.
+    workers : threads of the recursion; default as many as there are processors.
+    progress : called as (orders done, orders in all).
 
+    Appendix B proves the Proposition in general; here each case is decided exactly, and some of beta are
+    refuted.
     Raises InputError for arguments out of range, TooLarge before allocating what does not fit.
 
     >>> prove_propagation(8, (1, 4), 3, model="beta")

@@ -73,9 +73,14 @@ def leading_terms(chain: Chain, seeds: Sequence[int], order: int) -> dict[int, L
 
 
 def leading_term(chain: Chain, seeds: Sequence[int], q: int) -> Any:
-    """Q_q^(k) at the order k of its first excitation (Eq. Qqkr), without mu^k, as a SymEngine expression.
+    """Q_q^(k) at the order k of its first excitation (Lemma, Eq. Qqkr), without mu^k, in symbols.
 
-    In the symbols A_i, theta_i, Omega_q and L_q(nu) of a series in universal form. The work grows exponentially with k.
+    chain : one coupling or both. seeds : distinct modes D_0. q : a mode that they excite. All dimensionless,
+        phases theta in radians.
+
+    A SymEngine expression in A_i, theta_i, Omega_q and L_q(nu), as of a series in universal form. The work
+    grows exponentially with k. The Lemma is read with K_m^(0)(n) = delta_{m,n}, which it needs and does not
+    print.
     Raises InputError for a seed, a mode that the seeds never excite, and as `leading_terms`.
 
     >>> sorted(map(str, leading_term(Chain(N=8, alpha=1), (1,), 2).free_symbols))
@@ -113,10 +118,13 @@ def leading_kernel(chain: Chain, seeds: Sequence[int], q: int, modes: Sequence[i
 
 
 def lemma_holds(chain: Chain, seeds: Sequence[int], order: int) -> dict[int, bool]:
-    """For every mode first excited at orders 1 .. order: is the Lemma's term that of the recursion, as an exact identity?
+    """For every mode excited first at 1 .. order: is the Lemma's term that of the recursion, as an identity?
 
-    Excited means here: not identically zero in independent symbols L_q(nu). True: the same order, and the expanded
-    difference of the two terms is 0. Raises InputError, TooLarge.
+    chain : one coupling or both. seeds : distinct modes D_0. order : the last k, a dimensionless integer from
+        0 up.
+
+    Returns truth by mode. Excited means here: not identically zero in independent symbols L_q(nu). True: the
+    same order, and the expanded difference of the two terms (Eq. Qqkr) is 0. Raises InputError, TooLarge.
 
     >>> lemma_holds(Chain(N=6, beta=1), (2, 3), 2)
     {1: True, 4: True, 5: True}

@@ -48,9 +48,19 @@ class NearResonance:
 class RefinedTorus(QuasiPeriodic):
     """A torus found by Newton's method, Q_q(t) = sum c_q[nu] cos(nu.(omega t + phi)).
 
-    Made by `refine`, `refined_torus`. harmonics (H, s), cosines (H, N-1) in doubles. amplitudes : by seed, of cos(theta_q) in Q_q;
-    phases : by seed. steps : of Newton's method with the final harmonics. near_resonances : the smallest divisors. warnings :
-    reasons to doubt it.
+    Made by `refine` and its sisters; dimensionless, phases in radians. Ours: the paper has series alone.
+
+    chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
+    amplitudes : by seed, of cos(theta_q) in Q_q. phases : by seed.
+    harmonics : the nu, shape (H, s). cosines : c_q[nu] in doubles, shape (H, N-1).
+    steps : of Newton's method with the final harmonics.
+    near_resonances : the smallest divisors (nu.omega)^2 - Omega_q^2, with the coefficients under them.
+    warnings : reasons to doubt it. digits : None, of doubles.
+
+    >>> from symfpu import Chain, lindstedt, refine, solve_amplitudes
+    >>> refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
+    RefinedTorus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4051586230417, H=0.0127984220834, 20 harmonics,
+    residual ..., smallest divisor 0.024 at mode 2, harmonic (2), coefficient 0.031)
     """
 
     chain: Chain
@@ -77,7 +87,11 @@ class RefinedTorus(QuasiPeriodic):
 
 
 class NoTorus(SymfpuError):
-    """Newton's method found no torus; carries the best iterate as a RefinedTorus, its residual and the reason."""
+    """Newton's method found no torus: raised by `refine`, its sisters and `family`.
+
+    iterate : the best one, a RefinedTorus; residual : what it leaves of the equations of motion, relative to
+        the largest acceleration, dimensionless; reason : why it ended. Ours.
+    """
 
     def __init__(self, reason: str, iterate: RefinedTorus, residual: float) -> None:
         self.reason, self.iterate, self.residual = reason, iterate, residual
@@ -90,9 +104,13 @@ class NoTorus(SymfpuError):
 def refine(torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, report: Report = lambda _: None) -> RefinedTorus:
     """The torus with the same frequencies that solves the equations of motion, with a given one as the guess.
 
-    torus : of a series, resummed, or any other; its phases are kept. tolerance : of the residual of the equations of motion,
-    relative to the largest acceleration; harmonics are added until it is reached. report : called with a line on every step.
-    Raises InputError, and NoTorus with the best iterate.
+    torus : of a series, resummed, or any other; its phases (radians) are kept.
+    tolerance : of the residual of the equations of motion, relative to the largest acceleration,
+        dimensionless; harmonics are added until it is reached.
+    report : called with a line on every step.
+
+    Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a torus, which the
+    paper solves by series. Raises InputError, and NoTorus with the best iterate.
 
     >>> from symfpu.tori.amplitudes import solve_amplitudes
     >>> from symfpu.series.lindstedt import lindstedt
@@ -109,7 +127,21 @@ def refine(torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, report: Report
 def refine_at_amplitudes(
     torus: QuasiPeriodic, amplitudes: Mapping[int, Number], *, tolerance: float = TOLERANCE, report: Report = lambda _: None
 ) -> RefinedTorus:
-    """The torus with the given amplitude of every seed; its frequencies are found. Arguments and errors as those of `refine`."""
+    """The torus with the given amplitude of every seed; its frequencies are found.
+
+    torus : the guess, of the same seeds; its phases (radians) are kept.
+    amplitudes : A_q by seed, exact numbers, dimensionless; of cos(theta_q) in Q_q.
+    tolerance : of the residual of the equations of motion, relative to the largest acceleration.
+    report : called with a line on every step.
+
+    As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, also for a seed left
+    out, and NoTorus with the best iterate.
+
+    >>> from symfpu import Chain, torus_at_amplitudes
+    >>> guess = torus_at_amplitudes(Chain(N=8, alpha="0.3"), {1: "0.4"}, order=4)
+    >>> round(float(refine_at_amplitudes(guess, {1: "0.41"}).frequencies[0]), 9)
+    0.390507682
+    """
     _require_torus(torus)
     values = [long(a) for a in _by_seed("amplitudes", amplitudes, torus, signed=True).values()]
     return refined_torus(torus, [Amplitude(i, a) for i, a in enumerate(values)], tolerance=tolerance, report=report)
@@ -125,10 +157,23 @@ def refine_at_energy(
     tolerance: float = TOLERANCE,
     report: Report = lambda _: None,
 ) -> RefinedTorus:
-    """The torus with the given energy and ratio of amplitudes or of averaged mode energies; its frequencies are found.
+    """The torus with the given energy and ratio of amplitudes or mode energies; its frequencies are found.
 
-    harmonic : False for the total energy H, True for the harmonic energy sum E_q, both at the angles zero. The ratio is given by
-    seed; left out, the amplitudes keep the ratio they have in `torus`. Other arguments and errors as those of `refine`.
+    torus : the guess, of the same seeds; its phases (radians) are kept.
+    energy : an exact number, dimensionless.
+    harmonic : False for the total energy H, True for the harmonic energy sum E_q, both at the angles zero.
+    amplitude_ratio, energy_ratio : by seed, at most one of them; energy_ratio is of E_q of the seeds averaged
+        over the torus. Left out, the amplitudes keep the ratio they have in `torus`.
+    tolerance : of the residual of the equations of motion, relative to the largest acceleration.
+    report : called with a line on every step.
+
+    As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, and NoTorus with the
+    best iterate.
+
+    >>> from symfpu import Chain, torus_at_amplitudes
+    >>> guess = torus_at_amplitudes(Chain(N=8, alpha="0.3"), {1: "0.4"}, order=4)
+    >>> round(float(refine_at_energy(guess, "0.012", harmonic=False).energy()), 12)
+    0.012
     """
     _require_torus(torus)
     value = exact(energy, "energy")

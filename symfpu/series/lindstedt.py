@@ -29,14 +29,20 @@ def lindstedt(
 ) -> LindstedtSeries:
     """The Poincare-Lindstedt series of a q-torus with free seed amplitudes (Eqs. qser, omeser).
 
-    chain : the model. seeds : distinct modes D_0. frequencies : omega_q of each seed, exact numbers; None gives the
-    universal form with symbols L_q(nu). order : K of the coordinates and of the frequency corrections, from 0 up; order
-    k has degree k+1 in the amplitudes (2k+1 if alpha = 0, and with both couplings beta enters two orders up).
-    ring : 'float64', or in universal form 'symbolic' (expanded) or 'nested'; default by whether frequencies are given.
-    digits : every coefficient to so many digits of the largest one of its order, proved (fixed-point numbers); None for
-    doubles. Frequencies and couplings given as floats are read by their shortest decimals, so 0.33 is exactly 33/100.
+    chain : the model; frequencies, amplitudes and times are in its units, dimensionless.
+    seeds : distinct modes D_0.
+    frequencies : omega_q of each seed, exact numbers, shape (s,); a float is read by its shortest decimal, so
+        0.33 is exactly 33/100. None gives the universal form with symbols L_q(nu).
+    order : K of the coordinates and of the frequency corrections, from 0 up; order k has degree k+1 in the
+        amplitudes (2k+1 if alpha = 0, and with both couplings beta enters two orders up).
+    ring : 'float64', or in universal form 'symbolic' (expanded) or 'nested'; default by whether frequencies
+        are given.
+    digits : every coefficient to so many digits of the largest one of its order, proved (fixed-point
+        numbers); None for doubles.
     progress : called as (steps done, steps).
 
+    Differs from the paper: both couplings may act, mu is then alpha/sqrt(2N), and omega^(k) has degree k
+    (alpha), 2k (beta) in the amplitudes, one less than printed.
     Raises InputError for arguments out of range, TooLarge before allocating what would not fit into memory,
     ResonantDivisor at the first divisor that is zero.
 

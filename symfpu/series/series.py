@@ -36,17 +36,37 @@ class ResiduePoint:
 
 @dataclass(frozen=True, eq=False)
 class LindstedtSeries:
-    """The series Q_q = sum mu^k Q_q^(k) and omega_q = Omega_q + sum mu^k omega_q^(k) with free seed amplitudes.
+    """The series Q_q = sum mu^k Q_q^(k), omega_q = Omega_q + sum mu^k omega_q^(k), with free amplitudes.
 
-    Made by `lindstedt`. The tables are in the ring's variables w_i = Omega_i z_i, z_i = (A_i/2) exp(i theta_i), and in
-    u_q = Omega_q Q_q, [omega_q^2]^(k) = Omega_q^2 W_q^(k), without mu; degree d carries the factor unit^-(d-1).
+    Made by `lindstedt` (Eqs. qser, omeser); all quantities dimensionless, phases in radians. The tables are
+    in the ring's variables w_i = Omega_i z_i, z_i = (A_i/2) exp(i theta_i), and in u_q = Omega_q Q_q,
+    [omega_q^2]^(k) = Omega_q^2 W_q^(k), without mu; degree d carries the factor unit^-(d-1).
 
+    chain, seeds, order : as given. frequencies : omega of every seed, exact, shape (s,); None in universal
+        form.
+    ring : 'float64', 'fixedpoint', 'residue', 'symbolic' or 'nested'. grading : which monomials stand in
+        which row.
     coordinates : for each order 0 .. order, u_q^(k); shape (canonical monomials, N-1).
     corrections : for each order 0 .. order, W_q^(k); shape (diagonal monomials, s); no rows where none exist.
-    With digits, both are IntegerTables in units of 2^-bits, and results are mpf: every entry of these tables is correct to
-    `digits` digits of the largest one of its order, proved; sums at given amplitudes keep the absolute error of their order.
-    radii : for each order, the largest error of u_q^(k), and the errors of W_q^(k) by monomial and seed, in the same units.
-    point : where a series of residues was taken.
+    unit : the exact unit of amplitudes, which keeps coefficients in the range of doubles.
+    smallest_divisors : the smallest |lambda_q - (nu.omega)^2|, ascending, with mode, harmonic and order.
+    multiply_adds : operations on coefficients that the recursion took.
+    digits, bits : with digits, both tables are IntegerTables in units of 2^-bits, and results are mpf: every
+        entry of these tables is correct to `digits` digits of the largest one of its order, proved; sums at
+        given amplitudes keep the absolute error of their order. None and 0 otherwise.
+    radii : for each order, the largest error of u_q^(k), and the errors of W_q^(k) by monomial and seed, in
+        the same units.
+    point : where a series of residues was taken. Its methods raise InputError for orders and modes it does
+        not have.
+
+    >>> from symfpu.chain.chain import Chain
+    >>> from symfpu.series.lindstedt import lindstedt
+    >>> lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)
+    LindstedtSeries(N=8, alpha=0.3, seeds=1, order 6, 133 coefficients (float64), smallest divisor 0.024 at
+    mode 2, harmonic (2), order 1)
+    >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), order=1)
+    >>> series.term(q=2, order=1)
+    (-1/2)*A1**2*Omega_1**2*L_{2}(0)/Omega_2 + (-1/2)*A1**2*Omega_1**2*cos(2*theta1)*L_{2}(2)/Omega_2
     """
 
     chain: Chain

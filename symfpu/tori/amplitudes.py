@@ -35,7 +35,14 @@ AGREEMENT = 1e-3  # relative change from the neighbouring order above which a ro
 class AmplitudeHistory:
     """Amplitudes A(K) by frequency order K, and why orders without a root have none.
 
-    orders : all K at which the frequency series gains a term. amplitudes : K -> (A of each seed); failures : K -> error.
+    Made by `amplitude_history`; dimensionless. Fig. 1(b) shows the differences |A(K+2) - A(K)| of a torus.
+
+    seeds : the modes. orders : all K at which the frequency series gains a term.
+    amplitudes : K -> (A of each seed), shape (s,). failures : K -> the error.
+
+    >>> from symfpu import Chain, amplitude_history, lindstedt
+    >>> amplitude_history(lindstedt(Chain(N=8, beta="0.3"), (1,), ("0.3905",), 2))
+    AmplitudeHistory(seeds=(1,), 2 of 2 orders have a root, A(2) = (0.504955824...,))
     """
 
     seeds: tuple[int, ...]
@@ -62,7 +69,17 @@ def frequency_orders(series: LindstedtSeries) -> tuple[int, ...]:
 def amplitude_history(series: LindstedtSeries) -> AmplitudeHistory:
     """The amplitudes for every frequency order up to the series' order, each found from the one before.
 
-    The lowest order is linear in A^2 and needs no guess. Raises UndeterminedAmplitudes if it does not determine A^2.
+    series : with chosen frequencies; amplitudes are dimensionless, mpf if it has digits.
+
+    Solves Eq. omeser truncated at every order (section 3.2). The lowest order is linear in A^2 and needs no
+    guess.
+    Raises InputError for a series in universal form or without corrections, UndeterminedAmplitudes if the
+    lowest order does not determine A^2. Orders without a root are kept with their error.
+
+    >>> from symfpu import Chain, lindstedt
+    >>> history = amplitude_history(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6))
+    >>> {K: round(A, 9) for K, (A,) in history.amplitudes.items()}
+    {2: 0.414689531, 4: 0.405667682, 6: 0.40519105}
     """
     orders = frequency_orders(series)
     found: dict[int, tuple[Any, ...]] = {}
@@ -86,19 +103,29 @@ def solve_amplitudes(
     phases: Mapping[int, float] | None = None,
     guess: Mapping[int, float] | None = None,
 ) -> QTorus:
-    """Seed amplitudes whose truncated frequency series equals the chosen frequencies (Eq. omeser), as a QTorus.
+    """Seed amplitudes whose truncated frequency series equals the chosen frequencies (Eq. omeser): a QTorus.
 
-    frequency_order : K of the frequency series, up to series.order; default the whole series. order : truncation of
-    Q_q(t), up to series.order; default the whole series. The two are independent. phases : by seed, radians; default 0.
-    guess : amplitudes by seed; default none needed: the lowest correction is linear in A^2, and each order starts from the
-    root of the one before. Gauge: A_q multiplies cos(omega_q t + phi_q) in Q_q, not Q_q(0).
+    series : with chosen frequencies; all quantities are dimensionless.
+    frequency_order : K of the frequency series, up to series.order; default the whole series.
+    order : truncation of Q_q(t), up to series.order; default the whole series. The two are independent.
+    phases : by seed, radians; default 0.
+    guess : amplitudes by seed; default none needed: the lowest correction is linear in A^2, and each order
+        starts from the root of the one before.
 
-    Raises InputError for arguments out of range and for frequencies that are commensurable within the harmonics of the
-    series; NoRealAmplitude if an A^2 comes out negative (names the seed), also where the lowest order has no real root and
-    no later one up to frequency_order has; DidNotConverge with the last iterate and residual; UndeterminedAmplitudes if
-    no correction determines the amplitudes.
-    Where neighbouring frequency orders disagree, the torus says so in its warnings. For a series with digits the root is
-    polished to them by mpmath, and its certificate says whether ball arithmetic proves that it exists within 10^-digits.
+    Gauge: A_q multiplies cos(omega_q t + phi_q) in Q_q, and is not Q_q(0). The paper's table and captions do
+    not always mean the same truncation; here they are two arguments.
+    Raises InputError for arguments out of range and for frequencies that are commensurable within the
+    harmonics of the series; NoRealAmplitude if an A^2 comes out negative (names the seed), also where the
+    lowest order has no real root and no later one up to frequency_order has; DidNotConverge with the last
+    iterate and residual; UndeterminedAmplitudes if no correction determines the amplitudes. Where
+    neighbouring frequency orders disagree, the torus says so in its warnings. For a series with digits the
+    root is polished to them by mpmath, and its certificate says whether ball arithmetic proves that it exists
+    within 10^-digits.
+
+    >>> from symfpu import Chain, lindstedt
+    >>> torus = solve_amplitudes(lindstedt(Chain(N=16, alpha="0.33"), (1, 2), ("0.19626", "0.39046"), 8))
+    >>> {q: round(A, 7) for q, A in torus.amplitudes.items()}
+    {1: 0.5843165, 2: 0.4118684}
     """
     if series.frequencies is None:
         raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")

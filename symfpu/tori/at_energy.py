@@ -25,7 +25,12 @@ POINTS = 128  # angles at which that residual is taken, about
 
 
 class NoTorusAtEnergy(SymfpuError):
-    """No torus of this energy: carries it, the largest energy reached, the amplitudes there and why it was not followed on."""
+    """No torus of this energy: raised by `torus_at_energy` where the way from the linear modes ends below it.
+
+    energy : asked for; harmonic : whether it is sum E_q. reached : the largest energy on the way;
+        amplitudes : by seed, there, {} if there was none. reason : why it was not followed on. Energies and
+        amplitudes are dimensionless. Ours.
+    """
 
     def __init__(self, target: _Target, last: _Member, failure: NotFound) -> None:
         self.energy, self.harmonic, self.reason = float(target.energy), target.harmonic, failure.reason
@@ -146,20 +151,30 @@ def torus_at_energy(
     phases: Mapping[int, Number] | None = None,
     digits: int | None = None,
 ) -> QTorus:
-    """The q-torus of a given energy whose seed amplitudes, or mode energies, have given ratios; frequencies are found.
+    """The q-torus of a given energy and ratio of seed amplitudes or mode energies; frequencies are found.
 
-    energy : a positive exact number. harmonic : False, it is the total energy H at t = 0; True, the harmonic energy sum E_q at
-    t = 0, over all modes. amplitude_ratio : weights of the amplitudes A_q, by seed. energy_ratio : weights of the infinite-time
-    averages of E_q of the seeds (other modes take what the torus gives them). At most one of the two; default equal mode
-    energies. Only their ratios count. The other arguments are those of `torus_at_amplitudes`. The energy is met to some 1e-13 of
-    itself, or to `digits`. Of several tori it is the one that continues the linear modes as the energy grows.
+    chain, seeds : the model and its distinct modes D_0; all quantities are dimensionless, phases in radians.
+    energy : a positive exact number.
+    harmonic : False, it is the total energy H at t = 0; True, the harmonic energy sum E_q at t = 0, over all
+        modes.
+    order : of the series.
+    amplitude_ratio : weights of the amplitudes A_q, by seed.
+    energy_ratio : weights of the infinite-time averages of E_q of the seeds (other modes take what the torus
+        gives them). At most one of the two; default equal mode energies. Only their ratios count.
+    frequency_order, coordinate_order : where frequencies and Q_q(t) are cut, up to order; default order.
+    phases : by seed, radians; default 0.
+    digits : of all results; None for doubles.
 
-    Raises InputError for arguments out of range, NoTorusAtEnergy with the energies reached and why they end there: no
-    frequencies, or a series that solves the equations of motion no better than to a quarter of the largest acceleration.
+    Solves Eq. omeser with the energy as a further equation; the paper's Appendix A steers the linear energy
+    instead. The energy is met to some 1e-13 of itself, or to `digits`. Of several tori it is the one that
+    continues the linear modes as the energy grows.
+    Raises InputError for arguments out of range, NoTorusAtEnergy with the energies reached and why they end
+    there: no frequencies, or a series that solves the equations of motion no better than to a quarter of the
+    largest acceleration.
 
-    >>> torus = torus_at_energy(Chain(N=16, alpha="0.33"), (1, 2), "0.01", harmonic=False, order=6)
+    >>> torus = torus_at_energy(Chain(N=8, alpha="0.33"), (1, 2), "0.01", harmonic=False, order=3)
     >>> round(float(torus.energy()), 12), [round(a, 9) for a in torus.amplitudes.values()]
-    (0.01, [0.481137386, 0.242323897])
+    (0.01, [0.254094674, 0.129588043])
     """
     plan = checked_plan(chain, order, frequency_order, coordinate_order, phases, digits)
     modes = tuple(sorted(seed_modes(seeds, chain.N)))

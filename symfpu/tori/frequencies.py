@@ -38,7 +38,13 @@ SAME = 1e-6  # relative difference of amplitudes that are the same root
 
 
 class NoSelfConsistentFrequencies(SymfpuError):
-    """No frequencies for these amplitudes; carries the last iterate, its residual relative to the shifts, and where the walk was."""
+    """No frequencies for these amplitudes: raised by `torus_at_amplitudes` where the walk from rest ends.
+
+    frequency_order : K. amplitudes : asked for; reached : by seed, the last ones on the way that have
+        frequencies.
+    frequencies : the last iterate by seed; residual : what it leaves, relative to the shifts. reason : in
+        words. All dimensionless. Ours.
+    """
 
     def __init__(self, search: Frequencies, squares: Numbers, reached: Numbers, failure: NotFound) -> None:
         seeds = search.seeds
@@ -208,16 +214,25 @@ def torus_at_amplitudes(
     phases: Mapping[int, Number] | None = None,
     digits: int | None = None,
 ) -> QTorus:
-    """The q-torus with these seed amplitudes; its frequencies solve omega = Omega + sum mu^k omega^(k)(A; omega) (Eq. omeser).
+    """The q-torus with these seed amplitudes; its frequencies are found (Eq. omeser).
 
-    amplitudes : A_q by seed, positive exact numbers (a phase of pi changes the sign); A_q multiplies cos(omega_q t + phi_q) in
-    Q_q and is not Q_q(0). order : of the series, at which Q_q(t) is cut unless coordinate_order (up to order) says less.
-    frequency_order : K of the frequency series, up to order; default the whole. phases : by seed, radians; default 0. digits : of
-    all results; None for doubles. The divisors are those of the frequencies found, so that `solve_amplitudes` at them gives the
-    amplitudes back. Of several solutions it is the one that continues the linear modes as the amplitudes grow.
+    Solves omega = Omega + sum mu^k omega^(k)(A; omega).
 
-    Raises InputError for arguments out of range, TooLarge as `lindstedt` does, NoSelfConsistentFrequencies where the family from
-    rest ends or turns before, as it does at a strong resonance. The warnings of the torus are those of `solve_amplitudes`.
+    chain : the model; all quantities are dimensionless, phases in radians.
+    amplitudes : A_q by seed, positive exact numbers (a phase of pi changes the sign); A_q multiplies
+        cos(omega_q t + phi_q) in Q_q and is not Q_q(0).
+    order : of the series.
+    frequency_order : K of the frequency series, up to order; default the whole.
+    coordinate_order : where Q_q(t) is cut, up to order; default order.
+    phases : by seed, radians; default 0.
+    digits : of all results; None for doubles.
+
+    The paper chooses the frequencies and solves for the amplitudes. Here the divisors are those of the
+    frequencies found, so that `solve_amplitudes` at them gives the amplitudes back. Of several solutions it
+    is the one that continues the linear modes as the amplitudes grow.
+    Raises InputError for arguments out of range, TooLarge as `lindstedt` does, NoSelfConsistentFrequencies
+    where the family from rest ends or turns before, as it does at a strong resonance. The warnings of the
+    torus are those of `solve_amplitudes`.
 
     >>> torus = torus_at_amplitudes(Chain(N=16, alpha="0.33"), {1: "0.58", 2: "0.41"}, order=8)
     >>> [round(float(w), 9) for w in torus.frequencies]

@@ -184,7 +184,25 @@ class QuasiPeriodic:
 
 @dataclass(frozen=True, eq=False)
 class FourierTorus(QuasiPeriodic):
-    """A solution whose coefficients are given. seeds, frequencies : (s,). harmonics : (H, s). cosines : (H, N-1)."""
+    """A solution with given coefficients: Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
+
+    chain : the model; all quantities are dimensionless, phases in radians. seeds : the s modes that name the
+        angles.
+    frequencies : omega of every seed, exact, shape (s,). harmonics : the nu, integers, one of each pair +-nu,
+        shape (H, s).
+    cosines : c_q[nu], shape (H, N-1). phases : phi by seed. digits : of cosines in mpf; None for doubles.
+
+    Eqs. qser and serabs1 with the amplitudes put in. Nothing is checked: whether it solves the equations of
+    motion is what `residual` measures.
+
+    >>> from symfpu import Chain
+    >>> half = (Fraction(1, 2),)
+    >>> mode = FourierTorus(Chain(4, alpha=1), (1,), half, np.array([[1]]), np.array([[1.0, 0, 0]]), {1: 0.0})
+    >>> mode
+    FourierTorus(chain=Chain(N=4, alpha=1), seeds=(1,), frequencies=(Fraction(1, 2),), phases={1: 0.0}, ...)
+    >>> mode.positions(0.0)
+    array([1., 0., 0.])
+    """
 
     chain: Chain
     seeds: tuple[int, ...]

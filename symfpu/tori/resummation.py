@@ -34,8 +34,17 @@ LARGEST_SUM = 20  # and of those that sum a series
 
 @dataclass(frozen=True)
 class PadeSum:
-    """values : highest approximant; disagreement : doubles, its distance from the neighbour of the same terms whose denominator
-    has one degree less (zero where the sum is exact). It measures trust, and bounds no error. Shapes alike."""
+    """A sum by Pade approximants, and how far it can be trusted.
+
+    values : the highest approximants, dimensionless; (s,) of frequencies, (H, N-1) of coefficients.
+    disagreement : doubles of the same shape, the distance from the neighbour of the same terms whose
+        denominator has one degree less (zero where the sum is exact). It measures trust, and bounds no error.
+
+    Wynn's epsilon algorithm (M. Wynn, MTAC 10 (1956) 91); the paper sums no series this way.
+
+    >>> PadeSum(np.array([0.5]), np.array([0.25]))
+    PadeSum(values=array([0.5]), disagreement=array([0.25]))
+    """
 
     values: Numbers
     disagreement: Floats
@@ -82,7 +91,20 @@ def _epsilon(terms: Numbers) -> tuple[Numbers, Floats]:
 
 
 def pade_frequencies(series: LindstedtSeries, amplitudes: Mapping[int, Any], frequency_order: int | None = None) -> PadeSum:
-    """Resummed frequencies omega_q at these amplitudes, of all terms up to frequency_order; shapes (s,)."""
+    """Resummed frequencies omega_q at these amplitudes, of all terms up to frequency_order.
+
+    series : with chosen frequencies. amplitudes : A by seed, dimensionless.
+    frequency_order : K, up to series.order; default the whole series.
+
+    Returns a PadeSum of shape (s,), in the order of the seeds: Eq. omeser summed by Wynn, MTAC 10 (1956) 91,
+    where the paper cuts it. Raises InputError for a series in universal form, an order without a correction,
+    or a seed left out.
+
+    >>> from symfpu import Chain, lindstedt
+    >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)
+    >>> pade_frequencies(series, {1: 0.5}).values.round(6)
+    array([0.39068])
+    """
     _, orders = _checked(series, frequency_order)
     with series.numbers.context(series.digits):
         given = _by_seed(series, "amplitudes", amplitudes)
@@ -94,7 +116,18 @@ def pade_frequencies(series: LindstedtSeries, amplitudes: Mapping[int, Any], fre
 def pade_amplitudes(series: LindstedtSeries, guess: Mapping[int, Any], frequency_order: int | None = None) -> dict[int, Any]:
     """Amplitudes at which the resummed frequencies are the chosen ones, near a guess by seed.
 
-    Raises DidNotConverge with the last iterate, NoRealAmplitude if a squared amplitude comes out negative.
+    series : with chosen frequencies. guess : amplitudes by seed, dimensionless.
+    frequency_order : K, up to series.order; default the whole series.
+
+    Returns the amplitudes by seed; Eq. omeser resummed (`pade_frequencies`) where the paper solves it
+    truncated.
+    Raises InputError as `pade_frequencies` does, DidNotConverge with the last iterate, NoRealAmplitude if a
+    squared amplitude comes out negative.
+
+    >>> from symfpu import Chain, lindstedt, solve_amplitudes
+    >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)
+    >>> round(pade_amplitudes(series, solve_amplitudes(series).amplitudes)[1], 6)
+    0.405162
     """
     guess, orders = _by_seed(series, "guess", guess), _checked(series, frequency_order)[1]
     target = shifts(series)
@@ -152,13 +185,37 @@ def _solved(equations: Callable[..., list[Any]], count: int, digits: int | None)
 
 @dataclass(frozen=True, eq=False)
 class ResummedTorus(FourierTorus):
-    """A torus whose coefficients are Pade sums. disagreement : of neighbouring approximants, (H, N-1)."""
+    """A torus whose coefficients are Pade sums. Made by `resum`; dimensionless, phases in radians.
+
+    chain, seeds, frequencies, phases, digits : those of the torus. harmonics : (H, s). cosines : resummed,
+        (H, N-1).
+    disagreement : of neighbouring approximants, doubles, (H, N-1); trust, no bound. Wynn, MTAC 10 (1956) 91.
+
+    >>> from symfpu import Chain, lindstedt, resum, solve_amplitudes
+    >>> torus = resum(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 4)))
+    >>> torus
+    ResummedTorus(chain=Chain(N=8, alpha=0.3), seeds=(1,), frequencies=(Fraction(781, 2000),), ...)
+    >>> torus.disagreement.shape == torus.cosines.shape
+    True
+    """
 
     disagreement: Floats = field(repr=False, default_factory=lambda: np.zeros((0, 0)))
 
 
 def resum(torus: QTorus) -> ResummedTorus:
-    """The same torus with every coefficient c_q[nu] resummed over its orders, up to the torus' own order."""
+    """The same torus with every coefficient c_q[nu] resummed over its orders, up to the torus' own order.
+
+    torus : of a series, from `solve_amplitudes`; its amplitudes and phases stay. Everything is dimensionless.
+
+    The terms of Eq. qser for one harmonic are summed by Pade approximants (Wynn, MTAC 10 (1956) 91), where
+    the paper cuts them at an order. Raises nothing: where approximants do not exist, the last one that does
+    is taken.
+
+    >>> from symfpu import Chain, lindstedt, solve_amplitudes
+    >>> torus = solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 8))
+    >>> bool(resum(torus).residual() < torus.residual())
+    True
+    """
     return next(resum_by_order(torus, [torus.order]))
 
 
@@ -197,11 +254,20 @@ def _resummed(table: Numbers, torus: QTorus) -> tuple[Numbers, Floats]:
 
 
 def pade_poles(series: LindstedtSeries, q: int, amplitudes: Mapping[int, Any]) -> NDArray[np.complex128]:
-    """Poles of the diagonal approximant of omega_q in units of the actual mu (mu^2 with alpha), nearest first.
+    """Poles of the approximant of omega_q, in units of the actual mu (mu^2 with alpha), nearest first.
 
-    A pole beside a zero of the numerator is an artefact of noise (Froissart doublet) and left out. A pole at r suggests a
-    singularity at r times the mu (mu^2) at hand. It is a hint only: short or noisy series have poles of their own and miss weak
-    ones. Raises InputError for a mode that is no seed, or a series without frequency corrections.
+    series : of numbers. q : a seed. amplitudes : A by seed, dimensionless. Returns complex numbers, shape
+        (n,).
+
+    The approximant is the diagonal one. A pole beside a zero of the numerator is an artefact of noise
+    (Froissart doublet) and left out. A pole at r suggests a singularity at r times the mu (mu^2) at hand. It
+    is a hint only: short or noisy series have poles of their own and miss weak ones. Pade table by Wynn, MTAC
+    10 (1956) 91. Raises InputError for a mode that is no seed, or a series without frequency corrections.
+
+    >>> from symfpu import Chain, lindstedt
+    >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 12)
+    >>> pade_poles(series, 1, {1: 0.405}).round(1)
+    array([13.5+0.j, 28.5+0.j])
     """
     _, orders = _checked(series, None)
     if q not in series.seeds:

@@ -19,11 +19,22 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 @dataclass(frozen=True)
 class RootCertificate:
-    """Whether interval Newton in ball arithmetic has shown that the truncated system has exactly one root near the amplitudes.
+    """Whether the truncated system is proved to have exactly one root near the amplitudes.
 
-    radius : by seed; in the box of amplitudes within it there is exactly one root, wherever in its proved error bounds each
-    coefficient of the series lies (A^2 of the root is within 10^-digits, relative). reason : if not certified, the inequality
-    that failed.
+    By interval Newton in ball arithmetic; ours: the paper proves no root.
+
+    certified : whether it is.
+    radius : by seed, dimensionless; in the box of amplitudes within it there is exactly one root of Eq.
+        omeser truncated, wherever in its proved error bounds each coefficient of the series lies (A^2 of the
+        root is within 10^-digits, relative).
+    reason : if not certified, the inequality that failed.
+
+    >>> from symfpu import Chain, lindstedt, solve_amplitudes
+    >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 4, digits=20)
+    >>> solve_amplitudes(series).certificate.certified
+    True
+    >>> RootCertificate(False, {}, "the box does not shrink")
+    RootCertificate(certified=False, radius={}, reason='the box does not shrink')
     """
 
     certified: bool
@@ -33,12 +44,22 @@ class RootCertificate:
 
 @dataclass(frozen=True, eq=False)
 class QTorus(QuasiPeriodic):
-    """The quasi-periodic solution Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)), truncated at `order`.
+    """The torus of a series, Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)), cut at `order`.
 
-    Made by `solve_amplitudes`. amplitudes, phases : by seed; phases in radians. frequency_order : truncation of the
-    frequency series that gave the amplitudes; order : truncation of the coordinates. history : amplitudes by frequency
-    order. root_residual : largest |omega_q - truncated series|. certificate : whether the root is proved to exist (series with
-    digits only). warnings : reasons to doubt that this is a torus.
+    Made by `solve_amplitudes` and others (Eqs. qser, serabs1); dimensionless, phases in radians.
+
+    series : it was solved from. amplitudes, phases : by seed.
+    frequency_order : truncation of the frequency series that gave the amplitudes. order : truncation of the
+        coordinates.
+    history : K -> amplitudes, (s,), by frequency order. root_residual : largest |omega_q - truncated series|.
+    certificate : whether the root is proved to exist (series with digits only).
+    warnings : reasons to doubt that this is a torus.
+
+    harmonics (H, s) and cosines (H, N-1) follow from the series; with digits all numbers are mpf.
+
+    >>> from symfpu import Chain, lindstedt, solve_amplitudes
+    >>> solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8))
+    QTorus(N=8, alpha=0.3, A_1=0.247740186794, frequency order 8, order 8, H=0.004714606926, residual ...)
     """
 
     series: LindstedtSeries = field(repr=False)

@@ -52,16 +52,27 @@ class LargestTerm:
 
 @dataclass(frozen=True, eq=False)
 class Assessment:
-    """What `assess` found. word : 'converged', 'asymptotic', 'not a torus', or 'undecided' where too few orders are known.
+    """What `assess` found; dimensionless numbers.
 
-    best_order : coordinate order of the least residual. reasons : why this word, in sentences. amplitudes : A(K) by frequency
-    order; differences : Delta A(K). root_uncertainty : what later frequency orders would change of the amplitudes, relative.
-    sums : by seed, mu^k S_1(k) and mu^k S_2(k) of its own coordinate (Eqs. serabs2, serabs3). terms : the largest term of every
-    order; growth : by how much terms grow an order, from the last of them. radius : by ratio, 1/growth, in units of the
-    actual mu; pole_radius : modulus of the nearest pole of the frequencies' approximants, in the same units (infinite if there
-    is none): a hint, since approximants of noisy or short series have poles of their own and miss weak ones. poles : by seed, in
-    units of mu^2 with alpha, of mu with beta alone. residuals, energy_errors : by coordinate order, relative, over a grid of
-    angles. resummed_residual : of the torus whose coefficients are Pade sums.
+    word : 'converged', 'asymptotic', 'not a torus', or 'undecided' where too few orders are known.
+    best_order : coordinate order of the least residual. reasons : why this word, in sentences.
+    order, frequency_order : of the torus' coordinates and frequencies.
+    amplitudes : K -> A(K), (s,), by frequency order; differences : K -> Delta A(K), (s,) (Fig. 1(b)).
+    root_uncertainty : what later frequency orders would change of the amplitudes, relative.
+    sums : by seed, mu^k S_1(k) and mu^k S_2(k) of its own coordinate, (order + 1,) each (Eqs. serabs2,
+        serabs3).
+    terms : the largest term of every order; growth : by how much terms grow an order, from the last of them.
+    radius : by ratio, 1/growth, in units of the actual mu; pole_radius : modulus of the nearest pole of the
+        frequencies' approximants, in the same units (infinite if there is none): a hint, since approximants
+        of noisy or short series have poles of their own and miss weak ones.
+    poles : by seed, complex, in units of mu^2 with alpha, of mu with beta alone.
+    residuals, energy_errors : by coordinate order, (order + 1,), relative, over a grid of angles.
+    resummed_residual : of the torus whose coefficients are Pade sums. certificate : of the amplitudes.
+
+    >>> from symfpu import Chain, assess, lindstedt, solve_amplitudes
+    >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8)
+    >>> assess(series, solve_amplitudes(series))
+    Assessment(converged: residual of the equations of motion ... at order 8; ...)
     """
 
     word: str
@@ -131,10 +142,20 @@ def short(value: float) -> float | None:
 def assess(series: LindstedtSeries, torus: QTorus, *, resummed: bool = True, progress: Progress | None = None) -> Assessment:
     """Judge a series and the torus solved from it (Fig. 1(b), (c) of the paper for any torus, and more).
 
-    torus : made from this series by `solve_amplitudes`. resummed : also judge the torus of Pade sums (the slowest part for
-    long series with digits); else its residual is infinite. progress : called as (steps done, steps). Raises InputError if the
-    torus belongs to another series. The residuals decide: they fall to the last order of a converged series, fall and rise
-    again for an asymptotic one; a root that moves with the frequency order, or whose best residual is large, is no torus.
+    series : with chosen frequencies. torus : made from this series by `solve_amplitudes`.
+    resummed : also judge the torus of Pade sums (the slowest part for long series with digits); else its
+        residual is infinite.
+    progress : called as (steps done, steps).
+
+    The residuals, relative and dimensionless, decide: they fall to the last order of a converged series, fall
+    and rise again for an asymptotic one; a root that moves with the frequency order, or whose best residual
+    is large, is no torus. The paper judges by the sums of Eqs. serabs2, serabs3, which are among the results.
+    Raises InputError if the torus belongs to another series.
+
+    >>> from symfpu import Chain, lindstedt, solve_amplitudes
+    >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8)
+    >>> assess(series, solve_amplitudes(series)).word
+    'converged'
     """
     if torus.series is not series:
         raise InputError("torus", "of another series", "one solved from this series", "call solve_amplitudes(series)")
