@@ -11,7 +11,7 @@ LONGEST = 20_000  # characters of an expression up to which SymPy's printer is w
 
 
 def latex(expression: Any) -> str:
-    """LaTeX of a SymEngine expression, with A1 as A_{1} and theta1 as a Greek letter; with math delimiters."""
+    """LaTeX of a SymEngine expression, with A1 as A_{1} and theta1 as a Greek letter, in math delimiters."""
     if len(str(expression)) > LONGEST:
         return str(expression._repr_latex_())
     import sympy

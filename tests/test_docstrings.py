@@ -1,6 +1,6 @@
-"""Docstrings of the public names settle arguments: shapes, units, errors, sources, every argument, an example that runs.
+"""Docstrings of public names leave nothing out: arguments, shapes, units, errors, sources, an example.
 
-The examples themselves run with the tests (`--doctest-modules`); here it is checked that nothing is left out.
+The examples themselves run with the tests (`--doctest-modules`).
 """
 
 import ast
@@ -42,7 +42,7 @@ def _left_out(words, text):
 
 
 def _words_of(thing):
-    """What a docstring may quote: arguments of the function, the names of its module, the fields of results."""
+    """What a docstring may quote: arguments of the function, names of its module, fields of results."""
     own = set(inspect.signature(thing).parameters) if inspect.isfunction(thing) else set(dir(thing))
     fields = {field.name for name in RESULTS for field in dataclasses.fields(PUBLIC[name])}
     return own | fields | set(PUBLIC) | set(vars(importlib.import_module(thing.__module__)))
@@ -97,6 +97,16 @@ def test_docstring_names_units(name):
 def test_docstring_of_a_function_names_every_argument(name):
     function = PUBLIC[name]
     assert _left_out(inspect.signature(function).parameters, function.__doc__) == []
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_docstrings_of_methods_name_every_argument(name):
+    result = PUBLIC[name]
+    for called, method in inspect.getmembers(result, inspect.isfunction):
+        if called.startswith("_"):
+            continue
+        _self, *arguments = inspect.signature(method).parameters
+        assert _left_out(arguments, f"{method.__doc__} {result.__doc__}") == [], called
 
 
 @pytest.mark.parametrize("name", RESULTS)

@@ -19,7 +19,8 @@ IMPORT_SECONDS = 0.3  # ten times what it takes: a machine may be busy
 
 def _run(code):
     """What a fresh interpreter prints."""
-    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
+    command = [sys.executable, "-c", code]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def test_importing_the_package_loads_nothing_heavy():
@@ -43,7 +44,8 @@ def test_every_public_name_stands_once_in_the_stub_and_is_what_it_says():
     lines = [line for line in stub.body if isinstance(line, ast.ImportFrom)]
     names = [alias.name for line in lines for alias in line.names]
     assert sorted(names) == symfpu.__all__ == sorted(set(names))
-    assert all(alias.asname == alias.name for line in lines for alias in line.names)  # re-exported, for type checkers
+    reexported = [alias.asname == alias.name for line in lines for alias in line.names]
+    assert all(reexported)
     for line in lines:
         for alias in line.names:
             thing = getattr(symfpu, alias.name)
@@ -59,7 +61,8 @@ def test_the_stub_is_part_of_the_package():
 
 def test_type_checkers_know_the_types_of_public_names(tmp_path):
     script = tmp_path / "user.py"
-    script.write_text("from symfpu import Chain, lindstedt\nreveal_type(lindstedt(Chain(8, alpha=1), (1,)))\n")
+    calls = "reveal_type(lindstedt(Chain(8, alpha=1), (1,)))"
+    script.write_text(f"from symfpu import Chain, lindstedt\n{calls}\n")
     command = [sys.executable, "-m", "mypy", str(script)]  # with the cache of the check of types before
     finished = subprocess.run(command, capture_output=True, text=True, cwd=ROOT.parent)
     assert 'Revealed type is "symfpu.series.series.LindstedtSeries"' in finished.stdout

@@ -110,7 +110,7 @@ class Chain:
         return np.array([self.linear_frequency(q) for q in range(1, self.N)], dtype=object)
 
     def positions(self, Q: ArrayLike) -> Numbers:
-        """Particle displacements x_1 .. x_(N-1) of mode coordinates (Eq. lintra); shape (..., N-1) to (..., N-1).
+        """Particle displacements x_1 .. x_(N-1) of mode coordinates Q (Eq. lintra); shapes (..., N-1).
 
         The transform is orthogonal and its own inverse: it also takes momenta, and positions to modes. Here and below arrays
         of mpf give arrays of mpf at mpmath's working precision.
@@ -123,27 +123,30 @@ class Chain:
         return np.asarray(dst(state, type=1, norm="ortho", axis=-1))
 
     def modes(self, x: ArrayLike) -> Numbers:
-        """Mode coordinates Q_1 .. Q_(N-1) of particle displacements, the inverse of `positions`; shape (..., N-1)."""
+        """Mode coordinates Q_1 .. Q_(N-1) of displacements x, inverse of `positions`; shapes (..., N-1)."""
         return self.positions(x)
 
     def stretches(self, Q: ArrayLike) -> Numbers:
-        """Bond stretches r_j = x_(j+1) - x_j, j = 0 .. N-1, of mode coordinates; shape (..., N-1) to (..., N)."""
+        """Bond stretches r_j = x_(j+1) - x_j, j = 0 .. N-1, of modes Q; shape (..., N-1) to (..., N)."""
         x = self.positions(Q)
         return np.diff(np.concatenate([np.zeros_like(x[..., :1]), x, np.zeros_like(x[..., :1])], axis=-1), axis=-1)
 
     def energy(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
-        """Total energy H (Eq. fpuham) of mode coordinates and momenta; shapes (..., N-1) to (...)."""
+        """Total energy H (Eq. fpuham) of mode coordinates Q and momenta P; shapes (..., N-1) to (...)."""
         r, (P, numbers) = self.stretches(Q), self._state(P, "P")
         potential = bonds.potential(self.law(numbers), r)
         return np.asarray(0.5 * np.sum(P**2, axis=-1) + np.sum(potential, axis=-1))
 
     def harmonic_energies(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
-        """Harmonic energy E_q = (P_q^2 + Omega_q^2 Q_q^2)/2 of every mode (Eq. harmonicene); shapes (..., N-1)."""
+        """Harmonic energy E_q = (P_q^2 + Omega_q^2 Q_q^2)/2 of every mode (Eq. harmonicene).
+
+        Q, P : mode coordinates and momenta, shapes (..., N-1), as that of the result.
+        """
         (Q, numbers), (P, _) = self._state(Q, "Q"), self._state(P, "P")
         return np.asarray(0.5 * (P**2 + (self.frequencies(numbers) * Q) ** 2))
 
     def accelerations(self, Q: ArrayLike) -> Numbers:
-        """Second time derivative of every mode coordinate (Eq. eqmo); shapes (..., N-1)."""
+        """Second time derivative of every mode coordinate Q (Eq. eqmo); shapes (..., N-1)."""
         r = self.stretches(Q)
         numbers = arithmetic_of(r)
         tension = bonds.tension(self.law(numbers), r)
@@ -160,11 +163,11 @@ class Chain:
         return array, numbers
 
     def B(self, q: int, l: int, m: int) -> int:
-        """Coupling of three modes (Eq. transa): -1, 0 or 1 for distinct sums, by selection rule."""
+        """Coupling of three modes q, l, m (Eq. transa): -1, 0 or 1 for distinct sums, by selection rule."""
         return self._coupling(q, l, m)
 
     def C(self, q: int, l: int, m: int, n: int) -> int:
-        """Coupling of four modes (Eq. transa, with the sums equal to -2N that the paper leaves out)."""
+        """Coupling of four modes q, l, m, n (Eq. transa, with the sums of -2N that the paper leaves out)."""
         return self._coupling(q, l, m, n)
 
     def _coupling(self, *modes: int) -> int:

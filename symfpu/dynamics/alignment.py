@@ -79,6 +79,8 @@ class AlignmentIndices:
     log10_gali : (S, vectors-1), for k = 2 .. vectors. lyapunov : (S,), log |v_1| / t of the first vector.
     step : of the integrator. energy_error : |H(T) - H(0)| / H(0) of the orbit.
 
+    Its methods look at the last decades of time.
+
     >>> from symfpu import Chain, alignment_indices
     >>> found = alignment_indices(Chain(N=4, alpha=1), [0.1, 0, 0], [0, 0, 0], 1e3, vectors=2)
     >>> found.times.shape, found.log10_gali.shape, found.lyapunov.shape

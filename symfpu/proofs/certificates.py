@@ -143,7 +143,10 @@ class PropagationProof:
         return body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
 
     def write(self, path: Path | str) -> None:
-        """Write the certificate as JSON, whole or not at all. Raises InputError if the file cannot be written."""
+        """Write the certificate to a path as JSON, whole or not at all.
+
+        Raises InputError if the file cannot be written.
+        """
         write_text(Path(path), json.dumps(self.certificate(), indent=1) + "\n")
 
 

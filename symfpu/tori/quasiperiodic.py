@@ -92,7 +92,7 @@ class QuasiPeriodic:
         return np.concatenate(parts) if parts else np.zeros((0, self.chain.N - 1))
 
     def energy(self, t: ArrayLike = 0.0) -> Any:
-        """Total energy H along the solution; constant in time for an exact torus. A number, or shape (T,)."""
+        """Total energy H at t, a number or (T,), in the shape of t; constant in time for an exact torus."""
         with self._context():
             return self.chain.energy(self.positions(t), self.momenta(t))[()]
 
@@ -152,7 +152,10 @@ class QuasiPeriodic:
         return self._residuals(points)[0]
 
     def residual(self, points: int | None = None) -> float:
-        """Largest residual of the equations of motion on a grid of angles, relative to the largest acceleration."""
+        """Largest residual of the equations of motion on a grid of angles, over the largest acceleration.
+
+        points : grid points for each angle, as for `residuals`.
+        """
         residuals, largest = self._residuals(points)
         return float(residuals.max() / largest)
 
@@ -174,7 +177,10 @@ class QuasiPeriodic:
             return worst, largest
 
     def angle_grid(self, number: int) -> Iterator[Numbers]:
-        """The tensor grid of angles in portions; a shift keeps it off the symmetric angles 0 and pi."""
+        """The tensor grid of angles, radians, in portions (P, s); a shift keeps it off 0 and pi.
+
+        number : of points for each of the s angles.
+        """
         s = len(self.seeds)
         for start in range(0, number**s, GRID_POINTS):
             index = np.arange(start, min(start + GRID_POINTS, number**s))
