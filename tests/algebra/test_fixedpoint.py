@@ -121,9 +121,9 @@ def promised_of_each_order(few, many):
             for ours, theirs in ((few.coordinates[k], many.coordinates[k]), (few.corrections[k], many.corrections[k])):
                 if ours.size == 0:
                     continue
-                exact = few._entries(theirs) * mpmath.ldexp(ratio ** (few.degree(k) - 1), few.bits - many.bits)
+                exact = few.tables.entries(theirs) * mpmath.ldexp(ratio ** (few.degree(k) - 1), few.bits - many.bits)
                 allowed = abs(exact).max() * mpmath.mpf(10) ** -few.digits
-                assert abs(few._entries(ours) - exact).max() <= allowed
+                assert abs(few.tables.entries(ours) - exact).max() <= allowed
 
 
 @pytest.mark.parametrize("digits", [1, 5, 15, 100])
