@@ -1,1 +1,3 @@
-"""Polynomials in the seed amplitudes: grading, rings and compiled products. Knows nothing of physics."""
+"""Polynomials in the seed amplitudes: grading, rings and compiled products. Knows nothing of
+physics.
+"""

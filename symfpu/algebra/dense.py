@@ -1,7 +1,9 @@
-"""Rings whose coefficients are doubles: values on half of the bonds, multiplied by the compiled kernels.
+"""Rings whose coefficients are doubles: values on half of the bonds, multiplied by the compiled
+kernels.
 
-What the ring of doubles and the residues modulo a prime share: storage, transforms, products, selection masks. A ring says
-what its cosines are, how it multiplies and reduces arrays, and whether it rescales.
+What the ring of doubles and the residues modulo a prime share: storage, transforms, products,
+selection masks. A ring says what its cosines are, how it multiplies and reduces arrays, and
+whether it rescales.
 """
 
 from __future__ import annotations
@@ -26,36 +28,48 @@ PARALLEL_FROM = 500_000  # multiply-adds below which threads cost more than they
 
 
 def lane_width(columns: int) -> int:
-    """Lanes in a row of the kernel: one vector register of doubles, or two where there are enough columns."""
+    """Lanes in a row of the kernel: one vector register of doubles, or two where there are enough
+    columns.
+    """
     return 8 if columns <= 8 else 16
 
 
 def available_cores() -> int:
     """Processor cores that this process may use."""
-    return len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count() or 1))
+    return len(
+        os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count() or 1)
+    )
 
 
 def predicted_bytes(N: int, seeds: int, top: int, *, cubic: bool) -> int:
-    """Upper bound of the memory of a series up to degree `top`, temporaries included; closed form, nothing is allocated."""
+    """Upper bound of the memory of a series up to degree `top`, temporaries included.
+
+    Closed form, nothing is allocated.
+    """
     lanes = -(-((N + 1) // 2) // lane_width((N + 1) // 2)) * lane_width((N + 1) // 2)
     rows = comb(top + 2 * seeds, 2 * seeds)
     canonical = (rows + comb(top // 2 + seeds, seeds)) // 2
     stored = rows * 8 * (lanes * (2 if cubic else 1) + 16 * -(-seeds // 8) + 4 * seeds + 4)
-    working = monomial_count(seeds, top) * 8 * 3 * lanes + canonical_count(seeds, top) * (N - 1) * 8 * 5
-    transforms = N * lanes * 8 * 4 + 2 * N * comb(top + seeds, seeds) + N * 1000  # cosines, selection rules, exact frequencies
+    working = (
+        monomial_count(seeds, top) * 8 * 3 * lanes + canonical_count(seeds, top) * (N - 1) * 8 * 5
+    )
+    # cosines, selection rules, exact frequencies
+    transforms = N * lanes * 8 * 4 + 2 * N * comb(top + seeds, seeds) + N * 1000
     return stored + canonical * (N - 1) * 8 + working + transforms
 
 
 class DenseRing(ABC):
     """Coefficients as doubles; products on bonds by compiled, threaded kernels.
 
-    multiply_adds counts the multiply-adds that the kernels performed on the bonds so far. exponent : degree d of
-    everything stored carries the factor 2^(-exponent (d - 1)).
+    multiply_adds counts the multiply-adds that the kernels performed on the bonds so far.
+    exponent : degree d of everything stored carries the factor 2^(-exponent (d - 1)).
     """
 
     modulus: float | None = None
 
-    def __init__(self, space: CosineModes, *, workers: int | None = None, points: int | None = None) -> None:
+    def __init__(
+        self, space: CosineModes, *, workers: int | None = None, points: int | None = None
+    ) -> None:
         """points : values kept for each monomial; default those on half of the bonds."""
         from symfpu.algebra import kernels  # lazy: numba takes longer to import than all the rest
 
@@ -95,7 +109,10 @@ class DenseRing(ABC):
 
     @abstractmethod
     def _times(self, values: Floats, factor: Floats | float) -> Floats:
-        """Element by element product with an array or a number of the ring; may overwrite values."""
+        """Element by element product with an array or a number of the ring.
+
+        May overwrite values.
+        """
 
     @abstractmethod
     def _reduced(self, values: Floats) -> Floats:
@@ -106,8 +123,10 @@ class DenseRing(ABC):
         """Called after a degree is stored; a ring that can overflow rescales here."""
 
     def _transforms(self) -> tuple[Floats, Floats]:
-        """The cosines cos(q (j + 1/2) pi / N), q = 1 .. N-1, on the first half of the bonds, padded with zeros to whole rows,
-        and the same with the weights (4/N; half of it for a bond that is its own mirror image) of the way back."""
+        """The cosines cos(q (j + 1/2) pi / N), q = 1 .. N-1, on the first half of the bonds, padded
+        with zeros to whole rows, and the same with the weights (4/N; half of it for a bond that
+        is its own mirror image) of the way back.
+        """
         N, half = self.space.N, self.space.half
         angles = np.outer(np.arange(1, N), 2 * np.arange(half) + 1) % (4 * N)
         there = np.zeros((N - 1, self._slices * self._lanes))
@@ -116,7 +135,9 @@ class DenseRing(ABC):
         if N % 2:
             weights[-1] = self._times(np.full(1, self._reciprocal(N)), 2.0)[0]
         back = there.copy()
-        back[:, :half] = self._times(back[:, :half].copy(), np.broadcast_to(weights, (N - 1, half)).copy())
+        back[:, :half] = self._times(
+            back[:, :half].copy(), np.broadcast_to(weights, (N - 1, half)).copy()
+        )
         return there, back
 
     def _parts(self, degree: int) -> list[tuple[Ints, slice]]:
@@ -138,12 +159,19 @@ class DenseRing(ABC):
         self._degrees.append(degree)
         self._modes.append(modes)
         for rows, columns in self._parts(degree):
-            self._store(self._bonds, degree, rows, self._matrix_product(modes[rows, columns], self._to_bonds[columns]))
+            self._store(
+                self._bonds,
+                degree,
+                rows,
+                self._matrix_product(modes[rows, columns], self._to_bonds[columns]),
+            )
         self._store_seed_modes(degree, modes)
         self._keep_in_range(degree, modes)
 
     def _store(self, target: Floats, degree: int, rows: Ints, values: Floats) -> None:
-        """Values (rows, points) of some canonical monomials, and of their conjugates, into the rows of the kernel."""
+        """Values (rows, points) of some canonical monomials, and of their conjugates, into the
+        rows of the kernel.
+        """
         base = int(self.grading.first_row[degree])
         lanes = np.moveaxis(values.reshape(len(rows), target.shape[0], target.shape[2]), 1, 0)
         target[:, base + self.grading.canonical(degree)[rows]] = lanes
@@ -156,9 +184,19 @@ class DenseRing(ABC):
                 self._seed_modes[i // 8, base + rows, i % 8] = modes[:, q - 1]
 
     def _product(
-        self, left: Floats, right: Floats, degree: int, splits: list[tuple[int, int]], *, symmetric: bool = False, sparse: bool = False
+        self,
+        left: Floats,
+        right: Floats,
+        degree: int,
+        splits: list[tuple[int, int]],
+        *,
+        symmetric: bool = False,
+        sparse: bool = False,
     ) -> Floats:
-        """Sum of the products of all splits, canonical rows only; shape (slices, rows of the degree, lanes)."""
+        """Sum of the products of all splits, canonical rows only.
+
+        Shape (slices, rows of the degree, lanes).
+        """
         rows = self._rows(degree)
         out = np.zeros((left.shape[0], rows.stop - rows.start, left.shape[2]))
         if not splits:
@@ -187,7 +225,10 @@ class DenseRing(ABC):
                 )
             )
 
-        size = sum(monomial_count(len(self.space.seeds), d) * monomial_count(len(self.space.seeds), e) for d, e in splits)
+        size = sum(
+            monomial_count(len(self.space.seeds), d) * monomial_count(len(self.space.seeds), e)
+            for d, e in splits
+        )
         parallel = size * left.shape[0] * left.shape[2] >= PARALLEL_FROM and not sparse
         chunks = min(4 * self._workers, len(blocks)) if parallel else 1
         parts = [(s, c) for s in range(left.shape[0]) for c in range(chunks)]
@@ -198,33 +239,50 @@ class DenseRing(ABC):
 
     def power(self, power: int, degree: int) -> Floats:
         if power == 2:
-            out = self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
+            out = self._product(
+                self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True
+            )
         else:
             splits = self._power_splits(power, degree)
             out = self._product(self._powers[power - 1], self._bonds, degree, splits)
         return self._times(out, float(np.ldexp(2.0, -self.exponent)))
 
     def _canonical_points(self, degree: int, values: Floats) -> Floats:
-        """What the kernel gave for the canonical monomials, (slices, rows, lanes) to (canonical, points)."""
+        """What the kernel gave for the canonical monomials, (slices, rows, lanes) to (canonical,
+        points).
+        """
         canonical = self.grading.canonical(degree)
         return np.concatenate([part[canonical] for part in values], axis=1)
 
     def _square_splits(self, degree: int) -> list[tuple[int, int]]:
-        return [(d, degree - d) for d in self._degrees if d <= degree - d and degree - d in self._degrees]
+        return [
+            (d, degree - d)
+            for d in self._degrees
+            if d <= degree - d and degree - d in self._degrees
+        ]
 
     def _power_splits(self, power: int, degree: int) -> list[tuple[int, int]]:
-        """Splits into a lower power and a single; lower powers that are still missing are made first."""
+        """Splits into a lower power and a single.
+
+        Lower powers that are still missing are made first.
+        """
         lower = power - 1
         for d in range(lower, degree):
             if d not in self._power_degrees.get(lower, ()):
                 self._put_power(lower, d)
-        return [(d, degree - d) for d in self._power_degrees.get(lower, ()) if degree - d in self._degrees]
+        return [
+            (d, degree - d)
+            for d in self._power_degrees.get(lower, ())
+            if degree - d in self._degrees
+        ]
 
     def _put_power(self, power: int, degree: int) -> None:
         self._store_power(power, degree, self._canonical_points(degree, self.power(power, degree)))
 
     def _store_power(self, power: int, degree: int, values: Floats) -> None:
-        """Keep a power of the bonds at a degree, (canonical, points), as a factor of higher powers."""
+        """Keep a power of the bonds at a degree, (canonical, points), as a factor of higher
+        powers.
+        """
         if power not in self._powers:
             self._powers[power], self._power_degrees[power] = np.zeros_like(self._bonds), []
         if degree not in self._power_degrees[power]:
@@ -237,7 +295,9 @@ class DenseRing(ABC):
         for rows, columns in self._parts(degree):
             for coefficient, values in parts:
                 bonds = np.concatenate([part[canonical[rows]] for part in values], axis=1)
-                modes[rows, columns] += self._times(self._matrix_product(bonds, self._to_modes[columns].T), coefficient)
+                modes[rows, columns] += self._times(
+                    self._matrix_product(bonds, self._to_modes[columns].T), coefficient
+                )
         return self._reduced(np.multiply(modes, self.space.mask(degree), out=modes))
 
     def secular(self, degree: int, modes: NDArray[Any]) -> NDArray[Any]:
@@ -261,7 +321,10 @@ class DenseRing(ABC):
 
     def _diagonal_rows(self, degree: int) -> Ints:
         """Rows, over all degrees, of the monomials |z|^(2e)."""
-        return np.asarray(self.grading.first_row[degree] + self.grading.rows(np.repeat(self.grading.diagonal(degree), 2, axis=1)))
+        return np.asarray(
+            self.grading.first_row[degree]
+            + self.grading.rows(np.repeat(self.grading.diagonal(degree), 2, axis=1))
+        )
 
     def corrected(self, degree: int) -> Floats:
         return self._seed_product(degree, self._corrections, self._seed_modes)
@@ -271,7 +334,9 @@ class DenseRing(ABC):
         splits = [(n, degree - n) for n in self._correction_degrees if degree - n in self._degrees]
         lanes = self._product(corrections, seed_modes, degree, splits, sparse=True)
         canonical = self.grading.canonical(degree)
-        return np.stack([lanes[i // 8, canonical, i % 8] for i in range(len(self.space.seeds))], axis=1)
+        return np.stack(
+            [lanes[i // 8, canonical, i % 8] for i in range(len(self.space.seeds))], axis=1
+        )
 
     def solve(self, degree: int, corrected: Floats, force: Floats, multipliers: Floats) -> Floats:
         _, index = self.grading.harmonics(degree)

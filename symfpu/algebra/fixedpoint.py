@@ -1,8 +1,10 @@
-"""The ring of fixed-point numbers: integers times 2^-bits, of any number of digits, multiplied modulo many primes.
+"""The ring of fixed-point numbers: integers times 2^-bits, of any number of digits, multiplied
+modulo many primes.
 
-Every product of the recursion (on bonds, with cosines, with multipliers) is exact, modulo primes of 40 bits, at the speed of
-the residue kernels. Between two products the integers are recombined and rounded to the nearest at `bits` binary places.
-All arrays of degree d carry the factor unit^-(d - 1), which keeps the degrees of one series near one.
+Every product of the recursion (on bonds, with cosines, with multipliers) is exact, modulo primes
+of 40 bits, at the speed of the residue kernels. Between two products the integers are recombined
+and rounded to the nearest at `bits` binary places. All arrays of degree d carry the factor
+unit^-(d - 1), which keeps the degrees of one series near one.
 """
 
 from __future__ import annotations
@@ -27,7 +29,10 @@ BLOCK = 1 << 15  # integers converted at once, so that they stay in the cache
 
 
 class Precision(NamedTuple):
-    """bits : binary places, a multiple of 20. headroom : bits of the largest sum above 2^(2 bits). unit : scale of a degree."""
+    """bits : binary places, a multiple of 20.
+
+    Headroom : bits of the largest sum above 2^(2 bits). unit : scale of a degree.
+    """
 
     bits: int
     headroom: int
@@ -42,7 +47,9 @@ class Modes(NamedTuple):
 
 
 class Bonds(NamedTuple):
-    """Values on bonds: residues (primes, canonical, points), still to be multiplied by unit^-power."""
+    """Values on bonds: residues (primes, canonical, points), still to be multiplied by
+    unit^-power.
+    """
 
     residues: Floats
     power: int
@@ -108,25 +115,38 @@ class FixedPointRing:
         return list(self._pool.map(lambda item: work(*item), enumerate(self._images)))
 
     def _cosines(self, weights: NDArray[Any]) -> Floats:
-        """Residues of weight_j cos(q (j + 1/2) pi / N) on the first half of the bonds; (primes, N-1, points)."""
+        """Residues of weight_j cos(q (j + 1/2) pi / N) on the first half of the bonds.
+
+        (primes, N-1, points).
+        """
         N, half = self.space.N, self.space.half
         angles = np.outer(np.arange(1, N), 2 * np.arange(half) + 1) % (4 * N)
         angles = np.minimum(angles, 4 * N - angles)
         whole = np.zeros((N - 1, self._points), dtype=object)
         largest = max(1, *(abs(w) for w in weights))
         with mpmath.workprec(self.precision.bits + math.ceil(math.log2(largest)) + 32):
-            table = [mpmath.ldexp(mpmath.cospi(mpmath.mpf(n) / (2 * N)), self.precision.bits) for n in range(2 * N + 1)]
+            table = [
+                mpmath.ldexp(mpmath.cospi(mpmath.mpf(n) / (2 * N)), self.precision.bits)
+                for n in range(2 * N + 1)
+            ]
             for j, weight in enumerate(weights):
                 exact = Fraction(weight)
-                column = [int(mpmath.nint(table[n] * exact.numerator / exact.denominator)) for n in range(2 * N + 1)]
+                column = [
+                    int(mpmath.nint(table[n] * exact.numerator / exact.denominator))
+                    for n in range(2 * N + 1)
+                ]
                 whole[:, j] = np.array(column, dtype=object)[angles[:, j]]
         return self.basis.of_integers(whole)
 
     def _to_modes(self, coefficient: Fraction) -> Floats:
-        """The way back, times a coefficient: weights 4/N, half of it for a bond that is its own mirror image."""
+        """The way back, times a coefficient: weights 4/N, half of it for a bond that is its own
+        mirror image.
+        """
         if coefficient not in self._back:
             N, half = self.space.N, self.space.half
-            weights = [coefficient * Fraction(2 if N % 2 and j == half - 1 else 4, N) for j in range(half)]
+            weights = [
+                coefficient * Fraction(2 if N % 2 and j == half - 1 else 4, N) for j in range(half)
+            ]
             self._back[coefficient] = self._cosines(np.array(weights, dtype=object))
         return self._back[coefficient]
 
@@ -142,7 +162,11 @@ class FixedPointRing:
         longest = max((words.shape[1] for _, words in parts), default=1)
         words = [np.pad(w, ((0, 0), (0, longest - w.shape[1]))) for _, w in parts]
         empty = np.zeros((len(self.basis), 0)), np.zeros((0, 1), dtype=np.int64)
-        return (np.concatenate([r for r, _ in parts], axis=1), np.concatenate(words)) if parts else empty
+        return (
+            (np.concatenate([r for r, _ in parts], axis=1), np.concatenate(words))
+            if parts
+            else empty
+        )
 
     def _rounded_where(self, residues: Floats, wanted: NDArray[np.bool_]) -> Modes:
         """Round the wanted entries of (primes, rows, columns); the others are exactly zero."""
@@ -166,7 +190,11 @@ class FixedPointRing:
             self._put_part(degree, rows, columns, modes.residues)
 
     def _put_part(self, degree: int, rows: Ints, columns: slice, residues: Floats) -> None:
-        products = self._each(lambda i, image: image._matrix_product(residues[i][rows, columns], self._to_bonds[i][columns]))
+        products = self._each(
+            lambda i, image: image._matrix_product(
+                residues[i][rows, columns], self._to_bonds[i][columns]
+            )
+        )
         values, _ = self._rounded(np.stack(products).reshape(len(self.basis), -1))
         shaped = values.reshape(len(self.basis), len(rows), self._points)
         self._each(lambda i, image: image.store_bonds(degree, rows, shaped[i]))
@@ -180,7 +208,9 @@ class FixedPointRing:
         for d in range(power - 1, degree if power > 2 else 0):
             if (power - 1, d) not in self._stored:
                 self._put_power(power - 1, d)
-        return self._bonds(self._each(lambda _, image: image.canonical_power(power, degree)), power - 1)
+        return self._bonds(
+            self._each(lambda _, image: image.canonical_power(power, degree)), power - 1
+        )
 
     def _put_power(self, power: int, degree: int) -> None:
         values = self.power(power, degree).residues
@@ -201,7 +231,8 @@ class FixedPointRing:
     def secular(self, degree: int, modes: Modes) -> Modes:
         residues = np.stack(self._each(lambda i, image: image.secular(degree, modes.residues[i])))
         image, words = self._images[0], modes.table.words
-        columns = [image.secular(degree, words[..., n]) for n in range(words.shape[2])]  # only picks entries
+        # only picks entries
+        columns = [image.secular(degree, words[..., n]) for n in range(words.shape[2])]
         return Modes(residues, IntegerTable(np.stack(columns, axis=-1)))
 
     def correct(self, degree: int, corrections: Modes) -> None:
@@ -212,10 +243,14 @@ class FixedPointRing:
         residues = np.stack(self._each(lambda _, image: image.corrected(degree)))
         return self._rounded_where(residues, np.ones(residues.shape[1:], dtype=np.bool_))
 
-    def solve(self, degree: int, corrected: Modes, force: Modes, multipliers: NDArray[np.object_]) -> Modes:
+    def solve(
+        self, degree: int, corrected: Modes, force: Modes, multipliers: NDArray[np.object_]
+    ) -> Modes:
         _, index = self.grading.harmonics(degree)
         seeds = np.array(self.space.seeds) - 1
-        self._check_range(corrected, force, (multipliers / 2**self.precision.bits).astype(float)[index], seeds)
+        self._check_range(
+            corrected, force, (multipliers / 2**self.precision.bits).astype(float)[index], seeds
+        )
         factors = self.basis.of_integers(multipliers)
 
         def work(i: int, image: _Image) -> Floats:
@@ -226,11 +261,15 @@ class FixedPointRing:
         return self._rounded_where(np.stack(self._each(work)), (multipliers != 0)[index])
 
     def _check_range(self, corrected: Modes, force: Modes, factors: Floats, seeds: Ints) -> None:
-        """The last products have no bound of their own beforehand: refuse them where they could leave the range of the residues."""
+        """The last products have no bound of their own beforehand: refuse them where they could
+        leave the range of the residues.
+        """
         sizes = np.abs(force.table.floats(-self.precision.bits))
         sizes[:, seeds] += np.abs(corrected.table.floats(-self.precision.bits))
         if np.any(sizes * np.abs(factors) > 2.0**self.precision.headroom):
-            raise OverflowError("a product of a force with its multiplier exceeds the range of the residues")
+            raise OverflowError(
+                "a product of a force with its multiplier exceeds the range of the residues"
+            )
 
     def results(self) -> tuple[list[IntegerTable], list[IntegerTable], Fraction]:
         return self._modes, self._corrections, self.precision.unit

@@ -1,8 +1,8 @@
 """The ring of doubles: coefficients rounded to 53 bits, scaled by powers of two.
 
-All arrays of degree d carry the factor 2^(-x (d - 1)) with one exponent x for the whole series. Whenever a degree leaves
-2^-200 .. 2^200, x is moved and everything stored is rescaled; scaling by powers of two is exact, so order 250 neither
-overflows nor loses a digit.
+All arrays of degree d carry the factor 2^(-x (d - 1)) with one exponent x for the whole series.
+Whenever a degree leaves 2^-200 .. 2^200, x is moved and everything stored is rescaled; scaling by
+powers of two is exact, so order 250 neither overflows nor loses a digit.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ class Float64Ring(DenseRing):
         return float(value)
 
     def _cosines(self, angles: Ints) -> Floats:
-        # cos x = sin(pi/2 - x): the sine of an exactly reduced argument has full relative accuracy, also at zero
+        # cos x = sin(pi/2 - x): the sine of an exactly reduced argument has full relative
+        # accuracy, also at zero
         return np.asarray(np.sin((self.space.N - angles) * (np.pi / (2 * self.space.N))))
 
     def _reciprocal(self, number: int) -> float:
@@ -46,7 +47,9 @@ class Float64Ring(DenseRing):
         largest = max(float(modes.max()), -float(modes.min()))
         if degree == 1 or largest == 0.0 or abs(np.frexp(largest)[1]) <= SAFE_EXPONENT:
             return
-        shift = round(int(np.frexp(largest)[1]) / (degree - 1)) or int(np.sign(np.frexp(largest)[1]))
+        shift = round(int(np.frexp(largest)[1]) / (degree - 1)) or int(
+            np.sign(np.frexp(largest)[1])
+        )
         self.exponent += shift
         for d, values in zip(self._degrees, self._modes, strict=True):
             np.ldexp(values, -shift * (d - 1), out=values)
@@ -55,4 +58,6 @@ class Float64Ring(DenseRing):
         for d in range(1, degree + 1):
             for array in (self._bonds, self._seed_modes, *self._powers.values()):
                 array[:, self._rows(d)] = np.ldexp(array[:, self._rows(d)], -shift * (d - 1))
-            self._corrections[:, self._rows(d)] = np.ldexp(self._corrections[:, self._rows(d)], -shift * d)
+            self._corrections[:, self._rows(d)] = np.ldexp(
+                self._corrections[:, self._rows(d)], -shift * d
+            )

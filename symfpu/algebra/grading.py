@@ -1,12 +1,14 @@
-"""The monomials of one degree in z_1, conj z_1, ..., z_s, conj z_s: their order, ranks and product tables.
+"""The monomials of one degree in z_1, conj z_1, ..., z_s, conj z_s: their order, ranks and product
+tables.
 
-A monomial is a row of exponents (p_1, n_1, ..., p_s, n_s): p of z, n of conj z. Its harmonic is nu = p - n, its power of
-the amplitudes is p + n. Rows are grouped in blocks: the first seeds (the outer monomial) name the block, the last
-ceil(s/2) seeds (the inner monomial) the place in it, so that a product needs one small table for blocks and one for places.
+A monomial is a row of exponents (p_1, n_1, ..., p_s, n_s): p of z, n of conj z. Its harmonic is
+nu = p - n, its power of the amplitudes is p + n. Rows are grouped in blocks: the first seeds (the
+outer monomial) name the block, the last ceil(s/2) seeds (the inner monomial) the place in it, so
+that a product needs one small table for blocks and one for places.
 
-Within a degree both groups are ordered by (nu, p + n), lexicographically. Adding a monomial keeps that order, and
-conjugation reverses it up to ties; so the rows with nu >= 0, one of each conjugate pair, are a suffix of every group.
-They are called canonical.
+Within a degree both groups are ordered by (nu, p + n), lexicographically. Adding a monomial keeps
+that order, and conjugation reverses it up to ties; so the rows with nu >= 0, one of each
+conjugate pair, are a suffix of every group. They are called canonical.
 """
 
 from __future__ import annotations
@@ -25,7 +27,9 @@ Keys = NDArray[Any]  # integers: int64, or Python's own where int64 is too short
 
 
 def monomial_count(seeds: int, degree: int) -> int:
-    """Number of monomials of one degree in z and conj z of each seed: C(degree + 2 seeds - 1, 2 seeds - 1)."""
+    """Number of monomials of one degree in z and conj z of each seed: C(degree + 2 seeds - 1, 2
+    seeds - 1).
+    """
     return comb(degree + 2 * seeds - 1, 2 * seeds - 1)
 
 
@@ -39,7 +43,9 @@ def compositions(total: int, parts: int) -> Ints:
     """All rows of `parts` non-negative integers with sum `total`; shape (count, parts)."""
     if parts <= 1:
         return np.full((int(parts == 1 or total == 0), parts), total, dtype=np.int64)
-    bars = np.array(list(combinations(range(total + parts - 1), parts - 1)), dtype=np.int64).reshape(-1, parts - 1)
+    bars = np.array(
+        list(combinations(range(total + parts - 1), parts - 1)), dtype=np.int64
+    ).reshape(-1, parts - 1)
     edges = np.pad(bars, ((0, 0), (1, 1)), constant_values=((0, 0), (-1, total + parts - 1)))
     return np.asarray(np.diff(edges, axis=1) - 1)
 
@@ -65,7 +71,9 @@ class Group:
         self.first_canonical = np.array([np.searchsorted(k, 0) for k in self._keys], dtype=np.int64)
 
     def keys(self, exponents: Ints) -> Keys:
-        """Integers that add when monomials multiply, sort by (nu, p + n), and are negative just for nu < 0."""
+        """Integers that add when monomials multiply, sort by (nu, p + n), and are negative just
+        for nu < 0.
+        """
         p, n = exponents[..., 0::2], exponents[..., 1::2]
         return np.asarray(np.concatenate([p - n, p + n], axis=-1) @ self._weights)
 
@@ -74,7 +82,10 @@ class Group:
         return np.searchsorted(self._keys[degree], keys)
 
     def products(self, left: int, right: int) -> Ints:
-        """Ranks of all products of a monomial of degree `left` with one of degree `right`; shape (left, right)."""
+        """Ranks of all products of a monomial of degree `left` with one of degree `right`.
+
+        Shape (left, right).
+        """
         return self.ranks(left + right, self._keys[left][:, None] + self._keys[right][None, :])
 
     def conjugates(self, degree: int) -> Ints:
@@ -85,10 +96,14 @@ class Group:
 
 
 class ProductTables(NamedTuple):
-    """Plain arrays for the compiled product; X numbers the outer monomials of all degrees, sorted by degree."""
+    """Plain arrays for the compiled product.
+
+    X numbers the outer monomials of all degrees, sorted by degree.
+    """
 
     outer_degree: Ints  # (X,)
-    pair_start: Ints  # (X, degree + 2): where the factor pairs with a left factor of that degree begin
+    # (X, degree + 2): where the factor pairs with a left factor of that degree begin
+    pair_start: Ints
     pair_left: NDArray[np.int32]  # outer monomials l, r with l r = X, sorted by l within X
     pair_right: NDArray[np.int32]
     block: Ints  # (degree + 1, X): first row of the block, over all degrees
@@ -145,7 +160,10 @@ class Grading:
         return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
 
     def exponents(self, degree: int) -> Ints:
-        """Exponents (p_1, n_1, ..., p_s, n_s) of every monomial of `degree`, in row order; shape (count, 2 seeds)."""
+        """Exponents (p_1, n_1, ..., p_s, n_s) of every monomial of `degree`, in row order.
+
+        Shape (count, 2 seeds).
+        """
         return self._layout[degree][0]
 
     def canonical(self, degree: int) -> Ints:
@@ -162,17 +180,25 @@ class Grading:
         return np.asarray(rows[:, 0::2] + rows[:, 1::2])
 
     def harmonics(self, degree: int) -> tuple[Ints, Ints]:
-        """The distinct harmonics nu of the canonical monomials, and which of them each monomial has."""
+        """The distinct harmonics nu of the canonical monomials, and which of them each monomial
+        has.
+        """
         return self._harmonics[degree]
 
     def diagonal(self, degree: int) -> Ints:
-        """Exponents e of the monomials |z|^(2e) of an even `degree`; shape (count, seeds). Empty where odd."""
+        """Exponents e of the monomials |z|^(2e) of an even `degree`.
+
+        Shape (count, seeds). Empty where odd.
+        """
         if degree % 2:
             return np.zeros((0, self.seeds), dtype=np.int64)
         return compositions(degree // 2, self.seeds)
 
     def rows(self, exponents: Ints) -> Ints:
-        """Rows (counted from the first of their degree) of monomials of one common degree; shape (count,)."""
+        """Rows (counted from the first of their degree) of monomials of one common degree.
+
+        Shape (count,).
+        """
         if len(exponents) == 0:
             return np.zeros(0, dtype=np.int64)
         split = 2 * self.outer.seeds
@@ -202,7 +228,9 @@ class Grading:
             nu = rows[:, 0::2] - rows[:, 1::2]
             lead = nu[np.arange(len(nu)), np.argmax(nu != 0, axis=1)]
             canonical = np.flatnonzero(lead >= 0)
-            swapped = rows[canonical].reshape(-1, self.seeds, 2)[:, :, ::-1].reshape(-1, 2 * self.seeds)
+            swapped = (
+                rows[canonical].reshape(-1, self.seeds, 2)[:, :, ::-1].reshape(-1, 2 * self.seeds)
+            )
             layout.append((rows, canonical, self.rows(swapped)))
         return layout
 
@@ -222,7 +250,9 @@ class Grading:
         for d in range(self.degree + 1):
             rows = self.exponents(d)[self.canonical(d)]
             nu = rows[:, 0::2] - rows[:, 1::2]
-            _, first, index = np.unique(self.harmonic_keys(nu), return_index=True, return_inverse=True)
+            _, first, index = np.unique(
+                self.harmonic_keys(nu), return_index=True, return_inverse=True
+            )
             result.append((nu[first], index.reshape(-1)))
         return result
 
@@ -256,7 +286,9 @@ class Grading:
     def _blocks(self) -> Ints:
         sizes = np.where(
             self._outer_degree[None, :] <= np.arange(self.degree + 1)[:, None],
-            self.inner.counts[np.maximum(np.arange(self.degree + 1)[:, None] - self._outer_degree[None, :], 0)],
+            self.inner.counts[
+                np.maximum(np.arange(self.degree + 1)[:, None] - self._outer_degree[None, :], 0)
+            ],
             0,
         )
         return (np.cumsum(sizes.ravel()) - sizes.ravel()).reshape(sizes.shape).astype(np.int64)
@@ -283,7 +315,10 @@ class Grading:
     def _inner_table(self) -> tuple[NDArray[np.int32], Ints, Ints]:
         size = self.degree + 1
         if self.inner.seeds == 1:  # ranks are the powers of z, and add
-            one, zero = np.ones((size, size), dtype=np.int64), np.zeros((size, size), dtype=np.int64)
+            one, zero = (
+                np.ones((size, size), dtype=np.int64),
+                np.zeros((size, size), dtype=np.int64),
+            )
             return np.arange(size, dtype=np.int32), zero, one
         offset, stride = np.zeros((2, size, size), dtype=np.int64)
         parts: list[NDArray[np.int32]] = []

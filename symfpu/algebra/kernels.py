@@ -1,11 +1,12 @@
 """The compiled loops: products of graded polynomials, plain arrays in, plain arrays out.
 
-One monomial owns one row of 8 or 16 lanes (bonds, or seeds); a product of two monomials is one fused multiply-add of
-whole rows. The inner loop is written with vectors because a compiler does not find them behind the table of products.
+One monomial owns one row of 8 or 16 lanes (bonds, or seeds); a product of two monomials is one
+fused multiply-add of whole rows. The inner loop is written with vectors because a compiler does
+not find them behind the table of products.
 
-With a modulus p < 2^40 the same loops work on residues, held as doubles in -p/2 .. p/2: a b - p round(a b / p) is exact
-with fused multiply-adds, and at most 2^12 of them are summed before they are reduced.
-Importing this module imports numba.
+With a modulus p < 2^40 the same loops work on residues, held as doubles in -p/2 .. p/2: a b - p
+round(a b / p) is exact with fused multiply-adds, and at most 2^12 of them are summed before they
+are reduced. Importing this module imports numba.
 """
 
 from __future__ import annotations
@@ -28,11 +29,15 @@ def _emit(builder: Any, name: str, *operands: Any) -> Any:
     suffix = f"v{kind.count}f64" if isinstance(kind, ir.VectorType) else "f64"
     signature = ir.FunctionType(kind, [kind] * len(operands))
     declared: Any = cgutils
-    return builder.call(declared.get_or_insert_function(builder.module, signature, f"{name}.{suffix}"), operands)
+    return builder.call(
+        declared.get_or_insert_function(builder.module, signature, f"{name}.{suffix}"), operands
+    )
 
 
 def _modular_product(builder: Any, a: Any, b: Any, modulus: Any, inverse: Any) -> Any:
-    """a b minus the nearest multiple of the modulus, exact up to one multiple: high part, its remainder, and the low part."""
+    """a b minus the nearest multiple of the modulus, exact up to one multiple: high part, its
+    remainder, and the low part.
+    """
     high = builder.fmul(a, b)
     low = _emit(builder, "llvm.fma", a, b, builder.fneg(high))
     quotient = _emit(builder, "llvm.rint", builder.fmul(high, inverse))
@@ -66,12 +71,28 @@ def multiply_row(
     stop: Any,
     modulus: Any,
 ) -> Any:
-    """out[o + table[t + n]] += weight left[i] right[j + n] for start <= n < stop; `lanes` is a tuple whose length is the row's.
+    """out[o + table[t + n]] += weight left[i] right[j + n] for start <= n < stop; `lanes` is a tuple
+    whose length is the row's.
 
-    modulus : None, or a number: then every product is taken modulo it. One piece of code on purpose: it emits one loop.
+    modulus : None, or a number: then every product is taken modulo it. One piece of code on
+    purpose: it emits one loop.
     """
     integer = types.intp
-    signature = types.void(lanes, left, integer, Float64, right, integer, out, integer, table, integer, integer, integer, modulus)
+    signature = types.void(
+        lanes,
+        left,
+        integer,
+        Float64,
+        right,
+        integer,
+        out,
+        integer,
+        table,
+        integer,
+        integer,
+        integer,
+        modulus,
+    )
     width = lanes.count
 
     def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -81,12 +102,16 @@ def multiply_row(
             return context.make_array(sig.args[position])(context, builder, args[position]).data
 
         def row(base: Any, index: Any) -> Any:
-            return builder.bitcast(builder.gep(base, [builder.mul(index, INT64(width))]), vector.as_pointer())
+            return builder.bitcast(
+                builder.gep(base, [builder.mul(index, INT64(width))]), vector.as_pointer()
+            )
 
         def spread(value: Any) -> Any:
             undefined = ir.Constant(vector, ir.Undefined)
             first = builder.insert_element(undefined, value, ir.IntType(32)(0))
-            return builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width))
+            return builder.shuffle_vector(
+                first, undefined, ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width)
+            )
 
         factor = builder.fmul(builder.load(row(pointer(1), args[2]), align=8), spread(args[3]))
         right_rows, out_rows = row(pointer(4), args[5]), row(pointer(6), args[7])
@@ -99,7 +124,10 @@ def multiply_row(
             target = builder.gep(out_rows, [place])
             other = builder.load(builder.gep(right_rows, [n]), align=8)
             if modular:
-                total = builder.fadd(builder.load(target, align=8), _modular_product(builder, factor, other, prime, inverse))
+                total = builder.fadd(
+                    builder.load(target, align=8),
+                    _modular_product(builder, factor, other, prime, inverse),
+                )
             else:
                 product = builder.fmul(factor, other, flags=("contract",))
                 total = builder.fadd(builder.load(target, align=8), product, flags=("contract",))
@@ -110,16 +138,33 @@ def multiply_row(
 
 
 @njit(nogil=True, cache=True)
-def multiply(lanes, left, right, out, degree, first_row, splits, symmetric, active, blocks, tables, modulus):  # type: ignore[no-untyped-def]
-    """Add the products of all `splits` of a degree into out, canonical rows only; returns the number of multiply-adds.
+def multiply(
+    lanes, left, right, out, degree, first_row, splits, symmetric, active, blocks, tables, modulus
+):  # type: ignore[no-untyped-def]
+    """Add the products of all `splits` of a degree into out, canonical rows only; returns the number
+    of multiply-adds.
 
     lanes : tuple of 8 or 16 zeros; its length is the row length of left, right and out.
-    left, right : (rows of all degrees, lanes). out : (rows of this degree, lanes), counted from first_row.
-    splits : (count, 2) degrees of the factors. symmetric : left is right, splits have d1 <= d2, and each unordered pair is
-    multiplied once and added with weight two (a square once). active : for a sparse left factor, which of its rows are not
-    zero; else empty. blocks : outer monomials to fill. tables : algebra.grading.ProductTables. modulus : None or a prime.
+    left, right : (rows of all degrees, lanes). out : (rows of this degree, lanes), counted from
+    first_row.
+    splits : (count, 2) degrees of the factors. symmetric : left is right, splits have d1 <= d2,
+    and each unordered pair is multiplied once and added with weight two (a square once). active :
+    for a sparse left factor, which of its rows are not zero; else empty. blocks : outer monomials
+    to fill. tables : algebra.grading.ProductTables. modulus : None or a prime.
     """
-    (outer_degree, pair_start, pair_left, pair_right, block, inner_count, inner_start, first_canonical, table, offset, stride) = tables
+    (
+        outer_degree,
+        pair_start,
+        pair_left,
+        pair_right,
+        block,
+        inner_count,
+        inner_start,
+        first_canonical,
+        table,
+        offset,
+        stride,
+    ) = tables
     sparse = len(active) > 0
     count = 0
     for outer in blocks:
@@ -151,16 +196,47 @@ def multiply(lanes, left, right, out, degree, first_row, splits, symmetric, acti
                         if sparse and not active[i0 + i]:
                             continue
                         if swap:
-                            multiply_row(lanes, right, i0 + i, weight, left, j0, out, target, table, t, start, length, modulus)  # type: ignore[call-arg]
+                            multiply_row(
+                                lanes,
+                                right,
+                                i0 + i,
+                                weight,
+                                left,
+                                j0,
+                                out,
+                                target,
+                                table,
+                                t,
+                                start,
+                                length,
+                                modulus,
+                            )  # type: ignore[call-arg]
                         else:
-                            multiply_row(lanes, left, i0 + i, weight, right, j0, out, target, table, t, start, length, modulus)  # type: ignore[call-arg]
+                            multiply_row(
+                                lanes,
+                                left,
+                                i0 + i,
+                                weight,
+                                right,
+                                j0,
+                                out,
+                                target,
+                                table,
+                                t,
+                                start,
+                                length,
+                                modulus,
+                            )  # type: ignore[call-arg]
                         count += length - start
     return count * len(lanes)
 
 
 @njit(nogil=True, cache=True)
 def multiply_elements(left, right, modulus, out):  # type: ignore[no-untyped-def]
-    """out = left right modulo a prime below 2^40, element by element, in -p/2 .. p/2; arrays of one shape, contiguous."""
+    """out = left right modulo a prime below 2^40, element by element, in -p/2 ..
+
+    P/2; arrays of one shape, contiguous.
+    """
     inverse = 1.0 / modulus
     a, b, c = left.ravel(), right.ravel(), out.ravel()
     for n in range(len(a)):
@@ -170,7 +246,10 @@ def multiply_elements(left, right, modulus, out):  # type: ignore[no-untyped-def
 
 @njit(nogil=True, cache=True)
 def multiply_rows(values, factors, moduli):  # type: ignore[no-untyped-def]
-    """values[i] *= factors[i] modulo moduli[i], in -p/2 .. p/2; values (primes, count), overwritten."""
+    """values[i] *= factors[i] modulo moduli[i], in -p/2 ..
+
+    P/2; values (primes, count), overwritten.
+    """
     for i in range(len(values)):
         modulus, factor = moduli[i], factors[i]
         inverse = 1.0 / modulus
@@ -181,7 +260,10 @@ def multiply_rows(values, factors, moduli):  # type: ignore[no-untyped-def]
 
 @njit(nogil=True, cache=True)
 def reduce_rows(values, moduli):  # type: ignore[no-untyped-def]
-    """values[i] modulo moduli[i], in -p/2 .. p/2, for integers below 2^52 in size; values (primes, count), overwritten."""
+    """values[i] modulo moduli[i], in -p/2 ..
+
+    P/2, for integers below 2^52 in size; values (primes, count), overwritten.
+    """
     for i in range(len(values)):
         modulus = moduli[i]
         inverse = 1.0 / modulus

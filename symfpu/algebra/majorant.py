@@ -1,9 +1,11 @@
 """Rounding errors of a fixed-point series, bounded: the same recursion over moduli and radii.
 
-The coefficients of a finished series are replaced by their moduli, the couplings and multipliers by theirs, and every
-coefficient carries a radius: how far it can be off, in units of its last place, through all roundings before it. Replacing
-the folded cosine T_(2N-q) = -T_q by |.| gives cosines on the points j pi / N, j = 0 .. N, so radii of products are again
-pointwise products between two cosine transforms. Radii are doubles; each step is enlarged by more than doubles can lose.
+The coefficients of a finished series are replaced by their moduli, the couplings and multipliers
+by theirs, and every coefficient carries a radius: how far it can be off, in units of its last
+place, through all roundings before it. Replacing the folded cosine T_(2N-q) = -T_q by |.| gives
+cosines on the points j pi / N, j = 0 .. N, so radii of products are again pointwise products
+between two cosine transforms. Radii are doubles; each step is enlarged by more than doubles can
+lose.
 """
 
 from __future__ import annotations
@@ -27,7 +29,10 @@ SLACK = 1 + 1e-9
 
 
 class Bounds(NamedTuple):
-    """radii : (canonical, points) of values on bonds; sizes : (canonical,) sums of moduli; unit^-power is still to come."""
+    """radii : (canonical, points) of values on bonds.
+
+    Sizes : (canonical,) sums of moduli; unit^-power is still to come.
+    """
 
     radii: Floats
     sizes: Floats
@@ -37,14 +42,20 @@ class Bounds(NamedTuple):
 class MajorantRing(Float64Ring):
     """Radii in units of the last place.
 
-    tables, corrections : moduli of the series, by degree, scaled by unit^-(d - 1). epsilon : the unit of the last place, for
-    products of two radii; zero leaves them out. largest : the largest sum of moduli met on the way.
+    tables, corrections : moduli of the series, by degree, scaled by unit^-(d - 1). epsilon : the
+    unit of the last place, for products of two radii; zero leaves them out. largest : the largest
+    sum of moduli met on the way.
     """
 
     name = "majorant"
 
     def __init__(
-        self, space: CosineModes, tables: dict[int, Floats], corrections: dict[int, Floats], unit: Fraction, epsilon: float = 0.0
+        self,
+        space: CosineModes,
+        tables: dict[int, Floats],
+        corrections: dict[int, Floats],
+        unit: Fraction,
+        epsilon: float = 0.0,
     ) -> None:
         super().__init__(space, points=(space.N + 2) // 2)
         self._tables, self._known = tables, corrections
@@ -56,10 +67,14 @@ class MajorantRing(Float64Ring):
         self._correction_radii = np.zeros_like(self._corrections)
         self.largest = 1.0
         sums = 4 * space.N + 2 * longest_sum(len(space.seeds), space.grading.degree) + 64
-        self._lost = sums * float(np.finfo(float).eps)  # what sums of doubles can lose, relative to the sum of moduli
-        self._noise = np.zeros((2, self._slices * self._lanes))  # a function bounded by one on the bonds: modes of its parity up to two
+        # what sums of doubles can lose, relative to the sum of moduli
+        self._lost = sums * float(np.finfo(float).eps)
+        # a function bounded by one on the bonds: modes of its parity up to two
+        self._noise = np.zeros((2, self._slices * self._lanes))
         for parity in (0, 1):
-            self._noise[parity, : self._points] = 2 * self._table(np.arange(parity, space.N, 2)).sum(axis=0)
+            self._noise[parity, : self._points] = 2 * self._table(
+                np.arange(parity, space.N, 2)
+            ).sum(axis=0)
 
     def number(self, value: Fraction) -> float:
         return abs(float(value))
@@ -95,7 +110,9 @@ class MajorantRing(Float64Ring):
         self._note(sizes)
         for parity, (rows, columns) in enumerate(self._parts(degree)):
             values = known[rows, columns] @ self._to_bonds[columns]
-            radii = modes[rows, columns] @ self._to_bonds[columns] + np.outer(COSINE * sizes[rows] + ROUNDED, self._noise[parity])
+            radii = modes[rows, columns] @ self._to_bonds[columns] + np.outer(
+                COSINE * sizes[rows] + ROUNDED, self._noise[parity]
+            )
             self._store(self._bonds, degree, rows, values)
             self._store(self._radii, degree, rows, radii)
             self._store(self._sums, degree, rows, 2 * values + self._epsilon * radii)
@@ -121,20 +138,28 @@ class MajorantRing(Float64Ring):
         left, single = self._powers[power - 1], self._bonds + self._epsilon * self._radii
         radii = self._product(left, self._radii, degree, splits)
         radii += self._product(self._power_radii[power - 1], single, degree, splits)
-        return self._bounds(degree, radii, self._product(left, self._bonds, degree, splits), power - 1)
+        return self._bounds(
+            degree, radii, self._product(left, self._bonds, degree, splits), power - 1
+        )
 
     def _square_sizes(self, degree: int) -> Floats:
-        return self._product(self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True)
+        return self._product(
+            self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True
+        )
 
     def _sizes(self, power: int, degree: int) -> Floats:
         """Moduli of a power, half of it."""
         if power == 2:
             return self._square_sizes(degree)
-        return self._product(self._powers[power - 1], self._bonds, degree, self._power_splits(power, degree))
+        return self._product(
+            self._powers[power - 1], self._bonds, degree, self._power_splits(power, degree)
+        )
 
     def _put_power(self, power: int, degree: int) -> None:
         radii = self.power(power, degree).radii
-        self._store_power(power, degree, 2 * self._canonical_points(degree, self._sizes(power, degree)))
+        self._store_power(
+            power, degree, 2 * self._canonical_points(degree, self._sizes(power, degree))
+        )
         if power not in self._power_radii:
             self._power_radii[power] = np.zeros_like(self._bonds)
         self._store(self._power_radii[power], degree, np.arange(len(radii)), radii)
@@ -146,7 +171,9 @@ class MajorantRing(Float64Ring):
             scale = coefficient / self._unit**bounds.power
             self._note(2 * scale * bounds.sizes)
             reached = bounds.sizes + self._epsilon * bounds.radii[:, 0]
-            modes += (COSINE * self.space.half * reached + self._lost * scale * bounds.radii[:, 0])[:, None]
+            modes += (COSINE * self.space.half * reached + self._lost * scale * bounds.radii[:, 0])[
+                :, None
+            ]
             for rows, columns in self._parts(degree):
                 modes[rows, columns] += scale * bounds.radii[rows] @ self._to_modes[columns].T
         return np.asarray(np.where(mask, modes * SLACK, 0.0))
@@ -160,7 +187,11 @@ class MajorantRing(Float64Ring):
 
     def corrected(self, degree: int) -> Floats:
         shifted = self._seed_modes + self._epsilon * self._seed_radii
-        factors = ((self._corrections, self._seed_radii), (self._correction_radii, shifted), (self._corrections, self._seed_modes))
+        factors = (
+            (self._corrections, self._seed_radii),
+            (self._correction_radii, shifted),
+            (self._corrections, self._seed_modes),
+        )
         first, second, sizes = (self._seed_product(degree, *pair) for pair in factors)
         self._note(sizes)
         return (first + second) * SLACK + ROUNDED
@@ -170,6 +201,8 @@ class MajorantRing(Float64Ring):
         radii = force
         radii[:, np.array(self.space.seeds) - 1] += corrected
         factors = np.abs(multipliers)[index]
-        bracket = np.divide(self._tables[degree], factors, out=np.zeros_like(radii), where=factors != 0)
+        bracket = np.divide(
+            self._tables[degree], factors, out=np.zeros_like(radii), where=factors != 0
+        )
         radii = factors * radii + MULTIPLIER * (bracket + self._epsilon * radii) + ROUNDED
         return np.asarray(np.where(factors != 0, radii * SLACK, 0.0))

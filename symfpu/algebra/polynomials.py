@@ -1,7 +1,8 @@
-"""Power series of frequencies with polynomial coefficients, in any numbers that can be added, multiplied and divided.
+"""Power series of frequencies with polynomial coefficients, in any numbers that can be added,
+multiplied and divided.
 
-A polynomial is {exponents: coefficient}; a series is a list of them, by order. The same few lines serve doubles, mpf, balls
-and SymEngine expressions.
+A polynomial is {exponents: coefficient}; a series is a list of them, by order. The same few lines
+serve doubles, mpf, balls and SymEngine expressions.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ Polynomial = dict[tuple[int, ...], Any]
 
 
 def square_root(squares: Sequence[Polynomial], linear: Any) -> list[Polynomial]:
-    """omega^(k) from [omega^2]^(k): ([omega^2]^(k) - sum_{0<j<k} omega^(j) omega^(k-j)) / (2 Omega); order 0 is Omega itself."""
+    """omega^(k) from [omega^2]^(k): ([omega^2]^(k) - sum_{0<j<k} omega^(j) omega^(k-j)) / (2
+    Omega); order 0 is Omega itself.
+    """
     roots: list[Polynomial] = [dict.fromkeys(squares[0], linear)]
     for k in range(1, len(squares)):
         term = dict(squares[k])

@@ -1,7 +1,8 @@
 """The ring of residues modulo a prime p = 1 mod 4N: exact, at the speed of doubles.
 
-F_p then holds the cosines of the chain, and a coefficient whose residue is not zero is not zero: reduction is a ring
-homomorphism wherever no divisor vanishes. Residues are integers in -p/2 .. p/2 held as doubles.
+F_p then holds the cosines of the chain, and a coefficient whose residue is not zero is not zero:
+reduction is a ring homomorphism wherever no divisor vanishes. Residues are integers in -p/2 ..
+p/2 held as doubles.
 """
 
 from __future__ import annotations
@@ -34,7 +35,9 @@ class ResidueRing(DenseRing):
 
     name = "residue"
 
-    def __init__(self, space: CosineModes, prime: int, root: int, *, workers: int | None = None) -> None:
+    def __init__(
+        self, space: CosineModes, prime: int, root: int, *, workers: int | None = None
+    ) -> None:
         self.prime, self.root = prime, root
         self.modulus = float(prime)
         super().__init__(space, workers=workers)

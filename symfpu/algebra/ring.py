@@ -1,10 +1,11 @@
 """What a coefficient ring must offer to the recursion.
 
-A ring keeps a power series u_1, ..., u_(N-1) in the seed variables w_i, conj w_i, degree by degree, and multiplies it on
-the N bonds. "Modes" is an array with one row for each canonical monomial of a degree and one column for each mode;
-"Bonds" are the same functions in whatever form the ring multiplies best (values on the bonds, or coefficients of
-cosines). The product is f o g = 2 f g, which keeps integer coefficients integers:
-sum_lm B_qlm u_l u_m is the cosine coefficient q of c o c, and the cubic sum with C that of (c o c) o c.
+A ring keeps a power series u_1, ..., u_(N-1) in the seed variables w_i, conj w_i, degree by
+degree, and multiplies it on the N bonds. "Modes" is an array with one row for each canonical
+monomial of a degree and one column for each mode; "Bonds" are the same functions in whatever form
+the ring multiplies best (values on the bonds, or coefficients of cosines). The product is f o g =
+2 f g, which keeps integer coefficients integers: sum_lm B_qlm u_l u_m is the cosine coefficient q
+of c o c, and the cubic sum with C that of (c o c) o c.
 """
 
 from __future__ import annotations
@@ -17,7 +18,10 @@ from symfpu.algebra.selection import CosineModes
 
 
 class Ring(Protocol):
-    """Coefficients, storage and products of one series. Degrees are put in ascending order, each once."""
+    """Coefficients, storage and products of one series.
+
+    Degrees are put in ascending order, each once.
+    """
 
     name: str
     space: CosineModes
@@ -36,22 +40,38 @@ class Ring(Protocol):
         """Store the modes of a degree and make them available to products."""
 
     def power(self, power: int, degree: int) -> Any:
-        """Bonds of sum (c o c) o ... o c, `power` factors from 2 up, over all stored degrees with this sum."""
+        """Bonds of sum (c o c) o ...
+
+        O c, `power` factors from 2 up, over all stored degrees with this sum.
+        """
 
     def project(self, degree: int, parts: Sequence[tuple[Any, Any]]) -> Any:
-        """Modes of sum coefficient * bonds, selection rules applied; parts are pairs (coefficient, bonds)."""
+        """Modes of sum coefficient * bonds, selection rules applied.
+
+        Parts are pairs (coefficient, bonds).
+        """
 
     def secular(self, degree: int, modes: Any) -> Any:
-        """What stands at nu = e_q in seed mode q, divided by w_q: rows of `grading.diagonal(degree - 1)`, a column a seed."""
+        """What stands at nu = e_q in seed mode q, divided by w_q: rows of
+        `grading.diagonal(degree - 1)`, a column a seed.
+        """
 
     def correct(self, degree: int, corrections: Any) -> None:
         """Store the frequency corrections W_q of an even degree."""
 
     def corrected(self, degree: int) -> Any:
-        """Sum W_q u_q over all stored pairs of degrees; a row for each canonical monomial, a column for each seed."""
+        """Sum W_q u_q over all stored pairs of degrees.
+
+        A row for each canonical monomial, a column for each seed.
+        """
 
     def solve(self, degree: int, corrected: Any, force: Any, multipliers: Any) -> Any:
-        """Modes L (corrected - force), which may overwrite force; multipliers has a row a harmonic and a column a mode."""
+        """Modes L (corrected - force), which may overwrite force.
+
+        Multipliers has a row a harmonic and a column a mode.
+        """
 
     def results(self) -> tuple[list[Any], list[Any], Fraction]:
-        """Modes and corrections of all degrees, and the unit by which degree d was scaled: unit^-(d - 1)."""
+        """Modes and corrections of all degrees, and the unit by which degree d was scaled:
+        unit^-(d - 1).
+        """

@@ -1,8 +1,9 @@
 """Which cosine can appear in which monomial: the selection rules of products of cosines on N points.
 
-On the points theta_j = (j + 1/2) pi / N the cosines T_q = cos(q theta), q = 0 .. N-1, are a basis, and
-2 T_l T_m = T_(l+m) + T_(l-m) with T_N = 0, T_(2N-q) = -T_q. A monomial with powers e_i of the seeds q_i can therefore
-carry the modes q = +-q_1 ... +-q_1 +-q_2 ... (e_i signs for each seed), folded into 0 .. N, and no other.
+On the points theta_j = (j + 1/2) pi / N the cosines T_q = cos(q theta), q = 0 .. N-1, are a
+basis, and 2 T_l T_m = T_(l+m) + T_(l-m) with T_N = 0, T_(2N-q) = -T_q. A monomial with powers e_i
+of the seeds q_i can therefore carry the modes q = +-q_1 ... +-q_1 +-q_2 ... (e_i signs for each
+seed), folded into 0 .. N, and no other.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from symfpu.algebra.grading import Grading, Ints, compositions
 
 
 def fold(number: int, N: int) -> int:
-    """The wave number in 0 .. N that equals +-number modulo 2N: |2 [(|n| + N - 1) / 2N] N - |n|| of Eq. app.
+    """The wave number in 0 .. N that equals +-number modulo 2N: |2 [(|n| + N - 1) / 2N] N - |n|| of
+    Eq. app.
 
     >>> fold(33, 32), fold(-5, 32), fold(96, 32)
     (31, 5, 32)
@@ -26,11 +28,16 @@ def fold(number: int, N: int) -> int:
 
 
 class PowerTable:
-    """For each degree, every split of it into powers of the seeds and the modes that monomials with these powers carry."""
+    """For each degree, every split of it into powers of the seeds and the modes that monomials
+    with these powers carry.
+    """
 
     def __init__(self, N: int, seeds: Sequence[int], degree: int) -> None:
         self.N = N
-        self._weights = np.array([(degree + 1) ** i for i in reversed(range(len(seeds)))], dtype=object if len(seeds) > 12 else np.int64)
+        self._weights = np.array(
+            [(degree + 1) ** i for i in reversed(range(len(seeds)))],
+            dtype=object if len(seeds) > 12 else np.int64,
+        )
         self._keys = [compositions(d, len(seeds)) @ self._weights for d in range(degree + 1)]
         self._residues = [np.arange(2 * N)[None, :] == 0]
         columns = np.arange(2 * N)
@@ -38,21 +45,35 @@ class PowerTable:
             powers = compositions(d, len(seeds))
             first = np.argmax(powers > 0, axis=1)
             residues = np.empty((len(powers), 2 * N), dtype=np.bool_)
-            for i, q in enumerate(seeds):  # one more factor of the first seed present: its wave number with either sign
+            # one more factor of the first seed present: its wave number with either sign
+            for i, q in enumerate(seeds):
                 rows = np.flatnonzero(first == i)
-                lower = self._residues[d - 1][np.searchsorted(self._keys[d - 1], self._keys[d][rows] - self._weights[i])]
-                residues[rows] = lower[:, (columns - q) % (2 * N)] | lower[:, (columns + q) % (2 * N)]
+                lower = self._residues[d - 1][
+                    np.searchsorted(self._keys[d - 1], self._keys[d][rows] - self._weights[i])
+                ]
+                residues[rows] = (
+                    lower[:, (columns - q) % (2 * N)] | lower[:, (columns + q) % (2 * N)]
+                )
             self._residues.append(residues)
 
     def carried(self, degree: int, powers: Ints) -> NDArray[np.bool_]:
-        """Whether a monomial with these powers can carry mode q = 1 .. N-1; shape (count, N-1)."""
-        return np.asarray(self._residues[degree][np.searchsorted(self._keys[degree], powers @ self._weights), 1 : self.N])
+        """Whether a monomial with these powers can carry mode q = 1 ..
+
+        N-1; shape (count, N-1).
+        """
+        return np.asarray(
+            self._residues[degree][
+                np.searchsorted(self._keys[degree], powers @ self._weights), 1 : self.N
+            ]
+        )
 
 
 def product_modes_of_seeds(N: int, seeds: Sequence[int], powers: Ints) -> NDArray[np.bool_]:
-    """Whether the plain product of the seeds' cosines with these powers contains cosine q = 1 .. N-1, exactly.
+    """Whether the plain product of the seeds' cosines with these powers contains cosine q = 1 ..
+    N-1, exactly.
 
-    Counts the signed sums: q and 2N +- q enter with opposite signs and can cancel, as for l + m = N in a triple product.
+    Counts the signed sums: q and 2N +- q enter with opposite signs and can cancel, as for l + m =
+    N in a triple product.
     powers : (count, s), small. Returns (count, N-1).
     """
     turn, angles = 4 * N, np.arange(4 * N)
@@ -68,15 +89,25 @@ def product_modes_of_seeds(N: int, seeds: Sequence[int], powers: Ints) -> NDArra
 
 
 class CosineModes:
-    """Modes q = 1 .. N-1 on N bonds with the monomials of a grading: parities, cosines and selection masks.
+    """Modes q = 1 .. N-1 on N bonds with the monomials of a grading: parities, cosines and selection
+    masks.
 
-    A monomial is even or odd with sum_i e_i q_i. It carries modes of that parity only, and its value on bond N-1-j is
-    that on bond j times the parity: half of the bonds are enough.
+    A monomial is even or odd with sum_i e_i q_i. It carries modes of that parity only, and its
+    value on bond N-1-j is that on bond j times the parity: half of the bonds are enough.
     """
 
-    def __init__(self, N: int, seeds: Sequence[int], grading: Grading, product_degree: int | None = None) -> None:
-        """product_degree : a degree whose terms are plain products of the seeds: there cancelling couplings are exact zeros."""
-        self.N, self.seeds, self.grading, self.product_degree = N, tuple(seeds), grading, product_degree
+    def __init__(
+        self, N: int, seeds: Sequence[int], grading: Grading, product_degree: int | None = None
+    ) -> None:
+        """product_degree : a degree whose terms are plain products of the seeds: there cancelling
+        couplings are exact zeros.
+        """
+        self.N, self.seeds, self.grading, self.product_degree = (
+            N,
+            tuple(seeds),
+            grading,
+            product_degree,
+        )
         self.half = (N + 1) // 2
         self._table = PowerTable(N, seeds, grading.degree)
 
@@ -85,7 +116,10 @@ class CosineModes:
         return np.asarray(self.grading.powers(degree) @ np.array(self.seeds) % 2)
 
     def mask(self, degree: int) -> NDArray[np.bool_]:
-        """Whether a canonical monomial of this degree can carry a mode; shape (canonical, N-1)."""
+        """Whether a canonical monomial of this degree can carry a mode.
+
+        Shape (canonical, N-1).
+        """
         powers = self.grading.powers(degree)
         if degree == self.product_degree:
             return product_modes_of_seeds(self.N, self.seeds, powers)

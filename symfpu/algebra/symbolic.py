@@ -1,7 +1,8 @@
-"""The ring of SymEngine expressions: cosine coefficients multiplied by the selection rules, term by term.
+"""The ring of SymEngine expressions: cosine coefficients multiplied by the selection rules, term by
+term.
 
-It works by definition rather than for speed, keeps integer coefficients integers, and serves small orders: what the fast
-rings are tested against.
+It works by definition rather than for speed, keeps integer coefficients integers, and serves
+small orders: what the fast rings are tested against.
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ Cosines = dict[int, Any]  # wave number 0 .. N-1 -> coefficient of cos(q theta)
 
 
 class SymbolicRing:
-    """Coefficients as SymEngine expressions: expanded, or nested as the recursion builds them (zeros are found either way)."""
+    """Coefficients as SymEngine expressions: expanded, or nested as the recursion builds them
+    (zeros are found either way).
+    """
 
     def __init__(self, space: CosineModes, *, nested: bool = False) -> None:
         self.name = "nested" if nested else "symbolic"
@@ -31,14 +34,20 @@ class SymbolicRing:
         self.space, self.grading = space, space.grading
         self._modes: dict[int, Objects] = {}
         self._bonds: dict[int, dict[Monomial, Cosines]] = {}
-        self._powers: dict[int, dict[int, dict[Monomial, Cosines]]] = {}  # powers of the bonds, by degree
+        # powers of the bonds, by degree
+        self._powers: dict[int, dict[int, dict[Monomial, Cosines]]] = {}
         self._corrections: dict[int, Objects] = {}
 
     def _monomials(self, degree: int) -> list[Monomial]:
-        return [tuple(map(int, row)) for row in self.grading.exponents(degree)[self.grading.canonical(degree)]]
+        return [
+            tuple(map(int, row))
+            for row in self.grading.exponents(degree)[self.grading.canonical(degree)]
+        ]
 
     def _zeros(self, degree: int) -> Objects:
-        return np.full((len(self.grading.canonical(degree)), self.space.N - 1), se.Integer(0), dtype=object)
+        return np.full(
+            (len(self.grading.canonical(degree)), self.space.N - 1), se.Integer(0), dtype=object
+        )
 
     def number(self, value: Fraction) -> Any:
         return se.Integer(value.numerator) / se.Integer(value.denominator)
@@ -66,13 +75,18 @@ class SymbolicRing:
                 known[d] = self.power(power - 1, d)
         return self._sum(known, self._bonds, degree)
 
-    def _sum(self, left: dict[int, Any], right: dict[int, Any], degree: int) -> dict[Monomial, Cosines]:
+    def _sum(
+        self, left: dict[int, Any], right: dict[int, Any], degree: int
+    ) -> dict[Monomial, Cosines]:
         result: dict[Monomial, Cosines] = defaultdict(lambda: defaultdict(lambda: se.Integer(0)))
         for d in left:
             for a, f in left[d].items() if degree - d in right else ():
                 for b, g in right[degree - d].items():
                     self._add_product(result[tuple(x + y for x, y in zip(a, b, strict=True))], f, g)
-        return {m: {q: e for q, v in f.items() if (e := self._simplified(v)) != 0} for m, f in result.items()}
+        return {
+            m: {q: e for q, v in f.items() if (e := self._simplified(v)) != 0}
+            for m, f in result.items()
+        }
 
     def _simplified(self, value: Any) -> Any:
         expanded = se.expand(value)
@@ -118,19 +132,27 @@ class SymbolicRing:
             if degree - n not in self._modes:
                 continue
             for e, values in zip(self.grading.diagonal(n), corrections, strict=True):
-                for monomial, terms in zip(self._monomials(degree - n), self._modes[degree - n], strict=True):
-                    row = place[tuple(m + int(k) for m, k in zip(monomial, np.repeat(e, 2), strict=True))]
+                for monomial, terms in zip(
+                    self._monomials(degree - n), self._modes[degree - n], strict=True
+                ):
+                    row = place[
+                        tuple(m + int(k) for m, k in zip(monomial, np.repeat(e, 2), strict=True))
+                    ]
                     for i, q in enumerate(self.space.seeds):
                         table[row, i] += values[i] * terms[q - 1]
         return table
 
-    def solve(self, degree: int, corrected: Objects, force: Objects, multipliers: Objects) -> Objects:
+    def solve(
+        self, degree: int, corrected: Objects, force: Objects, multipliers: Objects
+    ) -> Objects:
         _, index = self.grading.harmonics(degree)
         bracket = -force
         bracket[:, np.array(self.space.seeds) - 1] += corrected
         modes = self._zeros(degree)
         for row, column in np.argwhere(bracket != 0):
-            modes[row, column] = self._simplified(multipliers[index[row], column] * self._simplified(bracket[row, column]))
+            modes[row, column] = self._simplified(
+                multipliers[index[row], column] * self._simplified(bracket[row, column])
+            )
         return modes
 
     def results(self) -> tuple[list[Objects], list[Objects], Fraction]:

@@ -1,7 +1,8 @@
 """Large integers in bulk: residues modulo many primes, limbs of 20 bits, and words for storage.
 
-Sums and products are taken modulo each prime; only rounding needs the integers themselves. Both changes of basis, residues
-to limbs (Chinese remainders) and limbs to residues, are products with small matrices, exact in doubles.
+Sums and products are taken modulo each prime; only rounding needs the integers themselves. Both
+changes of basis, residues to limbs (Chinese remainders) and limbs to residues, are products with
+small matrices, exact in doubles.
 """
 
 from __future__ import annotations
@@ -53,7 +54,10 @@ class IntegerTable:
         return np.asarray(total)
 
     def floats(self, exponent: int = 0) -> Floats:
-        """The entries times 2^exponent as doubles, correct to about an ulp; infinite beyond their range."""
+        """The entries times 2^exponent as doubles, correct to about an ulp.
+
+        Infinite beyond their range.
+        """
         total = np.zeros(self.shape)
         with np.errstate(over="ignore", invalid="ignore"):
             for j in range(self.words.shape[-1]):
@@ -78,22 +82,30 @@ class IntegerTable:
 
 
 class ResidueBasis:
-    """Integers below `bits` bits as residues modulo enough primes below `largest`; arrays of residues are (primes, count)."""
+    """Integers below `bits` bits as residues modulo enough primes below `largest`.
+
+    Arrays of residues are (primes, count).
+    """
 
     def __init__(self, bits: int, largest: int) -> None:
         from symfpu.algebra import kernels  # lazy: numba takes longer to import than all the rest
 
         self._kernels = kernels
-        self.primes = _primes(bits + 4, largest)  # an overflow of the promised bits by a factor of eight is still seen
+        # an overflow of the promised bits by a factor of eight is still seen
+        self.primes = _primes(bits + 4, largest)
         self.moduli = np.array(self.primes, dtype=np.float64)
         self._limit = 2.0 ** (bits - flint.fmpz(prod(self.primes)).bit_length() + 1)
         modulus = prod(self.primes)
         count = -(-modulus.bit_length() // LIMB_BITS) + 2
         cofactors = [modulus // p for p in self.primes]
-        self._inverses = np.array([_centred(pow(c, -1, p), p) for c, p in zip(cofactors, self.primes, strict=True)])
+        self._inverses = np.array(
+            [_centred(pow(c, -1, p), p) for c, p in zip(cofactors, self.primes, strict=True)]
+        )
         self._cofactor_limbs = np.array([_limbs(c, count) for c in cofactors]).T.copy()
         self._modulus_limbs = np.array(_limbs(modulus, count))[:, None]
-        powers = [[_centred(pow(2, LIMB_BITS * n, p), p) for n in range(count)] for p in self.primes]
+        powers = [
+            [_centred(pow(2, LIMB_BITS * n, p), p) for n in range(count)] for p in self.primes
+        ]
         self._powers = np.array(powers)
         self._fold = np.array([_centred(2**LIMB_BITS, p) for p in self.primes])
 
@@ -101,7 +113,8 @@ class ResidueBasis:
         return len(self.primes)
 
     def limbs(self, residues: Floats, drop: int = 0) -> Floats:
-        """The integers / 2^(20 drop), rounded to the nearest, as balanced limbs (limbs, count), lowest first.
+        """The integers / 2^(20 drop), rounded to the nearest, as balanced limbs (limbs, count),
+        lowest first.
 
         residues : overwritten. Raises OverflowError if an integer exceeds the promised bits.
         """
