@@ -46,16 +46,21 @@ def predicted_bytes(N: int, seeds: int, top: int, *, cubic: bool) -> int:
 
     Closed form, nothing is allocated.
     """
-    lanes = -(-((N + 1) // 2) // lane_width((N + 1) // 2)) * lane_width((N + 1) // 2)
+    half = (N + 1) // 2
+    width = lane_width(half)
+    lanes = -(-half // width) * width
     rows = comb(top + 2 * seeds, 2 * seeds)
     canonical = (rows + comb(top // 2 + seeds, seeds)) // 2
-    stored = rows * 8 * (lanes * (2 if cubic else 1) + 16 * -(-seeds // 8) + 4 * seeds + 4)
-    working = (
-        monomial_count(seeds, top) * 8 * 3 * lanes + canonical_count(seeds, top) * (N - 1) * 8 * 5
-    )
-    # cosines, selection rules, exact frequencies
-    transforms = N * lanes * 8 * 4 + 2 * N * comb(top + seeds, seeds) + N * 1000
-    return stored + canonical * (N - 1) * 8 + working + transforms
+    on_bonds = lanes * (2 if cubic else 1)
+    of_seeds = 16 * -(-seeds // 8) + 4 * seeds + 4
+    stored = rows * 8 * (on_bonds + of_seeds)
+    modes = canonical * (N - 1) * 8
+    products = monomial_count(seeds, top) * 8 * 3 * lanes
+    last_modes = canonical_count(seeds, top) * (N - 1) * 8 * 5
+    cosines, exact_frequencies = N * lanes * 8 * 4, N * 1000
+    selection_rules = 2 * N * comb(top + seeds, seeds)
+    transforms = cosines + selection_rules + exact_frequencies
+    return stored + modes + products + last_modes + transforms
 
 
 class DenseRing(ABC):
@@ -123,65 +128,73 @@ class DenseRing(ABC):
         """Called after a degree is stored; a ring that can overflow rescales here."""
 
     def _transforms(self) -> tuple[Floats, Floats]:
-        """The cosines cos(q (j + 1/2) pi / N), q = 1 .. N-1, on the first half of the bonds, padded
-        with zeros to whole rows, and the same with the weights (4/N; half of it for a bond that
-        is its own mirror image) of the way back.
+        """The cosines cos(q (j + 1/2) pi / N) on the first half of the bonds, and the way back.
+
+        Shapes (N-1, points), padded with zeros to whole rows. The way back has the weights 4/N,
+        and half of it for a bond that is its own mirror image.
         """
         N, half = self.space.N, self.space.half
-        angles = np.outer(np.arange(1, N), 2 * np.arange(half) + 1) % (4 * N)
+        odd = 2 * np.arange(half) + 1
+        angles = np.outer(np.arange(1, N), odd) % (4 * N)
         there = np.zeros((N - 1, self._slices * self._lanes))
         there[:, :half] = self._cosines(np.minimum(angles, 4 * N - angles))
-        weights = np.full(half, self._times(np.full(1, self._reciprocal(N)), 4.0)[0])
+        weights = np.full(half, self._quotient(4.0, N))
         if N % 2:
-            weights[-1] = self._times(np.full(1, self._reciprocal(N)), 2.0)[0]
+            weights[-1] = self._quotient(2.0, N)
+        every = np.broadcast_to(weights, (N - 1, half)).copy()
         back = there.copy()
-        back[:, :half] = self._times(
-            back[:, :half].copy(), np.broadcast_to(weights, (N - 1, half)).copy()
-        )
+        back[:, :half] = self._times(back[:, :half].copy(), every)
         return there, back
+
+    def _quotient(self, numerator: float, denominator: int) -> float:
+        """A quotient as an element of the ring."""
+        reciprocal = np.full(1, self._reciprocal(denominator))
+        return float(self._times(reciprocal, numerator)[0])
 
     def _parts(self, degree: int) -> list[tuple[Ints, slice]]:
         """Canonical monomials of each parity with the modes of that parity."""
         parity = self.space.parity(degree)
-        return [(np.flatnonzero(parity == p), slice(1 - p, None, 2)) for p in (0, 1)]
+        even, odd = (np.flatnonzero(parity == p) for p in (0, 1))
+        return [(even, slice(1, None, 2)), (odd, slice(0, None, 2))]
 
     def _rows(self, degree: int) -> slice:
-        return slice(int(self.grading.first_row[degree]), int(self.grading.first_row[degree + 1]))
+        first, end = self.grading.first_row[degree : degree + 2]
+        return slice(int(first), int(end))
 
     def seed_terms(self) -> Floats:
         modes = np.zeros((len(self.space.seeds), self.space.N - 1))
         powers = self.grading.powers(1)
         for row, power in enumerate(powers):
-            modes[row, self.space.seeds[int(np.argmax(power))] - 1] = 1.0
+            seed = self.space.seeds[int(np.argmax(power))]
+            modes[row, seed - 1] = 1.0
         return modes
 
     def put(self, degree: int, modes: Floats) -> None:
         self._degrees.append(degree)
         self._modes.append(modes)
         for rows, columns in self._parts(degree):
-            self._store(
-                self._bonds,
-                degree,
-                rows,
-                self._matrix_product(modes[rows, columns], self._to_bonds[columns]),
-            )
+            values = self._matrix_product(modes[rows, columns], self._to_bonds[columns])
+            self._store(self._bonds, degree, rows, values)
         self._store_seed_modes(degree, modes)
         self._keep_in_range(degree, modes)
 
     def _store(self, target: Floats, degree: int, rows: Ints, values: Floats) -> None:
-        """Values (rows, points) of some canonical monomials, and of their conjugates, into the
-        rows of the kernel.
-        """
+        """Values (rows, points) of canonical monomials and their conjugates into the kernel's rows."""
         base = int(self.grading.first_row[degree])
-        lanes = np.moveaxis(values.reshape(len(rows), target.shape[0], target.shape[2]), 1, 0)
-        target[:, base + self.grading.canonical(degree)[rows]] = lanes
-        target[:, base + self.grading.conjugate(degree)[rows]] = lanes
+        slices, _, width = target.shape
+        lanes = np.moveaxis(values.reshape(len(rows), slices, width), 1, 0)
+        canonical = self.grading.canonical(degree)[rows]
+        conjugate = self.grading.conjugate(degree)[rows]
+        target[:, base + canonical] = lanes
+        target[:, base + conjugate] = lanes
 
     def _store_seed_modes(self, degree: int, modes: Floats) -> None:
         base = int(self.grading.first_row[degree])
+        canonical, conjugate = self.grading.canonical(degree), self.grading.conjugate(degree)
         for i, q in enumerate(self.space.seeds):
-            for rows in (self.grading.canonical(degree), self.grading.conjugate(degree)):
-                self._seed_modes[i // 8, base + rows, i % 8] = modes[:, q - 1]
+            slice_, lane = divmod(i, 8)
+            for rows in (canonical, conjugate):
+                self._seed_modes[slice_, base + rows, lane] = modes[:, q - 1]
 
     def _product(
         self,
@@ -198,68 +211,65 @@ class DenseRing(ABC):
         Shape (slices, rows of the degree, lanes).
         """
         rows = self._rows(degree)
-        out = np.zeros((left.shape[0], rows.stop - rows.start, left.shape[2]))
+        slices, _, width = left.shape
+        out = np.zeros((slices, rows.stop - rows.start, width))
         if not splits:
             return out
         blocks = self.grading.wanted_blocks(degree)
-        lanes = (0.0,) * left.shape[2]
+        lanes = (0.0,) * width
         active = self._active if sparse else self._active[:0]
         table = np.array(splits, dtype=np.int64)
 
         def task(part: tuple[int, int]) -> int:
             slice_, first = part
-            return int(
-                self._kernels.multiply(
-                    lanes,
-                    left[slice_],
-                    right[slice_],
-                    out[slice_],
-                    degree,
-                    rows.start,
-                    table,
-                    symmetric,
-                    active,
-                    blocks[first::chunks],
-                    self.grading.tables,
-                    self.modulus,
-                )
+            count = self._kernels.multiply(
+                lanes,
+                left[slice_],
+                right[slice_],
+                out[slice_],
+                degree,
+                rows.start,
+                table,
+                symmetric,
+                active,
+                blocks[first::chunks],
+                self.grading.tables,
+                self.modulus,
             )
+            return int(count)
 
-        size = sum(
-            monomial_count(len(self.space.seeds), d) * monomial_count(len(self.space.seeds), e)
-            for d, e in splits
-        )
-        parallel = size * left.shape[0] * left.shape[2] >= PARALLEL_FROM and not sparse
+        parallel = not sparse and self._pairs(splits) * slices * width >= PARALLEL_FROM
         chunks = min(4 * self._workers, len(blocks)) if parallel else 1
-        parts = [(s, c) for s in range(left.shape[0]) for c in range(chunks)]
-        count = sum(self._pool.map(task, parts) if parallel else map(task, parts))
+        parts = [(s, c) for s in range(slices) for c in range(chunks)]
+        done = self._pool.map(task, parts) if parallel else map(task, parts)
+        count = sum(done)
         if not sparse:
             self.multiply_adds += count
         return self._reduced(out)
 
+    def _pairs(self, splits: list[tuple[int, int]]) -> int:
+        """How many pairs of monomials the splits have."""
+        seeds = len(self.space.seeds)
+        return sum(monomial_count(seeds, d) * monomial_count(seeds, e) for d, e in splits)
+
     def power(self, power: int, degree: int) -> Floats:
         if power == 2:
-            out = self._product(
-                self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True
-            )
+            splits = self._square_splits(degree)
+            out = self._product(self._bonds, self._bonds, degree, splits, symmetric=True)
         else:
             splits = self._power_splits(power, degree)
             out = self._product(self._powers[power - 1], self._bonds, degree, splits)
-        return self._times(out, float(np.ldexp(2.0, -self.exponent)))
+        scale = np.ldexp(2.0, -self.exponent)
+        return self._times(out, float(scale))
 
     def _canonical_points(self, degree: int, values: Floats) -> Floats:
-        """What the kernel gave for the canonical monomials, (slices, rows, lanes) to (canonical,
-        points).
-        """
+        """Canonical monomials of the kernel's (slices, rows, lanes); shape (canonical, points)."""
         canonical = self.grading.canonical(degree)
         return np.concatenate([part[canonical] for part in values], axis=1)
 
     def _square_splits(self, degree: int) -> list[tuple[int, int]]:
-        return [
-            (d, degree - d)
-            for d in self._degrees
-            if d <= degree - d and degree - d in self._degrees
-        ]
+        splits = [(d, degree - d) for d in self._degrees]
+        return [(d, e) for d, e in splits if d <= e and e in self._degrees]
 
     def _power_splits(self, power: int, degree: int) -> list[tuple[int, int]]:
         """Splits into a lower power and a single.
@@ -270,21 +280,18 @@ class DenseRing(ABC):
         for d in range(lower, degree):
             if d not in self._power_degrees.get(lower, ()):
                 self._put_power(lower, d)
-        return [
-            (d, degree - d)
-            for d in self._power_degrees.get(lower, ())
-            if degree - d in self._degrees
-        ]
+        splits = [(d, degree - d) for d in self._power_degrees.get(lower, ())]
+        return [(d, e) for d, e in splits if e in self._degrees]
 
     def _put_power(self, power: int, degree: int) -> None:
-        self._store_power(power, degree, self._canonical_points(degree, self.power(power, degree)))
+        values = self.power(power, degree)
+        self._store_power(power, degree, self._canonical_points(degree, values))
 
     def _store_power(self, power: int, degree: int, values: Floats) -> None:
-        """Keep a power of the bonds at a degree, (canonical, points), as a factor of higher
-        powers.
-        """
+        """Keep a power of the bonds, (canonical, points), as a factor of higher powers."""
         if power not in self._powers:
-            self._powers[power], self._power_degrees[power] = np.zeros_like(self._bonds), []
+            self._powers[power] = np.zeros_like(self._bonds)
+            self._power_degrees[power] = []
         if degree not in self._power_degrees[power]:
             self._power_degrees[power].append(degree)
         self._store(self._powers[power], degree, np.arange(len(values)), values)
@@ -293,12 +300,13 @@ class DenseRing(ABC):
         canonical = self.grading.canonical(degree)
         modes = np.zeros((len(canonical), self.space.N - 1))
         for rows, columns in self._parts(degree):
+            chosen, back = canonical[rows], self._to_modes[columns].T
             for coefficient, values in parts:
-                bonds = np.concatenate([part[canonical[rows]] for part in values], axis=1)
-                modes[rows, columns] += self._times(
-                    self._matrix_product(bonds, self._to_modes[columns].T), coefficient
-                )
-        return self._reduced(np.multiply(modes, self.space.mask(degree), out=modes))
+                bonds = np.concatenate([part[chosen] for part in values], axis=1)
+                force = self._matrix_product(bonds, back)
+                modes[rows, columns] += self._times(force, coefficient)
+        np.multiply(modes, self.space.mask(degree), out=modes)
+        return self._reduced(modes)
 
     def secular(self, degree: int, modes: NDArray[Any]) -> NDArray[Any]:
         canonical = self.grading.canonical(degree)
@@ -307,7 +315,8 @@ class DenseRing(ABC):
         for i, q in enumerate(self.space.seeds):
             exponents = np.repeat(diagonal, 2, axis=1)
             exponents[:, 2 * i] += 1
-            at = np.searchsorted(canonical, self.grading.rows(exponents))
+            rows = self.grading.rows(exponents)
+            at = np.searchsorted(canonical, rows)
             columns.append(modes[at, q - 1])
         return np.stack(columns, axis=1)
 
@@ -316,32 +325,34 @@ class DenseRing(ABC):
         self._diagonal.append(corrections)
         rows = self._diagonal_rows(degree)
         for i in range(len(self.space.seeds)):
-            self._corrections[i // 8, rows, i % 8] = corrections[:, i]
+            slice_, lane = divmod(i, 8)
+            self._corrections[slice_, rows, lane] = corrections[:, i]
         self._active[rows] = True
 
     def _diagonal_rows(self, degree: int) -> Ints:
         """Rows, over all degrees, of the monomials |z|^(2e)."""
-        return np.asarray(
-            self.grading.first_row[degree]
-            + self.grading.rows(np.repeat(self.grading.diagonal(degree), 2, axis=1))
-        )
+        exponents = np.repeat(self.grading.diagonal(degree), 2, axis=1)
+        rows = self.grading.rows(exponents)
+        return np.asarray(self.grading.first_row[degree] + rows)
 
     def corrected(self, degree: int) -> Floats:
         return self._seed_product(degree, self._corrections, self._seed_modes)
 
     def _seed_product(self, degree: int, corrections: Floats, seed_modes: Floats) -> Floats:
         """Sum W_q u_q over all stored pairs of degrees; (canonical, s)."""
-        splits = [(n, degree - n) for n in self._correction_degrees if degree - n in self._degrees]
-        lanes = self._product(corrections, seed_modes, degree, splits, sparse=True)
+        splits = [(n, degree - n) for n in self._correction_degrees]
+        known = [(n, d) for n, d in splits if d in self._degrees]
+        lanes = self._product(corrections, seed_modes, degree, known, sparse=True)
         canonical = self.grading.canonical(degree)
-        return np.stack(
-            [lanes[i // 8, canonical, i % 8] for i in range(len(self.space.seeds))], axis=1
-        )
+        places = [divmod(i, 8) for i in range(len(self.space.seeds))]
+        columns = [lanes[slice_, canonical, lane] for slice_, lane in places]
+        return np.stack(columns, axis=1)
 
     def solve(self, degree: int, corrected: Floats, force: Floats, multipliers: Floats) -> Floats:
         _, index = self.grading.harmonics(degree)
         bracket = np.negative(force, out=force)
-        bracket[:, np.array(self.space.seeds) - 1] += corrected
+        seeds = np.array(self.space.seeds) - 1
+        bracket[:, seeds] += corrected
         return self._times(self._reduced(bracket), multipliers[index])
 
     def results(self) -> tuple[list[Floats], list[Floats], Fraction]:

@@ -1,5 +1,6 @@
-"""The monomials of one degree in z_1, conj z_1, ..., z_s, conj z_s: their order, ranks and product
-tables.
+"""The monomials of one degree in z_1, conj z_1, ..., z_s, conj z_s.
+
+Their order, their ranks and the tables of their products.
 
 A monomial is a row of exponents (p_1, n_1, ..., p_s, n_s): p of z, n of conj z. Its harmonic is
 nu = p - n, its power of the amplitudes is p + n. Rows are grouped in blocks: the first seeds (the
@@ -27,27 +28,31 @@ Keys = NDArray[Any]  # integers: int64, or Python's own where int64 is too short
 
 
 def monomial_count(seeds: int, degree: int) -> int:
-    """Number of monomials of one degree in z and conj z of each seed: C(degree + 2 seeds - 1, 2
-    seeds - 1).
-    """
-    return comb(degree + 2 * seeds - 1, 2 * seeds - 1)
+    """Number of monomials of one degree in z and conj z of each seed."""
+    variables = 2 * seeds
+    return comb(degree + variables - 1, variables - 1)
 
 
 def canonical_count(seeds: int, degree: int) -> int:
     """Number of canonical monomials (harmonic zero or lexicographically positive) of one degree."""
-    own = comb(degree // 2 + seeds - 1, seeds - 1) if degree % 2 == 0 else 0
-    return (monomial_count(seeds, degree) + own) // 2
+    whole = monomial_count(seeds, degree)
+    half, odd = divmod(degree, 2)
+    own = 0 if odd else comb(half + seeds - 1, seeds - 1)  # equal to their conjugates
+    return (whole + own) // 2
 
 
 def compositions(total: int, parts: int) -> Ints:
     """All rows of `parts` non-negative integers with sum `total`; shape (count, parts)."""
     if parts <= 1:
-        return np.full((int(parts == 1 or total == 0), parts), total, dtype=np.int64)
-    bars = np.array(
-        list(combinations(range(total + parts - 1), parts - 1)), dtype=np.int64
-    ).reshape(-1, parts - 1)
-    edges = np.pad(bars, ((0, 0), (1, 1)), constant_values=((0, 0), (-1, total + parts - 1)))
-    return np.asarray(np.diff(edges, axis=1) - 1)
+        count = int(parts == 1 or total == 0)
+        return np.full((count, parts), total, dtype=np.int64)
+    places = total + parts - 1
+    chosen = list(combinations(range(places), parts - 1))
+    bars = np.array(chosen, dtype=np.int64).reshape(-1, parts - 1)
+    ends = (-1, places)
+    edges = np.pad(bars, ((0, 0), (1, 1)), constant_values=((0, 0), ends))
+    gaps = np.diff(edges, axis=1)
+    return np.asarray(gaps - 1)
 
 
 class Group:
@@ -55,10 +60,11 @@ class Group:
 
     def __init__(self, seeds: int, degree: int) -> None:
         self.seeds, self.degree = seeds, degree
-        base = 4 * degree + 1
-        wide = base ** (2 * seeds) * (degree + 1) >= 2**62
-        weights = [base**i for i in reversed(range(2 * seeds))]
-        self._weights = np.array(weights, dtype=object if wide else np.int64)
+        base, variables = 4 * degree + 1, 2 * seeds
+        largest = base**variables * (degree + 1)
+        kind = object if largest >= 2**62 else np.int64
+        weights = [base**i for i in reversed(range(variables))]
+        self._weights = np.array(weights, dtype=kind)
         self.exponents: list[Ints] = []
         self._keys: list[Keys] = []
         for d in range(degree + 1):
@@ -67,15 +73,19 @@ class Group:
             order = np.argsort(keys, kind="stable")
             self.exponents.append(rows[order])
             self._keys.append(keys[order])
-        self.counts = np.array([len(rows) for rows in self.exponents], dtype=np.int64)
-        self.first_canonical = np.array([np.searchsorted(k, 0) for k in self._keys], dtype=np.int64)
+        counts = [len(rows) for rows in self.exponents]
+        first = [np.searchsorted(keys, 0) for keys in self._keys]
+        self.counts = np.array(counts, dtype=np.int64)
+        self.first_canonical = np.array(first, dtype=np.int64)
 
     def keys(self, exponents: Ints) -> Keys:
-        """Integers that add when monomials multiply, sort by (nu, p + n), and are negative just
-        for nu < 0.
+        """Integers that add when monomials multiply and sort by (nu, p + n).
+
+        They are negative just for nu < 0.
         """
         p, n = exponents[..., 0::2], exponents[..., 1::2]
-        return np.asarray(np.concatenate([p - n, p + n], axis=-1) @ self._weights)
+        digits = np.concatenate([p - n, p + n], axis=-1)
+        return np.asarray(digits @ self._weights)
 
     def ranks(self, degree: int, keys: Keys) -> Ints:
         """Places of the monomials with these keys among those of `degree`."""
@@ -86,13 +96,26 @@ class Group:
 
         Shape (left, right).
         """
-        return self.ranks(left + right, self._keys[left][:, None] + self._keys[right][None, :])
+        first, second = self._keys[left], self._keys[right]
+        keys = first[:, None] + second[None, :]
+        return self.ranks(left + right, keys)
 
     def conjugates(self, degree: int) -> Ints:
         """Rank of the conjugate of each monomial of `degree`."""
-        rows = self.exponents[degree]
-        swapped = rows.reshape(len(rows), self.seeds, 2)[:, :, ::-1].reshape(rows.shape)
-        return self.ranks(degree, self.keys(swapped))
+        swapped = exchanged(self.exponents[degree])
+        keys = self.keys(swapped)
+        return self.ranks(degree, keys)
+
+
+def exchanged(exponents: Ints) -> Ints:
+    """Exponents (count, 2 seeds) with those of z and conj z exchanged."""
+    pairs = exponents.reshape(len(exponents), exponents.shape[1] // 2, 2)
+    return pairs[:, :, ::-1].reshape(exponents.shape)
+
+
+def harmonic_of(exponents: Ints) -> Ints:
+    """nu = p - n of rows of exponents; shape (count, seeds)."""
+    return np.asarray(exponents[:, 0::2] - exponents[:, 1::2])
 
 
 class ProductTables(NamedTuple):
@@ -148,8 +171,9 @@ class Grading:
         """-1, 0 or 1 for each outer monomial: below, at or above harmonic zero."""
         signs = []
         for rows in self.outer.exponents:
-            nu = rows[:, 0::2] - rows[:, 1::2]
-            lead = np.array([next((n for n in row if n), 0) for row in nu], dtype=np.int64)
+            nu = harmonic_of(rows)
+            leads = [next((n for n in row if n), 0) for row in nu]
+            lead = np.array(leads, dtype=np.int64)
             signs.append(np.sign(lead))
         return np.concatenate(signs)
 
@@ -157,7 +181,8 @@ class Grading:
     def first_row(self) -> Ints:
         """First row of each degree; one more entry for the end. Shape (degree + 2,)."""
         sizes = [monomial_count(self.seeds, d) for d in range(self.degree + 1)]
-        return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
+        ends = np.cumsum(sizes)
+        return np.concatenate([[0], ends]).astype(np.int64)
 
     def exponents(self, degree: int) -> Ints:
         """Exponents (p_1, n_1, ..., p_s, n_s) of every monomial of `degree`, in row order.
@@ -180,9 +205,7 @@ class Grading:
         return np.asarray(rows[:, 0::2] + rows[:, 1::2])
 
     def harmonics(self, degree: int) -> tuple[Ints, Ints]:
-        """The distinct harmonics nu of the canonical monomials, and which of them each monomial
-        has.
-        """
+        """The distinct harmonics nu of the canonical monomials, and which of them each one has."""
         return self._harmonics[degree]
 
     def diagonal(self, degree: int) -> Ints:
@@ -206,33 +229,38 @@ class Grading:
         outer, inner = exponents[:, :split], exponents[:, split:]
         result = np.empty(len(exponents), dtype=np.int64)
         outer_degrees = outer.sum(axis=1)
+        first_rows = self.tables.block[degree] - self.first_row[degree]
         for x in np.unique(outer_degrees):
             at = np.flatnonzero(outer_degrees == x)
-            block = self._outer_first[x] + self.outer.ranks(x, self.outer.keys(outer[at]))
-            place = self.inner.ranks(degree - x, self.inner.keys(inner[at]))
-            result[at] = self.tables.block[degree, block] + place - self.first_row[degree]
+            outer_keys, inner_keys = self.outer.keys(outer[at]), self.inner.keys(inner[at])
+            block = self._outer_first[x] + self.outer.ranks(x, outer_keys)
+            place = self.inner.ranks(degree - x, inner_keys)
+            result[at] = first_rows[block] + place
         return result
 
     @cached_property
     def _layout(self) -> list[tuple[Ints, Ints, Ints]]:
+        """Exponents, canonical rows and the rows of their conjugates, by degree."""
         layout = []
         for d in range(self.degree + 1):
-            rows = np.concatenate(
-                [
-                    np.hstack([np.tile(o, (len(i), 1)), i])
-                    for x in range(d + 1)
-                    for i in [self.inner.exponents[d - x]]
-                    for o in self.outer.exponents[x]
-                ]
-            )
-            nu = rows[:, 0::2] - rows[:, 1::2]
-            lead = nu[np.arange(len(nu)), np.argmax(nu != 0, axis=1)]
+            rows = self._rows_of_degree(d)
+            nu = harmonic_of(rows)
+            first_nonzero = np.argmax(nu != 0, axis=1)
+            lead = nu[np.arange(len(nu)), first_nonzero]
             canonical = np.flatnonzero(lead >= 0)
-            swapped = (
-                rows[canonical].reshape(-1, self.seeds, 2)[:, :, ::-1].reshape(-1, 2 * self.seeds)
-            )
-            layout.append((rows, canonical, self.rows(swapped)))
+            conjugates = self.rows(exchanged(rows[canonical]))
+            layout.append((rows, canonical, conjugates))
         return layout
+
+    def _rows_of_degree(self, degree: int) -> Ints:
+        """Exponents of all monomials, block after block."""
+        blocks = []
+        for x in range(degree + 1):
+            inner = self.inner.exponents[degree - x]
+            for outer in self.outer.exponents[x]:
+                repeated = np.tile(outer, (len(inner), 1))
+                blocks.append(np.hstack([repeated, inner]))
+        return np.concatenate(blocks)
 
     def harmonic_keys(self, harmonics: Ints) -> Keys:
         """A number for each harmonic (count, s), the same for no two, in lexicographic order."""
@@ -242,17 +270,17 @@ class Grading:
     def _harmonic_weights(self) -> Keys:
         base = 2 * self.degree + 1
         weights = [base**i for i in reversed(range(self.seeds))]
-        return np.array(weights, dtype=object if base**self.seeds >= 2**62 else np.int64)
+        kind = object if base**self.seeds >= 2**62 else np.int64
+        return np.array(weights, dtype=kind)
 
     @cached_property
     def _harmonics(self) -> list[tuple[Ints, Ints]]:
         result = []
         for d in range(self.degree + 1):
             rows = self.exponents(d)[self.canonical(d)]
-            nu = rows[:, 0::2] - rows[:, 1::2]
-            _, first, index = np.unique(
-                self.harmonic_keys(nu), return_index=True, return_inverse=True
-            )
+            nu = harmonic_of(rows)
+            keys = self.harmonic_keys(nu)
+            _, first, index = np.unique(keys, return_index=True, return_inverse=True)
             result.append((nu[first], index.reshape(-1)))
         return result
 
@@ -261,6 +289,7 @@ class Grading:
         """The tables that the compiled product runs on."""
         pair_start, left, right = self._outer_pairs()
         flat, offset, stride = self._inner_table()
+        own_conjugate = self._outer_sign == 0
         return ProductTables(
             outer_degree=self._outer_degree,
             pair_start=pair_start,
@@ -268,7 +297,7 @@ class Grading:
             pair_right=right,
             block=self._blocks(),
             inner_count=self.inner.counts,
-            inner_start=(self._outer_sign == 0).astype(np.int64),
+            inner_start=own_conjugate.astype(np.int64),
             first_canonical=self.inner.first_canonical,
             inner_table=flat,
             table_offset=offset,
@@ -281,52 +310,61 @@ class Grading:
 
     def wanted_blocks(self, degree: int) -> Ints:
         """Outer monomials whose blocks hold canonical rows of `degree`."""
-        return np.flatnonzero((self._outer_sign >= 0) & (self._outer_degree <= degree))
+        canonical = self._outer_sign >= 0
+        divides = self._outer_degree <= degree
+        return np.flatnonzero(canonical & divides)
 
     def _blocks(self) -> Ints:
-        sizes = np.where(
-            self._outer_degree[None, :] <= np.arange(self.degree + 1)[:, None],
-            self.inner.counts[
-                np.maximum(np.arange(self.degree + 1)[:, None] - self._outer_degree[None, :], 0)
-            ],
-            0,
-        )
-        return (np.cumsum(sizes.ravel()) - sizes.ravel()).reshape(sizes.shape).astype(np.int64)
+        """The first row of the block of each outer monomial, by degree."""
+        degrees = np.arange(self.degree + 1)
+        left_over = degrees[:, None] - self._outer_degree[None, :]
+        counts = self.inner.counts[np.maximum(left_over, 0)]
+        sizes = np.where(left_over >= 0, counts, 0)
+        flat = sizes.ravel()
+        before = np.cumsum(flat) - flat
+        return before.reshape(sizes.shape).astype(np.int64)
 
     def _outer_pairs(self) -> tuple[Ints, NDArray[np.int32], NDArray[np.int32]]:
-        lefts, rights, products = [], [], []
-        for x in range(self.degree + 1):
-            for y in range(self.degree + 1 - x):
-                if self.outer.counts[x] == 0 or self.outer.counts[y] == 0:
-                    continue
-                table = self.outer.products(x, y) + self._outer_first[x + y]
-                l, r = np.indices(table.shape)
-                lefts.append(l.ravel() + self._outer_first[x])
-                rights.append(r.ravel() + self._outer_first[y])
-                products.append(table.ravel())
-        left, right, product = (np.concatenate(a) for a in (lefts, rights, products))
+        """Where the factor pairs of each outer monomial begin, and the pairs, sorted by product."""
+        left, right, product = self._all_outer_pairs()
         order = np.lexsort((left, product))
         left, right, product = left[order], right[order], product[order]
         top = self.degree + 2
         key = product * top + self._outer_degree[left]
-        wanted = np.arange(len(self._outer_degree))[:, None] * top + np.arange(top)[None, :]
-        return np.searchsorted(key, wanted), left.astype(np.int32), right.astype(np.int32)
+        monomials = np.arange(len(self._outer_degree))
+        wanted = monomials[:, None] * top + np.arange(top)[None, :]
+        start = np.searchsorted(key, wanted)
+        return start, left.astype(np.int32), right.astype(np.int32)
+
+    def _all_outer_pairs(self) -> tuple[Ints, Ints, Ints]:
+        """Left factor, right factor and product of every pair of outer monomials."""
+        lefts, rights, products = [], [], []
+        counts, first = self.outer.counts, self._outer_first
+        for x in range(self.degree + 1):
+            for y in range(self.degree + 1 - x):
+                if counts[x] == 0 or counts[y] == 0:
+                    continue
+                table = self.outer.products(x, y) + first[x + y]
+                l, r = np.indices(table.shape)
+                lefts.append(l.ravel() + first[x])
+                rights.append(r.ravel() + first[y])
+                products.append(table.ravel())
+        return np.concatenate(lefts), np.concatenate(rights), np.concatenate(products)
 
     def _inner_table(self) -> tuple[NDArray[np.int32], Ints, Ints]:
         size = self.degree + 1
         if self.inner.seeds == 1:  # ranks are the powers of z, and add
-            one, zero = (
-                np.ones((size, size), dtype=np.int64),
-                np.zeros((size, size), dtype=np.int64),
-            )
-            return np.arange(size, dtype=np.int32), zero, one
+            one = np.ones((size, size), dtype=np.int64)
+            ranks = np.arange(size, dtype=np.int32)
+            return ranks, np.zeros_like(one), one
         offset, stride = np.zeros((2, size, size), dtype=np.int64)
         parts: list[NDArray[np.int32]] = []
         position = 0
         for x in range(size):
             for y in range(size - x):
                 table = self.inner.products(x, y).astype(np.int32)
-                offset[x, y], stride[x, y] = position, table.shape[1]
+                offset[x, y] = position
+                stride[x, y] = table.shape[1]
                 position += table.size
                 parts.append(table.ravel())
         return np.concatenate(parts), offset, stride

@@ -17,80 +17,88 @@ from symfpu.algebra.grading import Grading, Ints, compositions
 
 
 def fold(number: int, N: int) -> int:
-    """The wave number in 0 .. N that equals +-number modulo 2N: |2 [(|n| + N - 1) / 2N] N - |n|| of
-    Eq. app.
+    """The wave number in 0 .. N that equals +-number modulo 2N.
+
+    |2 [(|n| + N - 1) / 2N] N - |n|| of Eq. app.
 
     >>> fold(33, 32), fold(-5, 32), fold(96, 32)
     (31, 5, 32)
     """
     size = abs(number)
-    return abs(2 * ((size + N - 1) // (2 * N)) * N - size)
+    turns = (size + N - 1) // (2 * N)
+    return abs(2 * turns * N - size)
 
 
 class PowerTable:
-    """For each degree, every split of it into powers of the seeds and the modes that monomials
-    with these powers carry.
-    """
+    """For each degree, every split of it into powers of the seeds, and the modes it carries."""
 
     def __init__(self, N: int, seeds: Sequence[int], degree: int) -> None:
-        self.N = N
-        self._weights = np.array(
-            [(degree + 1) ** i for i in reversed(range(len(seeds)))],
-            dtype=object if len(seeds) > 12 else np.int64,
-        )
-        self._keys = [compositions(d, len(seeds)) @ self._weights for d in range(degree + 1)]
-        self._residues = [np.arange(2 * N)[None, :] == 0]
-        columns = np.arange(2 * N)
-        for d in range(1, degree + 1):
+        self.N, self.seeds = N, seeds
+        kind = object if len(seeds) > 12 else np.int64
+        weights = [(degree + 1) ** i for i in reversed(range(len(seeds)))]
+        self._weights = np.array(weights, dtype=kind)
+        self._keys = []
+        self._residues = []
+        for d in range(degree + 1):
             powers = compositions(d, len(seeds))
-            first = np.argmax(powers > 0, axis=1)
-            residues = np.empty((len(powers), 2 * N), dtype=np.bool_)
+            self._keys.append(powers @ self._weights)
+            self._residues.append(self._wave_numbers(powers))
+
+    def _wave_numbers(self, powers: Ints) -> NDArray[np.bool_]:
+        """Whether signed sums of the seeds reach each residue modulo 2N; lower degrees are known."""
+        residues, turn = np.arange(2 * self.N), 2 * self.N
+        degree = len(self._residues)
+        if degree == 0:
+            return residues[None, :] == 0
+        lower_keys, lower = self._keys[degree - 1], self._residues[degree - 1]
+        first = np.argmax(powers > 0, axis=1)
+        reached = np.empty((len(powers), turn), dtype=np.bool_)
+        for i, q in enumerate(self.seeds):
             # one more factor of the first seed present: its wave number with either sign
-            for i, q in enumerate(seeds):
-                rows = np.flatnonzero(first == i)
-                lower = self._residues[d - 1][
-                    np.searchsorted(self._keys[d - 1], self._keys[d][rows] - self._weights[i])
-                ]
-                residues[rows] = (
-                    lower[:, (columns - q) % (2 * N)] | lower[:, (columns + q) % (2 * N)]
-                )
-            self._residues.append(residues)
+            rows = np.flatnonzero(first == i)
+            without = self._keys[degree][rows] - self._weights[i]
+            before = lower[np.searchsorted(lower_keys, without)]
+            down, up = before[:, (residues - q) % turn], before[:, (residues + q) % turn]
+            reached[rows] = down | up
+        return reached
 
     def carried(self, degree: int, powers: Ints) -> NDArray[np.bool_]:
-        """Whether a monomial with these powers can carry mode q = 1 ..
-
-        N-1; shape (count, N-1).
-        """
-        return np.asarray(
-            self._residues[degree][
-                np.searchsorted(self._keys[degree], powers @ self._weights), 1 : self.N
-            ]
-        )
+        """Whether a monomial with these powers can carry a mode; shape (count, N-1)."""
+        keys = powers @ self._weights
+        places = np.searchsorted(self._keys[degree], keys)
+        return np.asarray(self._residues[degree][places, 1 : self.N])
 
 
 def product_modes_of_seeds(N: int, seeds: Sequence[int], powers: Ints) -> NDArray[np.bool_]:
-    """Whether the plain product of the seeds' cosines with these powers contains cosine q = 1 ..
-    N-1, exactly.
+    """Whether the plain product of the seeds' cosines with these powers contains a cosine, exactly.
 
-    Counts the signed sums: q and 2N +- q enter with opposite signs and can cancel, as for l + m =
-    N in a triple product.
-    powers : (count, s), small. Returns (count, N-1).
+    powers : (count, s), small. Returns (count, N-1). Counts the signed sums: q and 2N +- q enter
+    with opposite signs and can cancel, as for l + m = N in a triple product.
     """
-    turn, angles = 4 * N, np.arange(4 * N)
+    turn = 4 * N
     result = np.empty((len(powers), N - 1), dtype=np.bool_)
     q = np.arange(1, N)
     for row, power in enumerate(powers):
-        counts = (angles == 0).astype(np.int64)
-        for seed, e in zip(seeds, power, strict=True):
-            for _ in range(int(e)):
-                counts = counts[(angles - seed) % turn] + counts[(angles + seed) % turn]
-        result[row] = counts[q] + counts[turn - q] != counts[2 * N - q] + counts[2 * N + q]
+        counts = _signed_sums(turn, seeds, power)
+        plus = counts[q] + counts[turn - q]
+        minus = counts[2 * N - q] + counts[2 * N + q]
+        result[row] = plus != minus
     return result
 
 
+def _signed_sums(turn: int, seeds: Sequence[int], power: Ints) -> Ints:
+    """How often each residue modulo `turn` is a sum of the seeds, each with either sign."""
+    angles = np.arange(turn)
+    counts = (angles == 0).astype(np.int64)
+    for seed, e in zip(seeds, power, strict=True):
+        for _ in range(int(e)):
+            down, up = counts[(angles - seed) % turn], counts[(angles + seed) % turn]
+            counts = down + up
+    return counts
+
+
 class CosineModes:
-    """Modes q = 1 .. N-1 on N bonds with the monomials of a grading: parities, cosines and selection
-    masks.
+    """Modes q = 1 .. N-1 on N bonds with the monomials of a grading: parities and masks.
 
     A monomial is even or odd with sum_i e_i q_i. It carries modes of that parity only, and its
     value on bond N-1-j is that on bond j times the parity: half of the bonds are enough.
@@ -99,21 +107,19 @@ class CosineModes:
     def __init__(
         self, N: int, seeds: Sequence[int], grading: Grading, product_degree: int | None = None
     ) -> None:
-        """product_degree : a degree whose terms are plain products of the seeds: there cancelling
-        couplings are exact zeros.
+        """product_degree : a degree whose terms are plain products of the seeds.
+
+        Cancelling couplings are exact zeros there.
         """
-        self.N, self.seeds, self.grading, self.product_degree = (
-            N,
-            tuple(seeds),
-            grading,
-            product_degree,
-        )
+        self.N, self.seeds = N, tuple(seeds)
+        self.grading, self.product_degree = grading, product_degree
         self.half = (N + 1) // 2
         self._table = PowerTable(N, seeds, grading.degree)
 
     def parity(self, degree: int) -> Ints:
         """0 or 1 for each canonical monomial of a degree."""
-        return np.asarray(self.grading.powers(degree) @ np.array(self.seeds) % 2)
+        sums = self.grading.powers(degree) @ np.array(self.seeds)
+        return np.asarray(sums % 2)
 
     def mask(self, degree: int) -> NDArray[np.bool_]:
         """Whether a canonical monomial of this degree can carry a mode.
@@ -130,4 +136,5 @@ class CosineModes:
         nu, index = self.grading.harmonics(degree)
         order = np.argsort(index, kind="stable")
         starts = np.searchsorted(index[order], np.arange(len(nu)))
-        return np.asarray(np.logical_or.reduceat(self.mask(degree)[order], starts, axis=0))
+        mask = self.mask(degree)[order]
+        return np.asarray(np.logical_or.reduceat(mask, starts, axis=0))
