@@ -115,38 +115,31 @@ class FixedPointRing:
         return list(self._pool.map(lambda item: work(*item), enumerate(self._images)))
 
     def _cosines(self, weights: NDArray[Any]) -> Floats:
-        """Residues of weight_j cos(q (j + 1/2) pi / N) on the first half of the bonds.
-
-        (primes, N-1, points).
-        """
-        N, half = self.space.N, self.space.half
-        angles = np.outer(np.arange(1, N), 2 * np.arange(half) + 1) % (4 * N)
+        """Residues of weight_j cos(q (j + 1/2) pi / N) on half of the bonds; (primes, N-1, points)."""
+        N, half, bits = self.space.N, self.space.half, self.precision.bits
+        odd = 2 * np.arange(half) + 1
+        angles = np.outer(np.arange(1, N), odd) % (4 * N)
         angles = np.minimum(angles, 4 * N - angles)
         whole = np.zeros((N - 1, self._points), dtype=object)
         largest = max(1, *(abs(w) for w in weights))
-        with mpmath.workprec(self.precision.bits + math.ceil(math.log2(largest)) + 32):
-            table = [
-                mpmath.ldexp(mpmath.cospi(mpmath.mpf(n) / (2 * N)), self.precision.bits)
-                for n in range(2 * N + 1)
-            ]
+        with mpmath.workprec(bits + math.ceil(math.log2(largest)) + 32):
+            cosines = [mpmath.cospi(mpmath.mpf(n) / (2 * N)) for n in range(2 * N + 1)]
+            table = [mpmath.ldexp(cosine, bits) for cosine in cosines]
             for j, weight in enumerate(weights):
-                exact = Fraction(weight)
-                column = [
-                    int(mpmath.nint(table[n] * exact.numerator / exact.denominator))
-                    for n in range(2 * N + 1)
-                ]
-                whole[:, j] = np.array(column, dtype=object)[angles[:, j]]
+                column = _weighted(table, Fraction(weight))
+                whole[:, j] = column[angles[:, j]]
         return self.basis.of_integers(whole)
 
     def _to_modes(self, coefficient: Fraction) -> Floats:
-        """The way back, times a coefficient: weights 4/N, half of it for a bond that is its own
-        mirror image.
+        """The way back, times a coefficient.
+
+        Weights 4/N, and half of it for a bond that is its own mirror image.
         """
         if coefficient not in self._back:
             N, half = self.space.N, self.space.half
-            weights = [
-                coefficient * Fraction(2 if N % 2 and j == half - 1 else 4, N) for j in range(half)
-            ]
+            weights = [coefficient * Fraction(4, N)] * half
+            if N % 2:
+                weights[-1] = coefficient * Fraction(2, N)
             self._back[coefficient] = self._cosines(np.array(weights, dtype=object))
         return self._back[coefficient]
 
@@ -155,18 +148,17 @@ class FixedPointRing:
         starts = range(0, residues.shape[1], BLOCK)
 
         def convert(start: int) -> tuple[Floats, NDArray[np.int64]]:
-            limbs = self.basis.limbs(residues[:, start : start + BLOCK].copy(), self._drop)
+            block = residues[:, start : start + BLOCK].copy()
+            limbs = self.basis.limbs(block, self._drop)
             return self.basis.residues(limbs), words_of(limbs)
 
         parts = list(self._pool.map(convert, starts))
-        longest = max((words.shape[1] for _, words in parts), default=1)
-        words = [np.pad(w, ((0, 0), (0, longest - w.shape[1]))) for _, w in parts]
-        empty = np.zeros((len(self.basis), 0)), np.zeros((0, 1), dtype=np.int64)
-        return (
-            (np.concatenate([r for r, _ in parts], axis=1), np.concatenate(words))
-            if parts
-            else empty
-        )
+        if not parts:
+            return np.zeros((len(self.basis), 0)), np.zeros((0, 1), dtype=np.int64)
+        rounded, words = zip(*parts, strict=True)
+        longest = max(part.shape[1] for part in words)
+        padded = [np.pad(part, ((0, 0), (0, longest - part.shape[1]))) for part in words]
+        return np.concatenate(rounded, axis=1), np.concatenate(padded)
 
     def _rounded_where(self, residues: Floats, wanted: NDArray[np.bool_]) -> Modes:
         """Round the wanted entries of (primes, rows, columns); the others are exactly zero."""
@@ -178,9 +170,11 @@ class FixedPointRing:
         return Modes(result, IntegerTable(table))
 
     def seed_terms(self) -> Modes:
-        whole = np.zeros((len(self.space.seeds), self.space.N - 1), dtype=object)
+        seeds, one = self.space.seeds, 1 << self.precision.bits
+        whole = np.zeros((len(seeds), self.space.N - 1), dtype=object)
         for row, power in enumerate(self.grading.powers(1)):
-            whole[row, self.space.seeds[int(np.argmax(power))] - 1] = 1 << self.precision.bits
+            seed = seeds[int(np.argmax(power))]
+            whole[row, seed - 1] = one
         return Modes(self.basis.of_integers(whole), IntegerTable.of(whole))
 
     def put(self, degree: int, modes: Modes) -> None:
@@ -190,13 +184,13 @@ class FixedPointRing:
             self._put_part(degree, rows, columns, modes.residues)
 
     def _put_part(self, degree: int, rows: Ints, columns: slice, residues: Floats) -> None:
-        products = self._each(
-            lambda i, image: image._matrix_product(
-                residues[i][rows, columns], self._to_bonds[i][columns]
-            )
-        )
-        values, _ = self._rounded(np.stack(products).reshape(len(self.basis), -1))
-        shaped = values.reshape(len(self.basis), len(rows), self._points)
+        def to_bonds(i: int, image: _Image) -> Floats:
+            return image._matrix_product(residues[i][rows, columns], self._to_bonds[i][columns])
+
+        primes = len(self.basis)
+        products = np.stack(self._each(to_bonds))
+        values, _ = self._rounded(products.reshape(primes, -1))
+        shaped = values.reshape(primes, len(rows), self._points)
         self._each(lambda i, image: image.store_bonds(degree, rows, shaped[i]))
 
     def _bonds(self, products: list[Floats], power: int) -> Bonds:
@@ -205,12 +199,12 @@ class FixedPointRing:
         return Bonds(values.reshape(stack.shape), power)
 
     def power(self, power: int, degree: int) -> Bonds:
-        for d in range(power - 1, degree if power > 2 else 0):
-            if (power - 1, d) not in self._stored:
-                self._put_power(power - 1, d)
-        return self._bonds(
-            self._each(lambda _, image: image.canonical_power(power, degree)), power - 1
-        )
+        lower = power - 1
+        for d in range(lower, degree if power > 2 else 0):
+            if (lower, d) not in self._stored:
+                self._put_power(lower, d)
+        products = self._each(lambda _, image: image.canonical_power(power, degree))
+        return self._bonds(products, lower)
 
     def _put_power(self, power: int, degree: int) -> None:
         values = self.power(power, degree).residues
@@ -218,9 +212,11 @@ class FixedPointRing:
         self._each(lambda i, image: image.store_power(power, degree, values[i]))
 
     def project(self, degree: int, parts: Sequence[tuple[Fraction, Bonds]]) -> Modes:
-        total = np.zeros((len(self.basis), len(self.grading.canonical(degree)), self.space.N - 1))
+        rows = len(self.grading.canonical(degree))
+        total = np.zeros((len(self.basis), rows, self.space.N - 1))
         for coefficient, bonds in parts:
-            back = self._to_modes(coefficient / self.precision.unit**bonds.power)
+            scale = self.precision.unit**bonds.power
+            back = self._to_modes(coefficient / scale)
             self._add_projection(degree, total, bonds.residues, back)
         self._each(lambda i, image: image.reduced(total[i]))
         return self._rounded_where(total, self.space.mask(degree))
@@ -229,11 +225,12 @@ class FixedPointRing:
         self._each(lambda i, image: image.add_projection(degree, total[i], values[i], back[i]))
 
     def secular(self, degree: int, modes: Modes) -> Modes:
-        residues = np.stack(self._each(lambda i, image: image.secular(degree, modes.residues[i])))
+        residues = self._each(lambda i, image: image.secular(degree, modes.residues[i]))
         image, words = self._images[0], modes.table.words
         # only picks entries
         columns = [image.secular(degree, words[..., n]) for n in range(words.shape[2])]
-        return Modes(residues, IntegerTable(np.stack(columns, axis=-1)))
+        table = IntegerTable(np.stack(columns, axis=-1))
+        return Modes(np.stack(residues), table)
 
     def correct(self, degree: int, corrections: Modes) -> None:
         self._corrections.append(corrections.table)
@@ -241,16 +238,16 @@ class FixedPointRing:
 
     def corrected(self, degree: int) -> Modes:
         residues = np.stack(self._each(lambda _, image: image.corrected(degree)))
-        return self._rounded_where(residues, np.ones(residues.shape[1:], dtype=np.bool_))
+        every = np.ones(residues.shape[1:], dtype=np.bool_)
+        return self._rounded_where(residues, every)
 
     def solve(
         self, degree: int, corrected: Modes, force: Modes, multipliers: NDArray[np.object_]
     ) -> Modes:
         _, index = self.grading.harmonics(degree)
         seeds = np.array(self.space.seeds) - 1
-        self._check_range(
-            corrected, force, (multipliers / 2**self.precision.bits).astype(float)[index], seeds
-        )
+        sizes = (multipliers / 2**self.precision.bits).astype(float)
+        self._check_range(corrected, force, sizes[index], seeds)
         factors = self.basis.of_integers(multipliers)
 
         def work(i: int, image: _Image) -> Floats:
@@ -258,18 +255,25 @@ class FixedPointRing:
             bracket[:, seeds] += corrected.residues[i]
             return image.products(image.reduced(bracket), factors[i][index])
 
-        return self._rounded_where(np.stack(self._each(work)), (multipliers != 0)[index])
+        products = np.stack(self._each(work))
+        carried = multipliers != 0
+        return self._rounded_where(products, carried[index])
 
     def _check_range(self, corrected: Modes, force: Modes, factors: Floats, seeds: Ints) -> None:
-        """The last products have no bound of their own beforehand: refuse them where they could
-        leave the range of the residues.
-        """
-        sizes = np.abs(force.table.floats(-self.precision.bits))
-        sizes[:, seeds] += np.abs(corrected.table.floats(-self.precision.bits))
-        if np.any(sizes * np.abs(factors) > 2.0**self.precision.headroom):
-            raise OverflowError(
-                "a product of a force with its multiplier exceeds the range of the residues"
-            )
+        """Refuse the last products, which have no bound beforehand, beyond the range of the residues."""
+        below = -self.precision.bits
+        sizes = np.abs(force.table.floats(below))
+        sizes[:, seeds] += np.abs(corrected.table.floats(below))
+        products = sizes * np.abs(factors)
+        if np.any(products > 2.0**self.precision.headroom):
+            what = "a product of a force with its multiplier"
+            raise OverflowError(f"{what} exceeds the range of the residues")
 
     def results(self) -> tuple[list[IntegerTable], list[IntegerTable], Fraction]:
         return self._modes, self._corrections, self.precision.unit
+
+
+def _weighted(table: Sequence[Any], weight: Fraction) -> NDArray[np.object_]:
+    """Every entry times the weight, as integers, rounded to nearest."""
+    products = [x * weight.numerator / weight.denominator for x in table]
+    return np.array([int(mpmath.nint(x)) for x in products], dtype=object)

@@ -28,7 +28,9 @@ class Float64Ring(DenseRing):
     def _cosines(self, angles: Ints) -> Floats:
         # cos x = sin(pi/2 - x): the sine of an exactly reduced argument has full relative
         # accuracy, also at zero
-        return np.asarray(np.sin((self.space.N - angles) * (np.pi / (2 * self.space.N))))
+        quarter = self.space.N - angles
+        unit = np.pi / (2 * self.space.N)
+        return np.asarray(np.sin(quarter * unit))
 
     def _reciprocal(self, number: int) -> float:
         return 1 / number
@@ -45,19 +47,22 @@ class Float64Ring(DenseRing):
 
     def _keep_in_range(self, degree: int, modes: Floats) -> None:
         largest = max(float(modes.max()), -float(modes.min()))
-        if degree == 1 or largest == 0.0 or abs(np.frexp(largest)[1]) <= SAFE_EXPONENT:
+        size = int(np.frexp(largest)[1])
+        if degree == 1 or largest == 0.0 or abs(size) <= SAFE_EXPONENT:
             return
-        shift = round(int(np.frexp(largest)[1]) / (degree - 1)) or int(
-            np.sign(np.frexp(largest)[1])
-        )
+        shift = round(size / (degree - 1)) or int(np.sign(size))
         self.exponent += shift
+        self._rescale(degree, shift)
+
+    def _rescale(self, degree: int, shift: int) -> None:
+        """Multiply everything stored of degree d by 2^(-shift (d - 1))."""
         for d, values in zip(self._degrees, self._modes, strict=True):
             np.ldexp(values, -shift * (d - 1), out=values)
         for n, corrections in zip(self._correction_degrees, self._diagonal, strict=True):
             np.ldexp(corrections, -shift * n, out=corrections)
         for d in range(1, degree + 1):
+            rows = self._rows(d)
             for array in (self._bonds, self._seed_modes, *self._powers.values()):
-                array[:, self._rows(d)] = np.ldexp(array[:, self._rows(d)], -shift * (d - 1))
-            self._corrections[:, self._rows(d)] = np.ldexp(
-                self._corrections[:, self._rows(d)], -shift * d
-            )
+                array[:, rows] = np.ldexp(array[:, rows], -shift * (d - 1))
+            corrections = self._corrections[:, rows]
+            self._corrections[:, rows] = np.ldexp(corrections, -shift * d)

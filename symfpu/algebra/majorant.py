@@ -66,29 +66,31 @@ class MajorantRing(Float64Ring):
         self._seed_radii = np.zeros_like(self._seed_modes)
         self._correction_radii = np.zeros_like(self._corrections)
         self.largest = 1.0
-        sums = 4 * space.N + 2 * longest_sum(len(space.seeds), space.grading.degree) + 64
+        factor_pairs = longest_sum(len(space.seeds), space.grading.degree)
+        sums = 4 * space.N + 2 * factor_pairs + 64
         # what sums of doubles can lose, relative to the sum of moduli
         self._lost = sums * float(np.finfo(float).eps)
         # a function bounded by one on the bonds: modes of its parity up to two
         self._noise = np.zeros((2, self._slices * self._lanes))
         for parity in (0, 1):
-            self._noise[parity, : self._points] = 2 * self._table(
-                np.arange(parity, space.N, 2)
-            ).sum(axis=0)
+            table = self._table(np.arange(parity, space.N, 2))
+            self._noise[parity, : self._points] = 2 * table.sum(axis=0)
 
     def number(self, value: Fraction) -> float:
         return abs(float(value))
 
     def _table(self, modes: Ints) -> Floats:
         """cos(q j pi / N) on half of the points j = 0 .. N, from exactly reduced angles."""
-        angles = 2 * np.outer(modes, np.arange(self._points)) % (4 * self.space.N)
-        return self._cosines(np.minimum(angles, 4 * self.space.N - angles))
+        turn = 4 * self.space.N
+        angles = 2 * np.outer(modes, np.arange(self._points)) % turn
+        return self._cosines(np.minimum(angles, turn - angles))
 
     def _transforms(self) -> tuple[Floats, Floats]:
         N, points = self.space.N, np.arange(self._points)
         there = np.zeros((N - 1, self._slices * self._lanes))
         there[:, : self._points] = self._table(np.arange(1, N))
-        weights = np.where((points == 0) | (2 * points == N), 2 / N, 4 / N)
+        ends = (points == 0) | (2 * points == N)
+        weights = np.where(ends, 2 / N, 4 / N)
         back = there.copy()
         back[:, : self._points] *= weights
         return there, back
@@ -97,7 +99,8 @@ class MajorantRing(Float64Ring):
         """Tables come scaled."""
 
     def _note(self, sizes: Floats) -> None:
-        self.largest = max(self.largest, float(sizes.max(initial=0.0)) * SLACK)
+        size = float(sizes.max(initial=0.0))
+        self.largest = max(self.largest, size * SLACK)
 
     def seed_terms(self) -> Floats:
         return np.zeros_like(super().seed_terms())
@@ -109,57 +112,57 @@ class MajorantRing(Float64Ring):
         sizes = known.sum(axis=1)
         self._note(sizes)
         for parity, (rows, columns) in enumerate(self._parts(degree)):
-            values = known[rows, columns] @ self._to_bonds[columns]
-            radii = modes[rows, columns] @ self._to_bonds[columns] + np.outer(
-                COSINE * sizes[rows] + ROUNDED, self._noise[parity]
-            )
+            to_bonds = self._to_bonds[columns]
+            values = known[rows, columns] @ to_bonds
+            fresh = np.outer(COSINE * sizes[rows] + ROUNDED, self._noise[parity])
+            radii = modes[rows, columns] @ to_bonds + fresh
             self._store(self._bonds, degree, rows, values)
             self._store(self._radii, degree, rows, radii)
             self._store(self._sums, degree, rows, 2 * values + self._epsilon * radii)
         self._store_seed_modes(degree, known)
+        self._store_seed_radii(degree, modes)
+
+    def _store_seed_radii(self, degree: int, modes: Floats) -> None:
         base = int(self.grading.first_row[degree])
+        canonical, conjugate = self.grading.canonical(degree), self.grading.conjugate(degree)
         for i, q in enumerate(self.space.seeds):
-            for at in (self.grading.canonical(degree), self.grading.conjugate(degree)):
-                self._seed_radii[i // 8, base + at, i % 8] = modes[:, q - 1]
+            slice_, lane = divmod(i, 8)
+            for rows in (canonical, conjugate):
+                self._seed_radii[slice_, base + rows, lane] = modes[:, q - 1]
 
     def _bounds(self, degree: int, radii: Floats, sizes: Floats, power: int) -> Bounds:
         """What the kernel gave, f o g = 2 f g, with the rounding on the bonds added."""
         fresh = ROUNDED * self._noise[self.space.parity(degree)]
         sums = 2 * self._canonical_points(degree, sizes)[:, 0]
         self._note(sums)
-        return Bounds(2 * self._canonical_points(degree, radii) + fresh, sums, power)
+        doubled = 2 * self._canonical_points(degree, radii)
+        return Bounds(doubled + fresh, sums, power)
 
     def power(self, power: int, degree: int) -> Bounds:  # type: ignore[override]
         if power == 2:
-            ordered = [(d, degree - d) for d in self._degrees if degree - d in self._degrees]
+            splits = [(d, degree - d) for d in self._degrees]
+            ordered = [(d, e) for d, e in splits if e in self._degrees]
             radii = self._product(self._sums, self._radii, degree, ordered)
-            return self._bounds(degree, radii, self._square_sizes(degree), 1)
+            return self._bounds(degree, radii, self._sizes(power, degree), 1)
         splits = self._power_splits(power, degree)
-        left, single = self._powers[power - 1], self._bonds + self._epsilon * self._radii
-        radii = self._product(left, self._radii, degree, splits)
-        radii += self._product(self._power_radii[power - 1], single, degree, splits)
-        return self._bounds(
-            degree, radii, self._product(left, self._bonds, degree, splits), power - 1
-        )
-
-    def _square_sizes(self, degree: int) -> Floats:
-        return self._product(
-            self._bonds, self._bonds, degree, self._square_splits(degree), symmetric=True
-        )
+        lower, lower_radii = self._powers[power - 1], self._power_radii[power - 1]
+        single = self._bonds + self._epsilon * self._radii
+        radii = self._product(lower, self._radii, degree, splits)
+        radii += self._product(lower_radii, single, degree, splits)
+        return self._bounds(degree, radii, self._sizes(power, degree), power - 1)
 
     def _sizes(self, power: int, degree: int) -> Floats:
         """Moduli of a power, half of it."""
         if power == 2:
-            return self._square_sizes(degree)
-        return self._product(
-            self._powers[power - 1], self._bonds, degree, self._power_splits(power, degree)
-        )
+            splits = self._square_splits(degree)
+            return self._product(self._bonds, self._bonds, degree, splits, symmetric=True)
+        splits = self._power_splits(power, degree)
+        return self._product(self._powers[power - 1], self._bonds, degree, splits)
 
     def _put_power(self, power: int, degree: int) -> None:
         radii = self.power(power, degree).radii
-        self._store_power(
-            power, degree, 2 * self._canonical_points(degree, self._sizes(power, degree))
-        )
+        sizes = self._canonical_points(degree, self._sizes(power, degree))
+        self._store_power(power, degree, 2 * sizes)
         if power not in self._power_radii:
             self._power_radii[power] = np.zeros_like(self._bonds)
         self._store(self._power_radii[power], degree, np.arange(len(radii)), radii)
@@ -170,12 +173,13 @@ class MajorantRing(Float64Ring):
         for coefficient, bounds in parts:
             scale = coefficient / self._unit**bounds.power
             self._note(2 * scale * bounds.sizes)
-            reached = bounds.sizes + self._epsilon * bounds.radii[:, 0]
-            modes += (COSINE * self.space.half * reached + self._lost * scale * bounds.radii[:, 0])[
-                :, None
-            ]
+            largest = bounds.radii[:, 0]
+            reached = bounds.sizes + self._epsilon * largest
+            fresh = COSINE * self.space.half * reached + self._lost * scale * largest
+            modes += fresh[:, None]
             for rows, columns in self._parts(degree):
-                modes[rows, columns] += scale * bounds.radii[rows] @ self._to_modes[columns].T
+                back = self._to_modes[columns].T
+                modes[rows, columns] += scale * bounds.radii[rows] @ back
         return np.asarray(np.where(mask, modes * SLACK, 0.0))
 
     def correct(self, degree: int, corrections: Floats) -> None:
@@ -183,26 +187,24 @@ class MajorantRing(Float64Ring):
         self._diagonal[-1] = corrections
         rows = self._diagonal_rows(degree)
         for i in range(len(self.space.seeds)):
-            self._correction_radii[i // 8, rows, i % 8] = corrections[:, i]
+            slice_, lane = divmod(i, 8)
+            self._correction_radii[slice_, rows, lane] = corrections[:, i]
 
     def corrected(self, degree: int) -> Floats:
         shifted = self._seed_modes + self._epsilon * self._seed_radii
-        factors = (
-            (self._corrections, self._seed_radii),
-            (self._correction_radii, shifted),
-            (self._corrections, self._seed_modes),
-        )
-        first, second, sizes = (self._seed_product(degree, *pair) for pair in factors)
+        first = self._seed_product(degree, self._corrections, self._seed_radii)
+        second = self._seed_product(degree, self._correction_radii, shifted)
+        sizes = self._seed_product(degree, self._corrections, self._seed_modes)
         self._note(sizes)
         return (first + second) * SLACK + ROUNDED
 
     def solve(self, degree: int, corrected: Floats, force: Floats, multipliers: Floats) -> Floats:
         index: Ints = self.grading.harmonics(degree)[1]
-        radii = force
-        radii[:, np.array(self.space.seeds) - 1] += corrected
+        radii, seeds = force, np.array(self.space.seeds) - 1
+        radii[:, seeds] += corrected
         factors = np.abs(multipliers)[index]
-        bracket = np.divide(
-            self._tables[degree], factors, out=np.zeros_like(radii), where=factors != 0
-        )
+        carried = factors != 0
+        zeros = np.zeros_like(radii)
+        bracket = np.divide(self._tables[degree], factors, out=zeros, where=carried)
         radii = factors * radii + MULTIPLIER * (bracket + self._epsilon * radii) + ROUNDED
-        return np.asarray(np.where(factors != 0, radii * SLACK, 0.0))
+        return np.asarray(np.where(carried, radii * SLACK, 0.0))

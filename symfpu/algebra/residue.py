@@ -48,11 +48,13 @@ class ResidueRing(DenseRing):
         return float(residue - self.prime if residue > self.prime // 2 else residue)
 
     def number(self, value: Fraction) -> float:
-        return self.element(value.numerator * pow(value.denominator, -1, self.prime))
+        inverse = pow(value.denominator, -1, self.prime)
+        return self.element(value.numerator * inverse)
 
     def _cosines(self, angles: Ints) -> Floats:
         table = cosine_table(self.space.N, self.prime, self.root)
-        return np.array([self.element(c) for c in table])[angles]
+        elements = np.array([self.element(c) for c in table])
+        return elements[angles]
 
     def _reciprocal(self, number: int) -> float:
         return self.element(pow(number, -1, self.prime))
@@ -61,19 +63,23 @@ class ResidueRing(DenseRing):
         """Exact by limbs: sums of at most 2^13 products of 19-bit numbers stay below 2^52."""
         a1, b1 = np.rint(left / LIMB), np.rint(right / LIMB)
         a0, b0 = left - a1 * LIMB, right - b1 * LIMB
-        top = self._times(self._reduced(a1 @ b1), self.element(int(LIMB) ** 2))
-        middle = self._times(self._reduced(a1 @ b0 + a0 @ b1), self.element(int(LIMB)))
+        unit = int(LIMB)
+        high, mixed = self._reduced(a1 @ b1), self._reduced(a1 @ b0 + a0 @ b1)
+        top = self._times(high, self.element(unit**2))
+        middle = self._times(mixed, self.element(unit))
         return self._reduced(top + middle + a0 @ b0)
 
     def _times(self, values: Floats, factor: Floats | float) -> Floats:
         values = np.ascontiguousarray(values)
-        other = np.broadcast_to(np.asarray(factor, dtype=np.float64), values.shape)
-        self._kernels.multiply_elements(values, np.ascontiguousarray(other), self.modulus, values)
+        factors = np.asarray(factor, dtype=np.float64)
+        other = np.ascontiguousarray(np.broadcast_to(factors, values.shape))
+        self._kernels.multiply_elements(values, other, self.modulus, values)
         return values
 
     def _reduced(self, values: Floats) -> Floats:
         assert self.modulus is not None
-        values -= self.modulus * np.rint(values / self.modulus)
+        turns = np.rint(values / self.modulus)
+        values -= self.modulus * turns
         return values
 
     def _keep_in_range(self, degree: int, modes: Floats) -> None:
@@ -81,7 +87,8 @@ class ResidueRing(DenseRing):
 
     def inverses(self, values: Floats) -> Floats:
         """1 / value for every element, by Fermat's little theorem; zero stays zero."""
-        result, power, exponent = np.ones_like(values), values.copy(), self.prime - 2
+        result, power = np.ones_like(values), values.copy()
+        exponent = self.prime - 2
         while exponent:
             if exponent & 1:
                 result = self._times(result, power)
@@ -102,4 +109,8 @@ class ResidueRing(DenseRing):
 def cosine_table(N: int, prime: int, root: int) -> list[int]:
     """cos(k pi / 2N) = (root^k + root^-k) / 2 modulo the prime for k = 0 .. 2N."""
     inverse, half = pow(root, -1, prime), pow(2, -1, prime)
-    return [(pow(root, k, prime) + pow(inverse, k, prime)) * half % prime for k in range(2 * N + 1)]
+    table = []
+    for k in range(2 * N + 1):
+        power, reciprocal = pow(root, k, prime), pow(inverse, k, prime)
+        table.append((power + reciprocal) * half % prime)
+    return table

@@ -55,7 +55,8 @@ class SymbolicRing:
     def seed_terms(self) -> Objects:
         modes = self._zeros(1)
         for row, power in enumerate(self.grading.powers(1)):
-            modes[row, self.space.seeds[int(np.argmax(power))] - 1] = se.Integer(1)
+            seed = self.space.seeds[int(np.argmax(power))]
+            modes[row, seed - 1] = se.Integer(1)
         return modes
 
     def put(self, degree: int, modes: Objects) -> None:
@@ -80,13 +81,17 @@ class SymbolicRing:
     ) -> dict[Monomial, Cosines]:
         result: dict[Monomial, Cosines] = defaultdict(lambda: defaultdict(lambda: se.Integer(0)))
         for d in left:
-            for a, f in left[d].items() if degree - d in right else ():
+            if degree - d not in right:
+                continue
+            for a, f in left[d].items():
                 for b, g in right[degree - d].items():
-                    self._add_product(result[tuple(x + y for x, y in zip(a, b, strict=True))], f, g)
-        return {
-            m: {q: e for q, v in f.items() if (e := self._simplified(v)) != 0}
-            for m, f in result.items()
-        }
+                    product = tuple(x + y for x, y in zip(a, b, strict=True))
+                    self._add_product(result[product], f, g)
+        return {monomial: self._without_zeros(cosines) for monomial, cosines in result.items()}
+
+    def _without_zeros(self, cosines: Cosines) -> Cosines:
+        simplified = {q: self._simplified(value) for q, value in cosines.items()}
+        return {q: value for q, value in simplified.items() if value != 0}
 
     def _simplified(self, value: Any) -> Any:
         expanded = se.expand(value)
@@ -114,45 +119,59 @@ class SymbolicRing:
         return modes
 
     def secular(self, degree: int, modes: Objects) -> Objects:
-        place = {m: row for row, m in enumerate(self._monomials(degree))}
+        place = self._places(degree)
         diagonal = self.grading.diagonal(degree - 1)
-        table = np.full((len(diagonal), len(self.space.seeds)), se.Integer(0), dtype=object)
+        table = self._of_seeds(len(diagonal))
         for t, e in enumerate(diagonal):
             for i, q in enumerate(self.space.seeds):
-                table[t, i] = modes[place[raised(e, i)], q - 1]
+                row = place[raised(e, i)]
+                table[t, i] = modes[row, q - 1]
         return table
+
+    def _places(self, degree: int) -> dict[Monomial, int]:
+        """The row of each canonical monomial."""
+        return {monomial: row for row, monomial in enumerate(self._monomials(degree))}
+
+    def _of_seeds(self, rows: int) -> Objects:
+        """Zeros with a column for each seed."""
+        return np.full((rows, len(self.space.seeds)), se.Integer(0), dtype=object)
 
     def correct(self, degree: int, corrections: Objects) -> None:
         self._corrections[degree] = corrections
 
     def corrected(self, degree: int) -> Objects:
-        place = {m: row for row, m in enumerate(self._monomials(degree))}
-        table = np.full((len(place), len(self.space.seeds)), se.Integer(0), dtype=object)
+        place = self._places(degree)
+        table = self._of_seeds(len(place))
         for n, corrections in self._corrections.items():
             if degree - n not in self._modes:
                 continue
-            for e, values in zip(self.grading.diagonal(n), corrections, strict=True):
-                for monomial, terms in zip(
-                    self._monomials(degree - n), self._modes[degree - n], strict=True
-                ):
-                    row = place[
-                        tuple(m + int(k) for m, k in zip(monomial, np.repeat(e, 2), strict=True))
-                    ]
-                    for i, q in enumerate(self.space.seeds):
-                        table[row, i] += values[i] * terms[q - 1]
+            diagonals = zip(self.grading.diagonal(n), corrections, strict=True)
+            for e, values in diagonals:
+                self._add_corrected(table, place, degree - n, np.repeat(e, 2), values)
         return table
+
+    def _add_corrected(
+        self, table: Objects, place: dict[Monomial, int], degree: int, diagonal: Any, values: Any
+    ) -> None:
+        """table += W_q u_q, of one coefficient of the corrections and the modes of a degree."""
+        for monomial, terms in zip(self._monomials(degree), self._modes[degree], strict=True):
+            product = tuple(m + int(k) for m, k in zip(monomial, diagonal, strict=True))
+            row = place[product]
+            for i, q in enumerate(self.space.seeds):
+                table[row, i] += values[i] * terms[q - 1]
 
     def solve(
         self, degree: int, corrected: Objects, force: Objects, multipliers: Objects
     ) -> Objects:
         _, index = self.grading.harmonics(degree)
         bracket = -force
-        bracket[:, np.array(self.space.seeds) - 1] += corrected
+        seeds = np.array(self.space.seeds) - 1
+        bracket[:, seeds] += corrected
         modes = self._zeros(degree)
         for row, column in np.argwhere(bracket != 0):
-            modes[row, column] = self._simplified(
-                multipliers[index[row], column] * self._simplified(bracket[row, column])
-            )
+            multiplier = multipliers[index[row], column]
+            value = self._simplified(bracket[row, column])
+            modes[row, column] = self._simplified(multiplier * value)
         return modes
 
     def results(self) -> tuple[list[Objects], list[Objects], Fraction]:
@@ -166,4 +185,6 @@ def conjugate(monomial: Monomial) -> Monomial:
 
 def raised(diagonal: Any, i: int) -> Monomial:
     """Exponents of z_i times |z|^(2e)."""
-    return tuple(int(e) + (k == 0 and j == i) for j, e in enumerate(diagonal) for k in (0, 1))
+    exponents = [int(e) for e in diagonal for _ in (0, 1)]
+    exponents[2 * i] += 1
+    return tuple(exponents)

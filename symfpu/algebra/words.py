@@ -7,6 +7,7 @@ small matrices, exact in doubles.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -61,7 +62,8 @@ class IntegerTable:
         total = np.zeros(self.shape)
         with np.errstate(over="ignore", invalid="ignore"):
             for j in range(self.words.shape[-1]):
-                total += np.ldexp(self.words[..., j].astype(np.float64), j * WORD_BITS + exponent)
+                word = self.words[..., j].astype(np.float64)
+                total += np.ldexp(word, j * WORD_BITS + exponent)
         return total
 
     @staticmethod
@@ -73,8 +75,10 @@ class IntegerTable:
         """
         longest = max((int(x).bit_length() for x in integers.ravel()), default=0)
         words, rest = [], integers.astype(object)
-        for _ in range(max(1, -(-(longest + 2) // WORD_BITS))):
-            low = ((rest + 2 ** (WORD_BITS - 1)) % 2**WORD_BITS) - 2 ** (WORD_BITS - 1)
+        half, whole = 2 ** (WORD_BITS - 1), 2**WORD_BITS
+        count = max(1, -(-(longest + 2) // WORD_BITS))
+        for _ in range(count):
+            low = (rest + half) % whole - half
             words.append(low.astype(np.int64))
             rest = (rest - low) >> WORD_BITS
         assert not np.any(rest)
@@ -94,39 +98,45 @@ class ResidueBasis:
         # an overflow of the promised bits by a factor of eight is still seen
         self.primes = _primes(bits + 4, largest)
         self.moduli = np.array(self.primes, dtype=np.float64)
-        self._limit = 2.0 ** (bits - flint.fmpz(prod(self.primes)).bit_length() + 1)
         modulus = prod(self.primes)
+        spare = modulus.bit_length() - bits - 1
+        self._limit = 2.0**-spare
         count = -(-modulus.bit_length() // LIMB_BITS) + 2
         cofactors = [modulus // p for p in self.primes]
-        self._inverses = np.array(
-            [_centred(pow(c, -1, p), p) for c, p in zip(cofactors, self.primes, strict=True)]
-        )
-        self._cofactor_limbs = np.array([_limbs(c, count) for c in cofactors]).T.copy()
+        inverses = [pow(c, -1, p) for c, p in zip(cofactors, self.primes, strict=True)]
+        self._inverses = self._centred(inverses)
+        limbs = np.array([_limbs(c, count) for c in cofactors])
+        self._cofactor_limbs = limbs.T.copy()
         self._modulus_limbs = np.array(_limbs(modulus, count))[:, None]
-        powers = [
-            [_centred(pow(2, LIMB_BITS * n, p), p) for n in range(count)] for p in self.primes
-        ]
-        self._powers = np.array(powers)
-        self._fold = np.array([_centred(2**LIMB_BITS, p) for p in self.primes])
+        powers = [self._centred([2 ** (LIMB_BITS * n)] * len(self)) for n in range(count)]
+        self._powers = np.stack(powers, axis=1)
+        self._fold = self._centred([2**LIMB_BITS] * len(self))
+
+    def _centred(self, numbers: Sequence[int]) -> Floats:
+        """One number for each prime, as residues in -p/2 .. p/2."""
+        pairs = zip(numbers, self.primes, strict=True)
+        return np.array([_centred(number % p, p) for number, p in pairs])
 
     def __len__(self) -> int:
         return len(self.primes)
 
     def limbs(self, residues: Floats, drop: int = 0) -> Floats:
-        """The integers / 2^(20 drop), rounded to the nearest, as balanced limbs (limbs, count),
-        lowest first.
+        """The integers / 2^(20 drop), rounded to the nearest, as balanced limbs, lowest first.
 
-        residues : overwritten. Raises OverflowError if an integer exceeds the promised bits.
+        residues : overwritten. Returns (limbs, count). Raises OverflowError if an integer exceeds
+        the promised bits.
         """
         self._kernels.multiply_rows(residues, self._inverses, self.moduli)
         high = np.rint(residues / LIMB)
         low = residues - high * LIMB
         share = (1 / self.moduli) @ residues
         turns = np.rint(share)
-        if np.any(np.abs(share - turns) > self._limit + 2.0**-40):
+        off = np.abs(share - turns)
+        if np.any(off > self._limit + 2.0**-40):
             raise OverflowError("an integer exceeds the range of the residues")
         limbs = self._cofactor_limbs @ low - self._modulus_limbs * turns
-        limbs[1:] += (self._cofactor_limbs @ high)[:-1]
+        above = self._cofactor_limbs @ high
+        limbs[1:] += above[:-1]
         for n in range(len(limbs) - 1):
             carry = np.rint(limbs[n] / LIMB)
             limbs[n] -= carry * LIMB
@@ -150,24 +160,29 @@ class ResidueBasis:
         stack = []
         for p in self.primes:
             residues = (integers % p).astype(np.float64)
-            stack.append(np.where(residues > p // 2, residues - p, residues))
+            centred = np.where(residues > p // 2, residues - p, residues)
+            stack.append(centred)
         return np.stack(stack)
 
 
 def words_of(limbs: Floats) -> Words:
     """Words (count, n) of the integers given by limbs (limbs, count)."""
     top = np.flatnonzero(limbs.any(axis=1))
-    used = limbs[: int(top[-1]) + 1 if len(top) else 1].astype(np.int64)
-    words = np.zeros((limbs.shape[1], -(-len(used) // LIMBS_PER_WORD)), dtype=np.int64)
+    count = int(top[-1]) + 1 if len(top) else 1
+    used = limbs[:count].astype(np.int64)
+    longest = -(-count // LIMBS_PER_WORD)
+    words = np.zeros((limbs.shape[1], longest), dtype=np.int64)
     for n, row in enumerate(used):
-        words[:, n // LIMBS_PER_WORD] += row << (LIMB_BITS * (n % LIMBS_PER_WORD))
+        word, place = divmod(n, LIMBS_PER_WORD)
+        words[:, word] += row << (LIMB_BITS * place)
     return words
 
 
 def _primes(bits: int, largest: int) -> tuple[int, ...]:
     """The largest odd primes up to `largest` whose product has more than `bits` bits."""
     primes: list[int] = []
-    candidate, product = largest - 1 + largest % 2, 1
+    candidate = largest - 1 + largest % 2
+    product = 1
     while product.bit_length() <= bits:
         if flint.fmpz(candidate).is_prime():
             primes.append(candidate)
