@@ -99,6 +99,7 @@ from symfpu.proofs.certificates import prove_propagation as prove_propagation
 from symfpu.proofs.leading import leading_term as leading_term
 from symfpu.proofs.leading import lemma_holds as lemma_holds
 from symfpu.proofs.sweeps import Sweep as Sweep
+from symfpu.proofs.sweeps import SweepIncomplete as SweepIncomplete
 from symfpu.proofs.sweeps import sweep_propagation as sweep_propagation
 
 # files

@@ -1,7 +1,7 @@
 """Sweeps of the propagation rule over all seed sets: how often the proposition holds, and every exception.
 
 Cases run through the standard Executor interface, and each finished case is one line of a file, from which an interrupted
-sweep goes on.
+sweep goes on. A case that raises an error loses no other.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 import json
 import multiprocessing
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, as_completed
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from itertools import combinations
@@ -24,6 +24,11 @@ from symfpu.proofs.certificates import prove_propagation
 
 HEADER, SCHEMA = "symfpu propagation sweep", 1
 BATCH = 16  # cases in one task
+GUARD = "call sweep_propagation under `if __name__ == '__main__':`, or pass executor="
+DEAD_WORKERS = f"the worker processes died: in a script, {GUARD}"
+
+Key = tuple[int, tuple[int, ...]]  # N and the seeds
+Decided = tuple[list[dict[str, Any]], dict[Key, Exception]]  # records of decided cases, errors of others
 
 
 @dataclass(frozen=True)
@@ -68,15 +73,39 @@ class Sweep:
         return tuple(case for case in self.cases if case.verdict == "refuted")
 
 
-def decide(cases: Sequence[tuple[int, tuple[int, ...]]], model: str, order: int) -> list[dict[str, Any]]:
-    """Decide some seed sets on one core; plain data in and out, so that any executor can carry it."""
-    decided = []
+class SweepIncomplete(SymfpuError):
+    """Some cases of a sweep raised errors: raised by `sweep_propagation` when all others are decided.
+
+    sweep : of all other cases. failures : the errors by (N, seeds). Ours.
+    """
+
+    def __init__(self, sweep: Sweep, failures: Mapping[Key, Exception]) -> None:
+        self.sweep, self.failures = sweep, dict(failures)
+        (N, seeds), error = next(iter(self.failures.items()))
+        reason = DEAD_WORKERS if isinstance(error, BrokenExecutor) else f"{type(error).__name__}: {error}"
+        super().__init__(
+            f"{len(self.failures)} seed sets were not decided, the first N = {N}, seeds {seeds} ({reason}); "
+            f"the {len(sweep.cases)} others are in the attribute sweep, and in the file if there is one: "
+            f"call again to go on from it"
+        )
+
+
+def decide(cases: Sequence[Key], model: str, order: int) -> Decided:
+    """Decide some seed sets on one core; plain data and errors out, so that any executor can carry it."""
+    records, failures = [], {}
     for N, seeds in cases:
-        proof = prove_propagation(N, seeds, order, model=model, workers=1)
-        corrected = tuple(coupling_sequence(N, seeds, order, model=model)) == proof.actual
-        exceptions = tuple((e.mode, e.predicted, e.actual) for e in proof.exceptions)
-        decided.append(asdict(SweepCase(N, tuple(seeds), proof.verdict, exceptions, corrected)))
-    return decided
+        try:
+            records.append(asdict(_decided(N, seeds, model, order)))
+        except Exception as error:  # whatever it is, it is reported at the end and costs no other case
+            failures[N, seeds] = error
+    return records, failures
+
+
+def _decided(N: int, seeds: tuple[int, ...], model: str, order: int) -> SweepCase:
+    proof = prove_propagation(N, seeds, order, model=model, workers=1)
+    corrected = tuple(coupling_sequence(N, seeds, order, model=model)) == proof.actual
+    exceptions = tuple((e.mode, e.predicted, e.actual) for e in proof.exceptions)
+    return SweepCase(N, tuple(seeds), proof.verdict, exceptions, corrected)
 
 
 def sweep_propagation(
@@ -100,7 +129,7 @@ def sweep_propagation(
     progress : called as (cases done, cases in all).
 
     Every case is decided as by `prove_propagation` (Eqs. app, dk). Raises InputError, also for a file of
-    another sweep; SymfpuError if processes of the pool die.
+    another sweep; SweepIncomplete, after all other cases, if one raised an error or its process died.
 
     >>> from concurrent.futures import ThreadPoolExecutor
     >>> with ThreadPoolExecutor(1) as pool:
@@ -115,29 +144,55 @@ def sweep_propagation(
     log = SweepLog(Path(file), model, order) if file is not None else None
     decided = {key: case for key, case in (log.read() if log else {}).items() if key in set(cases)}
     todo = [case for case in cases if case not in decided]
+    failures: dict[Key, Exception] = {}
     with ExitStack() as stack:
         pool = executor or stack.enter_context(ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn")))
-        tasks = [pool.submit(decide, batch, model, order) for batch in _batches(todo)]
-        try:
-            for task in as_completed(tasks):
-                for record in task.result():
-                    case = _case(record)
-                    decided[case.N, case.seeds] = case
-                    if log:
-                        log.append(record)
-                if progress:
-                    progress(len(decided), len(cases))
-        except BrokenExecutor as error:
-            raise SymfpuError(
-                "the worker processes died: in a script, call sweep_propagation under `if __name__ == '__main__':`, or pass executor="
-            ) from error
-        finally:
-            for task in tasks:
-                task.cancel()
-    return Sweep(model, order, tuple(decided[case] for case in cases))
+        for records, failed in _results(pool, _batches(todo), model, order):
+            failures |= failed
+            for record in records:
+                case = _case(record)
+                decided[case.N, case.seeds] = case
+                if log:
+                    log.append(record)
+            if progress:
+                progress(len(decided), len(cases))
+    sweep = Sweep(model, order, tuple(decided[case] for case in cases if case in decided))
+    if failures:
+        ordered = {case: failures[case] for case in cases if case in failures}
+        raise SweepIncomplete(sweep, ordered) from next(iter(ordered.values()))
+    return sweep
 
 
-def _batches(cases: Sequence[tuple[int, tuple[int, ...]]]) -> list[list[tuple[int, tuple[int, ...]]]]:
+def _results(pool: Executor, batches: Sequence[Sequence[Key]], model: str, order: int) -> Iterator[Decided]:
+    """What became of every batch, as it ends; the others are cancelled if the caller stops."""
+    batch_of: dict[Future[Decided], Sequence[Key]] = {}
+    try:
+        for batch in batches:
+            batch_of[_submitted(pool, batch, model, order)] = batch
+        for task in as_completed(batch_of):
+            error = task.exception()
+            if error is None:
+                yield task.result()
+            elif isinstance(error, Exception):  # the worker died, or what it decided could not be carried
+                yield [], dict.fromkeys(batch_of[task], error)
+            else:
+                raise error
+    finally:
+        for task in batch_of:
+            task.cancel()
+
+
+def _submitted(pool: Executor, batch: Sequence[Key], model: str, order: int) -> Future[Decided]:
+    """The task of a batch; one that has failed already in a pool whose workers died while it was filled."""
+    try:
+        return pool.submit(decide, batch, model, order)
+    except BrokenExecutor as error:
+        failed: Future[Decided] = Future()
+        failed.set_exception(error)
+        return failed
+
+
+def _batches(cases: Sequence[Key]) -> list[list[Key]]:
     return [list(cases[i : i + BATCH]) for i in range(0, len(cases), BATCH)]
 
 
@@ -153,7 +208,7 @@ class SweepLog:
         self.path = path
         self.header = json.dumps({"format": HEADER, "schema": SCHEMA, "model": model, "order": order})
 
-    def read(self) -> dict[tuple[int, tuple[int, ...]], SweepCase]:
+    def read(self) -> dict[Key, SweepCase]:
         """The cases decided so far; starts the file if there is none, and cuts off a last line that was not finished."""
         try:
             text = self.path.read_text() if self.path.exists() else ""

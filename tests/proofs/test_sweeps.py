@@ -1,13 +1,16 @@
 """Sweeps: complete, resumable, on any executor."""
 
-from concurrent.futures import ThreadPoolExecutor
+import multiprocessing
+import os
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor, ThreadPoolExecutor
 from itertools import combinations
 from math import comb
 
 import pytest
 
-from symfpu.errors import InputError
-from symfpu.proofs.sweeps import sweep_propagation
+from symfpu.errors import InputError, TooLarge
+from symfpu.proofs import sweeps
+from symfpu.proofs.sweeps import SweepIncomplete, sweep_propagation
 from symfpu.reports.sweep import sweep_markdown
 
 
@@ -105,3 +108,56 @@ def test_foreign_file_is_left_as_it_is(tmp_path, threads, text):
     with pytest.raises(InputError, match="another file"):
         sweep_propagation([4], 1, 1, executor=threads, file=file)
     assert file.read_text() == text
+
+
+HARD = {(4, (1, 3)), (5, (2,))}  # seed sets that fail in the tests below
+
+
+def fails(N, seeds, *arguments, prove=sweeps.prove_propagation, **options):
+    if (N, seeds) in HARD:
+        raise TooLarge(2, 10**12, 10**9, 1)
+    return prove(N, seeds, *arguments, **options)
+
+
+def dies(N, seeds, *arguments, prove=sweeps.prove_propagation, **options):
+    return os._exit(1) if (N, seeds) == (8, (1,)) else prove(N, seeds, *arguments, **options)
+
+
+def prove_by(function):
+    """In a worker of a pool: every case is decided by this function."""
+    sweeps.prove_propagation = function
+
+
+def workers_that(function):
+    context = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(1, context, initializer=prove_by, initargs=(function,))
+
+
+def test_a_case_that_fails_in_a_worker_costs_no_other(tmp_path, threads):
+    file, calls = tmp_path / "sweep.jsonl", []
+    with workers_that(fails) as pool, pytest.raises(SweepIncomplete) as caught:
+        sweep_propagation(range(2, 6), 2, 1, executor=pool, file=file, progress=lambda *a: calls.append(a))
+    whole, error = sweep_propagation(range(2, 6), 2, 1, executor=threads), caught.value
+    assert error.sweep.cases == tuple(case for case in whole.cases if (case.N, case.seeds) not in HARD)
+    assert set(error.failures) == HARD
+    assert [(type(e), e.largest) for e in error.failures.values()] == [(TooLarge, 1)] * 2
+    first = "2 seed sets were not decided, the first N = 4, seeds (1, 3) (TooLarge: order = 2: "
+    assert str(error).startswith(first)
+    assert "18 others" in str(error)
+    assert calls[-1] == (18, 20)
+    assert len(file.read_text().splitlines()) == 1 + 18
+    assert sweep_propagation(range(2, 6), 2, 1, executor=threads, file=file) == whole
+
+
+def test_workers_that_die_cost_only_what_they_had_not_decided(tmp_path):
+    file = tmp_path / "sweep.jsonl"
+    message = "the worker processes died: in a script"
+    with workers_that(dies) as pool, pytest.raises(SweepIncomplete, match=message) as caught:
+        sweep_propagation(range(2, 9), 2, 0, executor=pool, file=file)
+    kept, failures = {(case.N, case.seeds) for case in caught.value.sweep.cases}, caught.value.failures
+    everything = {(N, seeds) for N in range(2, 9) for s in (1, 2) for seeds in combinations(range(1, N), s)}
+    assert kept | set(failures) == everything
+    assert not kept & set(failures)
+    assert {(2, (1,)), (8, (1,))} & kept == {(2, (1,))}
+    assert {issubclass(type(error), BrokenExecutor) for error in failures.values()} == {True}
+    assert len(file.read_text().splitlines()) == 1 + len(kept)
