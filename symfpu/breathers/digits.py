@@ -21,7 +21,7 @@ from symfpu.breathers.fixed_force import FixedForce, Integers
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers
 from symfpu.numbers.typed import Number, exact, integer
-from symfpu.tori.quasiperiodic import FourierTorus
+from symfpu.tori.quasiperiodic import FourierTorus, show
 
 Floats = NDArray[np.float64]
 
@@ -58,6 +58,10 @@ class PreciseOrbit(FourierTorus):
 
     bound: Any = field(default=mpmath.inf)
     sweeps: int = 0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        show(self, "bound")
 
     def __repr__(self) -> str:
         omega = mpmath.nstr(mpmath.mpf(self.frequency.numerator) / self.frequency.denominator, 15)

@@ -2,14 +2,17 @@
 
 Functions of a torus and of the chain are written once and take their cosines and dot products from here. Multiprecision
 arrays are object arrays of mpf. A float in them is read by its shortest decimal: 0.1 means one tenth.
+What is handed to users are mpf that print their digits (`with_digits`); they compute as any others.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
+from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import mpmath
 import numpy as np
@@ -17,6 +20,7 @@ from mpmath import libmp
 from numpy.typing import NDArray
 
 Numbers = NDArray[Any]  # doubles, or mpf
+Value = TypeVar("Value")
 
 GUARD_DIGITS = 15  # carried beyond the asked digits by every evaluation
 
@@ -104,6 +108,62 @@ class Multiprecision(Arithmetic):
 
 
 DOUBLES, MULTIPRECISION = Arithmetic(), Multiprecision()
+
+
+class NumberWithDigits(mpmath.mpf):  # type: ignore[misc]
+    """An mpf that prints all digits it was asked for, whatever the precision of mpmath's context.
+
+    In arithmetic it is an mpf like any other: results are plain mpf, rounded to the precision of the context.
+    """
+
+    __slots__ = ("digits",)
+
+    def __str__(self) -> str:
+        return str(libmp.to_str(self._mpf_, self.digits))
+
+    def __repr__(self) -> str:
+        return f"mpf('{self}')"
+
+    def __format__(self, form: str) -> str:
+        """By the format specifications of Python's decimal numbers, from as many digits as are carried."""
+        if not form:
+            return str(self)
+        return format(Decimal(libmp.to_str(self._mpf_, self.digits + GUARD_DIGITS)), form)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (libmp.to_pickable(self._mpf_), self.digits)
+
+
+def _restored(number: Any, digits: int) -> NumberWithDigits:
+    return _number_with_digits(libmp.from_pickable(number), digits)
+
+
+def _number_with_digits(parts: Any, digits: int) -> NumberWithDigits:
+    """The mpf of these parts, unrounded."""
+    number: NumberWithDigits = object.__new__(NumberWithDigits)
+    number._mpf_, number.digits = parts, digits
+    return number
+
+
+def with_digits(values: Value, digits: int | None) -> Value:
+    """Results as users see them: every mpf in a number, array, tuple or mapping prints so many digits.
+
+    All else is as it was; None leaves everything.
+    """
+    return values if digits is None else cast(Value, _dressed(values, digits))
+
+
+def _dressed(values: Any, digits: int) -> Any:
+    if isinstance(values, mpmath.mpf):
+        return _number_with_digits(values._mpf_, digits)
+    if isinstance(values, np.ndarray) and values.dtype == object:
+        entries = np.frompyfunc(lambda x: _dressed(x, digits), 1, 1)
+        return np.asarray(entries(values), dtype=object)
+    if isinstance(values, tuple):
+        return tuple(_dressed(x, digits) for x in values)
+    if isinstance(values, Mapping):
+        return {key: _dressed(x, digits) for key, x in values.items()}
+    return values
 
 
 def arithmetic_of(values: Any) -> Arithmetic:

@@ -16,7 +16,15 @@ from symfpu.algebra.grading import Grading, Ints
 from symfpu.algebra.polynomials import Polynomial, evaluate, powers_of, rescaled, square_root
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, from_integers, integers
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    MULTIPRECISION,
+    Arithmetic,
+    Numbers,
+    from_integers,
+    integers,
+    with_digits,
+)
 from symfpu.numbers.typed import integer
 from symfpu.series.divisors import SmallDivisor
 from symfpu.series.rings import RINGS
@@ -168,7 +176,8 @@ class LindstedtSeries:
             at = np.flatnonzero(values != 0)
             exponents = self.grading.exponents(degree)[self.grading.canonical(degree)[at]]
             result = self._scaled(values[at] / self._linear(q), self.grading.powers(degree)[at], degree - 1)
-            return exponents, self.tables.finite(result, f"Q_{q}^({order})")
+            found = self.tables.finite(result, f"Q_{q}^({order})")
+            return exponents, with_digits(found, self.digits)
 
     def frequency_coefficients(self, q: int, order: int, *, squared: bool = False) -> tuple[Ints, NDArray[Any]]:
         """omega_q^(k), or [omega_q^2]^(k) if squared, without mu^k, as a polynomial in the amplitudes (Eq. omeser).
@@ -186,7 +195,8 @@ class LindstedtSeries:
             exponents = np.array(list(chosen), dtype=np.int64).reshape(len(chosen), len(self.seeds)) * 2
             values = np.array(list(chosen.values()), dtype=self.tables.kind)
             result = self._scaled(self.tables.simplified(values), exponents, degree, degree)
-            return exponents, self.tables.finite(result, f"omega_{q}^({order})")
+            found = self.tables.finite(result, f"omega_{q}^({order})")
+            return exponents, with_digits(found, self.digits)
 
     def squared_polynomial(self, i: int, order: int) -> Polynomial:
         """[omega_q^2]^(k) as {powers of w_i^2: coefficient}, scaled as the tables are."""
@@ -249,12 +259,14 @@ class LindstedtSeries:
     @cached_property
     def seed_factors(self) -> Numbers:
         """kappa Omega_i / 2: the scaled variables x_i at unit amplitudes; shape (s,)."""
-        return np.asarray(self._kappa / 2 * self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1])
+        factors = self._kappa / 2 * self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1]
+        return with_digits(np.asarray(factors), self.digits)
 
     def scaled_seeds(self, amplitudes: ArrayLike) -> Numbers:
         """The variables of the scaled tables, kappa Omega_i A_i / 2; shapes (s,)."""
         with self._context():
-            return np.asarray(self.seed_factors * self.numbers.array(amplitudes))
+            scaled = self.seed_factors * self.numbers.array(amplitudes)
+            return with_digits(np.asarray(scaled), self.digits)
 
     def amplitude_terms(self, order: int) -> tuple[Ints, Ints, Numbers]:
         """mu^k Q_q^(k) with free amplitudes: sum over rows of value[., q] x^e cos(nu.theta), x = scaled_seeds(A).
@@ -267,7 +279,7 @@ class LindstedtSeries:
         with self._context():
             values = self.tables.entries(self.coordinates[order]) * (self._sign(order) / self._kappa) / self.chain.frequencies(self.numbers)
             values[(nu != 0).any(axis=1)[index]] *= 2
-        return nu[index], self.grading.powers(degree), values
+        return nu[index], self.grading.powers(degree), with_digits(values, self.digits)
 
     def harmonic_terms(self, amplitudes: ArrayLike, order: int, *, absolute: bool = False) -> tuple[Ints, Numbers]:
         """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients: sum over rows of value[., q] cos(nu.theta).
@@ -297,7 +309,7 @@ class LindstedtSeries:
             values = values * float(factor) if doubles else from_integers(values, exponent) * factor
             values = values / self.chain.frequencies(numbers)
             values[(nu != 0).any(axis=1)] *= 2
-        return nu, np.abs(values) if absolute else values
+        return nu, np.abs(values) if absolute else with_digits(values, self.digits)
 
     def _doubles(self, amplitudes: ArrayLike, order: int) -> Floats:
         """Every coefficient of an order times its monomial, as doubles."""
@@ -345,7 +357,7 @@ class LindstedtSeries:
             parts = [[evaluate(p, powers) for p in polynomials] for polynomials in self._frequency_polynomials[: top + 1]]
             terms = np.array([[mpmath.mpf(value) for value, _ in row] for row in parts], dtype=object)
             slopes = np.array([[[mpmath.mpf(x) for x in gradient] for _, gradient in row] for row in parts], dtype=object)
-        return terms, slopes
+        return with_digits(terms, self.digits), with_digits(slopes, self.digits)
 
     @cached_property
     def _frequency_polynomials(self) -> list[list[Polynomial]]:

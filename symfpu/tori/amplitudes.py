@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
-from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf
+from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf, with_digits
 from symfpu.numbers.typed import decimal, exact, integer
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.root_certificate import certify_root
@@ -157,7 +157,8 @@ def solve_amplitudes(
 
 def _square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:
     with series.numbers.context(series.digits):
-        return tuple(series.numbers.sqrt(squares).tolist())
+        roots = tuple(series.numbers.sqrt(squares).tolist())
+    return with_digits(roots, series.digits)
 
 
 def _refuse_commensurable(series: LindstedtSeries) -> None:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, with_digits
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -30,7 +30,8 @@ class QuasiPeriodic:
     """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)): what every torus and breather can do.
 
     seeds, frequencies, phases : the s angles. harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : c_q[nu];
-    shape (H, N-1). With digits, results are arrays of mpf, evaluated with that many digits and more; else doubles.
+    shape (H, N-1). With digits, results are mpf or arrays of them, evaluated with that many digits
+    and more, which print that many; else doubles.
     """
 
     chain: Chain
@@ -65,10 +66,16 @@ class QuasiPeriodic:
 
     def positions(self, t: ArrayLike) -> Numbers:
         """Mode coordinates Q_q(t); t a number or an array (T,), result (N-1,) or (T, N-1)."""
+        return with_digits(self._positions(t), self.digits)
+
+    def _positions(self, t: ArrayLike) -> Numbers:
         return self._along(t, lambda angles: self.numbers.dot(self.numbers.cos(angles), self.cosines))
 
     def momenta(self, t: ArrayLike) -> Numbers:
         """Mode momenta P_q(t) = dQ_q/dt; t a number or an array (T,), result (N-1,) or (T, N-1)."""
+        return with_digits(self._momenta(t), self.digits)
+
+    def _momenta(self, t: ArrayLike) -> Numbers:
         return self._along(t, lambda angles: self.numbers.dot(self.numbers.sin(angles), -self._rates[:, None] * self.cosines))
 
     def _along(self, t: ArrayLike, evaluate: Callable[[Numbers], Numbers]) -> Numbers:
@@ -94,19 +101,21 @@ class QuasiPeriodic:
     def energy(self, t: ArrayLike = 0.0) -> Any:
         """Total energy H at t, a number or (T,), in the shape of t; constant in time for an exact torus."""
         with self._context():
-            return self.chain.energy(self.positions(t), self.momenta(t))[()]
+            energy = self.chain.energy(self._positions(t), self._momenta(t))
+            return with_digits(energy[()], self.digits)
 
     def harmonic_energies(self, t: ArrayLike = 0.0) -> Numbers:
         """Harmonic energies E_q(t) (Eq. harmonicene); shape of t with an axis N-1 at the end."""
         with self._context():
-            return self.chain.harmonic_energies(self.positions(t), self.momenta(t))
+            energies = self.chain.harmonic_energies(self._positions(t), self._momenta(t))
+            return with_digits(energies, self.digits)
 
     def energy_error(self, t: ArrayLike, *, harmonic: bool = False) -> Numbers:
         """Relative error in time (E(t) - E(0)) / E(0) of the total energy, or of the harmonic energy sum E_q."""
         with self._context():
             values = self.harmonic_energies(t).sum(axis=-1) if harmonic else self.energy(t)
             start = self.harmonic_energies().sum() if harmonic else self.energy()
-            return np.asarray((values - start) / start)
+            return with_digits(np.asarray((values - start) / start), self.digits)
 
     def average_spectrum(self, T: float | None = None) -> Numbers:
         """Time averages of the harmonic energies E_q, in closed form; shape (N-1,).
@@ -120,7 +129,8 @@ class QuasiPeriodic:
             linear = self.chain.frequencies(self.numbers)
             weights = np.where((self.harmonics != 0).any(axis=1), 0.5, 1.0)
             kinetic = (weights * self._rates**2) @ self.cosines**2
-            return np.asarray(0.5 * (kinetic + linear**2 * (weights @ self.cosines**2)))
+            average = 0.5 * (kinetic + linear**2 * (weights @ self.cosines**2))
+            return with_digits(np.asarray(average), self.digits)
 
     def _finite_average(self, T: float) -> Floats:
         if not isinstance(T, Real) or not np.isfinite(float(T)) or T <= 0:
@@ -149,7 +159,7 @@ class QuasiPeriodic:
         points : grid points for each of the s angles; default such that the grid has about 4096. With digits, where doubles
         cannot see the residual, about 16.
         """
-        return self._residuals(points)[0]
+        return with_digits(self._residuals(points)[0], self.digits)
 
     def residual(self, points: int | None = None) -> float:
         """Largest residual of the equations of motion on a grid of angles, over the largest acceleration.
@@ -217,6 +227,16 @@ class FourierTorus(QuasiPeriodic):
     cosines: Numbers = field(repr=False)
     phases: Mapping[int, Any] = field(default_factory=dict)
     digits: int | None = None
+
+    def __post_init__(self) -> None:
+        show(self, "cosines", "phases")
+
+
+def show(result: QuasiPeriodic, *names: str) -> None:
+    """Lets numbers in these fields of a frozen result print its digits; for `__post_init__`."""
+    if result.digits is not None:
+        for name in names:
+            object.__setattr__(result, name, with_digits(getattr(result, name), result.digits))
 
 
 def mean_cosine(rate: Floats, phase: Floats, T: float) -> Floats:

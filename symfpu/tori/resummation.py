@@ -8,7 +8,7 @@ at the actual mu; what two neighbouring approximants differ by says how far they
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import mpmath
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
-from symfpu.numbers.arithmetic import Numbers
+from symfpu.numbers.arithmetic import Numbers, with_digits
 from symfpu.numbers.typed import integer
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import frequency_orders, shifts
@@ -110,7 +110,8 @@ def pade_frequencies(series: LindstedtSeries, amplitudes: Mapping[int, Any], fre
         given = _by_seed(series, "amplitudes", amplitudes)
         squares = series.numbers.array([given[q] for q in series.seeds]) ** 2
         terms, _ = series.frequency_terms(squares, orders[-1])
-        return pade_sum(terms[[0, *orders]])
+        resummed = pade_sum(terms[[0, *orders]])
+    return replace(resummed, values=with_digits(resummed.values, series.digits))
 
 
 def pade_amplitudes(series: LindstedtSeries, guess: Mapping[int, Any], frequency_order: int | None = None) -> dict[int, Any]:
@@ -147,7 +148,8 @@ def pade_amplitudes(series: LindstedtSeries, guess: Mapping[int, Any], frequency
         for q, x in zip(series.seeds, squares, strict=True):
             if x <= 0:
                 raise NoRealAmplitude(q, float(x), orders[-1])
-        return dict(zip(series.seeds, series.numbers.sqrt(squares).tolist(), strict=True))
+        amplitudes = dict(zip(series.seeds, series.numbers.sqrt(squares).tolist(), strict=True))
+    return with_digits(amplitudes, series.digits)
 
 
 def _checked(series: LindstedtSeries, frequency_order: int | None) -> tuple[LindstedtSeries, list[int]]:

@@ -12,9 +12,9 @@ import numpy as np
 
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
-from symfpu.numbers.arithmetic import Numbers, text
+from symfpu.numbers.arithmetic import Numbers, text, with_digits
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.quasiperiodic import QuasiPeriodic, show
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,9 @@ class QTorus(QuasiPeriodic):
     certificate: RootCertificate | None = None
     warnings: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        show(self, "amplitudes", "phases", "history")
+
     def __repr__(self) -> str:
         places = self.digits or 12
         amplitudes = ", ".join(f"A_{q}={text(a, places)}" for q, a in self.amplitudes.items())
@@ -124,7 +127,7 @@ class QTorus(QuasiPeriodic):
             for nu, part in parts:
                 values[index[at : at + len(nu)]] += part
                 at += len(nu)
-        return np.concatenate([nu for nu, _ in parts])[first], values
+        return np.concatenate([nu for nu, _ in parts])[first], with_digits(values, self.digits)
 
     @property
     def harmonics(self) -> Ints:  # type: ignore[override]

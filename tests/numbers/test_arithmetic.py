@@ -1,5 +1,7 @@
 """Arrays of two precisions: how numbers are read, how dot products keep their digits, and that contexts are put back."""
 
+import copy
+import pickle
 from decimal import Decimal
 from fractions import Fraction
 
@@ -22,6 +24,7 @@ from symfpu.numbers.arithmetic import (
     mpf,
     sine_matrix,
     text,
+    with_digits,
 )
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
@@ -232,3 +235,77 @@ def test_results_do_not_depend_on_the_working_precision(torus):
 
 def test_evaluations_carry_guard_digits(torus):
     assert len(mpmath.nstr(torus.positions(0.3)[2], 60).strip("-0.")) >= 30 + GUARD_DIGITS - 2
+
+
+LONG = "0.123456789012345678901234567890123456789012345"  # 45 digits
+
+
+@pytest.fixture
+def long():
+    with mpmath.workdps(60):
+        return with_digits(mpmath.mpf(LONG), 45)
+
+
+def test_numbers_print_the_digits_they_were_asked_for(long):
+    assert mpmath.mp.dps == 15
+    assert str(long) == f"{long}" == LONG
+    assert repr(long) == f"mpf('{LONG}')"
+    assert f"{long:.20f} {long:+.30e} {long:.3g} {long:>50}" == (
+        f"0.12345678901234567890 +1.234567890123456789012345678901e-1 0.123 {LONG:>50}"
+    )
+    with mpmath.workdps(60):
+        tiny, signed, whole = (with_digits(mpmath.mpf(x), 40) for x in ("1e-5000", f"-{LONG}", "3"))
+        assert eval(repr(long), {"mpf": mpmath.mpf}) == mpmath.mpf(LONG)
+    assert (str(tiny), str(signed), str(whole)) == ("1.0e-5000", LONG.join("-_").replace("_", "")[:42], "3.0")
+    assert [str(with_digits(mpmath.mpf(x), 30)) for x in ("inf", "-inf", "nan")] == ["+inf", "-inf", "nan"]
+    assert f"{with_digits(mpmath.inf, 30):g}" == "Infinity"
+
+
+def test_numbers_with_digits_compute_as_any_mpf(long):
+    plain = mpmath.mpf(0)
+    with mpmath.workdps(60):
+        plain += mpmath.mpf(LONG)
+    assert isinstance(long, mpmath.mpf)
+    assert long == plain
+    assert hash(long) == hash(plain)
+    assert float(long) == float(plain) == 0.12345678901234568
+    assert long < 1 < 1 / long
+    for dps in (15, 50):
+        with mpmath.workdps(dps):
+            pairs = [
+                (long + 1, plain + 1),
+                (2.5 * long, 2.5 * plain),
+                (plain - long, mpmath.mpf(0)),
+                (long**2, plain**2),
+                (-long, -plain),
+                (mpmath.cos(long), mpmath.cos(plain)),
+                (np.float64(2) * long, np.float64(2) * plain),
+                (long * (1 + 2j), plain * (1 + 2j)),
+                (mpmath.mpf(long), +plain),
+                (np.sqrt(np.array([long], dtype=object))[0], mpmath.sqrt(plain)),
+            ]
+            for ours, theirs in pairs:
+                assert type(ours) is type(theirs)
+                assert ours == theirs
+    assert text(long, 45) == text(plain, 45) == LONG
+    assert arithmetic_of([long]) is MULTIPRECISION
+
+
+@pytest.mark.parametrize("way", [lambda x: pickle.loads(pickle.dumps(x)), copy.copy, copy.deepcopy])
+def test_numbers_with_digits_are_pickled_and_copied_whole(long, way):
+    returned = way(long)
+    assert type(returned) is type(long)
+    assert (returned._mpf_, returned.digits, repr(returned)) == (long._mpf_, 45, repr(long))
+
+
+def test_containers_hold_numbers_with_digits(long):
+    plain = mpmath.mpf(long)
+    array = with_digits(np.array([[plain, 0.5], [plain, 1]], dtype=object), 45)
+    assert array.shape == (2, 2)
+    assert [type(x).__name__ for x in array.flat] == ["NumberWithDigits", "float", "NumberWithDigits", "int"]
+    assert with_digits(np.zeros((0, 3), dtype=object), 45).shape == (0, 3)
+    nested = with_digits({1: (plain, 0.5), 2: "text"}, 20)
+    assert (str(nested[1][0]), nested[1][1], nested[2]) == (mpmath.nstr(plain, 20), 0.5, "text")
+    doubles = np.zeros(3)
+    assert with_digits(doubles, 45) is doubles
+    assert with_digits(plain, None) is plain

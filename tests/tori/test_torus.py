@@ -2,16 +2,20 @@
 
 from dataclasses import replace
 
+import mpmath
 import numpy as np
 import pytest
 import symengine as se
 from scipy.integrate import simpson, solve_ivp
 
+from symfpu.breathers.balance import periodic_orbit
+from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.quasiperiodic import mean_cosine
+from symfpu.tori.resummation import pade_amplitudes, pade_frequencies, resum
 from symfpu.tori.torus import QTorus
 from tests.tolerances import COEFFICIENT, DIFFERENCE, GRID_AVERAGE, ORBIT, QUADRATURE, ROUNDING, SLOPE
 
@@ -198,3 +202,51 @@ def test_repr_is_an_answer(breather):
     text = repr(breather)
     assert text.startswith(f"QTorus(N=8, beta=0.3, A_3={breather.amplitudes[3]:.12g}, frequency order 5, order 5, H=")
     assert "residual" in text
+
+
+def printed(values, expected, digits):
+    """Whether all of the numbers print as the expected ones to so many digits."""
+    flat = zip(np.ravel(values), np.ravel(expected), strict=True)
+    return all(str(x) == f"{x}" == repr(x)[5:-2] == mpmath.nstr(y, digits) for x, y in flat)
+
+
+def test_values_of_many_digits_print_all_of_them():
+    """Against the same in mpf that print 15 digits; the precision of mpmath is not touched."""
+    series = lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3905", "0.7663"), 4, digits=45)
+    torus, plain = solve_amplitudes(series), np.frompyfunc(lambda x: mpmath.mp.make_mpf(x._mpf_), 1, 1)
+    amplitudes = list(torus.amplitudes.values())
+    history = amplitude_history(series).amplitudes[4]
+    results = [
+        amplitudes,
+        history,
+        torus.history[4],
+        torus.cosines,
+        torus.positions([0.0, 0.3]),
+        torus.momenta(0.3),
+        torus.energy(),
+        torus.energy([0.0, 0.3]),
+        torus.harmonic_energies(),
+        torus.energy_error([0.3]),
+        torus.average_spectrum(),
+        resum(torus).cosines,
+        list(pade_amplitudes(series, torus.amplitudes).values()),
+        pade_frequencies(series, torus.amplitudes).values,
+        series.coefficients(3, 1)[1],
+        series.frequency_coefficients(1, 2)[1],
+        series.frequency_terms([0.1, 0.2])[0],
+        series.harmonic_terms(amplitudes, 2)[1],
+        series.amplitude_terms(2)[2],
+        series.scaled_seeds(amplitudes),
+    ]
+    for values in results:
+        assert printed(values, plain(values), 45)
+    assert len(str(amplitudes[0])) == 2 + 45
+    breather = periodic_orbit_digits(periodic_orbit(Chain(8, beta=1), 3, "1.2"), 30)
+    found = [breather.amplitude, breather.bound, breather.energy()]
+    assert printed(found, plain(found), 30)
+    assert len(str(breather.amplitude)) == 1 + 30
+    accurate = lindstedt(Chain(8, beta="1e-3"), (3,), ("1.1112",), 6, digits=20)
+    residual = solve_amplitudes(accurate).residuals()[2]
+    assert isinstance(residual, mpmath.mpf)
+    assert printed([residual], plain([residual]), 20)
+    assert mpmath.mp.dps == 15
