@@ -6,13 +6,24 @@ Every message is one line: what, where, next step. The plain numbers behind it a
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 
 class SymfpuError(Exception):
     """Base of every error that this package raises on purpose.
 
     Raised itself where no more precise one exists. Ours. The message is one line: what, where, next step.
+    Pickled and copied it stays whole, so that one failed case does not break a pool of processes.
     """
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """By arguments and attributes; Python's own way passes the message alone to the class."""
+        return _rebuilt, (type(self), self.args), self.__dict__
+
+
+def _rebuilt(kind: type[SymfpuError], args: tuple[Any, ...]) -> SymfpuError:
+    """An error of this class with these arguments of `Exception`, without calling its own constructor."""
+    return kind.__new__(kind, *args)
 
 
 class InputError(SymfpuError, ValueError):

@@ -29,6 +29,8 @@ BACKENDS = ("c", "numpy")
 COMPILERS = ("cc", "gcc", "clang")
 FLAGS = ("-std=c99", "-O2", "-march=native", "-shared", "-fPIC")
 NAME = "torus"
+ABSENT = f"$CC is not set and none of {', '.join(COMPILERS)} is in PATH"
+NO_COMPILER = f"no C compiler: {ABSENT}; install one or take 'numpy'"
 
 
 class Backend(Protocol):
@@ -141,10 +143,19 @@ def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Ev
         raise InputError("backend", backend, f"one of {', '.join(BACKENDS)}, or None", "name a backend or leave it out")
     compiler = None if backend == "numpy" else find_compiler()
     if backend == "c" and compiler is None:
-        raise SymfpuError(f"no C compiler: $CC is not set and none of {', '.join(COMPILERS)} is in PATH; install one or take 'numpy'")
+        raise SymfpuError(NO_COMPILER)
     if compiler is None:
         return Evaluator(torus, "numpy", NumpyFunctions(torus.in_doubles()))
-    return Evaluator(torus, "c", CompiledFunctions(_library(torus, compiler), torus.chain.N - 1))
+    source = emit_torus(torus_program(torus, NAME, torus_facts(torus)))
+    return Evaluator(torus, "c", compiled(source, torus.chain.N - 1, compiler))
+
+
+def compiled(source: str, modes: int, compiler: list[str] | None = None) -> CompiledFunctions:
+    """The functions of an exported C file; SymfpuError without a compiler, or if it fails."""
+    command = compiler or find_compiler()
+    if command is None:
+        raise SymfpuError(NO_COMPILER)
+    return CompiledFunctions(source, modes, _library(source, command))
 
 
 def find_compiler() -> list[str] | None:
@@ -155,12 +166,12 @@ def find_compiler() -> list[str] | None:
     return None if found is None else [found]
 
 
-def _library(torus: QuasiPeriodic, compiler: list[str]) -> ctypes.CDLL:
+def _library(source: str, compiler: list[str]) -> ctypes.CDLL:
     """The loaded functions; their files are gone when this returns."""
     with tempfile.TemporaryDirectory(prefix="symfpu-", ignore_cleanup_errors=True) as folder:
-        source, library = Path(folder) / f"{NAME}.c", Path(folder) / f"{NAME}.so"
-        source.write_text(emit_torus(torus_program(torus, NAME, torus_facts(torus))), encoding="ascii")
-        command = [*compiler, *FLAGS, "-o", str(library), str(source), "-lm"]
+        written, library = Path(folder) / f"{NAME}.c", Path(folder) / f"{NAME}.so"
+        written.write_text(source, encoding="ascii")
+        command = [*compiler, *FLAGS, "-o", str(library), str(written), "-lm"]
         try:
             run = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
         except OSError as error:
@@ -173,10 +184,19 @@ def _library(torus: QuasiPeriodic, compiler: list[str]) -> ctypes.CDLL:
 
 @dataclass(frozen=True, eq=False)
 class CompiledFunctions:
-    """The functions of an exported C file, loaded. modes : N-1."""
+    """The functions of an exported C file, loaded. source : the file, which is pickled. modes : N-1."""
 
-    library: ctypes.CDLL
+    source: str
     modes: int
+    library: ctypes.CDLL
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Compiled again where it arrives, for the processor there."""
+        return compiled, (self.source, self.modes)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> CompiledFunctions:
+        """Itself: loaded functions do not change."""
+        return self
 
     def positions(self, t: Floats, phases: Floats | None) -> Floats:
         return self._call("positions", t, phases, (len(t), self.modes))
