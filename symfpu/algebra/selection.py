@@ -19,7 +19,7 @@ from symfpu.algebra.grading import Grading, Ints, compositions
 def fold(number: int, N: int) -> int:
     """The wave number in 0 .. N that equals +-number modulo 2N.
 
-    |2 [(|n| + N - 1) / 2N] N - |n|| of Eq. app.
+    This is |2 [(|n| + N - 1) / 2N] N - |n|| of Eqs. app, lmn.
 
     >>> fold(33, 32), fold(-5, 32), fold(96, 32)
     (31, 5, 32)

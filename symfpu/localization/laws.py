@@ -1,4 +1,7 @@
-"""How the energy of low-frequency packets falls off along the spectrum: the paper's laws, and lines fitted to profiles."""
+"""How the energy of low-frequency packets falls off along the spectrum: the paper's laws, and lines fitted to profiles.
+
+The laws are those of section 6.1 and, for their derivation, Appendix E.
+"""
 
 from __future__ import annotations
 
@@ -338,6 +341,7 @@ def _spectrum(chain: Chain, spectrum: ArrayLike) -> Floats:
 
 
 def _modes(chain: Chain, s: int, modes: str | Sequence[int]) -> tuple[int, ...]:
+    """The modes of a fit; tail : all of D_1, D_2, ... of the packet 1 .. s (Definition 3 with k_0 = 1)."""
     if isinstance(modes, str):
         if modes not in ("tail", "middle"):
             raise InputError("modes", modes, "tail, middle or a list of modes", "choose one of them")

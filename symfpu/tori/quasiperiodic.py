@@ -102,7 +102,7 @@ class QuasiPeriodic:
             return self.chain.harmonic_energies(self.positions(t), self.momenta(t))
 
     def energy_error(self, t: ArrayLike, *, harmonic: bool = False) -> Numbers:
-        """Relative error in time (E(t) - E(0)) / E(0) of the total energy, or of the harmonic energy sum E_q."""
+        """Relative error (E(t) - E(0)) / E(0) of the total energy, or of the harmonic one, sum E_q (section 3.2)."""
         with self._context():
             values = self.harmonic_energies(t).sum(axis=-1) if harmonic else self.energy(t)
             start = self.harmonic_energies().sum() if harmonic else self.energy()
