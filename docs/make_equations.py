@@ -32,7 +32,7 @@ HEAD = """# Where the equations of the paper are
 
 Written by `make equations` from the docstrings; do not edit. Labels are those of the LaTeX source of
 {source}.
-Where the code differs from a printed form, [errata.md](errata.md) says so.
+Files are those of `symfpu/`. Where the code differs from a printed form, [errata.md](errata.md) says so.
 """
 
 
@@ -103,15 +103,33 @@ def citations() -> dict[str, list[tuple[str, str]]]:
     return found
 
 
+def homes(item: dict[str, object]) -> list[tuple[str, str]]:
+    """Where an item lives, as files and names."""
+    found = []
+    for home in item.get("home", []):
+        file, _, name = home.partition("::")
+        found.append((f"symfpu/{file}", name))
+    return found
+
+
 def _places(found: list[tuple[str, str]]) -> str:
     """A file a line, with its names."""
     lines = []
     ordered = sorted(found, key=lambda place: (place[0].startswith(LAST_ROOM), place[0]))
     for file, places in groupby(ordered, key=lambda place: place[0]):
         names = ", ".join(f"`{name}`" for _, name in places if name)
-        link = f"[{file}](../{file})"
+        link = f"[{file.removeprefix('symfpu/')}](../{file})"
         lines.append(f"{link}: {names}" if names else link)
     return "<br>".join(lines)
+
+
+def _row(item: dict[str, object], cited_by: list[tuple[str, str]]) -> str:
+    """A line of the table: where the item lives, and what else cites it."""
+    at_home = homes(item)
+    files = [(file, "") for file, _ in at_home]
+    others = [place for place in cited_by if place not in at_home + files]
+    lives = f"not used: {item['unused']}" if "unused" in item else _places(at_home)
+    return f"| {item['label']} | {item['about']} | {lives} | {_places(others)} |"
 
 
 def page() -> str:
@@ -120,11 +138,8 @@ def page() -> str:
     where = citations()
     lines = [HEAD.format(source=source)]
     for part in found:
-        lines += [f"## {part['title']}", "", "| label | what | where |", "| --- | --- | --- |"]
-        for item in part["items"]:
-            label = item["label"]
-            places = f"not used: {item['unused']}" if "unused" in item else _places(where.get(label, []))
-            lines.append(f"| {label} | {item['about']} | {places} |")
+        lines += [f"## {part['title']}", "", "| label | what | lives in | cited by, too |", "| --- | --- | --- | --- |"]
+        lines += [_row(item, where.get(item["label"], [])) for item in part["items"]]
         lines.append("")
     return "\n".join(lines)
 

@@ -26,6 +26,12 @@ def test_a_label_has_a_place_or_a_reason(label):
     assert (label in CITED) != ("unused" in ITEMS[label])
 
 
+@pytest.mark.parametrize("label", ITEMS)
+def test_what_lives_somewhere_is_cited_there(label):
+    assert bool(index.homes(ITEMS[label])) != ("unused" in ITEMS[label])
+    assert set(index.homes(ITEMS[label])) <= set(CITED.get(label, ()))
+
+
 def test_no_docstring_cites_what_the_paper_does_not_have():
     assert {label: places for label, places in CITED.items() if label not in ITEMS} == {}
 
@@ -78,4 +84,4 @@ def test_citations_are_read(text, labels):
     ],
 )
 def test_what_a_reader_looks_for_first_is_there(label, file, name):
-    assert (file, name) in CITED[label]
+    assert (file, name) in index.homes(ITEMS[label])

@@ -88,7 +88,7 @@ def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> 
 
 
 def profile_law(chain: Chain, s: int, specific_energy: float, *, denominator: int | None = None) -> ProfileLine:
-    """log10 e_kappa of seeds 1 .. s, Eqs. eksa2 (alpha) and eksp2 (beta), as a ProfileLine.
+    """log10 e_kappa of seeds 1 .. s, Eqs. eksa2 (alpha) and eksp2 (beta) as a ProfileLine.
 
     chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N; all dimensionless.
     denominator : of kappa = q/denominator, default N; the line of Fig. 4(a) has N-1.
