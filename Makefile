@@ -4,7 +4,7 @@ BIN := .venv/bin
 OUT ?= out
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 # workers of pytest share the cores
 
-.PHONY: install reproduce test bench sweeps long generated clean
+.PHONY: install reproduce test bench sweeps long generated equations clean
 
 install: .venv/installed
 
@@ -36,6 +36,9 @@ bench: install  ## speed and memory, each beside a matrix product
 
 generated: install  ## the gallery of exported evaluators, byte for byte
 	$(BIN)/python -m symfpu.codegen.gallery generated
+
+equations: install  ## docs/equations.md from the docstrings
+	$(BIN)/python docs/make_equations.py
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

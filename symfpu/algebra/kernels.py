@@ -139,10 +139,22 @@ def multiply_row(
 
 @njit(nogil=True, cache=True)
 def multiply(
-    lanes, left, right, out, degree, first_row, splits, symmetric, active, blocks, tables, modulus
-):  # type: ignore[no-untyped-def]
-    """Add the products of all `splits` of a degree into out, canonical rows only; returns the number
-    of multiply-adds.
+    lanes: Any,
+    left: Any,
+    right: Any,
+    out: Any,
+    degree: int,
+    first_row: int,
+    splits: Any,
+    symmetric: bool,
+    active: Any,
+    blocks: Any,
+    tables: Any,
+    modulus: Any,
+) -> int:
+    """Add the products of all `splits` of a degree into out, canonical rows only.
+
+    Returns the number of multiply-adds.
 
     lanes : tuple of 8 or 16 zeros; its length is the row length of left, right and out.
     left, right : (rows of all degrees, lanes). out : (rows of this degree, lanes), counted from

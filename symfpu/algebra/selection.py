@@ -19,7 +19,7 @@ from symfpu.algebra.grading import Grading, Ints, compositions
 def fold(number: int, N: int) -> int:
     """The wave number in 0 .. N that equals +-number modulo 2N.
 
-    |2 [(|n| + N - 1) / 2N] N - |n|| of Eq. app.
+    This is |2 [(|n| + N - 1) / 2N] N - |n|| of Eqs. app, lmn.
 
     >>> fold(33, 32), fold(-5, 32), fold(96, 32)
     (31, 5, 32)
@@ -49,7 +49,7 @@ class PowerTable:
         residues, turn = np.arange(2 * self.N), 2 * self.N
         degree = len(self._residues)
         if degree == 0:
-            return residues[None, :] == 0
+            return np.asarray(residues[None, :] == 0)
         lower_keys, lower = self._keys[degree - 1], self._residues[degree - 1]
         first = np.argmax(powers > 0, axis=1)
         reached = np.empty((len(powers), turn), dtype=np.bool_)
@@ -94,7 +94,7 @@ def _signed_sums(turn: int, seeds: Sequence[int], power: Ints) -> Ints:
         for _ in range(int(e)):
             down, up = counts[(angles - seed) % turn], counts[(angles + seed) % turn]
             counts = down + up
-    return counts
+    return np.asarray(counts)
 
 
 class CosineModes:

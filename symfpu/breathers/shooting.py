@@ -1,8 +1,9 @@
 """Exact q-breathers by shooting: Newton's method on the motion over half a period, with its tangent map.
 
-A state at rest, P(0) = 0, that is at rest again at T/2 returns at T, since the motion is reversible. The unknowns are the Q_q(0) that the
-symmetry of the family allows: even q for an even seed, q of the seed's parity if alpha = 0, else all. The tangent map is the
-exact derivative of the integrator's map, so that Newton's method converges quadratically down to rounding.
+Root finding as in section 6.4. A state at rest, P(0) = 0, that is at rest again at T/2 returns at T, since
+the motion is reversible. The unknowns are the Q_q(0) that the symmetry of the family allows: even q for an
+even seed, q of the seed's parity if alpha = 0, else all. The tangent map is the exact derivative of the
+integrator's map, so that Newton's method converges quadratically down to rounding.
 """
 
 from __future__ import annotations

@@ -92,7 +92,7 @@ class Chain:
         return {power: coupling for power, coupling in relative.items() if coupling}
 
     def linear_frequency(self, q: int) -> mpmath.mpf:
-        """Omega_q = 2 sin(q pi / 2N) at the working precision of mpmath."""
+        """Omega_q = 2 sin(q pi / 2N) (Eq. fpuspec) at the working precision of mpmath."""
         return 2 * mpmath.sinpi(mpmath.mpf(q) / (2 * self.N))
 
     def small_parameter(self, numbers: Arithmetic = DOUBLES) -> Any:
@@ -104,7 +104,7 @@ class Chain:
         return numbers.number(self.beta / (2 * self.N))
 
     def frequencies(self, numbers: Arithmetic = DOUBLES) -> Numbers:
-        """Linear frequencies Omega_q, q = 1 .. N-1, correctly rounded, or in another arithmetic; shape (N-1,)."""
+        """Linear frequencies Omega_q (Eq. fpuspec), correctly rounded, or in another arithmetic; shape (N-1,)."""
         if numbers is DOUBLES:
             return linear_frequencies(self.N)
         return np.array([self.linear_frequency(q) for q in range(1, self.N)], dtype=object)
@@ -123,7 +123,7 @@ class Chain:
         return np.asarray(dst(state, type=1, norm="ortho", axis=-1))
 
     def modes(self, x: ArrayLike) -> Numbers:
-        """Mode coordinates Q_1 .. Q_(N-1) of displacements x, inverse of `positions`; shapes (..., N-1)."""
+        """Mode coordinates Q_1 .. Q_(N-1) of displacements x (Eq. lintra inverted); shapes (..., N-1)."""
         return self.positions(x)
 
     def stretches(self, Q: ArrayLike) -> Numbers:

@@ -1,4 +1,6 @@
-"""The lowest frequency correction with every divisor at the linear frequencies, in closed form.
+"""The lowest frequency correction with every divisor at the linear frequencies, in closed form (Appendix A).
+
+This is Eq. omamid with the right bracket, and Eq. omebguess where only beta acts.
 
 For generic modes, mu^2 omega_q^(2) = (alpha^2/2N) Omega_q [(1 - 3/4 Omega_q^2) A_q^2 - sum_n Omega_n^2 A_n^2] and
 mu omega_q^(1) = (beta/2N) Omega_q [9/8 Omega_q^2 A_q^2 + 3/2 sum_n Omega_n^2 A_n^2], n running over the other seeds. Special

@@ -1,8 +1,8 @@
-"""Which mode is excited at which order: the propagation rule of the paper's proposition (Eqs. app, dk), and the corrected one.
+"""Which mode is excited at which order: the propagation rule (Eqs. app, dk), and the corrected one.
 
-The proposition counts every folded sum of signed seeds. In the beta model that is too many: where l + m = N, the sums
-q - l - m + n = 0 and q + l + m + n = 2N hold together for q = N - n, enter C_qlmn with opposite signs, and cancel. The
-corrected rule follows the couplings B and C themselves.
+The Proposition counts every folded sum of signed seeds. In the beta model that is too many: where l + m =
+N, the sums q - l - m + n = 0 and q + l + m + n = 2N hold together for q = N - n, enter C_qlmn with opposite
+signs, and cancel. The corrected rule follows the couplings B and C themselves.
 """
 
 from __future__ import annotations
@@ -54,7 +54,8 @@ def excitation_sequence(N: int, seeds: Iterable[int], order: int, *, model: str 
     N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
     model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers.
 
-    This is the rule of the Proposition; which modes are excited in fact is a question for exact arithmetic.
+    This is the rule of the Proposition for the sequence of Definition 2; which modes are excited in fact is
+    a question for exact arithmetic.
     Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an unknown model.
 
     >>> excitation_sequence(32, (1, 2, 3, 4), 2)
@@ -64,7 +65,7 @@ def excitation_sequence(N: int, seeds: Iterable[int], order: int, *, model: str 
 
 
 def first_orders(sets: Iterable[Iterable[int]]) -> list[tuple[int, ...]]:
-    """Each set without the members of the earlier ones, as ascending tuples (Eq. dk)."""
+    """Each set without the members of the earlier ones, as ascending tuples (Eq. dk, Definition 1)."""
     seen: set[int] = set()
     sequence = []
     for members in sets:
@@ -117,7 +118,7 @@ def coupling_sequence(N: int, seeds: Iterable[int], order: int, *, model: str = 
 
 @lru_cache(maxsize=1 << 18)
 def product_modes(N: int, modes: tuple[int, ...]) -> frozenset[int]:
-    """The modes q whose coupling B or C with the given two or three is not zero."""
+    """The modes q whose coupling B or C with these two or three is not zero (for B, Eq. wg of Appendix B)."""
     counts: dict[int, int] = {}
     first, *others = modes
     for signs in product((1, -1), repeat=len(others)):

@@ -1,5 +1,7 @@
 """Alignment indices GALI_k of an orbit, all k at once and in logarithms, its maximal Lyapunov exponent, the dimension of its torus.
 
+The paper's G_r of sections 3.2 and 4.
+
 GALI_k is the k-volume of k unit deviation vectors (Skokos, Bountis, Antonopoulos, Physica D 231 (2007) 30; Eur. Phys. J. Special
 Topics 165 (2008) 5). On a torus of dimension s in a phase space of dimension 2n, n = N - 1, it goes as
     t^0 for k <= s,    t^-(k-s) for s < k <= 2n - s,    t^-2(k-n) for k > 2n - s,
@@ -117,7 +119,7 @@ class AlignmentIndices:
         return tuple(Slope(k, *found) for k, found in enumerate(self._fits(self.log10_gali, decades), start=2))
 
     def dimension(self, decades: float = DECADES) -> TorusDimension:
-        """The dimension s of the torus, from how each further vector changes the slope.
+        """The dimension s of the torus, from how each further vector changes the slope (sections 3.2, 4).
 
         log GALI_j - log GALI_(j-1) has the slope 0 for j <= s, -1 for s < j <= 2n-s, -2 above. Each s has the weight exp(-chi^2/2)
         of these differences, whose uncertainties are at least FLOOR and are enlarged where no s fits. The orbit is called chaotic if
@@ -192,7 +194,7 @@ def alignment_indices(
     every: float = 10.0,
     progress: Progress | None = None,
 ) -> AlignmentIndices:
-    """GALI_2 .. GALI_vectors and the maximal Lyapunov exponent of an orbit (section 3.2, Fig. 1(e)).
+    """GALI_2 .. GALI_vectors and the maximal Lyapunov exponent of an orbit (sections 3.2 and 4).
 
     chain : the model; Q, P, T and step are dimensionless.
     Q, P : the state, mode coordinates and momenta, (N-1,).

@@ -283,7 +283,7 @@ class _Family:
         return np.asarray(terms[first])
 
     def _growth(self, increment: float) -> Floats:
-        """Increments of A^2 with equal increments of Omega^2 A^2 / 2 that add up to N Delta epsilon_l; shape (s,)."""
+        """Increments of A^2, those of Omega^2 A^2 / 2 equal and N Delta epsilon_l in all (Eq. omeprime); shape (s,)."""
         return np.asarray(2 * self.chain.N * increment / (len(self.seeds) * self.linear**2))
 
     def _exact(self, shift: Floats) -> tuple[Fraction, ...]:

@@ -1,4 +1,7 @@
-"""How the energy of low-frequency packets falls off along the spectrum: the paper's laws, and lines fitted to profiles."""
+"""How the energy of low-frequency packets falls off along the spectrum: the paper's laws, and lines fitted to profiles.
+
+The laws are those of section 6.1 and, for their derivation, Appendix E.
+"""
 
 from __future__ import annotations
 
@@ -85,7 +88,7 @@ def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> 
 
 
 def profile_law(chain: Chain, s: int, specific_energy: float, *, denominator: int | None = None) -> ProfileLine:
-    """log10 e_kappa of seeds 1 .. s, Eqs. eksa2 (alpha) and eksp2 (beta), as a ProfileLine.
+    """log10 e_kappa of seeds 1 .. s, Eqs. eksa2 (alpha) and eksp2 (beta) as a ProfileLine.
 
     chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N; all dimensionless.
     denominator : of kappa = q/denominator, default N; the line of Fig. 4(a) has N-1.
@@ -338,6 +341,7 @@ def _spectrum(chain: Chain, spectrum: ArrayLike) -> Floats:
 
 
 def _modes(chain: Chain, s: int, modes: str | Sequence[int]) -> tuple[int, ...]:
+    """The modes of a fit; tail : all of D_1, D_2, ... of the packet 1 .. s (Definition 3 with k_0 = 1)."""
     if isinstance(modes, str):
         if modes not in ("tail", "middle"):
             raise InputError("modes", modes, "tail, middle or a list of modes", "choose one of them")

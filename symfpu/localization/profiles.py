@@ -74,7 +74,7 @@ def normalised_averages(orbit: Orbit) -> Floats:
     """Running averages of the harmonic energies over the total energy, Ebar_q(t)/H; shape (S, ..., N-1).
 
     orbit : integrated with averages=True; its last row is the paper's normalised averaged spectrum (section
-        6), dimensionless.
+        4), dimensionless.
 
     Harmonic energies are those of Eq. harmonicene, with the 1/2 that the paper's average leaves out. Raises
     InputError.

@@ -9,6 +9,7 @@ from fractions import Fraction
 from numbers import Integral, Rational, Real
 from typing import Any
 
+import mpmath
 import symengine as se
 
 from symfpu.errors import InputError
@@ -36,6 +37,8 @@ def exact(value: object, argument: str) -> Fraction:
             return Fraction(int(value.numerator), int(value.denominator))
         if isinstance(value, Decimal):
             return Fraction(value)
+        if isinstance(value, mpmath.mpf):
+            return _of_binary(value)
         if isinstance(value, Real):
             return Fraction(Decimal(repr(float(value))))
         raise TypeError("not a real number")
@@ -43,6 +46,15 @@ def exact(value: object, argument: str) -> Fraction:
         raise InputError(
             argument, value, "a finite number such as 0.33, '1/3' or Fraction(1, 3)", "write it as a decimal or a fraction"
         ) from error
+
+
+def _of_binary(value: Any) -> Fraction:
+    """The exact value of an mpf; ValueError where it is not finite."""
+    if not mpmath.isfinite(value):
+        raise ValueError("not finite")
+    sign, mantissa, exponent, _ = value._mpf_
+    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return -size if sign else size
 
 
 def integer(value: object, argument: str, least: int) -> int:

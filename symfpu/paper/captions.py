@@ -27,7 +27,7 @@ def caption_curve(line: PrintedLine, kappa: Floats) -> Curve:
 
 
 def law_of(line: PrintedLine, chain: Chain, *, denominator: int | None = None, specific_energy: float | None = None) -> ProfileLine:
-    """Eq. eksa2 or eksp2 for the parameters of a caption."""
+    """Eqs. eksa2, eksp2 for the parameters of a caption."""
     return profile_law(chain, line.seeds(chain), specific_energy or line.specific_energy, denominator=denominator)
 
 

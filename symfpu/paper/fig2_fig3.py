@@ -1,4 +1,7 @@
-"""Figs. 2 and 3: the 4-torus of the lowest modes, its FPU-trajectory, and the groups in which energy spreads."""
+"""Figs. 2 and 3: the 4-torus of the lowest modes, its FPU-trajectory, and the groups in which energy spreads.
+
+The claims are those of section 4.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Fig. 4: packets of a fixed fraction of the modes at fixed energy a particle, in longer and longer chains; the laws on trial."""
+"""Fig. 4: packets of a fixed fraction of the modes at fixed energy a particle, in longer and longer chains; the laws on trial.
+
+The claims are those of section 6.1.
+"""
 
 from __future__ import annotations
 

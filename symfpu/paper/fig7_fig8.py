@@ -1,4 +1,7 @@
-"""Figs. 7 and 8: q-breathers by the series, by integration and by Newton's method, beside their FPU-trajectories."""
+"""Figs. 7 and 8: q-breathers by the series, by integration and by Newton's method, beside their FPU-trajectories.
+
+The claims are those of sections 6.4.1 and 6.4.2.
+"""
 
 from __future__ import annotations
 

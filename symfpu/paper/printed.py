@@ -1,7 +1,8 @@
 """Examples and printed numbers of Christodoulidi & Efthymiopoulos, "Low-dimensional q-tori in FPU lattices", Physica D (2013).
 
-Data only. Frequencies, amplitudes and energies are the digits printed in Appendix F and in the text. `label` names the
-figure that shows the example; Appendix F's own labels, `printed_label`, are off by one from Fig. 2 on.
+Data only. Frequencies, amplitudes and energies are the digits printed in Appendix F (Eq. Table1) and in the
+text. `label` names the figure that shows the example; Appendix F's own labels, `printed_label`, are off by
+one from Fig. 2 on.
 """
 
 from __future__ import annotations
@@ -160,7 +161,7 @@ FIG1_CLAIMS = {
 
 @dataclass(frozen=True)
 class PrintedExcitation:
-    """A sequence of mode excitations D_1, D_2, ... printed in section 6, alpha model."""
+    """A sequence of mode excitations D_1, D_2, ... printed in sections 6.2 and 6.4.2, alpha model."""
 
     label: str
     N: int

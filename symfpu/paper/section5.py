@@ -44,6 +44,7 @@ def section5(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
 
 
 def _alpha_rule() -> Claim:
+    """The Proposition for the seeds of the paper's examples."""
     rows = {row.label: prove_propagation(row.chain.N, row.seeds, min(row.order, PROVED_ORDER)) for row in (TWO_TORUS, *APPENDIX_F)}
     found = [label for label, proof in rows.items() if proof.verdict == "proved"]
     ours = (
@@ -53,6 +54,7 @@ def _alpha_rule() -> Claim:
 
 
 def _beta_rule() -> Claim:
+    """The Proposition for all small seed sets of a short chain."""
     N, order = SMALL
     sets = [seeds for s in (1, 2, 3) for seeds in itertools.combinations(range(1, N), s)]
     proofs = [prove_propagation(N, seeds, order, model="beta") for seeds in sets]
@@ -73,6 +75,7 @@ def _breathers() -> Claim:
 
 
 def _formula(N: int, q: int, model: str) -> Iterator[tuple[int, ...]]:
+    """The modes q_k of one seed as printed (Eq. qbre), each at the first order that it is there for."""
     seen = {0, N}
     for k in range(LINES + 1):
         r = k + 1 if model == "alpha" else 2 * k + 1

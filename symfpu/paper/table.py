@@ -1,4 +1,4 @@
-"""The paper's numbers computed anew from the printed frequencies, beside the printed ones."""
+"""The paper's numbers (Eq. Table1) computed anew from the printed frequencies, beside the printed ones."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _energy_orders(torus: QTorus, printed: str) -> dict[str, tuple[int, ...]]:
 
 
 def amplitude_table(step: Step = lambda label: None) -> Iterator[AmplitudeRow]:
-    """Every torus of Appendix F and the pair of Fig. 1; `step` is told which one comes next."""
+    """Every torus of Appendix F (Eq. Table1) and the pair of Fig. 1; `step` is told which one comes next."""
     for printed in (TWO_TORUS, *APPENDIX_F):
         step(f"table: {printed.label}")
         yield amplitude_row(printed)

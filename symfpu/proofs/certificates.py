@@ -1,8 +1,9 @@
 """The propagation rule proved or refuted by exact arithmetic, with a certificate that others can check.
 
-A mode is excited at an order if its term is not identically zero for generic frequencies. That it is excited is shown by
-one coefficient with a nonzero residue modulo a prime. That it is not excited is shown by the couplings, which leave it
-nothing, or by an identity between integer polynomials in the L_q(nu); what neither shows is reported as undecided.
+A mode is excited at an order if its term is not identically zero for generic frequencies (Definition 1).
+That it is excited is shown by one coefficient with a nonzero residue modulo a prime. That it is not excited
+is shown by the couplings, which leave it nothing, or by an identity between integer polynomials in the
+L_q(nu); what neither shows is reported as undecided.
 """
 
 from __future__ import annotations

@@ -61,7 +61,9 @@ class LeadingTerm:
 
 
 def leading_terms(chain: Chain, seeds: Sequence[int], order: int) -> dict[int, LeadingTerm]:
-    """The leading term of every mode first excited at orders 1 .. order, by the Lemma (Eqs. Qqkr, Rqr, Kkga, Kk, Lm).
+    """The leading term of every mode first excited at orders 1 .. order, by the Lemma.
+
+    Eqs. Qqkr, Rqr, Kkga, Kk, Lm; at order 1 this is Eq. Qq1cora.
 
     The (2s)^r summands are grouped by monomial: K factorises over its blocks, so their sum is a product of polynomials.
     Raises InputError for seeds or an order out of range, and for a chain with both couplings.
@@ -182,7 +184,9 @@ def _closure(chain: Chain, modes: set[int]) -> set[int]:
 
 @lru_cache(maxsize=1 << 14)
 def _kernels(chain: Chain, seeds: tuple[int, ...], block: Block) -> dict[int, Any]:
-    """K_q by mode: the sum of Eq. Kkga or Kk over l_i and m_i, the block cut into consecutive ones; delta_{q,n} at k = 0."""
+    """K_q by mode: the sum of Eqs. Kkga, Kk over l_i and m_i, the block cut into consecutive ones
+    (Eqs. nvecta, nvectb); delta_{q,n} at k = 0.
+    """
     if len(block) == 1:
         return {block[0][0]: se.Integer(1)}
     sums: dict[int, Any] = {}
@@ -219,7 +223,9 @@ def kernel_trees(order: int, factors: int) -> Counter[Tree]:
 
 
 def appendix_d(order: int = 3, *, model: str = "alpha", one_symbol: bool = True) -> str:
-    r"""K^(1) .. K^(order) as LaTeX in the layout of Eq. Kqalpha, equal products collected (`kernel_trees`) from Eqs. Kkga, Kk.
+    r"""K^(1) .. K^(order) as LaTeX in the layout of Appendix D (Eq. Kqalpha).
+
+    Equal products of Eqs. Kkga, Kk are collected (`kernel_trees`).
 
     one_symbol : q_0 for all seeds and q_l for all modes of D_l, as in the paper; otherwise seeds n_1 .. n_r, and q_l, q_l' for two
     modes of one D_l, sums over D_l understood. Collecting changes K(n, sigma), but not its sum over all arrangements.
@@ -297,7 +303,7 @@ def _seeds(chain: Chain, seeds: Sequence[int]) -> tuple[int, ...]:
 
 
 def _block(chain: Chain, seeds: Sequence[int], q: int, modes: Sequence[int], signs: Sequence[int]) -> tuple[tuple[int, ...], Block]:
-    """Seeds in ascending order, and the pairs (n_i, sigma_i) of the arguments."""
+    """Seeds in ascending order, and the pairs (n_i, sigma_i) of the arguments, sigma in Sigma^r (Eq. set)."""
     ordered = _seeds(chain, seeds)
     if integer(q, "q", 1) >= chain.N:
         raise InputError("q", q, f"1..{chain.N - 1}", "name a mode of the chain")

@@ -1,4 +1,4 @@
-"""Sweeps of the propagation rule over all seed sets: how often the proposition holds, and every exception.
+"""Sweeps of the propagation rule over all seed sets: how often the Proposition holds, and every exception.
 
 Cases run through the standard Executor interface, and each finished case is one line of a file, from which an interrupted
 sweep goes on. A case that raises an error loses no other.

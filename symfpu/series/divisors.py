@@ -1,7 +1,8 @@
 """The small divisors lambda_q - (nu.omega)^2 of a chain and its chosen frequencies, and the multipliers L_q(nu) made of them.
 
-L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2) with lambda_q = omega_q^2 for a seed and Omega_q^2 otherwise: the paper's
-L at leading order, for every order. Everything that depends on N and on the frequencies enters the series through it.
+L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2) with lambda_q = omega_q^2 for a seed and Omega_q^2 otherwise:
+the L of Eq. Lm, which the paper has at leading order, for every order. Everything that depends on N and on
+the frequencies enters the series through it.
 """
 
 from __future__ import annotations

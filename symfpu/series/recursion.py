@@ -24,7 +24,7 @@ Progress = Callable[[int, int], None]
 
 
 def run_recursion(ring: Ring, divisors: Divisors, chain: Chain, order: int, progress: Progress | None) -> None:
-    """The recursion itself: fills the ring degree by degree."""
+    """The recursion itself (Eqs. moda, modb): fills the ring degree by degree, from the seeds (Eq. qq0)."""
     couplings = {power: ring.number(coupling) for power, coupling in chain.relative_couplings.items()}
     ring.put(1, ring.seed_terms())
     for k in range(1, order + 1):

@@ -271,7 +271,8 @@ class LindstedtSeries:
     def amplitude_terms(self, order: int) -> tuple[Ints, Ints, Numbers]:
         """mu^k Q_q^(k) with free amplitudes: sum over rows of value[., q] x^e cos(nu.theta), x = scaled_seeds(A).
 
-        Returns harmonics nu (R, s), exponents e (R, s) and values (R, N-1), one row for each canonical monomial.
+        The summands of Eq. serabs1, for any seeds. Returns harmonics nu (R, s), exponents e (R, s) and
+        values (R, N-1), one row for each canonical monomial.
         """
         self._numeric()
         degree = self.degree(order)
@@ -284,7 +285,8 @@ class LindstedtSeries:
     def harmonic_terms(self, amplitudes: ArrayLike, order: int, *, absolute: bool = False) -> tuple[Ints, Numbers]:
         """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients: sum over rows of value[., q] cos(nu.theta).
 
-        amplitudes : (s,) in the order of the seeds. Returns harmonics (H, s), one of each pair +-nu, and values (H, N-1).
+        The sums in brackets of Eq. serabs1, for any seeds. amplitudes : (s,) in the order of the seeds.
+        Returns harmonics (H, s), one of each pair +-nu, and values (H, N-1).
         absolute : take the modulus of every monomial before they are summed (for S_1 of Eq. serabs2); always doubles.
         """
         self._numeric()

@@ -55,7 +55,7 @@ class AmplitudeHistory:
         return f"AmplitudeHistory(seeds={self.seeds}, {len(self.amplitudes)} of {len(self.orders)} orders have a root{last})"
 
     def differences(self) -> dict[int, tuple[float, ...]]:
-        """Delta A(k) = |A(k + step) - A(k)| for consecutive orders that have a root (the paper's step is 2)."""
+        """Delta A(k) = |A(k + step) - A(k)| between orders that have a root (section 3.2, where step is 2)."""
         pairs = ((a, b) for a, b in itertools.pairwise(self.orders) if a in self.amplitudes and b in self.amplitudes)
         return {a: tuple(float(abs(y - x)) for x, y in zip(self.amplitudes[a], self.amplitudes[b], strict=True)) for a, b in pairs}
 

@@ -111,7 +111,7 @@ class QuasiPeriodic:
             return with_digits(energies, self.digits)
 
     def energy_error(self, t: ArrayLike, *, harmonic: bool = False) -> Numbers:
-        """Relative error in time (E(t) - E(0)) / E(0) of the total energy, or of the harmonic energy sum E_q."""
+        """Relative error (E(t) - E(0)) / E(0) of the total energy, or of the harmonic one, sum E_q (section 3.2)."""
         with self._context():
             values = self.harmonic_energies(t).sum(axis=-1) if harmonic else self.energy(t)
             start = self.harmonic_energies().sum() if harmonic else self.energy()

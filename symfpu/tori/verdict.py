@@ -149,7 +149,7 @@ def assess(series: LindstedtSeries, torus: QTorus, *, resummed: bool = True, pro
 
     The residuals, relative and dimensionless, decide: they fall to the last order of a converged series, fall
     and rise again for an asymptotic one; a root that moves with the frequency order, or whose best residual
-    is large, is no torus. The paper judges by the sums of Eqs. serabs2, serabs3, which are among the results.
+    is large, is no torus. The paper judges by the sums of Eqs. serabs2, serabs3; these are among the results.
     Raises InputError if the torus belongs to another series.
 
     >>> from symfpu import Chain, lindstedt, solve_amplitudes

@@ -3,6 +3,7 @@
 from decimal import Decimal
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given
@@ -87,3 +88,14 @@ def test_absurd_numbers_are_refused_at_once(text):
 def test_couplings_that_doubles_cannot_carry_are_refused(coupling):
     with pytest.raises(InputError, match="alpha"):
         Chain(4, alpha=coupling)
+
+
+def test_numbers_of_many_digits_keep_them_all():
+    with mpmath.workdps(60):
+        third = mpmath.mpf(1) / 3
+        value = exact(third, "amplitude")
+        assert mpmath.mpf(value.numerator) / value.denominator == third
+    assert value != Fraction(1, 3)
+    assert exact(mpmath.mpf(-2) ** -70, "amplitude") == Fraction(1, 2**70)
+    with pytest.raises(InputError, match="amplitude"):
+        exact(mpmath.inf, "amplitude")

@@ -485,7 +485,8 @@ def test_ten_thousand_digits_of_a_long_series_are_refused_at_once():
 MEASURE = """
 from pathlib import Path
 from symfpu.chain.chain import Chain
-from symfpu.series.lindstedt import _needed, lindstedt
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.memory import _needed
 chain, seeds, order, digits = Chain({N}, {alpha!r}, {beta!r}), {seeds}, {order}, {digits}
 peak = lambda: int(Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]) * 1024
 lindstedt(chain, seeds, {frequencies}, 1, digits=digits)  # the machine code is loaded

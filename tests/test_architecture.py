@@ -1,0 +1,81 @@
+"""docs/architecture.md against the tree, the import contract and the code: rooms, floors, the way through, walls."""
+
+import ast
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGE = (ROOT / "docs" / "architecture.md").read_text()
+ROOMS = [(int(floor), room) for floor, room in re.findall(r"^\| (\d+) \| `(\w+)` \|", PAGE, re.MULTILINE)]
+WAY = re.findall(r"^\d+\. `(symfpu/[\w/]+\.py)`: `(\w+)`", PAGE, re.MULTILINE)
+
+
+def contract():
+    """The rooms of each floor, the ground floor first."""
+    table = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    (layers,) = [c["layers"] for c in table["tool"]["importlinter"]["contracts"] if c["type"] == "layers"]
+    return [set(re.split(r"\s*[|:]\s*", layer)) for layer in reversed(layers)]
+
+
+def imported(path):
+    """(module, name) of every import in a file."""
+    nodes = list(ast.walk(ast.parse((ROOT / path).read_text())))
+    names = {(node.module, name.name) for node in nodes if isinstance(node, ast.ImportFrom) for name in node.names}
+    return names | {(name.name, "") for node in nodes if isinstance(node, ast.Import) for name in node.names}
+
+
+def module(path):
+    return path.removesuffix(".py").replace("/", ".")
+
+
+def test_every_room_stands_on_its_floor():
+    floors = contract()
+    assert {floor for floor, _ in ROOMS} == set(range(1, len(floors) + 1))
+    assert [{room for floor, room in ROOMS if floor == number} for number in range(1, len(floors) + 1)] == floors
+    assert [floor for floor, _ in ROOMS] == sorted((floor for floor, _ in ROOMS), reverse=True)
+
+
+def test_the_page_has_the_rooms_of_the_tree():
+    folders = {path.parent.name for path in (ROOT / "symfpu").glob("*/__init__.py")}
+    files = {path.stem for path in (ROOT / "symfpu").glob("*.py")} - {"__init__"}
+    assert sorted(room for _, room in ROOMS) == sorted(folders | files)
+
+
+def test_the_page_is_one_page():
+    assert len(PAGE.splitlines()) <= 70
+
+
+@pytest.mark.parametrize(("path", "name"), WAY, ids=lambda word: word)
+def test_what_the_way_passes_is_there(path, name):
+    defined = {node.name for node in ast.parse((ROOT / path).read_text()).body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    assert name in defined
+
+
+@pytest.mark.parametrize("step", range(1, len(WAY)))
+def test_the_way_is_one(step):
+    path, _ = WAY[step]
+    known = {name for earlier, _ in WAY[:step] for source, part in imported(earlier) for name in (source, f"{source}.{part}")}
+    assert module(path) in known
+
+
+def test_the_checker_imports_nothing_of_the_package():
+    assert [source for source, _ in imported("symfpu/proofs/verify.py") if source.startswith("symfpu")] == []
+
+
+def test_algebra_knows_no_physics():
+    files = sorted((ROOT / "symfpu" / "algebra").glob("*.py"))
+    ours = {source.split(".")[1] for file in files for source, _ in imported(file.relative_to(ROOT)) if source.startswith("symfpu.")}
+    assert ours <= {"algebra"} | contract()[0]
+
+
+def test_shooting_does_not_balance_harmonics():
+    shared = {name for source, name in imported("symfpu/breathers/shooting.py") if source == "symfpu.breathers.balance"}
+    assert all(name.isupper() or name in {"detuning", "lowest_amplitude", "positive_frequency"} for name in shared)
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "generated").glob("*.py")), ids=lambda file: file.name)
+def test_exported_files_stand_alone(file):
+    assert [source for source, _ in imported(file.relative_to(ROOT)) if source.startswith("symfpu")] == []
