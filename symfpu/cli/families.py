@@ -11,7 +11,20 @@ import typer
 
 from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
-from symfpu.cli.terminal import BondsOption, JsonOption, SeedsOption, app, optional, print_json, progress_bar, whole, whole_numbers
+from symfpu.cli.terminal import (
+    NOTHING_KEPT,
+    BondsOption,
+    JsonOption,
+    SeedsOption,
+    optional,
+    path_named,
+    print_json,
+    progress_bar,
+    say,
+    whole,
+    whole_numbers,
+)
+from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.families.family import METHODS, Family, family
 from symfpu.figures.family import draw_family
@@ -23,8 +36,8 @@ from symfpu.reports.family import family_record, family_table, family_text, refi
 @app.command("refine", epilog="Example: symfpu refine torus.symfpu -o refined.symfpu")
 def refine_file(
     context: typer.Context,
-    file: Annotated[Path, typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE")],
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Keep the refined torus in this file.")] = None,
+    file: Annotated[str, typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE")],
+    output: Annotated[str | None, typer.Option("-o", "--output", help="Keep the refined torus in this file.", metavar="FILE")] = None,
     energy: Annotated[str | None, typer.Option(help="The torus of this energy H, amplitudes in the same ratio.", metavar="E")] = None,
     harmonic: Annotated[bool, typer.Option("--harmonic", help="With --energy: the harmonic energy sum E_q instead of H.")] = False,
     amplitudes: Annotated[str | None, typer.Option(help="The torus of these amplitudes, one for each seed.", metavar="A,A,...")] = None,
@@ -32,14 +45,15 @@ def refine_file(
     as_json: JsonOption = False,
 ) -> None:
     """The torus that solves the equations of motion, by Newton's method: same frequencies, or a given energy or amplitudes."""
-    torus = load(file).torus
+    torus = load(path_named("FILE", file)).torus
     if torus is None:
-        raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
+        raise InputError("FILE", file, "a file with a torus in it", "write one with symfpu solve -o")
     if energy is not None and amplitudes is not None:
         raise InputError("amplitudes", amplitudes, "only one of --energy and --amplitudes", "leave one out")
     if harmonic and energy is None:
         raise InputError("harmonic", True, "an --energy that it says something about", "give --energy E")
-    kept, goal = output_file(output) if output else None, number("tolerance", tolerance)
+    kept = None if output is None else output_file(path_named("output", output))
+    goal = number("tolerance", tolerance)
     with progress_bar() as advance:
 
         def report(line: str) -> None:
@@ -56,7 +70,7 @@ def refine_file(
     if as_json:
         print_json(refined_record(refined))
     else:
-        print(refined_text(refined))
+        say(refined_text(refined))
         if kept:
             print(f"written: {kept}")
 
@@ -100,14 +114,20 @@ def follow_family(
     method: Annotated[str, typer.Option(help=f"{' or '.join(METHODS)}.")] = "arclength",
     order: Annotated[str | None, typer.Option(help="With appendix-a: order of the series.", metavar="K")] = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for members, table and pictures; an interrupted family goes on from it.")
+        str | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="Folder for members, table and pictures; an interrupted family goes on from it.",
+            metavar="FOLDER",
+        ),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """A family of tori from small energy on, past folds and past the end of its series."""
     chain, chosen = Chain(whole("N", bonds), alpha=alpha, beta=beta), tuple(whole_numbers("seeds", seeds))
-    folder = output_folder(output) if output else None
-    with progress_bar() as advance:
+    folder = None if output is None else output_folder(path_named("output", output))
+    with progress_bar(lambda: _kept(folder)) as advance:
         found = family(
             chain,
             chosen,
@@ -124,15 +144,22 @@ def follow_family(
             progress=lambda label, done: advance(label, min(max(done, 0.0), 1.0)),
         )
         pictures = [] if folder is None else draw_family(found, folder)
-    if folder is not None:
-        _write_table(found, folder / "family.csv")
+        if folder is not None:
+            _write_table(found, folder / "family.csv")
     if as_json:
         print_json(family_record(found))
     else:
-        print("\n".join(family_text(found)))
+        say("\n".join(family_text(found)))
         if folder is not None:
             print(f"written: {folder}: family.csv, {len(found.members)} members, {len(pictures)} pictures")
     raise typer.Exit(0 if found.ending.startswith("reached") else 1)
+
+
+def _kept(folder: Path | None) -> str:
+    """What stands of a family that was interrupted."""
+    if folder is None or not any(folder.iterdir()):
+        return NOTHING_KEPT
+    return f"members found so far are kept in {folder}; the same command goes on from them"
 
 
 def _write_table(found: Family, path: Path) -> None:

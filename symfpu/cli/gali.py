@@ -9,7 +9,8 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.bundles.bundle import load
-from symfpu.cli.terminal import JsonOption, app, number, optional, print_json, progress_bar, whole
+from symfpu.cli.terminal import JsonOption, kept_run, number, optional, path_named, print_json, progress_bar, say, whole
+from symfpu.cli.verbs import app
 from symfpu.dynamics.alignment import SAMPLES, STEP, VECTORS, AlignmentIndices, alignment_indices, seconds_needed
 from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
@@ -20,7 +21,7 @@ from symfpu.reports.tables import fifteen_digits
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
 def gali(
-    file: Annotated[Path, typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE")],
+    file: Annotated[str, typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE")],
     time: Annotated[str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")],
     vectors: Annotated[
         str | None, typer.Option(help=f"Number of deviation vectors: GALI_2 to GALI_M; {VECTORS} if there are so many.", metavar="M")
@@ -28,21 +29,24 @@ def gali(
     step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(STEP),
     samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(SAMPLES),
     seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Folder for gali.csv and the pictures.")] = None,
-    checkpoint: Annotated[Path | None, typer.Option(help="Keep the run in this file, and go on from it if it was killed.")] = None,
+    output: Annotated[str | None, typer.Option("-o", "--output", help="Folder for gali.csv and the pictures.", metavar="FOLDER")] = None,
+    checkpoint: Annotated[
+        str | None, typer.Option(help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE")
+    ] = None,
     estimate: Annotated[bool, typer.Option("--estimate", help="Only say how long it would take, from a trial of a second.")] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Alignment indices of the orbit that starts on a torus, its Lyapunov exponent, and the dimension they show."""
-    torus = load(file).torus
+    torus = load(path_named("FILE", file)).torus
     if torus is None:
-        raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
+        raise InputError("FILE", file, "a file with a torus in it", "write one with symfpu solve -o")
     T, h, count = number("time", time), number("step", step), optional("vectors", vectors)
     if estimate:
         _print_estimate(seconds_needed(torus.chain, T, vectors=count, step=h), as_json)
         return
-    folder = output_folder(output) if output else None
-    with progress_bar() as advance:
+    kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
+    folder = None if output is None else output_folder(path_named("output", output))
+    with progress_bar(lambda: kept_run(kept)) as advance:
         found = alignment_indices(
             torus.chain,
             [float(x) for x in torus.positions(0.0)],
@@ -52,16 +56,16 @@ def gali(
             step=h,
             samples=whole("samples", samples),
             seed=whole("seed", seed),
-            file=checkpoint,
+            file=kept,
             progress=advance,
         )
-    if folder is not None:
-        _write_table(found, folder / "gali.csv")
-        draw_alignment(found, folder)
+        if folder is not None:
+            _write_table(found, folder / "gali.csv")
+            draw_alignment(found, folder)
     if as_json:
         print_json(_record(found, torus.seeds))
     else:
-        print("\n".join(_text(found, torus.seeds)))
+        say("\n".join(_text(found, torus.seeds)))
         if folder is not None:
             print(f"written: {folder}: gali.csv, gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf")
 

@@ -1,7 +1,7 @@
 """Command line: parses, calls one public function, prints or writes.
 
-Exit code 0 for success, 1 for an honest failure (no root, no convergence), 2 for bad input; errors are one line on
-standard error, progress goes there too when it is a terminal, and --json leaves standard output machine-readable.
+Exit code 0 for success, 1 for an honest failure (no root, no convergence), 2 for bad input, 130 for the interrupt key;
+errors are one line on standard error, progress goes there too, and --json leaves standard output machine-readable.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.cli import families, gali, orbit, proofs, reproduce, tori
-from symfpu.cli.terminal import app
+from symfpu.cli.terminal import Interrupted
+from symfpu.cli.verbs import app
 from symfpu.errors import InputError, SymfpuError
 
-VERBS = (proofs, tori, families, orbit, gali, reproduce)  # importing them has registered their verbs, in the order of the help
+INTERRUPTED = "interrupted: nothing is kept but what was already written"
 
 UsageProblem: Any = typer.BadParameter.__mro__[2]  # click's ClickException, which typer may carry inside itself
 
@@ -44,15 +44,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = command.main(args=words, prog_name="symfpu", standalone_mode=False, obj=words)
     except InputError as error:
         return _fail(str(error), 2)
+    except Interrupted as error:
+        return _fail(str(error), 130)
     except SymfpuError as error:
         return _fail(str(error), 1)
     except OSError as error:
         return _fail(f"{error.filename}: {error.strerror}; name another file or folder", 2)
     except (KeyboardInterrupt, EOFError, typer.Abort):
-        return _fail("interrupted", 130)
+        return _fail(INTERRUPTED, 130)
     except UsageProblem as error:
         return _fail(f"{error.format_message()} (see symfpu --help)", int(error.exit_code))
-    return _fail("interrupted", 130) if code == 130 else int(code or 0)
+    return _fail(INTERRUPTED, 130) if code == 130 else int(code or 0)
 
 
 def _fail(message: str, code: int) -> int:

@@ -12,7 +12,8 @@ import typer
 from numpy.typing import NDArray
 
 from symfpu.bundles.bundle import load
-from symfpu.cli.terminal import JsonOption, app, number, print_json, progress_bar, whole
+from symfpu.cli.terminal import JsonOption, kept_run, number, path_named, print_json, progress_bar, say, whole
+from symfpu.cli.verbs import app
 from symfpu.dynamics.orbits import SCHEMES, Orbit, integrate
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
@@ -26,25 +27,29 @@ SHOWN = 8  # modes of the largest average harmonic energy
 
 @app.command(epilog="Example: symfpu orbit torus.symfpu --time 1e5 -o orbit.csv")
 def orbit(
-    file: Annotated[Path, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")],
+    file: Annotated[str, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")],
     time: Annotated[str, typer.Option("--time", help="How long to follow it, such as 1e6.", metavar="T")],
     step: Annotated[str, typer.Option(help="Length of a step.", metavar="H")] = "0.2",
     scheme: Annotated[str, typer.Option(help=f"{', '.join(SCHEMES)}.", metavar="SCHEME")] = "kahan_li8",
     samples: Annotated[str, typer.Option(help="How many times to look, log-spaced.", metavar="S")] = "200",
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="t, H and E_q of the samples as .csv, or with Q and P as .npz.")
+        str | None,
+        typer.Option("-o", "--output", help="t, H and E_q of the samples as .csv, or with Q and P as .npz.", metavar="FILE"),
     ] = None,
-    checkpoint: Annotated[Path | None, typer.Option(help="Keep the run in this file, and go on from it if it was killed.")] = None,
+    checkpoint: Annotated[
+        str | None, typer.Option(help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Integrates the orbit that starts on a torus at t = 0, and says how far it stays from the torus."""
-    target = None if output is None else _output(output)
+    target = None if output is None else _output(path_named("output", output))
+    kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     T, h, count = number("time", time), number("step", step), whole("samples", samples)
-    torus = load(file).torus
+    torus = load(path_named("FILE", file)).torus
     if torus is None:
-        raise InputError("FILE", str(file), "a file with a torus in it", "write one with symfpu solve -o")
+        raise InputError("FILE", file, "a file with a torus in it", "write one with symfpu solve -o")
     exact = torus.in_doubles()
-    with progress_bar() as advance:
+    with progress_bar(lambda: kept_run(kept)) as advance:
         advance("orbit", None)
         made = integrate(
             exact.chain,
@@ -55,16 +60,16 @@ def orbit(
             scheme=scheme,
             samples=count,
             averages=True,
-            file=checkpoint,
+            file=kept,
             progress=lambda done, total: advance("orbit", done / total),
         )
-    if target is not None:
-        _write(target, made)
+        if target is not None:
+            _write(target, made)
     record = _record(made, exact)
     if as_json:
         print_json(record)
         return
-    print(made)
+    say(made)
     _print(record)
     if target is not None:
         print(f"written: {target}")
@@ -100,17 +105,17 @@ def _record(made: Orbit, torus: QuasiPeriodic) -> dict[str, Any]:
 
 
 def _print(record: dict[str, Any]) -> None:
-    print(f"energy error       {record['energy_error']:.3g}   (largest |H(t)/H(0) - 1| of the samples)")
-    print(
+    say(f"energy error       {record['energy_error']:.3g}   (largest |H(t)/H(0) - 1| of the samples)")
+    say(
         f"off the torus      {record['largest_deviation']:.3g}   (largest at t = {record['largest_deviation_time']:.10g}, "
         f"relative to the largest coordinate)"
     )
     if record["energy_error"] > LOST_ENERGY:
-        print("the energy is lost: this is no orbit of the chain, take a shorter step")
-    print("mode  time average of E_q      on the torus, for ever")
+        say("the energy is lost: this is no orbit of the chain, take a shorter step")
+    say("mode  time average of E_q      on the torus, for ever")
     average, expected = record["average_spectrum"], record["torus_average_spectrum"]
     for q in sorted(range(len(average)), key=lambda q: -average[q])[:SHOWN]:
-        print(f"{q + 1:<5} {average[q]:<24.6g} {expected[q]:.6g}")
+        say(f"{q + 1:<5} {average[q]:<24.6g} {expected[q]:.6g}")
 
 
 def _write(path: Path, made: Orbit) -> None:

@@ -9,13 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.cli.terminal import (
-    JsonOption,
-    app,
-    console,
-    print_json,
-    progress_bar,
-)
+from symfpu.cli.terminal import NOTHING_KEPT, JsonOption, console, path_named, print_json, progress_bar, say
+from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_folder, write_text
 from symfpu.paper.claims import PaperFigure
@@ -26,7 +21,7 @@ from symfpu.paper.targets import FULL, TARGETS, Page, full_estimate
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
 def reproduce(
     targets: Annotated[list[str], typer.Argument(help=f"{', '.join(TARGETS)}, or all.", metavar="TARGET...")],
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the report, pictures and data.")] = Path("out"),
+    output: Annotated[str, typer.Option("-o", "--output", help="Folder for the report, pictures and data.", metavar="FOLDER")] = "out",
     full: Annotated[
         bool, typer.Option("--full", help="Alignment indices to 1e9 instead of 1e7, all exact tori: hours; goes on where it was stopped.")
     ] = False,
@@ -41,12 +36,12 @@ def reproduce(
             raise InputError("target", target, f"{', '.join(TARGETS)} or all", "name one or more of these")
     if full and not {*FULL, "all"} & set(targets):
         raise InputError("full", " ".join(targets), f"--full with {', '.join(FULL)} or all", "leave out --full")
-    folder = output_folder(output)
+    folder = output_folder(path_named("output", output))
     chosen = [target for target in TARGETS if target in targets or "all" in targets]
     if full:
         console().print(full_estimate(chosen, folder), highlight=False)
-    with progress_bar() as advance:
-        pages: dict[str, Page] = {}
+    pages: dict[str, Page] = {}
+    with progress_bar(lambda: _kept(pages, folder)) as advance:
         for target in chosen:
             pages[target] = TARGETS[target](folder, lambda label: advance(label, None), full=full)
             record = _write(pages, folder)  # at once: a run that is stopped, or a later target that fails, loses nothing
@@ -55,10 +50,18 @@ def reproduce(
         return
     _print_rows(record.get("table", []), pages["table"].lines if "table" in pages else ())
     for key, claim in record.get("fig1", {}).get("claims", {}).items():
-        print(f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}")
+        say(f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}")
     _print_claims(page.figure for page in pages.values() if page.figure is not None)
     pictures = [page.files for page in pages.values() if page.files]
     print(f"written: {folder / 'report.md'}, report.json" + (f", {', '.join(pictures)} as PNG, PDF and CSV" if pictures else ""))
+
+
+def _kept(pages: dict[str, Page], folder: Path) -> str:
+    """What stands of a reproduction that was interrupted."""
+    parts = [f"{folder}/report.md and report.json hold {', '.join(pages)}"] if pages else []
+    if any(folder.glob("*.checkpoint")):
+        parts.append(f"the same command goes on from {folder}/*.checkpoint")
+    return "; ".join(parts) or NOTHING_KEPT
 
 
 def _write(pages: dict[str, Page], folder: Path) -> dict[str, Any]:
@@ -74,17 +77,17 @@ def _write(pages: dict[str, Page], folder: Path) -> dict[str, Any]:
 
 def _print_rows(rows: Sequence[dict[str, Any]], corrected: Sequence[str]) -> None:
     for row, exact in zip(rows, corrected, strict=True):
-        print(f"{row['label']}  (Appendix F: {row['printed_label']})")
+        say(f"{row['label']}  (Appendix F: {row['printed_label']})")
         for q, printed in row["printed_amplitudes"].items():
-            print(f"  A_{q:<3} printed {printed:<24} computed {row['torus']['amplitudes'][q]}")
+            say(f"  A_{q:<3} printed {printed:<24} computed {row['torus']['amplitudes'][q]}")
         energies = ", ".join(f"{name} {float(value):.9g}" for name, value in row["energies"].items())
-        print(f"  E    printed {row['printed_energy']:<24} computed {energies}")
-        print(f"  {row['verdict']}\n{exact}\n")
+        say(f"  E    printed {row['printed_energy']:<24} computed {energies}")
+        say(f"  {row['verdict']}\n{exact}\n")
 
 
 def _print_claims(figures: Iterable[PaperFigure]) -> None:
     for figure in figures:
-        print(figure.title)
+        say(figure.title)
         for claim in figure.claims:
             printed = f" (printed {claim.printed})" if claim.printed else ""
-            print(f"  {claim.verdict}: section {claim.section}, {claim.text}{printed}\n    {claim.ours}")
+            say(f"  {claim.verdict}: section {claim.section}, {claim.text}{printed}\n    {claim.ours}")

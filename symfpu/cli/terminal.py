@@ -1,31 +1,45 @@
-"""What all verbs share: options, whole numbers, JSON, a progress bar on standard error."""
+"""What all verbs share: options, whole numbers and paths, lines for a reader, JSON, progress, and the interrupt key."""
 
 from __future__ import annotations
 
 import json
+import os
+import shutil
+import sys
+import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Annotated, Any
+from datetime import timedelta
+from pathlib import Path
+from threading import Event, Lock, Thread
+from time import monotonic
+from typing import Annotated, Any, TextIO
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from symfpu.errors import InputError
-
-app = typer.Typer(
-    name="symfpu",
-    help="Poincare-Lindstedt series of q-tori in Fermi-Pasta-Ulam chains.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+from symfpu.errors import InputError, SymfpuError
 
 BondsOption = Annotated[str, typer.Option("-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N")]
 SeedsOption = Annotated[str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")]
 OrderOption = Annotated[str, typer.Option("--order", help="Order k of the series.", metavar="K")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Machine-readable result on standard output.")]
+
+Advance = Callable[[str, float | None], None]  # what comes next, and how much of it is done if that is known
+
+NOTHING_KEPT = "nothing is kept"
+INDENT = 4  # of what follows on the next line
+PATIENCE = 2.0  # seconds before the first line of progress
+PAUSE, SHARE = 1.0, 0.01  # least seconds between two lines, and least share of the time that has passed
+SILENCE = 30.0  # seconds after which a line comes although nothing has changed
+
+
+class Interrupted(SymfpuError):
+    """The interrupt key; says what is kept of the work, and how to go on."""
+
+    def __init__(self, kept: str) -> None:
+        super().__init__(f"interrupted: {kept}")
 
 
 def whole(argument: str, text: str) -> int:
@@ -54,9 +68,62 @@ def optional(argument: str, text: str | None) -> int | None:
     return None if text is None else whole(argument, text)
 
 
+def path_named(argument: str, text: str) -> Path:
+    """A path of the command line; InputError for an empty name, which would be the working folder."""
+    if not text.strip():
+        raise InputError(argument, text, "the name of a file or folder", "write . for the folder you are in")
+    return Path(text)
+
+
+def kept_run(checkpoint: Path | None) -> str:
+    """What stands of a run that was interrupted."""
+    if checkpoint is None or not checkpoint.exists():
+        return NOTHING_KEPT
+    return f"the run up to its last checkpoint is kept in {checkpoint}; the same command goes on from it"
+
+
 def print_json(record: dict[str, Any]) -> None:
     """A result for machines on standard output."""
     print(json.dumps(record, indent=1))
+
+
+def say(text: object) -> None:
+    """Lines for a reader on standard output, folded between words where a terminal is narrower."""
+    print(folded(str(text), width_of(sys.stdout)))
+
+
+def warn(text: str) -> None:
+    """A warning on standard error."""
+    terminal = console()
+    terminal.print(folded(f"warning: {text}", width_of(sys.stderr)), style="yellow", highlight=False, markup=False)
+
+
+def width_of(stream: TextIO) -> int | None:
+    """Columns of a terminal, or those that COLUMNS asks for; None for a pipe or a file, whose lines stay whole."""
+    if not os.environ.get("COLUMNS") and not stream.isatty():
+        return None
+    return shutil.get_terminal_size().columns
+
+
+def folded(text: str, width: int | None) -> str:
+    """The lines broken between words only, so that a number stays whole, however long it is."""
+    if width is None:
+        return text
+    return "\n".join(part for line in text.split("\n") for part in _folded_line(line, width))
+
+
+def _folded_line(line: str, width: int) -> list[str]:
+    if len(line) <= width:
+        return [line]
+    margin = len(line) - len(line.lstrip())
+    wrapper = textwrap.TextWrapper(
+        width,
+        subsequent_indent=" " * (margin + INDENT),
+        replace_whitespace=False,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return wrapper.wrap(line)
 
 
 def console() -> Console:
@@ -65,10 +132,101 @@ def console() -> Console:
 
 
 @contextmanager
-def progress_bar() -> Iterator[Callable[[str, float | None], None]]:
-    """A function (label, fraction done or None) that moves a bar on standard error, if that is a terminal."""
+def progress_bar(kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Advance]:
+    """A function that shows on standard error what is being done: a bar on a terminal, lines elsewhere.
+
+    kept : what stands when the interrupt key is pressed, and how to go on; asked then. Raises Interrupted in its place.
+    """
     terminal = console()
-    columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=terminal, transient=True, disable=not terminal.is_terminal) as progress:
-        task = progress.add_task("", total=None)
-        yield lambda label, done: progress.update(task, description=label, total=None if done is None else 1.0, completed=done)
+    shown = Bar(terminal) if terminal.is_terminal and not terminal.is_dumb_terminal else Lines()
+    try:
+        with shown:
+            yield shown
+    except KeyboardInterrupt as pressed:
+        raise Interrupted(str(pressed) or kept()) from pressed
+
+
+class Bar:
+    """A bar with percentage, time since the beginning, and time left of what is being done."""
+
+    def __init__(self, terminal: Console) -> None:
+        left = TimeRemainingColumn(compact=True), TextColumn("left")
+        columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(20), TaskProgressColumn(), TimeElapsedColumn(), *left)
+        self._progress = Progress(*columns, console=terminal, transient=True)
+        self._begun = self._progress.get_time()
+        self._task = self._progress.add_task("", total=None)
+        self._done: float | None = None
+
+    def __enter__(self) -> None:
+        self._progress.start()
+
+    def __exit__(self, *reason: object) -> None:
+        self._progress.stop()
+
+    def __call__(self, label: str, done: float | None) -> None:
+        """Moves the bar; where the fraction begins anew, so does the estimate of the time left."""
+        if done is None or self._done is None or done < self._done:
+            self._progress.remove_task(self._task)
+            self._task = self._progress.add_task(label, total=None if done is None else 1.0)
+            self._progress.tasks[0].start_time = self._begun
+        self._progress.update(self._task, description=label, completed=done)
+        self._done = done
+
+
+class Lines:
+    """A line for each step that is seen: the first after some seconds, then with pauses that grow with the time that has passed.
+
+    A thread looks on, so that a step which began during a pause has its line, too, however long it then is silent.
+    """
+
+    def __init__(self) -> None:
+        self._begun = self._said = monotonic()
+        self._step, self._printed = "", ""
+        self._done: float | None = None
+        self._since, self._from = self._begun, 0.0
+        self._lock, self._over = Lock(), Event()
+        self._watch = Thread(target=self._look_on, daemon=True)
+
+    def __enter__(self) -> None:
+        self._watch.start()
+
+    def __exit__(self, *reason: object) -> None:
+        self._over.set()
+        self._watch.join()
+
+    def __call__(self, label: str, done: float | None) -> None:
+        """Hears what is being done."""
+        with self._lock:
+            if done is not None and (self._done is None or done < self._done):
+                self._since, self._from = monotonic(), done
+            self._step, self._done = label, done
+        self._look()
+
+    def _look_on(self) -> None:
+        while not self._over.wait(PAUSE / 2):
+            self._look()
+
+    def _look(self) -> None:
+        """Prints what is being done, if it is time to."""
+        with self._lock:
+            now = monotonic()
+            quiet, passed = now - self._said, now - self._begun
+            first = not self._printed
+            pause = PATIENCE if first else max(PAUSE, SHARE * passed)
+            text = self._step + ("" if self._done is None else f", {self._done:.0%}")
+            if not self._step or quiet < pause or (text == self._printed and quiet < max(SILENCE, pause)):
+                return
+            print(f"symfpu: {_clock(passed)} {text}{self._left(now)}", file=sys.stderr, flush=True)
+            self._said, self._printed = now, text
+
+    def _left(self, now: float) -> str:
+        """The time left, if the rest of the step goes as its beginning."""
+        if self._done is None or self._done <= self._from:
+            return ""
+        rest = (1.0 - self._done) / (self._done - self._from)
+        return f", {_clock(rest * (now - self._since))} left"
+
+
+def _clock(seconds: float) -> str:
+    """Hours, minutes and seconds."""
+    return str(timedelta(seconds=round(seconds)))

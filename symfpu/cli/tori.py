@@ -1,9 +1,9 @@
-"""Verbs of one torus: solve, show, export."""
+"""Verbs of one torus: solve, show."""
 
 from __future__ import annotations
 
 import shlex
-from pathlib import Path
+import sys
 from typing import Annotated, Any
 
 import typer
@@ -15,17 +15,17 @@ from symfpu.cli.terminal import (
     JsonOption,
     OrderOption,
     SeedsOption,
-    app,
-    console,
     optional,
+    path_named,
     print_json,
     progress_bar,
+    say,
+    warn,
     whole,
     whole_numbers,
+    width_of,
 )
-from symfpu.codegen.export import LANGUAGES
-from symfpu.codegen.export import export as export_source
-from symfpu.errors import InputError
+from symfpu.cli.verbs import app
 from symfpu.files.writing import output_file
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.tori import RefinedTorus
@@ -53,14 +53,16 @@ def solve(
         str | None, typer.Option(help="Order at which the coordinates Q(t) are cut.  Default: --order.", metavar="K")
     ] = None,
     digits: Annotated[str | None, typer.Option(help="Any number of digits, proved.  Default: doubles.", metavar="D")] = None,
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Keep series, torus and verdict in this file.")] = None,
+    output: Annotated[
+        str | None, typer.Option("-o", "--output", help="Keep series, torus and verdict in this file.", metavar="FILE")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Amplitudes and energies of the q-torus with the given frequencies, and a verdict on its series."""
     chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
     chosen = whole_numbers("seeds", seeds)
     highest, cut = optional("frequency-order", frequency_order), optional("coordinate-order", coordinate_order)
-    places, file = optional("digits", digits), output_file(output) if output else None
+    places, file = optional("digits", digits), None if output is None else output_file(path_named("output", output))
     with progress_bar() as advance:
         series = lindstedt(
             chain,
@@ -80,39 +82,39 @@ def solve(
     if as_json:
         print_json(record)
     else:
-        print(f"verdict: {assessment.headline}")
+        say(f"verdict: {assessment.headline}")
         _print_torus(torus, record)
-        print(assessment_text(assessment))
+        say(assessment_text(assessment, width_of(sys.stdout)))
         if file:
             print(f"written: {file}")
 
 
 def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
-    print(torus.series)
+    say(torus.series)
     for q, amplitude in record["amplitudes"].items():
-        print(f"seed {q:<4} omega {record['frequencies'][q]:<20} amplitude {amplitude}")
+        say(f"seed {q:<4} omega {record['frequencies'][q]:<20} amplitude {amplitude}")
     if torus.certificate is not None:
         radius = text(max(torus.certificate.radius.values()), 2)
-        print(
+        say(
             f"exactly one root within {radius}: certified"
             if torus.certificate.certified
             else f"root not certified: {torus.certificate.reason}"
         )
-    print(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
-    print(f"energy H           {record['energy']}   (at t = 0)")
-    print(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {record['average_harmonic_energy']})")
-    print(f"residual           {record['residual']:.3g}   (equations of motion, relative to the largest acceleration)")
+    say(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
+    say(f"energy H           {record['energy']}   (at t = 0)")
+    say(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {record['average_harmonic_energy']})")
+    say(f"residual           {record['residual']:.3g}   (equations of motion, relative to the largest acceleration)")
     for warning in torus.warnings:
-        console().print(f"warning: {warning}", style="yellow", highlight=False)
+        warn(warning)
 
 
 @app.command(epilog="Example: symfpu show torus.symfpu")
 def show(
-    file: Annotated[Path, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")],
+    file: Annotated[str, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")],
     as_json: JsonOption = False,
 ) -> None:
     """What a result file holds: series, torus, verdict, and what made it."""
-    bundle = load(file)
+    bundle = load(path_named("FILE", file))
     refined = bundle.torus if isinstance(bundle.torus, RefinedTorus) else None
     torus = bundle.torus if isinstance(bundle.torus, QTorus) else None
     record = refined_record(refined) if refined else torus_record(torus) if torus else {}
@@ -120,45 +122,14 @@ def show(
         print_json(record | {"provenance": dict(bundle.provenance), "assessment": bundle.verdict, "test_vectors": bundle.test_vectors})
         return
     if bundle.verdict and not refined:
-        print(f"verdict: {bundle.verdict.get('verdict')}")
+        say(f"verdict: {bundle.verdict.get('verdict')}")
     if refined:
-        print(refined_text(refined))
+        say(refined_text(refined))
     elif torus:
         _print_torus(torus, record)
     else:
-        print(bundle.series)
+        say(bundle.series)
     for reason in (bundle.verdict or {}).get("reasons", []):
-        print(f"  {reason}")
+        say(f"  {reason}")
     for key, value in bundle.provenance.items():
-        print(f"{key:<18} {value}")
-
-
-@app.command(epilog="Example: symfpu export torus.symfpu --lang c -o my_torus")
-def export(
-    context: typer.Context,
-    file: Annotated[Path, typer.Argument(help="A file written by symfpu solve -o.", metavar="FILE")],
-    language: Annotated[str, typer.Option("--lang", help=f"{', '.join(LANGUAGES)}.", metavar="LANGUAGE")],
-    output: Annotated[Path, typer.Option("-o", "--output", help="The source file; its name names the functions.")],
-    series: Annotated[bool, typer.Option("--series", help="The series with free amplitudes instead of the torus.")] = False,
-    order: Annotated[str | None, typer.Option(help="With --series: order of the coordinates.  Default: all.", metavar="K")] = None,
-    frequency_order: Annotated[str | None, typer.Option(help="With --series: order of omega(A).  Default: all.", metavar="K")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
-) -> None:
-    """Source code that needs nothing of symfpu and tests itself: a torus, Q(t), P(t), E_q(t), H(t), or a series with free amplitudes."""
-    bundle = load(file)
-    solution = bundle.series if series else bundle.torus
-    if solution is None:
-        wanted, advice = ("series", "leave out --series") if series else ("torus", "write one with symfpu solve -o, or export the --series")
-        raise InputError("FILE", str(file), f"a file with a {wanted} in it", advice)
-    with progress_bar() as advance:
-        advance("source code", None)
-        written = export_source(
-            solution,
-            language,
-            output,
-            order=optional("order", order),
-            frequency_order=optional("frequency-order", frequency_order),
-            force=force,
-            command=shlex.join(["symfpu", *context.obj]),
-        )
-    print(f"written: {written}")
+        say(f"{key:<18} {value}")

@@ -24,7 +24,7 @@ from symfpu.codegen.languages import (
 from symfpu.codegen.series_program import SeriesProgram, series_facts, series_program
 from symfpu.codegen.torus_program import TorusProgram, torus_facts, torus_program
 from symfpu.errors import InputError
-from symfpu.files.writing import write_text
+from symfpu.files.writing import output_file, write_text
 from symfpu.numbers.arithmetic import text
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic
@@ -88,7 +88,9 @@ def export(
         raise InputError("language", language, f"one of {', '.join(LANGUAGES)}", "name one of these")
     chosen = LANGUAGES[language]
     file = Path(path)
-    file = file if file.suffix else file.with_suffix(f".{chosen.extension}")
+    if file.name and not file.suffix:
+        file = file.with_suffix(f".{chosen.extension}")
+    output_file(file, "path", "choose another")
     name = legal_name(file.stem)
     if file.exists() and not force:
         raise InputError("path", str(file), "a file that does not exist yet", "choose another, or replace it with force (--force)")

@@ -10,6 +10,8 @@ from symfpu.errors import InputError
 
 def write_text(path: Path, text: str) -> None:
     """Write a file through a temporary one beside it, so that it is never half written."""
+    if not path.name:
+        raise InputError("output", str(path), "the name of a file", "name one")
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         draft.write_text(text)
@@ -32,8 +34,9 @@ def output_folder(path: Path) -> Path:
     return path
 
 
-def output_file(path: Path) -> Path:
+def output_file(path: Path, argument: str = "output", advice: str = "choose another with -o") -> Path:
     """The path, if a file can be written there; InputError before anything is computed otherwise."""
-    if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise InputError("output", str(path), "a file in a folder that exists and can be written", "choose another with -o")
+    parent = path.parent
+    if not path.name or path.is_dir() or not parent.is_dir() or not os.access(parent, os.W_OK):
+        raise InputError(argument, str(path), "a file in a folder that exists and can be written", advice)
     return path

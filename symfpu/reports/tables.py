@@ -9,6 +9,8 @@ from typing import Any
 
 from symfpu.numbers.arithmetic import text
 
+GAP = "  "  # between the columns of a table in a terminal
+
 
 def fifteen_digits(value: float) -> float:
     """A measure of size to 15 digits, the most that a number in JSON has; what needs more is written as a string."""
@@ -18,6 +20,32 @@ def fifteen_digits(value: float) -> float:
 def number_text(value: Any, digits: int | None) -> str:
     """A number that loses no digit: the shortest decimal of a double, or so many digits of an mpf."""
     return repr(float(value)) if digits is None else text(value, digits)
+
+
+def text_table(head: Sequence[str], rows: Sequence[Sequence[str]], width: int | None = None) -> list[str]:
+    """A table in lines; columns that go beyond the width follow in another table, which begins with the same first column."""
+    widths = [max(len(row[i]) for row in (head, *rows)) for i in range(len(head))]
+    lines = []
+    for part in _parts(widths, width):
+        for row in (head, *rows):
+            cells = [row[i].ljust(widths[i]) for i in part]
+            lines.append(GAP.join(cells).rstrip())
+    return lines
+
+
+def _parts(widths: Sequence[int], width: int | None) -> list[list[int]]:
+    """The columns of each table."""
+    if width is None:
+        return [list(range(len(widths)))]
+    parts, taken = [[0]], widths[0]
+    for i in range(1, len(widths)):
+        needed = len(GAP) + widths[i]
+        if taken + needed > width and len(parts[-1]) > 1:
+            parts.append([0])
+            taken = widths[0]
+        parts[-1].append(i)
+        taken += needed
+    return parts
 
 
 def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

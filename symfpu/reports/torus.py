@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from symfpu.numbers.typed import decimal
-from symfpu.reports.tables import fifteen_digits, number_text
+from symfpu.reports.tables import GAP, fifteen_digits, number_text, text_table
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment
 
@@ -45,8 +45,11 @@ def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[st
     }
 
 
-def assessment_text(found: Assessment) -> str:
-    """The evidence of a verdict: reasons, radii, and a line for some of the orders (all of them are in the JSON)."""
+def assessment_text(found: Assessment, width: int | None = None) -> str:
+    """The evidence of a verdict: reasons, radii, and a line for some of the orders (all of them are in the JSON).
+
+    width : columns of the terminal, where the table is to fit into them.
+    """
     lines = [f"  {reason}" for reason in found.reasons]
     poles = "no pole" if math.isinf(found.pole_radius) else f"{found.pole_radius:.3g}"
     lines.append(
@@ -55,9 +58,8 @@ def assessment_text(found: Assessment) -> str:
     seed = next(iter(found.sums))
     head = ("order", f"A_{seed}(k)", "dA(k)", f"S_1, S_2 of Q_{seed}", "residual", "energy error", "largest term: mode, harmonic, divisor")
     rows = [_order_line(found, seed, k) for k in _some(found)]
-    widths = [max(len(row[i]) for row in (head, *rows)) for i in range(len(head))]
-    lines += ["  " + "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in (head, *rows)]
-    return "\n".join(lines)
+    table = text_table(head, rows, None if width is None else width - len(GAP))
+    return "\n".join([*lines, *(GAP + line for line in table)])
 
 
 def _some(found: Assessment) -> list[int]:

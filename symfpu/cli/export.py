@@ -1,0 +1,48 @@
+"""The verb export: source code of a saved torus or series."""
+
+from __future__ import annotations
+
+import shlex
+from typing import Annotated
+
+import typer
+
+from symfpu.bundles.bundle import load
+from symfpu.cli.terminal import optional, path_named, progress_bar
+from symfpu.cli.verbs import app
+from symfpu.codegen.export import LANGUAGES
+from symfpu.codegen.export import export as export_source
+from symfpu.errors import InputError
+from symfpu.files.writing import output_file
+
+
+@app.command(epilog="Example: symfpu export torus.symfpu --lang c -o my_torus")
+def export(
+    context: typer.Context,
+    file: Annotated[str, typer.Argument(help="A file written by symfpu solve -o.", metavar="FILE")],
+    language: Annotated[str, typer.Option("--lang", help=f"{', '.join(LANGUAGES)}.", metavar="LANGUAGE")],
+    output: Annotated[str, typer.Option("-o", "--output", help="The source file; its name names the functions.", metavar="FILE")],
+    series: Annotated[bool, typer.Option("--series", help="The series with free amplitudes instead of the torus.")] = False,
+    order: Annotated[str | None, typer.Option(help="With --series: order of the coordinates.  Default: all.", metavar="K")] = None,
+    frequency_order: Annotated[str | None, typer.Option(help="With --series: order of omega(A).  Default: all.", metavar="K")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+) -> None:
+    """Source code that needs nothing of symfpu and tests itself: a torus, Q(t), P(t), E_q(t), H(t), or a series with free amplitudes."""
+    target = output_file(path_named("output", output))
+    bundle = load(path_named("FILE", file))
+    solution = bundle.series if series else bundle.torus
+    if solution is None:
+        wanted, advice = ("series", "leave out --series") if series else ("torus", "write one with symfpu solve -o, or export the --series")
+        raise InputError("FILE", file, f"a file with a {wanted} in it", advice)
+    with progress_bar() as advance:
+        advance("source code", None)
+        written = export_source(
+            solution,
+            language,
+            target,
+            order=optional("order", order),
+            frequency_order=optional("frequency-order", frequency_order),
+            force=force,
+            command=shlex.join(["symfpu", *context.obj]),
+        )
+    print(f"written: {written}")
