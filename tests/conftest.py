@@ -1,6 +1,15 @@
 """Settings of the whole suite: hypothesis draws the same examples every time and leaves no files behind."""
 
+import math
+
+import pytest
 from hypothesis import settings
 
 settings.register_profile("suite", max_examples=40, deadline=None, derandomize=True, database=None)
 settings.load_profile("suite")
+
+
+@pytest.fixture(autouse=True)
+def no_lines_of_progress(monkeypatch):
+    """They come after seconds, on a slow machine more than on a fast one; the tests of these lines ask for them."""
+    monkeypatch.setattr("symfpu.cli.terminal.PATIENCE", math.inf)

@@ -34,8 +34,7 @@ def export(
     if solution is None:
         wanted, advice = ("series", "leave out --series") if series else ("torus", "write one with symfpu solve -o, or export the --series")
         raise InputError("FILE", file, f"a file with a {wanted} in it", advice)
-    with progress_bar() as advance:
-        advance("source code", None)
+    with progress_bar("source code"):
         written = export_source(
             solution,
             language,

@@ -54,10 +54,10 @@ def refine_file(
         raise InputError("harmonic", True, "an --energy that it says something about", "give --energy E")
     kept = None if output is None else output_file(path_named("output", output))
     goal = number("tolerance", tolerance)
-    with progress_bar() as advance:
+    with progress_bar("Newton's method") as advance:
 
         def report(line: str) -> None:
-            advance(line, None)
+            advance(line)
 
         if energy is not None:
             refined = refine_at_energy(torus, energy, harmonic=harmonic, tolerance=goal, report=report)
@@ -96,7 +96,7 @@ def by_seed(argument: str, text: str, seeds: tuple[int, ...]) -> dict[int, str]:
     return dict(zip(seeds, parts, strict=True))
 
 
-@app.command("family", epilog="Example: symfpu family -N 32 --alpha 0.33 --seeds 1 --to-energy 0.05 --multipliers -o out")
+@app.command("family", epilog="Example: symfpu family -N 32 --alpha 0.33 --seeds 1 --to-energy 0.05 -o out")
 def follow_family(
     bonds: BondsOption,
     seeds: SeedsOption,
@@ -127,7 +127,7 @@ def follow_family(
     """A family of tori from small energy on, past folds and past the end of its series."""
     chain, chosen = Chain(whole("N", bonds), alpha=alpha, beta=beta), tuple(whole_numbers("seeds", seeds))
     folder = None if output is None else output_folder(path_named("output", output))
-    with progress_bar(lambda: _kept(folder)) as advance:
+    with progress_bar("first member", lambda: _kept(folder)) as advance:
         found = family(
             chain,
             chosen,

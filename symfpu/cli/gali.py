@@ -46,7 +46,7 @@ def gali(
         return
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     folder = None if output is None else output_folder(path_named("output", output))
-    with progress_bar(lambda: kept_run(kept)) as advance:
+    with progress_bar("alignment indices", lambda: kept_run(kept)) as advance:
         found = alignment_indices(
             torus.chain,
             [float(x) for x in torus.positions(0.0)],

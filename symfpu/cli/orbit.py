@@ -49,8 +49,7 @@ def orbit(
     if torus is None:
         raise InputError("FILE", file, "a file with a torus in it", "write one with symfpu solve -o")
     exact = torus.in_doubles()
-    with progress_bar(lambda: kept_run(kept)) as advance:
-        advance("orbit", None)
+    with progress_bar("orbit", lambda: kept_run(kept)) as advance:
         made = integrate(
             exact.chain,
             exact.positions(0.0),

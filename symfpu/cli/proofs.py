@@ -51,7 +51,7 @@ def propagate(
         say(f"D_{k} = {{{', '.join(map(str, modes))}}}")
 
 
-@app.command(epilog="Example: symfpu prove -N 8 --model beta --seeds 1,4 --order 3 -o certificate.json")
+@app.command(epilog="Example: symfpu prove -N 8 --model beta --seeds 1,4 --order 3 -o proof.json")
 def prove(
     bonds: BondsOption,
     seeds: SeedsOption,
@@ -64,7 +64,7 @@ def prove(
     """Prove or refute the propagation rule by exact arithmetic; exit code 1 where it stays undecided."""
     number, chosen, highest = whole("N", bonds), whole_numbers("seeds", seeds), whole("order", order)
     file = None if output is None else output_file(path_named("output", output))
-    with progress_bar() as advance:
+    with progress_bar("recursion modulo a prime") as advance:
         proof = prove_propagation(
             number,
             chosen,
@@ -95,7 +95,7 @@ def _print_proof(proof: PropagationProof) -> None:
     say(f"verdict: {proof.verdict}")
 
 
-@app.command(epilog="Example: symfpu verify certificate.json")
+@app.command(epilog="Example: symfpu verify proof.json")
 def verify(
     file: Annotated[str, typer.Argument(help="A certificate written by symfpu prove.", metavar="FILE")],
     as_json: JsonOption = False,
@@ -112,7 +112,7 @@ def verify(
     say("\n".join([*checked, "the certificate is valid"]))
 
 
-@app.command(epilog="Example: symfpu sweep --model beta --longest 12 --largest 3 --order 3 --file beta.jsonl")
+@app.command(epilog="Example: symfpu sweep --model beta --longest 9 --order 3 --file beta.jsonl")
 def sweep(
     order: OrderOption,
     model: Annotated[str, typer.Option(help="alpha or beta.")] = "alpha",
@@ -130,7 +130,7 @@ def sweep(
         raise InputError("longest", longest, "2 or more", "take a longer chain")
     log = None if file is None else output_file(path_named("file", file), "file", "choose another with --file")
     summary = None if markdown is None else output_file(path_named("output", markdown))
-    with progress_bar(lambda: _kept(log)) as advance:
+    with progress_bar("seed sets", lambda: _kept(log)) as advance:
         result = sweep_propagation(
             lengths,
             whole("largest", largest),

@@ -41,9 +41,9 @@ def reproduce(
     if full:
         console().print(full_estimate(chosen, folder), highlight=False)
     pages: dict[str, Page] = {}
-    with progress_bar(lambda: _kept(pages, folder)) as advance:
+    with progress_bar(chosen[0], lambda: _kept(pages, folder)) as advance:
         for target in chosen:
-            pages[target] = TARGETS[target](folder, lambda label: advance(label, None), full=full)
+            pages[target] = TARGETS[target](folder, advance, full=full)
             record = _write(pages, folder)  # at once: a run that is stopped, or a later target that fails, loses nothing
     if as_json:
         print_json(record)

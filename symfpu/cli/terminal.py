@@ -13,11 +13,22 @@ from datetime import timedelta
 from pathlib import Path
 from threading import Event, Lock, Thread
 from time import monotonic
-from typing import Annotated, Any, TextIO
+from typing import Annotated, Any, Protocol, TextIO
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    SpinnerColumn,
+    Task,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.table import Column
+from rich.text import Text
 
 from symfpu.errors import InputError, SymfpuError
 
@@ -26,9 +37,8 @@ SeedsOption = Annotated[str, typer.Option("--seeds", help="Seed modes D_0, such 
 OrderOption = Annotated[str, typer.Option("--order", help="Order k of the series.", metavar="K")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Machine-readable result on standard output.")]
 
-Advance = Callable[[str, float | None], None]  # what comes next, and how much of it is done if that is known
-
 NOTHING_KEPT = "nothing is kept"
+BAR_WIDTH = 20
 INDENT = 4  # of what follows on the next line
 PATIENCE = 2.0  # seconds before the first line of progress
 PAUSE, SHARE = 1.0, 0.01  # least seconds between two lines, and least share of the time that has passed
@@ -131,14 +141,22 @@ def console() -> Console:
     return Console(stderr=True, soft_wrap=True)
 
 
+class Advance(Protocol):
+    """Hears what comes next, and the fraction of it that is done if that is known."""
+
+    def __call__(self, label: str, done: float | None = None) -> None: ...
+
+
 @contextmanager
-def progress_bar(kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Advance]:
+def progress_bar(label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Advance]:
     """A function that shows on standard error what is being done: a bar on a terminal, lines elsewhere.
 
-    kept : what stands when the interrupt key is pressed, and how to go on; asked then. Raises Interrupted in its place.
+    label : what is done first. kept : what stands when the interrupt key is pressed, and how to go on; asked then.
+    Raises Interrupted in place of KeyboardInterrupt.
     """
     terminal = console()
-    shown = Bar(terminal) if terminal.is_terminal and not terminal.is_dumb_terminal else Lines()
+    moves = terminal.is_terminal and not terminal.is_dumb_terminal
+    shown = Bar(terminal, label) if moves else Lines(label)
     try:
         with shown:
             yield shown
@@ -146,15 +164,26 @@ def progress_bar(kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Adv
         raise Interrupted(str(pressed) or kept()) from pressed
 
 
+class TimeLeft(TimeRemainingColumn):
+    """The time left, with the word that says so; nothing where no fraction is known."""
+
+    def render(self, task: Task) -> Text:
+        """Hours, minutes and seconds, or lines where it cannot be told yet."""
+        remaining = super().render(task)
+        return remaining.append(" left") if remaining.plain else remaining
+
+
 class Bar:
     """A bar with percentage, time since the beginning, and time left of what is being done."""
 
-    def __init__(self, terminal: Console) -> None:
-        left = TimeRemainingColumn(compact=True), TextColumn("left")
-        columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(20), TaskProgressColumn(), TimeElapsedColumn(), *left)
-        self._progress = Progress(*columns, console=terminal, transient=True)
+    def __init__(self, terminal: Console, label: str) -> None:
+        rest_of_line = Column(ratio=1, no_wrap=True, overflow="ellipsis")
+        what = SpinnerColumn(), TextColumn("{task.description}", markup=False, table_column=rest_of_line)
+        much = BarColumn(BAR_WIDTH), TaskProgressColumn()
+        when = TimeElapsedColumn(), TimeLeft(compact=True)
+        self._progress = Progress(*what, *much, *when, console=terminal, transient=True, expand=True)
         self._begun = self._progress.get_time()
-        self._task = self._progress.add_task("", total=None)
+        self._task = self._progress.add_task(label, total=None)
         self._done: float | None = None
 
     def __enter__(self) -> None:
@@ -163,7 +192,7 @@ class Bar:
     def __exit__(self, *reason: object) -> None:
         self._progress.stop()
 
-    def __call__(self, label: str, done: float | None) -> None:
+    def __call__(self, label: str, done: float | None = None) -> None:
         """Moves the bar; where the fraction begins anew, so does the estimate of the time left."""
         if done is None or self._done is None or done < self._done:
             self._progress.remove_task(self._task)
@@ -179,9 +208,9 @@ class Lines:
     A thread looks on, so that a step which began during a pause has its line, too, however long it then is silent.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, label: str) -> None:
         self._begun = self._said = monotonic()
-        self._step, self._printed = "", ""
+        self._step, self._printed = label, ""
         self._done: float | None = None
         self._since, self._from = self._begun, 0.0
         self._lock, self._over = Lock(), Event()
@@ -194,7 +223,7 @@ class Lines:
         self._over.set()
         self._watch.join()
 
-    def __call__(self, label: str, done: float | None) -> None:
+    def __call__(self, label: str, done: float | None = None) -> None:
         """Hears what is being done."""
         with self._lock:
             if done is not None and (self._done is None or done < self._done):
@@ -213,8 +242,11 @@ class Lines:
             quiet, passed = now - self._said, now - self._begun
             first = not self._printed
             pause = PATIENCE if first else max(PAUSE, SHARE * passed)
-            text = self._step + ("" if self._done is None else f", {self._done:.0%}")
-            if not self._step or quiet < pause or (text == self._printed and quiet < max(SILENCE, pause)):
+            share = "" if self._done is None else f", {self._done:.0%}"
+            text = self._step + share
+            if text == self._printed:
+                pause = max(pause, SILENCE)
+            if quiet < pause:
                 return
             print(f"symfpu: {_clock(passed)} {text}{self._left(now)}", file=sys.stderr, flush=True)
             self._said, self._printed = now, text

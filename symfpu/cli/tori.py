@@ -37,7 +37,7 @@ from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import assess
 
 
-@app.command(epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 24")
+@app.command(epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1 --omega 0.1962 --order 24")
 def solve(
     context: typer.Context,
     bonds: BondsOption,
@@ -63,7 +63,7 @@ def solve(
     chosen = whole_numbers("seeds", seeds)
     highest, cut = optional("frequency-order", frequency_order), optional("coordinate-order", coordinate_order)
     places, file = optional("digits", digits), None if output is None else output_file(path_named("output", output))
-    with progress_bar() as advance:
+    with progress_bar("series") as advance:
         series = lindstedt(
             chain,
             chosen,
@@ -72,12 +72,12 @@ def solve(
             digits=places,
             progress=lambda done, total: advance("series", done / total),
         )
-        advance("amplitudes", None)
+        advance("amplitudes")
         torus = solve_amplitudes(series, frequency_order=highest, order=cut)
         assessment = assess(series, torus, progress=lambda done, total: advance("verdict", done / total))
         record = torus_record(torus, assessment)
         if file:
-            advance("writing", None)
+            advance("writing")
             save(file, torus, verdict=assessment.record(), command=shlex.join(["symfpu", *context.obj]))
     if as_json:
         print_json(record)
@@ -103,7 +103,7 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
     say(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
     say(f"energy H           {record['energy']}   (at t = 0)")
     say(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {record['average_harmonic_energy']})")
-    say(f"residual           {record['residual']:.3g}   (equations of motion, relative to the largest acceleration)")
+    say(f"residual           {record['residual']:.2g}   (equations of motion, relative to the largest acceleration)")
     for warning in torus.warnings:
         warn(warning)
 

@@ -8,7 +8,7 @@ the amplitude found at order 242 that of a periodic orbit with the printed frequ
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import lcm
@@ -23,6 +23,7 @@ from symfpu.errors import InputError
 from symfpu.families.family import Family, family
 from symfpu.numbers.typed import Number
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, FIG9_BREATHER, TWO_TORUS
+from symfpu.paper.steps import Step, unheard
 from symfpu.series.divisors import divisor
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
@@ -32,7 +33,6 @@ from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment, assess
 
 Floats = NDArray[np.float64]
-Step = Callable[[str], None]
 
 DIGITS, MORE_DIGITS = 20, 40
 SHOWN_ORDERS = (12, 18, 24, 30, 36, 42)  # of the resummed torus
@@ -82,7 +82,7 @@ class CancellationStudy:
     assessment: Assessment
 
 
-def cancellation_study(step: Step = lambda label: None) -> CancellationStudy:
+def cancellation_study(step: Step = unheard) -> CancellationStudy:
     """Compute question (i)."""
     chain, seeds, printed = TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies
     step("convergence: long series")
@@ -206,7 +206,7 @@ class SchemeLimit:
     family: Family = field(repr=False)
 
 
-def breather_study(step: Step = lambda label: None) -> BreatherStudy:
+def breather_study(step: Step = unheard) -> BreatherStudy:
     """Compute question (ii)."""
     printed = FIG9_BREATHER
     (seed,), (omega,) = printed.seeds, printed.frequencies
@@ -229,7 +229,7 @@ def breather_study(step: Step = lambda label: None) -> BreatherStudy:
     )
 
 
-def scheme_limit(chain: Chain, seed: int, energies: tuple[str, str], step: Step = lambda label: None) -> SchemeLimit:
+def scheme_limit(chain: Chain, seed: int, energies: tuple[str, str], step: Step = unheard) -> SchemeLimit:
     """Follow the breathers of a seed between two energies, and find where their fixed-frequency series stop to reach them.
 
     Raises InputError where the limit does not lie between them.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,6 +14,8 @@ from symfpu.breathers.balance import periodic_orbit
 from symfpu.errors import SymfpuError
 from symfpu.numbers.typed import exact
 from symfpu.paper.printed import PrintedTorus
+from symfpu.paper.steps import Step, unheard
+from symfpu.refinement.newton import Report
 from symfpu.refinement.tori import RefinedTorus, refine, refine_at_amplitudes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
@@ -22,7 +24,6 @@ from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Step = Callable[[str], None]
 
 TOLERANCES = (1e-10, 1e-13)  # of two refinements with different harmonics: the digits in which they agree are converged
 GUESS_ORDER = 8  # of the series from which Newton's method starts
@@ -132,7 +133,7 @@ class CorrectedRow:
         return f"{found}; {error}" + (f"; {self.reason}" if self.reason else "")
 
 
-def corrected_row(printed: PrintedTorus, step: Step = lambda label: None, *, series: LindstedtSeries | None = None) -> CorrectedRow:
+def corrected_row(printed: PrintedTorus, step: Step = unheard, *, series: LindstedtSeries | None = None) -> CorrectedRow:
     """The exact torus of the printed frequencies, and the errors of the series of the printed order at every order.
 
     series : that series, if it is known already. step : told of every step of Newton's method. A row that takes more than LIMIT
@@ -169,7 +170,7 @@ def left_out(printed: PrintedTorus, reason: str) -> CorrectedRow:
     return CorrectedRow(printed, None, reason, 0, {}, {}, np.nan, None)
 
 
-def _refined(printed: PrintedTorus, tell: Step) -> tuple[RefinedTorus | None, int, str]:
+def _refined(printed: PrintedTorus, tell: Report) -> tuple[RefinedTorus | None, int, str]:
     """The exact torus, the converged digits of its amplitudes, and what went wrong."""
     started, limit = time.monotonic(), HEAVY_LIMIT if printed.label in HEAVY else LIMIT
 
@@ -200,7 +201,7 @@ def _refined(printed: PrintedTorus, tell: Step) -> tuple[RefinedTorus | None, in
     return last, min(MOST_DIGITS, int(-np.log10(max(change, 1e-15)))), ""
 
 
-def _guess(printed: PrintedTorus, order: int, tell: Step) -> QuasiPeriodic:
+def _guess(printed: PrintedTorus, order: int, tell: Report) -> QuasiPeriodic:
     """Where Newton's method starts: a short series, or for one seed the periodic orbit, which needs none."""
     chain, seeds = printed.chain, printed.seeds
     if len(seeds) == 1:
@@ -243,7 +244,7 @@ def _positive(harmonics: Ints) -> Ints:
     return np.asarray(harmonics * np.where(lead < 0, -1, 1)[:, None])
 
 
-def series_errors(series: LindstedtSeries, torus: RefinedTorus, tell: Step = lambda label: None) -> SeriesErrors:
+def series_errors(series: LindstedtSeries, torus: RefinedTorus, tell: Report = unheard) -> SeriesErrors:
     """Errors of a series against the exact torus of its frequencies, by order from 1 on."""
     history, compared = amplitude_history(series), _Comparison(series, torus)
     exact_ = [torus.amplitudes[q] for q in series.seeds]
@@ -283,9 +284,7 @@ def _factor(logarithms: Floats) -> float:
     return float(np.exp(np.polyfit(logarithms[:, 0], logarithms[:, 1], 1)[0])) if len(logarithms) > 1 else np.nan
 
 
-def corrected_rows(
-    known: Mapping[PrintedTorus, LindstedtSeries], step: Step = lambda label: None, *, full: bool = False
-) -> Iterator[CorrectedRow]:
+def corrected_rows(known: Mapping[PrintedTorus, LindstedtSeries], step: Step = unheard, *, full: bool = False) -> Iterator[CorrectedRow]:
     """The corrected row of each printed torus with its series; those of HEAVY only if full."""
     for printed, series in known.items():
         if printed.label in HEAVY and not full:
@@ -321,7 +320,7 @@ class ScalingStudy:
         return {K: (self.rate(e), self.rate(self.solved[K]) if K in self.solved else np.nan) for K, e in self.given.items()}
 
 
-def scaling_study(torus: RefinedTorus, label: str, step: Step = lambda line: None) -> ScalingStudy:
+def scaling_study(torus: RefinedTorus, label: str, step: Step = unheard) -> ScalingStudy:
     """The errors of the orders SCALED_ORDERS at an exact torus and at those of 1/2, 1/4, ... of its amplitudes."""
     scales = tuple(0.5**j for j in range(HALVINGS + 1))
     given: dict[int, list[float]] = {}

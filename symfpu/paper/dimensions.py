@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices, seconds_needed
-from symfpu.paper.starts import Step, printed_row
+from symfpu.paper.starts import printed_row
+from symfpu.paper.steps import Step
 
 Floats = NDArray[np.float64]
 TIME, FULL_TIME = 1e7, 1e9  # default; the paper's, with --full
@@ -35,7 +36,7 @@ def indices(name: str, start: tuple[Floats, Floats], tell: Step, folder: Path, *
         vectors=vectors,
         step=GALI_STEP,
         file=file,
-        progress=lambda label, done: tell(f"{name}: GALI, {label} of {T:.0e}"),
+        progress=lambda label, done: tell(f"{name}: GALI, {label} of {T:.0e}", done),
     )
 
 

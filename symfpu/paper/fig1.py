@@ -15,7 +15,7 @@ from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.dimensions import FULL_TIME, indices
 from symfpu.paper.judgements import NEAR, cancellation_claim, dimension_claim, falls
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, FIG1_CANCELLATION_ORDER, FIG1_CLAIMS, FIG1_DIGITS, TWO_TORUS
-from symfpu.paper.starts import Step
+from symfpu.paper.steps import Step, unheard
 from symfpu.paper.table import rounds_to
 from symfpu.refinement.tori import RefinedTorus, refine
 from symfpu.series.lindstedt import lindstedt
@@ -197,7 +197,7 @@ class Figure1:
         return self.torus.series.chain.mu
 
 
-def figure1(step: Step = lambda label: None) -> Figure1:
+def figure1(step: Step = unheard) -> Figure1:
     """Compute the data of Fig. 1 (a) to (d) from the printed frequencies, with FIG1_DIGITS digits.
 
     Doubles run beside them show what precision is needed: they lose no more than `rounding`.

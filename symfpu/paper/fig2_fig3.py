@@ -34,7 +34,8 @@ from symfpu.paper.judgements import (
     sums_panel,
 )
 from symfpu.paper.printed import PrintedLine, PrintedTorus
-from symfpu.paper.starts import Step, follow, printed_amplitudes, printed_row, printed_torus, profile_panel
+from symfpu.paper.starts import follow, printed_amplitudes, printed_row, printed_torus, profile_panel
+from symfpu.paper.steps import Step
 from symfpu.paper.table import rounds_to
 from symfpu.refinement.tori import RefinedTorus, refine
 from symfpu.tori.torus import QTorus

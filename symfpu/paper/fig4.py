@@ -21,7 +21,8 @@ from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import SIMILAR
 from symfpu.paper.printed import PrintedLine
-from symfpu.paper.starts import Step, follow
+from symfpu.paper.starts import follow
+from symfpu.paper.steps import Step, unheard
 
 Floats = NDArray[np.float64]
 TIME, RANDOM_TIME = 1e6, 1e5  # the paper's with phases 0; ours with random phases
@@ -162,7 +163,7 @@ def _rates(name: str) -> tuple[Trend, float, float]:
     spectra = []
     for energy in energies:
         start = fpu_trajectory(chain, packet_amplitudes(chain, range(1, s + 1), energy * chain.N))
-        orbit = follow("fig4 slopes", chain, start, SLOPE_TIME, lambda label: None, samples=1)
+        orbit = follow("fig4 slopes", chain, start, SLOPE_TIME, unheard, samples=1)
         assert orbit.averages is not None
         spectra.append(orbit.averages[-1])
     trend = slope_by_energy(chain, s, energies, spectra, floor=0.0)

@@ -12,7 +12,8 @@ from symfpu.figures.panels import Panel
 from symfpu.localization.profiles import normalised_averages
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import AGREEMENT, groups_claim, parting_level, runs
-from symfpu.paper.starts import Step, follow, printed_row, printed_torus, profile_panel
+from symfpu.paper.starts import follow, printed_row, printed_torus, profile_panel
+from symfpu.paper.steps import Step
 
 Floats = NDArray[np.float64]
 TIME = 1e5  # our choice; slow beats of the lowest modes average out by then

@@ -23,7 +23,6 @@ from symfpu.paper.judgements import SIMILAR, same_profile
 from symfpu.paper.printed import PrintedTorus
 from symfpu.paper.starts import (
     Starting,
-    Step,
     energies_panel,
     follow,
     printed_amplitudes,
@@ -31,6 +30,7 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
+from symfpu.paper.steps import Step, unheard
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
@@ -107,7 +107,7 @@ def law_claim(section: str, spectrum: Floats, law: Curve) -> Claim:
 def _return(row: PrintedTorus, torus: QTorus) -> Claim:
     """Back at its start after a period, by integration."""
     period = 2 * math.pi / float(row.frequencies[0])
-    orbit = follow("fig7 period", row.chain, torus, period, lambda label: None, step=RETURN_STEP, samples=1, averages=False)
+    orbit = follow("fig7 period", row.chain, torus, period, unheard, step=RETURN_STEP, samples=1, averages=False)
     off = float(max(np.abs(orbit.Q[-1] - orbit.Q[0]).max(), np.abs(orbit.P[-1] - orbit.P[0]).max()) / np.abs(orbit.Q[0]).max())
     digits = -math.log10(max(off, EPS))
     ours = f"to {digits:.1f} digits of the largest coordinate, with the amplitude that belongs to the printed frequency"

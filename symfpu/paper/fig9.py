@@ -27,7 +27,8 @@ from symfpu.paper.dimensions import FULL_TIME, indices, settled_after
 from symfpu.paper.fig7_fig8 import NARROW, SHOWN, SHOWN_ONLY, law_claim, law_curve, profiles_of, variation
 from symfpu.paper.judgements import SIMILAR, dimension_claim, same_profile
 from symfpu.paper.printed import FIG9_PACKETS, FIG9_RECURRENCE, PrintedTorus
-from symfpu.paper.starts import Step, energies_panel, follow, printed_amplitudes, printed_row, printed_torus, profile_panel
+from symfpu.paper.starts import energies_panel, follow, printed_amplitudes, printed_row, printed_torus, profile_panel
+from symfpu.paper.steps import Step
 from symfpu.paper.table import rounds_to
 from symfpu.tori.torus import QTorus
 

@@ -10,7 +10,7 @@ from symfpu.chain.propagation import excitation_sequence, reachable_modes
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import runs
 from symfpu.paper.printed import APPENDIX_F, EXCITATIONS, TWO_TORUS
-from symfpu.paper.starts import Step
+from symfpu.paper.steps import Step
 from symfpu.proofs.certificates import prove_propagation
 
 PROVED_ORDER = 5  # to which the rule is proved for the paper's seeds, where their series are longer

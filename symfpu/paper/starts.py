@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,12 +13,12 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import Orbit, integrate
 from symfpu.figures.panels import Curve, Panel
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS, PrintedTorus
+from symfpu.paper.steps import Step
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
-Step = Callable[[str], None]
 
 # frequency orders that give the printed amplitudes (docs/reproduction.md); the last one for those that are met by none
 AMPLITUDE_ORDERS = {"Fig. 1": 24, "Fig. 2": 4, "Fig. 5a": 6, "Fig. 5b": 6, "Fig. 5c": 6, "Fig. 5d": 4, "Fig. 9": 242}
@@ -73,7 +73,7 @@ def follow(
         samples=samples,
         averages=averages,
         workers=2,
-        progress=lambda done, total: tell(f"{name}: t = {T * done / total:.2g} of {T:.2g}"),
+        progress=lambda done, total: tell(f"{name}: orbit to t = {T:.2g}", done / total),
     )
 
 

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 
 import numpy as np
 
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS, PrintedTorus
+from symfpu.paper.steps import Step, unheard
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
 from symfpu.tori.torus import QTorus
 
-Step = Callable[[str], None]
 MET_DIGITS = 8.5  # agreement, in digits of the worst amplitude, from which a printed row counts as met
 
 
@@ -116,7 +116,7 @@ def _energy_orders(torus: QTorus, printed: str) -> dict[str, tuple[int, ...]]:
     return found
 
 
-def amplitude_table(step: Step = lambda label: None) -> Iterator[AmplitudeRow]:
+def amplitude_table(step: Step = unheard) -> Iterator[AmplitudeRow]:
     """Every torus of Appendix F (Eq. Table1) and the pair of Fig. 1; `step` is told which one comes next."""
     for printed in (TWO_TORUS, *APPENDIX_F):
         step(f"table: {printed.label}")

@@ -34,7 +34,8 @@ from symfpu.paper.pages import (
     write_figure6_csv,
 )
 from symfpu.paper.section5 import section5
-from symfpu.paper.table import Step, amplitude_table
+from symfpu.paper.steps import Step
+from symfpu.paper.table import amplitude_table
 
 SCALED = ("Fig. 1", "Fig. 7")  # rows whose errors are followed to smaller mu
 

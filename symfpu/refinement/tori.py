@@ -245,11 +245,11 @@ def refined_torus(
         report(f"residual {residual:.1e} between the grid points")
         if residual <= tolerance or full or residual > before / 2:
             reason = "as many harmonics as fit" if full else "more harmonics change nothing"
-            warning = f"{reason} leave a residual of {residual:.1e}, above the tolerance {tolerance:.0e}"
+            warning = f"{reason} leave a residual of {residual:.2g}, above the tolerance {tolerance:.0e}"
             return refined if residual <= tolerance else replace(refined, warnings=(warning,))
         before, shifts = residual, found.shifts
         known = _rows(harmonics, np.asarray(found.cosines))
-    return replace(refined, warnings=(f"the residual is {residual:.1e} after {ROUNDS} choices of harmonics",))
+    return replace(refined, warnings=(f"the residual is {residual:.2g} after {ROUNDS} choices of harmonics",))
 
 
 def shifts_of(torus: QuasiPeriodic) -> Floats:

@@ -56,7 +56,9 @@ def assessment_text(found: Assessment, width: int | None = None) -> str:
         f"  radius of convergence in units of mu: {found.radius:.3g} by ratio of terms, {poles} by Pade poles of the frequencies (a hint)"
     )
     seed = next(iter(found.sums))
-    head = ("order", f"A_{seed}(k)", "dA(k)", f"S_1, S_2 of Q_{seed}", "residual", "energy error", "largest term: mode, harmonic, divisor")
+    errors = ("coarse residual", "energy error")
+    largest = "largest term: mode, harmonic, divisor"
+    head = ("order", f"A_{seed}(k)", "dA(k)", f"S_1, S_2 of Q_{seed}", *errors, largest)
     rows = [_order_line(found, seed, k) for k in _some(found)]
     table = text_table(head, rows, None if width is None else width - len(GAP))
     return "\n".join([*lines, *(GAP + line for line in table)])

@@ -308,15 +308,18 @@ def order_doubts(amplitudes: tuple[Any, ...], orders: list[int], history: Amplit
 
 
 def residual_doubts(torus: QTorus) -> tuple[str, ...]:
-    """Whether the residual of the equations of motion is large, or grew with the last two orders of the coordinates."""
+    """Whether the residual of the equations of motion is large, or grew with the last two orders of the coordinates.
+
+    Decided at few angles; the one residual that is stated is `torus.residual()`.
+    """
     points = None if torus.digits else max(3, round(RESIDUAL_POINTS ** (1 / len(torus.seeds))))
     residual, before = torus.residual(points), torus.order - 2
     doubts = []
     if residual > LARGE_RESIDUAL:
-        doubts.append(f"the equations of motion are met only to {residual:.1e} of the largest acceleration")
+        doubts.append(f"the equations of motion are met only to {torus.residual():.2g} of the largest acceleration")
     if before >= 1 and residual > RESIDUAL_FLOOR:
         earlier = replace(torus, order=before).residual(points)
         if residual > 1.05 * earlier:
-            growth = f"{earlier:.1e} at {before}, {residual:.1e} at {torus.order}"
-            doubts.append(f"the residual of the equations of motion grows with the order ({growth}): cut the series earlier, by order=")
+            growth = f"{residual / earlier:.3g} times from order {before} to {torus.order}"
+            doubts.append(f"the residual of the equations of motion grows, {growth}: cut the series earlier, by order=")
     return tuple(doubts)

@@ -166,6 +166,14 @@ class QuasiPeriodic:
 
         points : grid points for each angle, as for `residuals`.
         """
+        return self._residual if points is None else self._residual_of(points)
+
+    @cached_property
+    def _residual(self) -> float:
+        """The residual on the default grid, which every sentence on this solution states."""
+        return self._residual_of(None)
+
+    def _residual_of(self, points: int | None) -> float:
         residuals, largest = self._residuals(points)
         return float(residuals.max() / largest)
 

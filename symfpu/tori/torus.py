@@ -110,8 +110,9 @@ class QTorus(QuasiPeriodic):
     def doubted(self, warnings: tuple[str, ...]) -> QTorus:
         """The same torus with warnings; what was computed of it is kept."""
         torus = replace(self, warnings=warnings)
-        if "_terms" in self.__dict__:
-            torus.__dict__["_terms"] = self.__dict__["_terms"]
+        for name in ("_terms", "_residual"):
+            if name in self.__dict__:
+                torus.__dict__[name] = self.__dict__[name]
         return torus
 
     @cached_property

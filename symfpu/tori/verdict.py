@@ -66,7 +66,8 @@ class Assessment:
         frequencies' approximants, in the same units (infinite if there is none): a hint, since approximants
         of noisy or short series have poles of their own and miss weak ones.
     poles : by seed, complex, in units of mu^2 with alpha, of mu with beta alone.
-    residuals, energy_errors : by coordinate order, (order + 1,), relative, over a grid of angles.
+    residuals, energy_errors : by coordinate order, (order + 1,), relative, over a coarse grid of angles;
+        the reasons state the residual of the torus itself.
     resummed_residual : of the torus whose coefficients are Pade sums. certificate : of the amplitudes.
 
     >>> from symfpu import Chain, assess, lindstedt, solve_amplitudes
@@ -192,7 +193,7 @@ def assess(series: LindstedtSeries, torus: QTorus, *, resummed: bool = True, pro
         certificate=torus.certificate,
     )
     advance(steps, steps)
-    word, reasons = _judge(evidence, series)
+    word, reasons = _judge(evidence, series, torus.residual())
     return replace(evidence, word=word, reasons=reasons)
 
 
@@ -289,20 +290,21 @@ def _root_uncertainty(torus: QTorus, differences: Mapping[int, tuple[float, ...]
     return rest + float(np.max(np.abs(there / amplitudes - 1)))
 
 
-def _judge(evidence: Assessment, series: LindstedtSeries) -> tuple[str, tuple[str, ...]]:
+def _judge(evidence: Assessment, series: LindstedtSeries, residual: float) -> tuple[str, tuple[str, ...]]:
+    """The word and its reasons. residual : of the torus, over all its angles; those by order, over fewer, tell where it is least."""
     residuals, best = evidence.residuals, evidence.best_order
     least, last = float(residuals[best]), float(residuals[-1])
     step = 2 // series.chain.degree_step
     floor = FLOOR if series.digits is None else min(FLOOR, 10.0**-series.digits)
-    reasons = [f"residual of the equations of motion {least:.1e} at order {best}"]
+    reasons = [f"residual of the equations of motion {residual:.2g} at order {evidence.order}"]
     if best < evidence.order:
-        reasons[0] += f", {last:.1e} at order {evidence.order}"
+        reasons[0] += f", least at order {best}: {least / last:.2g} of it"
     if math.isfinite(evidence.root_uncertainty):
         reasons.append(f"amplitudes settle to {evidence.root_uncertainty:.1e}")
     if evidence.terms and evidence.growth:
         reasons.append(f"terms grow by {evidence.growth:.3g} an order, the last being {evidence.terms[-1]!r}")
     if evidence.resummed_residual < CLEARLY * least:
-        reasons.append(f"the resummed torus leaves {evidence.resummed_residual:.1e}")
+        reasons.append(f"the resummed torus leaves {evidence.resummed_residual:.2g}")
     if evidence.certificate and not evidence.certificate.certified:
         reasons.append(f"the root of the truncated series is not certified: {evidence.certificate.reason}")
     if evidence.order < 2 * step or (not math.isfinite(evidence.root_uncertainty) and least > floor):

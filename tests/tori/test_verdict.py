@@ -251,3 +251,17 @@ def test_progress_goes_from_the_first_order_to_the_end(name):
     assert [done for done, _ in calls] == sorted(done for done, _ in calls)
     assert calls[0][0] == 1
     assert calls[-1][0] == calls[-1][1]
+
+
+def test_every_sentence_states_one_residual():
+    """Warnings, verdict and repr have the residual of the torus, in one form, whatever fewer angles would give."""
+    series = lindstedt(Chain(32, alpha="0.33"), (1, 2), ("0.0985", "0.1965"), 6)
+    torus = solve_amplitudes(series)
+    stated = f"{torus.residual():.2g}"
+    large, grows = [line for line in torus.warnings if "equations of motion" in line]
+    assert large == f"the equations of motion are met only to {stated} of the largest acceleration"
+    assert "times from order 4 to 6" in grows
+    assert f"residual {stated}; " in repr(torus)
+    found = assess(series, torus)
+    assert found.reasons[0].startswith(f"residual of the equations of motion {stated} at order 6")
+    assert found.residuals[-1] != torus.residual(points=64)  # the grids differ, and so would the sentences

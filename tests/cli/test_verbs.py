@@ -1,0 +1,99 @@
+"""Verbs load what they need and no more; all of them are in the table; their help fits a terminal."""
+
+import os
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import symfpu.cli
+from symfpu.cli.main import main
+from symfpu.cli.verbs import VERBS, app
+
+FOUNDATIONS = {"__init__", "main", "terminal", "verbs"}
+SOLVE = ["solve", "-N", "8", "--alpha", "0.3", "--seeds", "1", "--omega", "0.3905", "--order", "4"]
+SHORT = {
+    "solve": SOLVE,
+    "propagate": ["propagate", "-N", "8", "--seeds", "1", "--order", "2"],
+    "refine": ["refine", "--help"],
+    "family": ["family", "--help"],
+    "orbit": ["orbit", "--help"],
+    "gali": ["gali", "--help"],
+    "prove": ["prove", "--help"],
+}
+
+
+def python(*words, **changes):
+    """A fresh interpreter, without COLUMNS unless it is asked for."""
+    surroundings = {name: value for name, value in os.environ.items() if name != "COLUMNS"} | changes
+    return subprocess.run([sys.executable, *words], capture_output=True, text=True, check=False, env=surroundings)
+
+
+@pytest.mark.parametrize("verb", SHORT)
+def test_a_general_verb_loads_neither_the_paper_nor_pictures(verb):
+    code = f"""
+import sys
+from symfpu.cli.main import main
+print(main({SHORT[verb]!r}))
+heavy = ("matplotlib", "symfpu.paper", "symfpu.codegen.languages", "sympy")
+print("loaded:", *(name for name in heavy if name in sys.modules))
+"""
+    finished = python("-c", code)
+    *_, code, loaded = finished.stdout.splitlines()
+    assert (code, loaded) == ("0", "loaded:"), finished.stderr
+
+
+def test_the_version_loads_no_verb():
+    code = "import sys; from symfpu.cli.main import main; main(['--version']); print(*sys.modules)"
+    loaded = python("-c", code).stdout.split()
+    assert not {f"symfpu.cli.{module}" for module in VERBS.values()} & set(loaded)
+
+
+def test_the_table_has_every_module_and_every_verb():
+    files = {path.stem for path in Path(symfpu.cli.__file__).parent.glob("*.py")}
+    assert set(VERBS.values()) == files - FOUNDATIONS
+    for module in set(VERBS.values()):
+        import_module(f"symfpu.cli.{module}")
+    registered = {info.callback: info.name for info in app.registered_commands}
+    homes = {name or function.__name__: function.__module__ for function, name in registered.items()}
+    assert homes == {verb: f"symfpu.cli.{module}" for verb, module in VERBS.items()}
+
+
+def test_the_help_has_the_verbs_in_the_order_of_the_table(capsys):
+    assert main(["--help"]) == 0
+    words = capsys.readouterr().out.split()
+    begun = [words.index(verb, words.index("Commands")) for verb in VERBS]
+    assert begun == sorted(begun)
+
+
+def test_a_verb_that_is_none_is_named_beside_those_that_are(capsys):
+    assert main(["solv"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert len(captured.err.splitlines()) == 1
+    assert "'solv'" in captured.err
+    assert all(verb in captured.err for verb in VERBS)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_help_fits_eighty_columns_with_its_example_on_one_line(verb, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "80")
+    assert main([verb, "--help"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert not any("…" in line for line in lines)
+    [example] = [line.strip() for line in lines if "Example:" in line]
+    assert example.startswith(f"Example: symfpu {verb} ")
+    after = lines[next(i for i, line in enumerate(lines) if "Example:" in line) + 1 :]
+    assert not any(line.strip() for line in after)
+
+
+def test_the_package_is_a_program():
+    """python -m symfpu is the console script: same output, same codes."""
+    script = "import sys; sys.argv[0] = 'symfpu'; from symfpu.cli.main import run; run()"
+    for words, code in ((SHORT["propagate"], 0), (["propagate"], 2)):
+        module, installed = python("-m", "symfpu", *words), python("-c", script, *words)
+        assert module.returncode == installed.returncode == code
+        assert (module.stdout, module.stderr) == (installed.stdout, installed.stderr)
