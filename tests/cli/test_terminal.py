@@ -39,6 +39,8 @@ def test_folding_keeps_every_word(lines, width):
 
 def test_a_line_that_fits_stays_as_it_is():
     assert folded("seed 1    omega 0.19626", 23) == "seed 1    omega 0.19626"
+    digits = "amplitude 0." + 60 * "7"
+    assert folded(digits, 40).split() == digits.split()
     assert folded("  residual of the motion 1.2e-05", 22).splitlines() == ["  residual of the", "      motion 1.2e-05"]
 
 
@@ -57,6 +59,7 @@ def test_solve_breaks_no_number(columns, monkeypatch, capsys):
         assert set(NUMBER.findall(before)) == set(NUMBER.findall(after))
         assert "\x1b" not in after
     assert "0.5980737407432" in narrow.out
+    assert sum(line.startswith("  order ") for line in narrow.out.splitlines()) > 1
     assert max(map(len, whole.out.splitlines())) > 80
 
 
