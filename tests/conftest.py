@@ -11,5 +11,5 @@ settings.load_profile("suite")
 
 @pytest.fixture(autouse=True)
 def no_lines_of_progress(monkeypatch):
-    """They come after seconds, on a slow machine more than on a fast one; the tests of these lines ask for them."""
+    """They come after seconds, more of them on a slow machine; the tests of these lines ask for them."""
     monkeypatch.setattr("symfpu.cli.terminal.PATIENCE", math.inf)

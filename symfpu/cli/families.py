@@ -36,9 +36,18 @@ from symfpu.reports.family import family_record, family_table, family_text, refi
 @app.command("refine", epilog="Example: symfpu refine torus.symfpu -o refined.symfpu")
 def refine_file(
     context: typer.Context,
-    file: Annotated[str, typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE")],
-    output: Annotated[str | None, typer.Option("-o", "--output", help="Keep the refined torus in this file.", metavar="FILE")] = None,
-    energy: Annotated[str | None, typer.Option(help="The torus of this energy H, amplitudes in the same ratio.", metavar="E")] = None,
+    file: Annotated[
+        str,
+        typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE"),
+    ],
+    output: Annotated[
+        str | None,
+        typer.Option("-o", "--output", help="Keep the refined torus in this file.", metavar="FILE"),
+    ] = None,
+    energy: Annotated[
+        str | None,
+        typer.Option(help="The torus of this energy H, amplitudes in the same ratio.", metavar="E"),
+    ] = None,
     harmonic: Annotated[bool, typer.Option("--harmonic", help="With --energy: the harmonic energy sum E_q instead of H.")] = False,
     amplitudes: Annotated[str | None, typer.Option(help="The torus of these amplitudes, one for each seed.", metavar="A,A,...")] = None,
     tolerance: Annotated[str, typer.Option(help="Relative residual of the equations of motion to be reached.", metavar="X")] = "1e-13",
@@ -106,7 +115,8 @@ def follow_family(
     harmonic: Annotated[bool, typer.Option("--harmonic", help="Energies are the harmonic energy sum E_q instead of H.")] = False,
     amplitude_ratio: Annotated[str | None, typer.Option(help="Ratio of the amplitudes, such as 1,0.5.", metavar="R,R,...")] = None,
     energy_ratio: Annotated[
-        str | None, typer.Option(help="Ratio of the averaged mode energies.  Default: equal.", metavar="R,R,...")
+        str | None,
+        typer.Option(help="Ratio of the averaged mode energies.  Default: equal.", metavar="R,R,..."),
     ] = None,
     from_energy: Annotated[str | None, typer.Option(help="Energy where it begins.  Default: a thousandth.", metavar="E")] = None,
     members: Annotated[str, typer.Option(help="The most members.")] = "200",

@@ -9,9 +9,26 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.bundles.bundle import load
-from symfpu.cli.terminal import JsonOption, kept_run, number, optional, path_named, print_json, progress_bar, say, whole
+from symfpu.cli.terminal import (
+    JsonOption,
+    kept_run,
+    number,
+    optional,
+    path_named,
+    print_json,
+    progress_bar,
+    say,
+    whole,
+)
 from symfpu.cli.verbs import app
-from symfpu.dynamics.alignment import SAMPLES, STEP, VECTORS, AlignmentIndices, alignment_indices, seconds_needed
+from symfpu.dynamics.alignment import (
+    SAMPLES,
+    STEP,
+    VECTORS,
+    AlignmentIndices,
+    alignment_indices,
+    seconds_needed,
+)
 from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
@@ -21,17 +38,28 @@ from symfpu.reports.tables import fifteen_digits
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
 def gali(
-    file: Annotated[str, typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE")],
+    file: Annotated[
+        str,
+        typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE"),
+    ],
     time: Annotated[str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")],
     vectors: Annotated[
-        str | None, typer.Option(help=f"Number of deviation vectors: GALI_2 to GALI_M; {VECTORS} if there are so many.", metavar="M")
+        str | None,
+        typer.Option(
+            help=f"Number of deviation vectors: GALI_2 to GALI_M; {VECTORS} if there are so many.",
+            metavar="M",
+        ),
     ] = None,
     step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(STEP),
     samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(SAMPLES),
     seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
-    output: Annotated[str | None, typer.Option("-o", "--output", help="Folder for gali.csv and the pictures.", metavar="FOLDER")] = None,
+    output: Annotated[
+        str | None,
+        typer.Option("-o", "--output", help="Folder for gali.csv and the pictures.", metavar="FOLDER"),
+    ] = None,
     checkpoint: Annotated[
-        str | None, typer.Option(help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE")
+        str | None,
+        typer.Option(help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE"),
     ] = None,
     estimate: Annotated[bool, typer.Option("--estimate", help="Only say how long it would take, from a trial of a second.")] = False,
     as_json: JsonOption = False,

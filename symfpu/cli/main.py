@@ -1,7 +1,8 @@
 """Command line: parses, calls one public function, prints or writes.
 
-Exit code 0 for success, 1 for an honest failure (no root, no convergence), 2 for bad input, 130 for the interrupt key;
-errors are one line on standard error, progress goes there too, and --json leaves standard output machine-readable.
+Exit code 0 for success, 1 for an honest failure (no root, no convergence), 2 for bad input, 130 for the
+interrupt key; errors are one line on standard error, progress goes there too, and --json leaves standard
+output machine-readable.
 """
 
 from __future__ import annotations
@@ -31,7 +32,10 @@ def _print_version(wanted: bool) -> None:
 
 @app.callback()
 def options(
-    version: Annotated[bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop.")] = False,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop."),
+    ] = False,
 ) -> None:
     """Options that come before the verb."""
 

@@ -34,10 +34,16 @@ def orbit(
     samples: Annotated[str, typer.Option(help="How many times to look, log-spaced.", metavar="S")] = "200",
     output: Annotated[
         str | None,
-        typer.Option("-o", "--output", help="t, H and E_q of the samples as .csv, or with Q and P as .npz.", metavar="FILE"),
+        typer.Option(
+            "-o",
+            "--output",
+            help="t, H and E_q of the samples as .csv, or with Q and P as .npz.",
+            metavar="FILE",
+        ),
     ] = None,
     checkpoint: Annotated[
-        str | None, typer.Option(help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE")
+        str | None,
+        typer.Option(help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE"),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:

@@ -44,7 +44,12 @@ def propagate(
     chosen = whole_numbers("seeds", seeds)
     sequence = excitation_sequence(whole("N", bonds), chosen, whole("order", order), model=model)
     if as_json:
-        record = {"N": whole("N", bonds), "model": model, "seeds": sorted(chosen), "order": whole("order", order)}
+        record = {
+            "N": whole("N", bonds),
+            "model": model,
+            "seeds": sorted(chosen),
+            "order": whole("order", order),
+        }
         print_json(record | {"excitation_sequence": [list(modes) for modes in sequence]})
         return
     for k, modes in enumerate(sequence):
@@ -91,7 +96,8 @@ def _print_proof(proof: PropagationProof) -> None:
         say(f"D_{k} = {{{', '.join(map(str, rule))}}}{same}")
     for e in proof.exceptions:
         doubt = f" (undecided, error probability {open_modes[e.mode].error_probability:.1e})" if e.mode in open_modes else ""
-        say(f"mode {e.mode}: predicted at order {e.predicted}, actually {'at no order' if e.actual is None else e.actual}{doubt}")
+        actual = "at no order" if e.actual is None else e.actual
+        say(f"mode {e.mode}: predicted at order {e.predicted}, actually {actual}{doubt}")
     say(f"verdict: {proof.verdict}")
 
 
@@ -119,9 +125,13 @@ def sweep(
     longest: Annotated[str, typer.Option(help="All chains with 2 up to this many bonds.", metavar="N")] = "12",
     largest: Annotated[str, typer.Option(help="All seed sets with up to this many modes.", metavar="S")] = "3",
     file: Annotated[
-        str | None, typer.Option(help="Keep every decided case here; an interrupted sweep goes on from it.", metavar="FILE")
+        str | None,
+        typer.Option(help="Keep decided cases here; an interrupted sweep goes on from it.", metavar="FILE"),
     ] = None,
-    markdown: Annotated[str | None, typer.Option("-o", "--output", help="Write the summary to this Markdown file.", metavar="FILE")] = None,
+    markdown: Annotated[
+        str | None,
+        typer.Option("-o", "--output", help="Write the summary to this Markdown file.", metavar="FILE"),
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Decide the propagation rule for all seed sets of a range of chains."""
@@ -143,12 +153,18 @@ def sweep(
             write_text(summary, sweep_markdown(result))
     if as_json:
         print_json(
-            {"model": model, "order": result.order, "cases": len(result.cases), "exceptions": [asdict(c) for c in result.exceptions]}
+            {
+                "model": model,
+                "order": result.order,
+                "cases": len(result.cases),
+                "exceptions": [asdict(c) for c in result.exceptions],
+            }
         )
         return
     say(result)
     for case in result.exceptions:
-        say(f"N={case.N} seeds {case.seeds}: " + ", ".join(f"mode {q} at {a}, predicted {p}" for q, p, a in case.exceptions))
+        exceptions = ", ".join(f"mode {q} at {a}, predicted {p}" for q, p, a in case.exceptions)
+        say(f"N={case.N} seeds {case.seeds}: {exceptions}")
 
 
 def _kept(log: Path | None) -> str:

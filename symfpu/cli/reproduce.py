@@ -21,9 +21,16 @@ from symfpu.paper.targets import FULL, TARGETS, Page, full_estimate
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
 def reproduce(
     targets: Annotated[list[str], typer.Argument(help=f"{', '.join(TARGETS)}, or all.", metavar="TARGET...")],
-    output: Annotated[str, typer.Option("-o", "--output", help="Folder for the report, pictures and data.", metavar="FOLDER")] = "out",
+    output: Annotated[
+        str,
+        typer.Option("-o", "--output", help="Folder for the report, pictures and data.", metavar="FOLDER"),
+    ] = "out",
     full: Annotated[
-        bool, typer.Option("--full", help="Alignment indices to 1e9 instead of 1e7, all exact tori: hours; goes on where it was stopped.")
+        bool,
+        typer.Option(
+            "--full",
+            help="Alignment indices to 1e9 instead of 1e7, all exact tori: hours; goes on where it was stopped.",
+        ),
     ] = False,
     as_json: JsonOption = False,
 ) -> None:

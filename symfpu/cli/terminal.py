@@ -1,4 +1,4 @@
-"""What all verbs share: options, whole numbers and paths, lines for a reader, JSON, progress, and the interrupt key."""
+"""What all verbs share: options, numbers and paths, lines for a reader, JSON, progress, the interrupt key."""
 
 from __future__ import annotations
 
@@ -104,12 +104,12 @@ def say(text: object) -> None:
 
 def warn(text: str) -> None:
     """A warning on standard error."""
-    terminal = console()
-    terminal.print(folded(f"warning: {text}", width_of(sys.stderr)), style="yellow", highlight=False, markup=False)
+    lines = folded(f"warning: {text}", width_of(sys.stderr))
+    console().print(lines, style="yellow", highlight=False, markup=False)
 
 
 def width_of(stream: TextIO) -> int | None:
-    """Columns of a terminal, or those that COLUMNS asks for; None for a pipe or a file, whose lines stay whole."""
+    """Columns of a terminal, or those that COLUMNS asks for; None for a pipe or a file: lines stay whole."""
     if not os.environ.get("COLUMNS") and not stream.isatty():
         return None
     return shutil.get_terminal_size().columns
@@ -151,7 +151,7 @@ class Advance(Protocol):
 def progress_bar(label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Advance]:
     """A function that shows on standard error what is being done: a bar on a terminal, lines elsewhere.
 
-    label : what is done first. kept : what stands when the interrupt key is pressed, and how to go on; asked then.
+    label : what is done first. kept : what stands when the interrupt key is pressed, and how to go on.
     Raises Interrupted in place of KeyboardInterrupt.
     """
     terminal = console()
@@ -203,9 +203,9 @@ class Bar:
 
 
 class Lines:
-    """A line for each step that is seen: the first after some seconds, then with pauses that grow with the time that has passed.
+    """A line for each step that is seen: the first after some seconds, then with pauses that grow with time.
 
-    A thread looks on, so that a step which began during a pause has its line, too, however long it then is silent.
+    A thread looks on, so that a step which began during a pause has its line, too, however silent it is.
     """
 
     def __init__(self, label: str) -> None:

@@ -47,22 +47,29 @@ def solve(
     alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
     beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
     frequency_order: Annotated[
-        str | None, typer.Option(help="Order of the frequency series that gives the amplitudes.  Default: --order.", metavar="K")
+        str | None,
+        typer.Option(help="Order of the frequency series that gives the amplitudes.  Default: --order.", metavar="K"),
     ] = None,
     coordinate_order: Annotated[
-        str | None, typer.Option(help="Order at which the coordinates Q(t) are cut.  Default: --order.", metavar="K")
+        str | None,
+        typer.Option(help="Order at which the coordinates Q(t) are cut.  Default: --order.", metavar="K"),
     ] = None,
     digits: Annotated[str | None, typer.Option(help="Any number of digits, proved.  Default: doubles.", metavar="D")] = None,
     output: Annotated[
-        str | None, typer.Option("-o", "--output", help="Keep series, torus and verdict in this file.", metavar="FILE")
+        str | None,
+        typer.Option("-o", "--output", help="Keep series, torus and verdict in this file.", metavar="FILE"),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Amplitudes and energies of the q-torus with the given frequencies, and a verdict on its series."""
     chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
     chosen = whole_numbers("seeds", seeds)
-    highest, cut = optional("frequency-order", frequency_order), optional("coordinate-order", coordinate_order)
-    places, file = optional("digits", digits), None if output is None else output_file(path_named("output", output))
+    highest, cut = (
+        optional("frequency-order", frequency_order),
+        optional("coordinate-order", coordinate_order),
+    )
+    places = optional("digits", digits)
+    file = None if output is None else output_file(path_named("output", output))
     with progress_bar("series") as advance:
         series = lindstedt(
             chain,
@@ -102,8 +109,10 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
         )
     say(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
     say(f"energy H           {record['energy']}   (at t = 0)")
-    say(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {record['average_harmonic_energy']})")
-    say(f"residual           {record['residual']:.2g}   (equations of motion, relative to the largest acceleration)")
+    average = record["average_harmonic_energy"]
+    say(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {average})")
+    residual = f"{record['residual']:.2g}"
+    say(f"residual           {residual}   (equations of motion, relative to the largest acceleration)")
     for warning in torus.warnings:
         warn(warning)
 
@@ -119,7 +128,14 @@ def show(
     torus = bundle.torus if isinstance(bundle.torus, QTorus) else None
     record = refined_record(refined) if refined else torus_record(torus) if torus else {}
     if as_json:
-        print_json(record | {"provenance": dict(bundle.provenance), "assessment": bundle.verdict, "test_vectors": bundle.test_vectors})
+        print_json(
+            record
+            | {
+                "provenance": dict(bundle.provenance),
+                "assessment": bundle.verdict,
+                "test_vectors": bundle.test_vectors,
+            }
+        )
         return
     if bundle.verdict and not refined:
         say(f"verdict: {bundle.verdict.get('verdict')}")

@@ -1,4 +1,4 @@
-"""The verbs by name, and the command that they are verbs of; a verb's module is imported when the verb is asked for."""
+"""The verbs by name, and the command they belong to; a verb's module is imported when it is asked for."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typer.main import get_group
 
 from symfpu.errors import InputError
 
-# In the order of the help. Only reproduce loads the paper, only export the languages: a verb begins as fast as it can.
+# In the order of the help. Only reproduce loads the paper, only export the languages.
 VERBS = {
     "propagate": "proofs",
     "prove": "proofs",

@@ -23,7 +23,7 @@ def number_text(value: Any, digits: int | None) -> str:
 
 
 def text_table(head: Sequence[str], rows: Sequence[Sequence[str]], width: int | None = None) -> list[str]:
-    """A table in lines; columns that go beyond the width follow in another table, which begins with the same first column."""
+    """A table in lines; columns beyond the width follow in a further one with the same first column."""
     widths = [max(len(row[i]) for row in (head, *rows)) for i in range(len(head))]
     lines = []
     for part in _parts(widths, width):

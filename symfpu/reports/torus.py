@@ -46,7 +46,7 @@ def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[st
 
 
 def assessment_text(found: Assessment, width: int | None = None) -> str:
-    """The evidence of a verdict: reasons, radii, and a line for some of the orders (all of them are in the JSON).
+    """The evidence of a verdict: reasons, radii, and a line for some of the orders (all are in the JSON).
 
     width : columns of the terminal, where the table is to fit into them.
     """

@@ -308,7 +308,7 @@ def order_doubts(amplitudes: tuple[Any, ...], orders: list[int], history: Amplit
 
 
 def residual_doubts(torus: QTorus) -> tuple[str, ...]:
-    """Whether the residual of the equations of motion is large, or grew with the last two orders of the coordinates.
+    """Whether the residual of the equations of motion is large, or grew with the last two orders.
 
     Decided at few angles; the one residual that is stated is `torus.residual()`.
     """
@@ -316,10 +316,12 @@ def residual_doubts(torus: QTorus) -> tuple[str, ...]:
     residual, before = torus.residual(points), torus.order - 2
     doubts = []
     if residual > LARGE_RESIDUAL:
-        doubts.append(f"the equations of motion are met only to {torus.residual():.2g} of the largest acceleration")
+        met = f"{torus.residual():.2g}"
+        doubts.append(f"the equations of motion are met only to {met} of the largest acceleration")
     if before >= 1 and residual > RESIDUAL_FLOOR:
         earlier = replace(torus, order=before).residual(points)
         if residual > 1.05 * earlier:
-            growth = f"{residual / earlier:.3g} times from order {before} to {torus.order}"
-            doubts.append(f"the residual of the equations of motion grows, {growth}: cut the series earlier, by order=")
+            growth = f"grows, {residual / earlier:.3g} times from order {before} to {torus.order}"
+            advice = "cut the series earlier, by order="
+            doubts.append(f"the residual of the equations of motion {growth}: {advice}")
     return tuple(doubts)

@@ -291,7 +291,10 @@ def _root_uncertainty(torus: QTorus, differences: Mapping[int, tuple[float, ...]
 
 
 def _judge(evidence: Assessment, series: LindstedtSeries, residual: float) -> tuple[str, tuple[str, ...]]:
-    """The word and its reasons. residual : of the torus, over all its angles; those by order, over fewer, tell where it is least."""
+    """The word and its reasons.
+
+    residual : of the torus, over all its angles; those by order, over fewer, tell where it is least.
+    """
     residuals, best = evidence.residuals, evidence.best_order
     least, last = float(residuals[best]), float(residuals[-1])
     step = 2 // series.chain.degree_step

@@ -1,4 +1,4 @@
-"""Names of files and folders that cannot be: every verb says so in one line, with code 2, before it computes anything."""
+"""Names of files and folders that cannot be: every verb says so in one line, code 2, and writes nothing."""
 
 import pytest
 
@@ -13,7 +13,19 @@ from symfpu.tori.amplitudes import solve_amplitudes
 
 RULE = ["-N", "6", "--seeds", "1,2", "--order", "2"]
 SMALL_SWEEP = ["sweep", "--longest", "3", "--largest", "1", "--order", "1"]
-FAMILY = ["family", "-N", "8", "--alpha", "0.4", "--seeds", "3", "--to-energy", "0.011", "--from-energy", "0.01"]
+FAMILY = [
+    "family",
+    "-N",
+    "8",
+    "--alpha",
+    "0.4",
+    "--seeds",
+    "3",
+    "--to-energy",
+    "0.011",
+    "--from-energy",
+    "0.01",
+]
 SOLVE = ["solve", "-N", "8", "--alpha", "0.3", "--seeds", "1", "--omega", "0.3905", "--order", "4"]
 
 # What stands for the saved torus is "@"; the bad name comes last.
@@ -51,7 +63,14 @@ NO_FILES = {
     "below a file": "file/x.csv",
 }
 NO_FOLDERS = {"empty": "", "blank": "  ", "file": "file", "below a file": "file/x"}
-NO_INPUT = {"empty": "", "here": ".", "folder": "folder", "missing": "none", "no parent": "none/x", "below a file": "file/x"}
+NO_INPUT = {
+    "empty": "",
+    "here": ".",
+    "folder": "folder",
+    "missing": "none",
+    "no parent": "none/x",
+    "below a file": "file/x",
+}
 
 
 @pytest.fixture(scope="module")

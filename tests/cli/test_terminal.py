@@ -20,7 +20,19 @@ from symfpu.cli.terminal import Bar, Interrupted, Lines, folded, progress_bar
 from symfpu.paper import targets
 from symfpu.reports.tables import text_table
 
-SOLVE = ["solve", "-N", "16", "--alpha", "0.33", "--seeds", "1,2", "--omega", "0.19626,0.39046", "--order", "12"]
+SOLVE = [
+    "solve",
+    "-N",
+    "16",
+    "--alpha",
+    "0.33",
+    "--seeds",
+    "1,2",
+    "--omega",
+    "0.19626,0.39046",
+    "--order",
+    "12",
+]
 NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?")
 
 
@@ -41,7 +53,10 @@ def test_a_line_that_fits_stays_as_it_is():
     assert folded("seed 1    omega 0.19626", 23) == "seed 1    omega 0.19626"
     digits = "amplitude 0." + 60 * "7"
     assert folded(digits, 40).split() == digits.split()
-    assert folded("  residual of the motion 1.2e-05", 22).splitlines() == ["  residual of the", "      motion 1.2e-05"]
+    assert folded("  residual of the motion 1.2e-05", 22).splitlines() == [
+        "  residual of the",
+        "      motion 1.2e-05",
+    ]
 
 
 @pytest.mark.parametrize("columns", ["80", "40"])
@@ -124,7 +139,10 @@ def test_pauses_grow_and_silence_ends(lines, capsys):
     tell("step at the end")
     for clock.now in (1030.0, 1045.0):
         tell("step at the end")
-    assert capsys.readouterr().err.splitlines() == ["symfpu: 0:16:50 step at the end", "symfpu: 0:17:25 step at the end"]
+    assert capsys.readouterr().err.splitlines() == [
+        "symfpu: 0:16:50 step at the end",
+        "symfpu: 0:17:25 step at the end",
+    ]
 
 
 def test_a_step_that_is_silent_has_its_line(monkeypatch, capsys):
@@ -178,7 +196,10 @@ def test_a_bar_has_percentage_and_time_left():
             bar("series", done)
             bar._progress.refresh()
         shown = with_bar()
-        bar("a label that is longer than what is left of the line, with [brackets] in it, and so on and on", None)
+        bar(
+            "a label that is longer than what is left of the line, with [brackets] in it, and so on and on",
+            None,
+        )
         bar._progress.refresh()
     assert "50%" in shown
     assert " left" in shown
@@ -192,26 +213,48 @@ def test_a_bar_has_percentage_and_time_left():
 def test_the_interrupt_key_says_what_is_kept():
     with pytest.raises(Interrupted, match=r"^interrupted: nothing is kept$"), progress_bar("series"):
         raise KeyboardInterrupt
-    with pytest.raises(Interrupted, match=r"^interrupted: half of it$"), progress_bar("series", lambda: "half of it"):
+    with (
+        pytest.raises(Interrupted, match=r"^interrupted: half of it$"),
+        progress_bar("series", lambda: "half of it"),
+    ):
         raise KeyboardInterrupt
-    with pytest.raises(Interrupted, match=r"^interrupted: the checkpoint$"), progress_bar("series", lambda: "half of it"):
+    with (
+        pytest.raises(Interrupted, match=r"^interrupted: the checkpoint$"),
+        progress_bar("series", lambda: "half of it"),
+    ):
         raise KeyboardInterrupt("the checkpoint")
 
 
 @pytest.mark.parametrize(
     ("verb", "function", "kept"),
     [
-        (["prove", "-N", "6", "--seeds", "1,2", "--order", "2"], "proofs.prove_propagation", "nothing is kept"),
+        (
+            ["prove", "-N", "6", "--seeds", "1,2", "--order", "2"],
+            "proofs.prove_propagation",
+            "nothing is kept",
+        ),
         (SOLVE, "tori.lindstedt", "nothing is kept"),
-        (["sweep", "--order", "1", "--file", "cases"], "proofs.sweep_propagation", "cases decided so far are kept in cases"),
+        (
+            ["sweep", "--order", "1", "--file", "cases"],
+            "proofs.sweep_propagation",
+            "cases decided so far are kept in cases",
+        ),
         (["sweep", "--order", "1"], "proofs.sweep_propagation", "nothing is kept"),
         (
             ["family", "-N", "8", "--alpha", "0.4", "--seeds", "3", "--to-energy", "0.05", "-o", "out"],
             "families.family",
             "members found so far are kept in out; the same command goes on",
         ),
-        (["reproduce", "section5", "fig6", "-o", "out"], "reproduce.TARGETS", "out/report.md and report.json hold section5"),
-        (["propagate", "-N", "8", "--seeds", "1", "--order", "2"], "proofs.excitation_sequence", "nothing is kept but"),
+        (
+            ["reproduce", "section5", "fig6", "-o", "out"],
+            "reproduce.TARGETS",
+            "out/report.md and report.json hold section5",
+        ),
+        (
+            ["propagate", "-N", "8", "--seeds", "1", "--order", "2"],
+            "proofs.excitation_sequence",
+            "nothing is kept but",
+        ),
     ],
     ids=["prove", "solve", "sweep", "sweep without a file", "family", "reproduce", "propagate"],
 )

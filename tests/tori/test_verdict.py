@@ -254,7 +254,7 @@ def test_progress_goes_from_the_first_order_to_the_end(name):
 
 
 def test_every_sentence_states_one_residual():
-    """Warnings, verdict and repr have the residual of the torus, in one form, whatever fewer angles would give."""
+    """Warnings, verdict and repr have the residual of the torus, whatever fewer angles would give."""
     series = lindstedt(Chain(32, alpha="0.33"), (1, 2), ("0.0985", "0.1965"), 6)
     torus = solve_amplitudes(series)
     stated = f"{torus.residual():.2g}"
