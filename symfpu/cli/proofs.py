@@ -96,8 +96,8 @@ def _print_proof(proof: PropagationProof) -> None:
         say(f"D_{k} = {{{', '.join(map(str, rule))}}}{same}")
     for e in proof.exceptions:
         doubt = f" (undecided, error probability {open_modes[e.mode].error_probability:.1e})" if e.mode in open_modes else ""
-        actual = "at no order" if e.actual is None else e.actual
-        say(f"mode {e.mode}: predicted at order {e.predicted}, actually {actual}{doubt}")
+        found = "at no order" if e.actual is None else e.actual
+        say(f"mode {e.mode}: predicted at order {e.predicted}, actually {found}{doubt}")
     say(f"verdict: {proof.verdict}")
 
 
