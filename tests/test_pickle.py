@@ -23,6 +23,7 @@ from symfpu.breathers.shooting import ShootingFailed, shoot
 from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
+from symfpu.cli.terminal import Interrupted
 from symfpu.codegen.evaluator import compile_evaluator
 from symfpu.dynamics.alignment import alignment_indices
 from symfpu.dynamics.frame_run import OrbitLost
@@ -301,6 +302,7 @@ ERRORS = {
     NoBreatherAtEnergy: lambda: NoBreatherAtEnergy(3, 0.5, False, orbit(), no_periodic_orbit()),
     ShootingFailed: lambda: ShootingFailed(1, "a reason", np.array([0.1, 0.0]), (0.2, 0.1)),
     SweepIncomplete: lambda: SweepIncomplete(sweep(), {(5, (1,)): TooLarge(9, 10**12, 10**9, 5)}),
+    Interrupted: lambda: Interrupted("nothing is kept"),
     TimeIsUp: lambda: TimeIsUp(10.0, "step 3"),
     CertificateError: lambda: CertificateError("a witness is zero"),
 }
