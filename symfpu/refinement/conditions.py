@@ -1,7 +1,7 @@
 """What is prescribed of a torus: as many conditions as it has angles.
 
-The unknowns are the coefficients c (H, N-1) and the shifts omega - Omega (s,). A condition gives its value, zero where it is met, and
-its derivatives by both.
+The unknowns are the coefficients c (H, N-1) and the shifts omega - Omega (s,). A condition gives
+its value, zero where it is met, and its derivatives by both.
 """
 
 from __future__ import annotations
@@ -22,7 +22,9 @@ class Condition(Protocol):
         """What is to be zero, relative to its own size."""
         ...
 
-    def gradient(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats]:
+    def gradient(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
         """Derivatives of the value by coefficients (H, N-1) and shifts (s,), in doubles."""
         ...
 
@@ -35,30 +37,41 @@ class FrequencyShift:
     shift: np.longdouble
 
     def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
-        return np.longdouble((shifts[self.place] - self.shift) / self._size(equation))
+        off = shifts[self.place] - self.shift
+        return np.longdouble(off / self._size(equation))
 
-    def gradient(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats]:
+    def gradient(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
         by_shift = np.zeros(len(shifts))
         by_shift[self.place] = 1 / float(self._size(equation))
         return np.zeros(cosines.shape), by_shift
 
     def _size(self, equation: InvarianceEquation) -> np.longdouble:
-        return np.longdouble(equation.linear[equation.seed_columns[self.place]])
+        column = equation.seed_columns[self.place]
+        return np.longdouble(equation.linear[column])
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """nu.omega is, up to its sign, the linear frequency of a mode: nu.(omega - Omega) = shift, whose size is that frequency."""
+    """nu.omega is, up to its sign, the linear frequency of a mode.
+
+    nu.(omega - Omega) = shift, relative to size, which is that frequency.
+    """
 
     harmonic: tuple[int, ...]
     shift: np.longdouble
     size: float
 
     def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
-        return np.longdouble((np.dot(np.array(self.harmonic), shifts) - self.shift) / self.size)
+        moved = np.dot(np.array(self.harmonic), shifts)
+        return np.longdouble((moved - self.shift) / self.size)
 
-    def gradient(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats]:
-        return np.zeros(cosines.shape), np.array(self.harmonic) / self.size
+    def gradient(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
+        by_shift = np.array(self.harmonic) / self.size
+        return np.zeros(cosines.shape), by_shift
 
 
 @dataclass(frozen=True)
@@ -69,11 +82,15 @@ class Amplitude:
     amplitude: np.longdouble
 
     def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
-        return np.longdouble(cosines[equation.seed_rows[self.place], equation.seed_columns[self.place]] / self.amplitude - 1)
+        A = seed_amplitudes(equation, cosines)[self.place]
+        return np.longdouble(A / self.amplitude - 1)
 
-    def gradient(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats]:
+    def gradient(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
+        row, column = equation.seed_rows[self.place], equation.seed_columns[self.place]
         by_cosine = np.zeros(cosines.shape)
-        by_cosine[equation.seed_rows[self.place], equation.seed_columns[self.place]] = 1 / float(self.amplitude)
+        by_cosine[row, column] = 1 / float(self.amplitude)
         return by_cosine, np.zeros(len(shifts))
 
 
@@ -85,67 +102,92 @@ class AmplitudeRatio:
     ratio: float
 
     def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
-        A = cosines[equation.seed_rows, equation.seed_columns]
-        return np.longdouble(A[self.place] / (self.ratio * A[0]) - 1)
+        A = seed_amplitudes(equation, cosines)
+        expected = self.ratio * A[0]
+        return np.longdouble(A[self.place] / expected - 1)
 
-    def gradient(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats]:
+    def gradient(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
         by_cosine = np.zeros(cosines.shape)
-        A = cosines[equation.seed_rows, equation.seed_columns].astype(float)
-        by_cosine[equation.seed_rows[self.place], equation.seed_columns[self.place]] = 1 / (self.ratio * A[0])
-        by_cosine[equation.seed_rows[0], equation.seed_columns[0]] = -A[self.place] / (self.ratio * A[0] ** 2)
+        rows, columns = equation.seed_rows, equation.seed_columns
+        A = seed_amplitudes(equation, cosines).astype(float)
+        by_cosine[rows[self.place], columns[self.place]] = 1 / (self.ratio * A[0])
+        by_cosine[rows[0], columns[0]] = -A[self.place] / (self.ratio * A[0] ** 2)
         return by_cosine, np.zeros(len(shifts))
 
 
 @dataclass(frozen=True)
 class EnergyRatio:
-    """The harmonic energy of a seed mode, averaged over the torus, is a multiple of that of the first one."""
+    """The averaged harmonic energy of a seed mode is a multiple of that of the first one."""
 
     place: int
     ratio: float
 
     def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
         averages = self._averages(equation, cosines, shifts)[0]
-        return np.longdouble(averages[self.place] / (self.ratio * averages[0]) - 1)
+        expected = self.ratio * averages[0]
+        return np.longdouble(averages[self.place] / expected - 1)
 
-    def _averages(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats, Floats]:
-        weights = np.where((equation.harmonics != 0).any(axis=1), 0.25, 0.5)[:, None]
+    def _averages(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """The averages by seed, what multiplies c^2 in them, and the derivative of that by rates."""
+        moving = (equation.harmonics != 0).any(axis=1)
+        weights = np.where(moving, 0.25, 0.5)[:, None]
         rates, columns = equation.rates(shifts)[:, None], equation.seed_columns
         sizes = weights * (rates**2 + equation.linear[columns] ** 2)
-        return (sizes * cosines[:, columns] ** 2).sum(axis=0), sizes, 2 * weights * rates
+        averages = (sizes * cosines[:, columns] ** 2).sum(axis=0)
+        return averages, sizes, 2 * weights * rates
 
-    def gradient(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats]:
+    def gradient(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
         averages, sizes, slopes = self._averages(equation, cosines, shifts)
         by_cosine, by_shift = np.zeros(cosines.shape), np.zeros(len(shifts))
-        for i, factor in ((self.place, 1 / (self.ratio * averages[0])), (0, -averages[self.place] / (self.ratio * averages[0] ** 2))):
+        own = 1 / (self.ratio * averages[0])
+        first = -averages[self.place] / (self.ratio * averages[0] ** 2)
+        for i, factor in ((self.place, own), (0, first)):
             column = equation.seed_columns[i]
             c = cosines[:, column]
             by_cosine[:, column] += (factor * 2 * sizes[:, i] * c).astype(float)
-            by_shift += (factor * ((slopes[:, 0] * c**2) @ equation.harmonics)).astype(float)
+            turning = (slopes[:, 0] * c**2) @ equation.harmonics
+            by_shift += (factor * turning).astype(float)
         return by_cosine, by_shift
 
 
 @dataclass(frozen=True)
 class Energy:
-    """H, or with `harmonic` the harmonic energy sum E_q, at the angles zero, where the momenta vanish."""
+    """H, or with `harmonic` the harmonic energy sum E_q, at the angles zero.
+
+    The momenta vanish there.
+    """
 
     energy: np.longdouble
     harmonic: bool
 
     def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
         Q = cosines.sum(axis=0)
-        energy = (equation.linear**2 * Q**2).sum() / 2 if self.harmonic else equation.potential(Q)
+        harmonic = (equation.linear**2 * Q**2).sum() / 2
+        energy = harmonic if self.harmonic else equation.potential(Q)
         return np.longdouble(energy / self.energy - 1)
 
-    def gradient(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats]:
+    def gradient(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
         Q = cosines.sum(axis=0)
         slope = equation.linear**2 * Q if self.harmonic else equation.potential_slope(Q)
         row = (slope / self.energy).astype(float)
-        return np.broadcast_to(row, cosines.shape) * equation.mask, np.zeros(len(shifts))
+        by_cosine = np.broadcast_to(row, cosines.shape) * equation.mask
+        return by_cosine, np.zeros(len(shifts))
 
 
 @dataclass(frozen=True)
 class Plane:
-    """A plane across the way of a family: tangent.(x - x_0) = distance in the variables (ln A of all seeds, shifts / scale)."""
+    """A plane across the way of a family: tangent.(x - x_0) = distance.
+
+    x are the variables (ln A of all seeds, shifts / scale).
+    """
 
     start: tuple[np.longdouble, ...]
     tangent: tuple[float, ...]
@@ -154,23 +196,38 @@ class Plane:
 
     def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
         x = plane_variables(equation, cosines, shifts, self.scales)
-        return np.longdouble(np.dot(np.array(self.tangent), x - np.array(self.start)) - self.distance)
+        gone = np.dot(np.array(self.tangent), x - np.array(self.start))
+        return np.longdouble(gone - self.distance)
 
-    def gradient(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> tuple[Floats, Floats]:
-        s = len(shifts)
-        A = cosines[equation.seed_rows, equation.seed_columns].astype(float)
+    def gradient(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
+        s, tangent = len(shifts), np.array(self.tangent)
+        A = seed_amplitudes(equation, cosines).astype(float)
         by_cosine = np.zeros(cosines.shape)
-        by_cosine[equation.seed_rows, equation.seed_columns] = np.array(self.tangent[:s]) / A
-        return by_cosine, np.array(self.tangent[s:]) / np.array(self.scales)
+        by_cosine[equation.seed_rows, equation.seed_columns] = tangent[:s] / A
+        by_shift = tangent[s:] / np.array(self.scales)
+        return by_cosine, by_shift
 
 
-def plane_variables(equation: InvarianceEquation, cosines: Floats, shifts: Floats, scales: Sequence[float]) -> Floats:
+def seed_amplitudes(equation: InvarianceEquation, cosines: Floats) -> Floats:
+    """A of every seed, with its sign; shape (s,)."""
+    return np.asarray(cosines[equation.seed_rows, equation.seed_columns])
+
+
+def plane_variables(
+    equation: InvarianceEquation, cosines: Floats, shifts: Floats, scales: Sequence[float]
+) -> Floats:
     """(ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
-    A = cosines[equation.seed_rows, equation.seed_columns]
-    return np.concatenate([np.log(np.abs(A)), shifts / np.array(scales)])
+    A = seed_amplitudes(equation, cosines)
+    scaled = shifts / np.array(scales)
+    return np.concatenate([np.log(np.abs(A)), scaled])
 
 
-def ratio_conditions(seeds: Sequence[int], ratio: Mapping[int, Any], *, energies: bool) -> list[Condition]:
+def ratio_conditions(
+    seeds: Sequence[int], ratio: Mapping[int, Any], *, energies: bool
+) -> list[Condition]:
     """The s - 1 conditions of a ratio of amplitudes, or of averaged mode energies, given by seed."""
     kind = EnergyRatio if energies else AmplitudeRatio
-    return [kind(i, float(ratio[q]) / float(ratio[seeds[0]])) for i, q in enumerate(seeds) if i]
+    first, *others = [float(ratio[q]) for q in seeds]
+    return [kind(i, other / first) for i, other in enumerate(others, 1)]

@@ -1,9 +1,11 @@
 """The invariance equation of a torus in Fourier space, its linear part exact and its products pseudo-spectral.
 
-Q_q(theta) = sum over nu of c_q[nu] cos(nu.theta) is a torus of the chain if for every mode and harmonic
-((nu.omega)^2 - Omega_q^2) c_q[nu] = N_q[nu], N the transform of alpha r^2 + beta r^3 with the stretches r of the bonds on points of
-all angles. Reflection of the chain shifts the angles by half turns: only c with q = nu.seeds (mod 2) are unknowns (for beta alone also
-nu of odd length), and half of the bonds are enough. All sums of one kind run in one precision, doubles or the machine's long doubles.
+Q_q(theta) = sum over nu of c_q[nu] cos(nu.theta) is a torus of the chain if for every mode and
+harmonic ((nu.omega)^2 - Omega_q^2) c_q[nu] = N_q[nu], N the transform of alpha r^2 + beta r^3
+with the stretches r of the bonds on points of all angles. Reflection of the chain shifts the
+angles by half turns: only c with q = nu.seeds (mod 2) are unknowns (for beta alone also nu of odd
+length), and half of the bonds are enough. All sums of one kind run in one precision, doubles or
+the machine's long doubles.
 """
 
 from __future__ import annotations
@@ -20,13 +22,16 @@ from numpy.typing import NDArray
 
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
+from symfpu.numbers.arithmetic import mpf
 
 Floats = NDArray[Any]
 Ints = NDArray[np.int64]
 
-OVERSAMPLING = 2.5  # size, in that of the largest chosen harmonics, up to which harmonics are told apart
+# size, in that of the largest chosen harmonics, up to which harmonics are told apart
+OVERSAMPLING = 2.5
 PORTION = 4_000_000  # values of all bonds transformed at once
-MOST_SLOPES, SHARE = 12, 0.1  # harmonics of the slopes that a sparse derivative holds, and their least height, relative
+# harmonics of the slopes that a sparse derivative holds, and their least height, relative
+MOST_SLOPES, SHARE = 12, 0.1
 MOST_ENTRIES = 40_000_000  # of a sparse derivative; 16 bytes each
 DIGITS = 30  # of the numbers that long doubles are made of
 
@@ -34,14 +39,15 @@ DIGITS = 30  # of the numbers that long doubles are made of
 def long(value: Any) -> np.longdouble:
     """A rational or an mpf as a long double."""
     with mpmath.workdps(DIGITS):
-        exact = mpmath.mpf(value.numerator) / value.denominator if isinstance(value, Fraction) else mpmath.mpf(value)
+        exact = mpf(value)
         return np.longdouble(mpmath.nstr(exact, DIGITS))
 
 
 def rational(value: np.longdouble) -> Fraction:
     """A long double as the number it is."""
     high = float(value)
-    return Fraction(high) + Fraction(float(value - np.longdouble(high)))
+    low = float(value - np.longdouble(high))
+    return Fraction(high) + Fraction(low)
 
 
 def _halves(value: Any) -> tuple[np.longdouble, np.longdouble]:
@@ -49,16 +55,19 @@ def _halves(value: Any) -> tuple[np.longdouble, np.longdouble]:
     high = long(value)
     with mpmath.workdps(2 * DIGITS):
         exact = rational(high)
-        return high, long(value - mpmath.mpf(exact.numerator) / exact.denominator)
+        low = value - mpmath.mpf(exact.numerator) / exact.denominator
+        return high, long(low)
 
 
 class Lattice:
-    """Fourier coefficients of even functions of s angles at chosen harmonics, and their values on a line of points through all angles.
+    """Even functions of s angles: coefficients at chosen harmonics, values on a line of points.
 
-    The points are theta_k = 2 pi k g / M: of the harmonic nu they see nu.g modulo M only, so that one transform of one variable
-    serves any number of angles (a rank-1 lattice). M and g are such that no two harmonics up to OVERSAMPLING / 2 times as large as
-    the chosen ones coincide: of a product, harmonics fold onto chosen ones only if both together are OVERSAMPLING times as large, as
-    small as what the choice leaves out. Even functions need half of the points, M/2 + 1.
+    The points are theta_k = 2 pi k g / M: of the harmonic nu they see nu.g modulo M only, so that
+    one transform of one variable serves any number of angles (a rank-1 lattice). M and g are such
+    that no two harmonics up to OVERSAMPLING / 2 times as large as the chosen ones coincide: of a
+    product, harmonics fold onto chosen ones only if both together are OVERSAMPLING times as
+    large, as small as what the choice leaves out. Even functions need half of the points, M/2 +
+    1.
     """
 
     def __init__(self, harmonics: Ints) -> None:
@@ -82,31 +91,40 @@ class Lattice:
         from scipy import fft
 
         spectrum = np.zeros((coefficients.shape[1], self.points), dtype=coefficients.dtype)
-        spectrum[:, self._place] = (coefficients * self._weight[:, None]).T
+        halved = coefficients * self._weight[:, None]
+        spectrum[:, self._place] = halved.T
         return np.asarray(fft.dct(spectrum, type=1, workers=WORKERS, overwrite_x=True))
 
     def coefficients(self, values: Floats) -> Floats:
         """Coefficients (H, m) of cosines of even functions given by values (m, points)."""
-        return np.asarray(self.spectrum(values)[:, self._place].T / self._weight[:, None])
+        chosen = self.spectrum(values)[:, self._place]
+        return np.asarray(chosen.T / self._weight[:, None])
 
     def spectrum(self, values: Floats) -> Floats:
         """Coefficients of exp(i nu.theta), by place; shape (m, points)."""
         from scipy import fft
 
-        return np.asarray(fft.dct(values, type=1, workers=WORKERS) / self.period)
+        sums = fft.dct(values, type=1, workers=WORKERS)
+        return np.asarray(sums / self.period)
 
 
 def dilated(harmonics: Ints, factor: float) -> Ints:
-    """All harmonics, of both signs, in the smallest cross-polytope about the given ones, enlarged by a factor."""
-    highest = np.maximum(np.abs(harmonics).max(axis=0), 1)
-    reach = factor * float((np.abs(harmonics) / highest).sum(axis=1).max())
+    """All harmonics, of both signs, in an enlarged cross-polytope about the given ones.
+
+    The smallest one that holds them, times the factor.
+    """
+    sizes = np.abs(harmonics)
+    highest = np.maximum(sizes.max(axis=0), 1)
+    reach = factor * float((sizes / highest).sum(axis=1).max())
     rows, left = np.zeros((1, 0), dtype=np.int64), np.array([reach])
     for k in highest.tolist():
         tops = np.floor(left * k + 1e-9).astype(np.int64)
         counts = 2 * tops + 1
         at = np.repeat(np.arange(len(rows)), counts)
-        numbers = np.arange(len(at)) - np.repeat(np.cumsum(counts) - counts, counts) - tops[at]
-        rows, left = np.column_stack([rows[at], numbers]), left[at] - np.abs(numbers) / k
+        before = np.repeat(np.cumsum(counts) - counts, counts)
+        numbers = np.arange(len(at)) - before - tops[at]
+        rows = np.column_stack([rows[at], numbers])
+        left = left[at] - np.abs(numbers) / k
     return np.asarray(rows)
 
 
@@ -116,57 +134,99 @@ def _known_lattice(content: bytes, s: int) -> tuple[int, tuple[int, ...]]:
 
     harmonics = np.frombuffer(content, dtype=np.int64).reshape(-1, s)
     draw = np.random.default_rng(0)  # any will do; the same every time
-    few = harmonics[draw.permutation(len(harmonics))[:FEW]]
+    few = harmonics[draw.permutation(len(harmonics))[:FIRST_TRIED]]
     size = float(len(harmonics))
     while True:
-        period = 2 * fft.next_fast_len(max(1, int(np.ceil(size / 2))), real=True)
-        for factor in draw.integers(1, period, TRIALS) if s > 1 else [1]:
+        half = fft.next_fast_len(max(1, int(np.ceil(size / 2))), real=True)
+        period = 2 * half
+        factors = draw.integers(1, period, TRIALS) if s > 1 else [1]
+        for factor in factors:
             generator = np.array([pow(int(factor), k, period) for k in range(s)])
-            if all(len(np.unique(part @ generator % period)) == len(part) for part in (few, harmonics)):
+            if _distinct(few, generator, period) and _distinct(harmonics, generator, period):
                 return period, tuple(generator.tolist())
         size *= 1.1
 
 
+def _distinct(harmonics: Ints, generator: Ints, period: int) -> bool:
+    """Whether nu.g modulo the period differs for all harmonics."""
+    places = harmonics @ generator % period
+    return len(np.unique(places)) == len(harmonics)
+
+
 def generated_lattice(harmonics: Ints) -> tuple[int, Ints]:
-    """A short period M and a generator g = (1, a, a^2, ...) for which nu.g modulo M differs for all given harmonics."""
-    period, generator = _known_lattice(np.ascontiguousarray(harmonics).tobytes(), harmonics.shape[1])
+    """A short period M and a generator g = (1, a, a^2, ...) that tell all given harmonics apart.
+
+    nu.g modulo M differs for all of them.
+    """
+    content = np.ascontiguousarray(harmonics).tobytes()
+    period, generator = _known_lattice(content, harmonics.shape[1])
     return period, np.array(generator)
 
 
 WORKERS = os.cpu_count() or 1
-FEW, TRIALS = 500, 60  # harmonics that are tried first, and generators of one period
+FIRST_TRIED, TRIALS = 500, 60  # harmonics that are tried first, and generators of one period
 
 
 class InvarianceEquation:
-    """The equations of one torus: divisors (H, N-1) and forces (H, N-1) of coefficients (H, N-1), unknown where `mask` holds."""
+    """The equations of one torus: divisors and forces of coefficients, all (H, N-1).
+
+    Coefficients are unknown where `mask` holds.
+    """
 
     def __init__(self, chain: Chain, seeds: Sequence[int], harmonics: Ints) -> None:
         self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
-        N, modes = chain.N, np.arange(1, chain.N)
         self.grid = Lattice(harmonics)
-        parity = (harmonics @ np.array(seeds))[:, None] % 2 == modes % 2
-        self.mask = parity if chain.alpha else parity & (harmonics.sum(axis=1) % 2 == 1)[:, None]
-        self.seed_rows = np.array([int(np.flatnonzero((harmonics == e).all(axis=1))[0]) for e in np.eye(len(seeds), dtype=np.int64)])
+        self.mask = self._mask()
+        units = np.eye(len(seeds), dtype=np.int64)
+        places = [np.flatnonzero((harmonics == e).all(axis=1)) for e in units]
+        self.seed_rows = np.array([int(place[0]) for place in places])
         self.seed_columns = np.array(seeds) - 1
-        half = np.arange((N + 1) // 2)
         with mpmath.workdps(2 * DIGITS):
-            linear = [chain.linear_frequency(q) for q in modes.tolist()]
-            cosines = np.array([long(mpmath.cospi(mpmath.mpf(k) / (2 * N))) for k in range(4 * N)])
-            norm = long(mpmath.sqrt(mpmath.mpf(2) / N))
+            linear = [chain.linear_frequency(q) for q in range(1, chain.N)]
         self.linear = np.array([long(w) for w in linear])
-        self._all_bonds = norm * self.linear[:, None] * cosines[np.outer(modes, 2 * np.arange(N) + 1) % (4 * N)]
-        self._stretch = self._all_bonds[:, : len(half)]
-        self._back = self._stretch * np.where(2 * half + 1 == N, 1, 2)
-        self._law = tuple(long(coupling) for coupling in chain.couplings)
-        high, low = (np.array(part) for part in zip(*map(_halves, linear), strict=True))
+        self._set_bonds()
+        self._set_divisors(linear)
+
+    def _mask(self) -> NDArray[np.bool_]:
+        """Where the selection rules let a mode carry a harmonic."""
+        modes = np.arange(1, self.chain.N)
+        of_harmonic = self.harmonics @ np.array(self.seeds) % 2
+        parity = of_harmonic[:, None] == modes % 2
+        if self.chain.alpha:
+            return np.asarray(parity)
+        odd = self.harmonics.sum(axis=1) % 2 == 1
+        return np.asarray(parity & odd[:, None])
+
+    def _set_bonds(self) -> None:
+        """Stretches by a unit of each mode, and the way back from half of the bonds."""
+        N, modes = self.chain.N, np.arange(1, self.chain.N)
         with mpmath.workdps(2 * DIGITS):
-            exact = [mpmath.fdot(nu, [linear[q - 1] for q in seeds]) for nu in harmonics.tolist()]
-        rate_high, rate_low = (np.array(part)[:, None] for part in zip(*map(_halves, exact), strict=True))
+            exact = [mpmath.cospi(mpmath.mpf(k) / (2 * N)) for k in range(4 * N)]
+            cosines = np.array([long(x) for x in exact])
+            norm = long(mpmath.sqrt(mpmath.mpf(2) / N))
+        angles = np.outer(modes, 2 * np.arange(N) + 1) % (4 * N)
+        self._all_bonds = norm * self.linear[:, None] * cosines[angles]
+        half = np.arange((N + 1) // 2)
+        self._stretch = self._all_bonds[:, : len(half)]
+        own_image = 2 * half + 1 == N
+        self._back = self._stretch * np.where(own_image, 1, 2)
+        self._law = tuple(long(coupling) for coupling in self.chain.couplings)
+
+    def _set_divisors(self, linear: Sequence[Any]) -> None:
+        """nu.Omega - Omega_q and nu.Omega + Omega_q from twice as many digits as they keep."""
+        of_seeds = [linear[q - 1] for q in self.seeds]
+        with mpmath.workdps(2 * DIGITS):
+            exact = [mpmath.fdot(nu, of_seeds) for nu in self.harmonics.tolist()]
+        high, low = (np.array(part) for part in zip(*map(_halves, linear), strict=True))
+        rates = zip(*map(_halves, exact), strict=True)
+        rate_high, rate_low = (np.array(part)[:, None] for part in rates)
         self._below = (rate_high - high) + (rate_low - low)
         self._above = (rate_high + high) + (rate_low + low)
 
     def divisors(self, shifts: Floats) -> Floats:
-        """(nu.omega)^2 - Omega_q^2 for omega = Omega + shifts of the seeds, all in long doubles; shape (H, N-1).
+        """(nu.omega)^2 - Omega_q^2 for omega = Omega + shifts of the seeds; shape (H, N-1).
+
+        All in long doubles.
 
         nu.Omega - Omega_q, where digits cancel, is taken from twice as many.
         """
@@ -175,55 +235,74 @@ class InvarianceEquation:
 
     def rates(self, shifts: Floats) -> Floats:
         """nu.omega in long doubles; shape (H,)."""
-        return np.asarray(self.harmonics @ (self.linear[self.seed_columns] + shifts))
+        omega = self.linear[self.seed_columns] + shifts
+        return np.asarray(self.harmonics @ omega)
 
     def _portions(self) -> list[slice]:
-        step, count = max(1, PORTION // self.grid.points), self._stretch.shape[1]
+        step = max(1, PORTION // self.grid.points)
+        count = self._stretch.shape[1]
         return [slice(j, j + step) for j in range(0, count, step)]
 
     def force(self, cosines: Floats) -> Floats:
-        """N_q[nu] of coefficients (H, N-1), in their precision; zero where the mask does not hold."""
+        """N_q[nu] of coefficients (H, N-1), in their precision.
+
+        Zero where the mask does not hold.
+        """
         kind = cosines.dtype
         law = tuple(coupling.astype(kind) for coupling in self._law)
         total = np.zeros(cosines.shape, dtype=kind)
         for part in self._portions():
-            r = self.grid.values(cosines @ self._stretch[:, part].astype(kind))
-            total += self.grid.coefficients(bonds.anharmonic_tension(law, r)) @ self._back[:, part].T.astype(kind)
+            there = self._stretch[:, part].astype(kind)
+            back = self._back[:, part].T.astype(kind)
+            r = self.grid.values(cosines @ there)
+            tension = bonds.anharmonic_tension(law, r)
+            total += self.grid.coefficients(tension) @ back
         return np.asarray(total * self.mask)
 
     def potential(self, Q: Floats) -> np.longdouble:
         """The potential energy of mode coordinates (N-1,), by all bonds."""
-        return np.longdouble(bonds.potential(self._law, Q @ self._all_bonds).sum())
+        each = bonds.potential(self._law, Q @ self._all_bonds)
+        return np.longdouble(each.sum())
 
     def potential_slope(self, Q: Floats) -> Floats:
         """Its gradient; shape (N-1,)."""
-        return np.asarray(self._all_bonds @ bonds.tension(self._law, Q @ self._all_bonds))
+        tension = bonds.tension(self._law, Q @ self._all_bonds)
+        return np.asarray(self._all_bonds @ tension)
 
     def slopes(self, cosines: Floats) -> Floats:
         """V''(r) - 1 on the lattice, in doubles; shape (bonds, points)."""
         law = self.chain.law()
         result = np.empty((self._stretch.shape[1], self.grid.points))
         for part in self._portions():
-            r = self.grid.values(np.asarray(cosines @ self._stretch[:, part]).astype(float))
+            stretches = np.asarray(cosines @ self._stretch[:, part])
+            r = self.grid.values(stretches.astype(float))
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
 
     def force_change(self, slopes: Floats, change: Floats) -> Floats:
-        """The derivative of the force along a change of the coefficients, in doubles; shapes (H, N-1)."""
+        """The derivative of the force along a change of the coefficients, in doubles.
+
+        Shapes (H, N-1).
+        """
         total = np.zeros(change.shape)
         for part in self._portions():
-            d = self.grid.values(change @ self._stretch[:, part].astype(float))
-            total += self.grid.coefficients(slopes[part] * d) @ self._back[:, part].T.astype(float)
+            there = self._stretch[:, part].astype(float)
+            back = self._back[:, part].T.astype(float)
+            d = self.grid.values(change @ there)
+            total += self.grid.coefficients(slopes[part] * d) @ back
         return np.asarray(total * self.mask)
 
     def block(self, slopes: Floats, rows: Ints, columns: Ints) -> Floats:
-        """The derivative of the force between chosen unknowns (row of the harmonic, column of the mode); shape (m, m).
+        """The derivative of the force between chosen unknowns; shape (m, m).
 
-        Of a unit of cos(nu'.theta) the coefficient at nu is slope[nu - nu'] + slope[nu + nu'], without the second for nu = 0.
+        rows, columns : of harmonic and mode. Of a unit of cos(nu'.theta) the coefficient at nu is slope[nu - nu'] + slope[nu + nu'],
+        without the second for nu = 0.
         """
-        spectrum = np.concatenate([self.grid.spectrum(slopes[part]) for part in self._portions()]).T.copy()
-        nu, still = self.harmonics[rows], (self.harmonics[rows] == 0).all(axis=1)
-        out, back = self._stretch.astype(float)[columns], self._back.astype(float)[columns]
+        spectrum = self._spectrum(slopes).T.copy()
+        nu = self.harmonics[rows]
+        still = (nu == 0).all(axis=1)
+        out = self._stretch.astype(float)[columns]
+        back = self._back.astype(float)[columns]
         along = nu @ self.grid.generator
         matrix = np.empty((len(rows), len(rows)))
         for a in range(len(rows)):
@@ -234,42 +313,70 @@ class InvarianceEquation:
             matrix[a] = both @ back[a]
         return matrix
 
+    def _spectrum(self, slopes: Floats) -> Floats:
+        """Coefficients of the slopes of all bonds, by place; shape (bonds, points)."""
+        return np.concatenate([self.grid.spectrum(slopes[part]) for part in self._portions()])
+
     def sparse_derivative(self, slopes: Floats) -> Any:
-        """The derivative of the force by the largest harmonics of the slopes alone, as a sparse matrix between all unknowns (in the
-        order of the mask)."""
+        """The derivative of the force by the largest harmonics of the slopes alone.
+
+        A sparse matrix between all unknowns, in the order of the mask.
+        """
         from scipy import sparse
 
-        spectrum = np.concatenate([self.grid.spectrum(slopes[part]) for part in self._portions()])
+        spectrum = self._spectrum(slopes)
+        chosen = self._largest_slopes(spectrum)
+        unknowns = int(self.mask.sum())
+        number = np.full(self.mask.shape, -1, dtype=np.int32)
+        number[self.mask] = np.arange(unknowns)
+        both_signs = np.unique(np.concatenate([chosen, -chosen]), axis=0)
+        parts = [self._coupled_by(kappa, spectrum, number) for kappa in both_signs]
+        values, i, j = (np.concatenate(x) for x in zip(*parts, strict=True))
+        return sparse.csr_matrix((values, (i, j)), shape=(unknowns, unknowns))
+
+    def _largest_slopes(self, spectrum: Floats) -> Ints:
+        """The harmonics of the slopes that a sparse derivative holds."""
         heights = np.abs(spectrum).max(axis=0)
         nu = self.harmonics
         height = heights[self.grid.entries(nu)]
-        most = min(MOST_SLOPES, max(1, MOST_ENTRIES // (int(self.mask.sum()) * 4)))  # two modes a row and sign
-        chosen = nu[np.argsort(-height, kind="stable")[:most]]
-        chosen = chosen[heights[self.grid.entries(chosen)] > SHARE * heights.max()]
-        number = np.full(self.mask.shape, -1, dtype=np.int32)
-        number[self.mask] = np.arange(int(self.mask.sum()))
-        parts = []
-        for kappa in np.unique(np.concatenate([chosen, -chosen]), axis=0):
-            coupling = (self._back.astype(float) * spectrum[:, self.grid.entries(kappa)]) @ self._stretch.astype(float).T
-            at, to = np.nonzero(np.abs(coupling) > 1e-3 * np.abs(coupling).max())
-            rows, columns = self._shifted(kappa)
-            still_row, still_column = (nu[rows] == 0).all(axis=1), (nu[columns] == 0).all(axis=1)
-            weight = np.where(still_row, 0.5, 1.0) * np.where(still_column, 2.0, 1.0)
-            values = weight[:, None] * coupling[at, to]
-            i, j = number[rows[:, None], at], number[columns[:, None], to]
-            inside = (i >= 0) & (j >= 0)
-            parts.append((values[inside], i[inside], j[inside]))
-        values, i, j = (np.concatenate(x) for x in zip(*parts, strict=True))
-        return sparse.csr_matrix((values, (i, j)), shape=(int(self.mask.sum()),) * 2)
+        entries = int(self.mask.sum()) * 4  # two modes a row and sign
+        most = min(MOST_SLOPES, max(1, MOST_ENTRIES // entries))
+        order = np.argsort(-height, kind="stable")
+        chosen = nu[order[:most]]
+        tall = heights[self.grid.entries(chosen)] > SHARE * heights.max()
+        return np.asarray(chosen[tall])
+
+    def _coupled_by(
+        self, kappa: Ints, spectrum: Floats, number: NDArray[np.int32]
+    ) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
+        """Entries of the derivative by one harmonic of the slopes: values, rows, columns."""
+        nu = self.harmonics
+        slope = spectrum[:, self.grid.entries(kappa)]
+        coupling = (self._back.astype(float) * slope) @ self._stretch.astype(float).T
+        sizes = np.abs(coupling)
+        at, to = np.nonzero(sizes > 1e-3 * sizes.max())
+        rows, columns = self._shifted(kappa)
+        still_row = (nu[rows] == 0).all(axis=1)
+        still_column = (nu[columns] == 0).all(axis=1)
+        weight = np.where(still_row, 0.5, 1.0) * np.where(still_column, 2.0, 1.0)
+        values = weight[:, None] * coupling[at, to]
+        i, j = number[rows[:, None], at], number[columns[:, None], to]
+        inside = (i >= 0) & (j >= 0)
+        return values[inside], i[inside], j[inside]
 
     def _shifted(self, kappa: Ints) -> tuple[Ints, Ints]:
         """Rows of harmonics nu and of nu - kappa (or its negative), where both are chosen."""
-        base = 4 * np.abs(self.harmonics).max(axis=0) + 3
+        highest = np.abs(self.harmonics).max(axis=0)
+        base = 4 * highest + 3
         weights = np.cumprod(np.append(base[1:], 1)[::-1])[::-1]
         shifted = self.harmonics - kappa
-        lead = shifted[np.arange(len(shifted)), np.argmax(shifted != 0, axis=1)]
-        keys, wanted = self.harmonics @ weights, np.where(lead < 0, -1, 1) * (shifted @ weights)
+        first_nonzero = np.argmax(shifted != 0, axis=1)
+        lead = shifted[np.arange(len(shifted)), first_nonzero]
+        sign = np.where(lead < 0, -1, 1)
+        keys, wanted = self.harmonics @ weights, sign * (shifted @ weights)
         order = np.argsort(keys)
-        place = order[np.clip(np.searchsorted(keys[order], wanted), 0, len(keys) - 1)]
-        rows = np.flatnonzero((keys[place] == wanted) & (np.abs(shifted) <= np.abs(self.harmonics).max(axis=0)).all(axis=1))
+        nearest = np.searchsorted(keys[order], wanted)
+        place = order[np.clip(nearest, 0, len(keys) - 1)]
+        within = (np.abs(shifted) <= highest).all(axis=1)
+        rows = np.flatnonzero((keys[place] == wanted) & within)
         return rows, place[rows]

@@ -1,4 +1,6 @@
-"""q-tori by Newton's method: tori that solve the equations of motion to rounding, where their series only approximate them."""
+"""q-tori by Newton's method: tori that solve the equations of motion to rounding, where their
+series only approximate them.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +18,29 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import Number, exact
-from symfpu.refinement.conditions import Amplitude, Condition, Energy, FrequencyShift, ratio_conditions
-from symfpu.refinement.invariance import DIGITS, OVERSAMPLING, Floats, Ints, InvarianceEquation, long, rational
+from symfpu.refinement.conditions import (
+    Amplitude,
+    Condition,
+    Energy,
+    FrequencyShift,
+    ratio_conditions,
+    seed_amplitudes,
+)
+from symfpu.refinement.invariance import (
+    DIGITS,
+    OVERSAMPLING,
+    Floats,
+    Ints,
+    InvarianceEquation,
+    long,
+    rational,
+)
 from symfpu.refinement.newton import Iterate, NewtonStep, Report, newton
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
-TOLERANCE = 1e-13  # residual of the equations of motion, relative to the largest acceleration, that ends the search for harmonics
+# residual of the equations of motion, relative to the largest acceleration, that ends the search
+# for harmonics
+TOLERANCE = 1e-13
 KEPT = 1e-18  # of the largest coefficient: smaller ones of a guess are left out
 MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
 LARGEST_GRID = 60_000_000  # values of half of the bonds; arrays of 480 MB
@@ -33,7 +52,9 @@ LEAST = Fraction(1, 10**40)  # of amplitudes and coefficients
 
 @dataclass(frozen=True)
 class NearResonance:
-    """A small divisor (nu.omega)^2 - Omega_q^2 of a torus, and the coefficient c_q[nu] it stands under."""
+    """A small divisor (nu.omega)^2 - Omega_q^2 of a torus, and the coefficient c_q[nu] it stands
+    under.
+    """
 
     mode: int
     harmonic: tuple[int, ...]
@@ -41,7 +62,9 @@ class NearResonance:
     coefficient: float
 
     def __repr__(self) -> str:
-        return f"{self.divisor:.2g} at mode {self.mode}, harmonic ({','.join(map(str, self.harmonic))}), coefficient {self.coefficient:.2g}"
+        harmonic = ",".join(map(str, self.harmonic))
+        place = f"mode {self.mode}, harmonic ({harmonic})"
+        return f"{self.divisor:.2g} at {place}, coefficient {self.coefficient:.2g}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,13 +99,17 @@ class RefinedTorus(QuasiPeriodic):
     digits: int | None = None
 
     def __repr__(self) -> str:
+        chain = repr(self.chain)[6:-1]
         amplitudes = ", ".join(f"A_{q}={a:.13g}" for q, a in self.amplitudes.items())
-        rates = ", ".join(f"omega_{q}={float(w):.16g}" for q, w in zip(self.seeds, self.frequencies, strict=True))
+        by_seed = zip(self.seeds, self.frequencies, strict=True)
+        rates = ", ".join(f"omega_{q}={float(w):.16g}" for q, w in by_seed)
+        energy = float(self.energy())
         doubts = "".join(f"; {warning}" for warning in self.warnings)
         nearest = f", smallest divisor {self.near_resonances[0]}" if self.near_resonances else ""
+        found = f"{len(self.harmonics)} harmonics, residual {self.residual():.2g}"
         return (
-            f"RefinedTorus({repr(self.chain)[6:-1]}, {rates}, {amplitudes}, H={float(self.energy()):.12g}, "
-            f"{len(self.harmonics)} harmonics, residual {self.residual():.2g}{nearest}{doubts})"
+            f"RefinedTorus({chain}, {rates}, {amplitudes}, H={energy:.12g}, "
+            f"{found}{nearest}{doubts})"
         )
 
 
@@ -95,13 +122,14 @@ class NoTorus(SymfpuError):
 
     def __init__(self, reason: str, iterate: RefinedTorus, residual: float) -> None:
         self.reason, self.iterate, self.residual = reason, iterate, residual
-        super().__init__(
-            f"no torus of the seeds {iterate.seeds}: {reason}; the best iterate leaves {residual:.2g} of the largest acceleration; "
-            f"start from a torus nearer to it, such as one of less energy"
-        )
+        left = f"the best iterate leaves {residual:.2g} of the largest acceleration"
+        advice = "start from a torus nearer to it, such as one of less energy"
+        super().__init__(f"no torus of the seeds {iterate.seeds}: {reason}; {left}; {advice}")
 
 
-def refine(torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, report: Report = lambda _: None) -> RefinedTorus:
+def refine(
+    torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, report: Report = lambda _: None
+) -> RefinedTorus:
     """The torus with the same frequencies that solves the equations of motion, with a given one as the guess.
 
     torus : of a series, resummed, or any other; its phases (radians) are kept.
@@ -125,7 +153,11 @@ def refine(torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, report: Report
 
 
 def refine_at_amplitudes(
-    torus: QuasiPeriodic, amplitudes: Mapping[int, Number], *, tolerance: float = TOLERANCE, report: Report = lambda _: None
+    torus: QuasiPeriodic,
+    amplitudes: Mapping[int, Number],
+    *,
+    tolerance: float = TOLERANCE,
+    report: Report = lambda _: None,
 ) -> RefinedTorus:
     """The torus with the given amplitude of every seed; its frequencies are found.
 
@@ -144,7 +176,9 @@ def refine_at_amplitudes(
     """
     _require_torus(torus)
     values = [long(a) for a in _by_seed("amplitudes", amplitudes, torus, signed=True).values()]
-    return refined_torus(torus, [Amplitude(i, a) for i, a in enumerate(values)], tolerance=tolerance, report=report)
+    return refined_torus(
+        torus, [Amplitude(i, a) for i, a in enumerate(values)], tolerance=tolerance, report=report
+    )
 
 
 def refine_at_energy(
@@ -178,90 +212,147 @@ def refine_at_energy(
     _require_torus(torus)
     value = exact(energy, "energy")
     if value <= 0:
-        raise InputError("energy", energy, "a positive number", "take one near the energy of the torus")
+        raise InputError(
+            "energy", energy, "a positive number", "take one near the energy of the torus"
+        )
     if not isinstance(harmonic, (bool, np.bool_)):
-        raise InputError("harmonic", harmonic, "True for sum E_q, False for H", "say which energy is meant")
+        raise InputError(
+            "harmonic", harmonic, "True for sum E_q, False for H", "say which energy is meant"
+        )
     if amplitude_ratio is not None and energy_ratio is not None:
-        raise InputError("energy_ratio", energy_ratio, "only one of amplitude_ratio and energy_ratio", "leave one out")
+        raise InputError(
+            "energy_ratio",
+            energy_ratio,
+            "only one of amplitude_ratio and energy_ratio",
+            "leave one out",
+        )
     if energy_ratio is not None:
         ratio = _by_seed("energy_ratio", energy_ratio, torus, signed=False)
     elif amplitude_ratio is not None:
         ratio = _by_seed("amplitude_ratio", amplitude_ratio, torus, signed=True)
     else:
-        ratio = {q: exact(a, "amplitude") for q, a in zip(torus.seeds, _seed_amplitudes(torus), strict=True)}
+        ratio = {
+            q: exact(a, "amplitude")
+            for q, a in zip(torus.seeds, _seed_amplitudes(torus), strict=True)
+        }
     numbers = {q: float(x) for q, x in ratio.items()}
-    conditions = [Energy(long(value), bool(harmonic)), *ratio_conditions(torus.seeds, numbers, energies=energy_ratio is not None)]
+    conditions = [
+        Energy(long(value), bool(harmonic)),
+        *ratio_conditions(torus.seeds, numbers, energies=energy_ratio is not None),
+    ]
     return refined_torus(torus, conditions, tolerance=tolerance, report=report)
 
 
 def _require_torus(torus: object) -> None:
     if not isinstance(torus, QuasiPeriodic):
-        raise InputError("torus", type(torus).__name__, "a torus", "pass what solve_amplitudes, resum or refine gave")
+        raise InputError(
+            "torus",
+            type(torus).__name__,
+            "a torus",
+            "pass what solve_amplitudes, resum or refine gave",
+        )
 
 
-def _by_seed(argument: str, values: object, torus: QuasiPeriodic, *, signed: bool) -> dict[int, Fraction]:
+def _by_seed(
+    argument: str, values: object, torus: QuasiPeriodic, *, signed: bool
+) -> dict[int, Fraction]:
     """A number for each seed, not 0 and not beyond doubles; positive unless signed."""
-    allowed = f"a {'number that is not 0' if signed else 'positive number'} for each of the seeds {torus.seeds}, by seed"
+    kind = "number that is not 0" if signed else "positive number"
+    allowed = f"a {kind} for each of the seeds {torus.seeds}, by seed"
     if not isinstance(values, Mapping) or set(values) != set(torus.seeds):
-        raise InputError(argument, values, allowed, "write it as {seed: number} and name every seed")
+        advice = "write it as {seed: number} and name every seed"
+        raise InputError(argument, values, allowed, advice)
     numbers = {q: exact(values[q], f"{argument}, {q}") for q in torus.seeds}
-    if not all(LEAST < (abs(x) if signed else x) < 1 / LEAST for x in numbers.values()):
-        raise InputError(argument, dict(values), f"{allowed}, of moderate size", "leave out a seed that is at rest")
+    sizes = [abs(x) if signed else x for x in numbers.values()]
+    if not all(LEAST < size < 1 / LEAST for size in sizes):
+        advice = "leave out a seed that is at rest"
+        raise InputError(argument, dict(values), f"{allowed}, of moderate size", advice)
     return numbers
 
 
 def _seed_amplitudes(torus: QuasiPeriodic) -> list[float]:
-    rows = {nu: i for i, nu in enumerate(map(tuple, torus.harmonics.tolist()))}
-    units = [tuple(int(i == j) for j in range(len(torus.seeds))) for i in range(len(torus.seeds))]
-    return [float(torus.cosines[rows[e], q - 1]) for e, q in zip(units, torus.seeds, strict=True)]
+    rows = {tuple(nu): i for i, nu in enumerate(torus.harmonics.tolist())}
+    units = unit_harmonics(len(torus.seeds))
+    places = [(rows[e], q - 1) for e, q in zip(units, torus.seeds, strict=True)]
+    return [float(torus.cosines[place]) for place in places]
+
+
+def unit_harmonics(s: int) -> list[tuple[int, ...]]:
+    """e_1 .. e_s."""
+    return [tuple(row) for row in np.eye(s, dtype=np.int64).tolist()]
 
 
 def refined_torus(
-    torus: QuasiPeriodic, conditions: Sequence[Condition], *, tolerance: float = TOLERANCE, report: Report = lambda _: None
+    torus: QuasiPeriodic,
+    conditions: Sequence[Condition],
+    *,
+    tolerance: float = TOLERANCE,
+    report: Report = lambda _: None,
 ) -> RefinedTorus:
-    """The torus near a guess that meets as many conditions as it has angles, with as many harmonics as the tolerance needs."""
+    """The torus near a guess that meets as many conditions as it has angles.
+
+    With as many harmonics as the tolerance needs.
+    """
     _require_torus(torus)
     if not isinstance(tolerance, Real) or not 0 < tolerance < 1:
         raise InputError("tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more")
     chain, seeds = torus.chain, torus.seeds
-    with np.errstate(over="ignore"):
-        coefficients = torus.cosines.astype(float)
-    largest = float(np.abs(coefficients).max(initial=0))
-    if not LEAST < largest < 1 / LEAST:  # also where it is not a number
-        raise InputError("torus", f"coefficients up to {largest:.3g}", "coefficients not all 0 and of moderate size", "take another guess")
-    known = _rows(torus.harmonics, coefficients)
+    known = _rows(torus.harmonics, _moderate_coefficients(torus))
     shifts = shifts_of(torus)
     before = np.inf
     for attempt in range(ROUNDS):
-        harmonics, full = chosen_harmonics(known, chain, len(seeds), tolerance * MARGIN / 10**attempt)
+        least = tolerance * MARGIN / 10**attempt
+        harmonics, full = chosen_harmonics(known, chain, len(seeds), least)
         equation = InvarianceEquation(chain, seeds, harmonics)
-        cosines = np.array([known.get(nu, np.zeros(chain.N - 1)) for nu in map(tuple, harmonics.tolist())], dtype=np.longdouble)
+        none = np.zeros(chain.N - 1)
+        rows = [known.get(tuple(nu), none) for nu in harmonics.tolist()]
+        cosines = np.array(rows, dtype=np.longdouble)
         report(f"{len(harmonics)} harmonics, {equation.grid.points} points")
-        found = newton(equation, conditions, np.where(equation.mask, cosines, 0), shifts, report)
+        guess = np.where(equation.mask, cosines, 0)
+        found = newton(equation, conditions, guess, shifts, report)
         refined = _result(torus, equation, found)
         residual = refined.residual()
         if found.failure:
             raise NoTorus(found.failure, refined, residual)
         report(f"residual {residual:.1e} between the grid points")
-        if residual <= tolerance or full or residual > before / 2:
+        if residual <= tolerance:
+            return refined
+        if full or residual > before / 2:
             reason = "as many harmonics as fit" if full else "more harmonics change nothing"
-            warning = f"{reason} leave a residual of {residual:.2g}, above the tolerance {tolerance:.0e}"
-            return refined if residual <= tolerance else replace(refined, warnings=(warning,))
+            left = f"leave a residual of {residual:.2g}, above the tolerance {tolerance:.0e}"
+            return replace(refined, warnings=(f"{reason} {left}",))
         before, shifts = residual, found.shifts
         known = _rows(harmonics, np.asarray(found.cosines))
-    return replace(refined, warnings=(f"the residual is {residual:.2g} after {ROUNDS} choices of harmonics",))
+    warning = f"the residual is {residual:.2g} after {ROUNDS} choices of harmonics"
+    return replace(refined, warnings=(warning,))
+
+
+def _moderate_coefficients(torus: QuasiPeriodic) -> Floats:
+    """The coefficients in doubles; InputError where they are all 0 or of no moderate size."""
+    with np.errstate(over="ignore"):
+        coefficients = torus.cosines.astype(float)
+    largest = float(np.abs(coefficients).max(initial=0))
+    if not LEAST < largest < 1 / LEAST:  # also where it is not a number
+        given = f"coefficients up to {largest:.3g}"
+        allowed = "coefficients not all 0 and of moderate size"
+        raise InputError("torus", given, allowed, "take another guess")
+    return coefficients
 
 
 def shifts_of(torus: QuasiPeriodic) -> Floats:
     """omega - Omega of the seeds in long doubles; shape (s,)."""
     with mpmath.workdps(2 * DIGITS):
         linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
-        exact_ = [mpmath.mpf(w.numerator) / w.denominator - x for w, x in zip(torus.frequencies, linear, strict=True)]
-    return np.array([long(x) for x in exact_])
+        chosen = [mpmath.mpf(w.numerator) / w.denominator for w in torus.frequencies]
+        shifts = [w - x for w, x in zip(chosen, linear, strict=True)]
+    return np.array([long(shift) for shift in shifts])
 
 
 def _rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats]:
-    """Coefficients by harmonic, the first number that is not 0 positive; a small part left out."""
+    """Coefficients by harmonic, the first number that is not 0 positive.
+
+    A small part left out.
+    """
     largest = np.abs(cosines).max()
     rows: dict[tuple[int, ...], Floats] = {}
     for nu, row in zip(harmonics.tolist(), cosines, strict=True):
@@ -271,56 +362,72 @@ def _rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats]:
     return rows
 
 
-def chosen_harmonics(known: Mapping[tuple[int, ...], Floats], chain: Chain, s: int, tolerance: float) -> tuple[Ints, bool]:
+def chosen_harmonics(
+    known: Mapping[tuple[int, ...], Floats], chain: Chain, s: int, tolerance: float
+) -> tuple[Ints, bool]:
     """Harmonics whose coefficients are expected above the tolerance, relative; and whether more would not fit.
 
-    ln |c[nu]| is fitted by a - sum w_i |nu_i|; all harmonics within the reach of the fit are taken, one of each pair +-nu.
+    ln |c[nu]| is fitted by a - sum w_i |nu_i|; all harmonics within the reach of the fit are
+    taken, one of each pair +-nu.
     """
     size = {nu: float(np.abs(row).max()) for nu, row in known.items()}
     largest = max(size.values())
     used = {nu: x for nu, x in size.items() if x > 1e-16 * largest}
     table = np.array([[1, *(-abs(n) for n in nu)] for nu in used], dtype=float)
     heights = np.log([x / largest for x in used.values()])
-    solution = np.linalg.lstsq(table, heights, rcond=None)[0] if len(used) > s + 1 else np.full(s + 1, 3.0)
+    determined = len(used) > s + 1
+    solution = np.full(s + 1, 3.0)
+    if determined:
+        solution = np.linalg.lstsq(table, heights, rcond=None)[0]
     weights = np.clip(solution[1:], 0.2, 12.0)
-    offset = float(np.quantile(heights - table[:, 1:] @ weights, 0.98)) if len(used) > s + 1 else 0.0
-    reach, full = max(-np.log(tolerance) + max(offset, 0.0), 3.5 * weights.max()), False
+    above = heights - table[:, 1:] @ weights
+    offset = float(np.quantile(above, 0.98)) if determined else 0.0
+    reach = max(-np.log(tolerance) + max(offset, 0.0), 3.5 * weights.max())
+    full = False
     while not _fits(weights, reach, chain):
         reach, full = 0.95 * reach, True
-    inside = list(_inside(tuple(weights.tolist()), reach))
-    units = [tuple(int(i == j) for j in range(s)) for i in range(s)]
-    return np.array(sorted({*inside, *units}), dtype=np.int64), full
+    inside = _inside(tuple(weights.tolist()), reach)
+    chosen = sorted({*inside, *unit_harmonics(s)})
+    return np.array(chosen, dtype=np.int64), full
 
 
 def _fits(weights: Floats, reach: float, chain: Chain) -> bool:
-    """Whether half of the bonds on the points of a lattice, about twice the cross-polytope of harmonics, and the harmonics fit."""
-    s = len(weights)
+    """Whether the harmonics fit, and half of the bonds on the points of their lattice.
+
+    The lattice has about twice as many points as the cross-polytope of harmonics.
+    """
+    s, half = len(weights), (chain.N + 1) // 2
     polytope = float(np.prod(2 * reach / weights + 1)) / math.factorial(s)
     points = 1.2 * OVERSAMPLING**s / 2**s * polytope
-    return bool(points * ((chain.N + 1) // 2) <= LARGEST_GRID and polytope / 2 <= MOST_HARMONICS)
+    return bool(points * half <= LARGEST_GRID and polytope / 2 <= MOST_HARMONICS)
 
 
-def _inside(weights: tuple[float, ...], reach: float, *, positive: bool = True) -> Iterator[tuple[int, ...]]:
-    """All harmonics with sum w_i |nu_i| <= reach, of which the first number that is not 0 is positive."""
+def _inside(
+    weights: tuple[float, ...], reach: float, *, positive: bool = True
+) -> Iterator[tuple[int, ...]]:
+    """All harmonics with sum w_i |nu_i| <= reach, the first number that is not 0 positive."""
     top = int(reach / weights[0])
-    for n in range(0 if positive else -top, top + 1):
-        rest = reach - weights[0] * abs(n)
+    lowest = 0 if positive else -top
+    for n in range(lowest, top + 1):
         if len(weights) == 1:
             yield (n,)
-        else:
-            yield from ((n, *others) for others in _inside(weights[1:], rest, positive=positive and n == 0))
+            continue
+        rest = reach - weights[0] * abs(n)
+        for others in _inside(weights[1:], rest, positive=positive and n == 0):
+            yield n, *others
 
 
 def _result(torus: QuasiPeriodic, equation: InvarianceEquation, found: Iterate) -> RefinedTorus:
     with mpmath.workdps(2 * DIGITS):
         linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
-        frequencies = [_fraction(w + _mpf(shift)) for w, shift in zip(linear, found.shifts, strict=True)]
-    amplitudes = found.cosines[equation.seed_rows, equation.seed_columns]
+        pairs = zip(linear, found.shifts, strict=True)
+        frequencies = [_fraction(w + _mpf(shift)) for w, shift in pairs]
+    amplitudes = map(float, seed_amplitudes(equation, found.cosines))
     return RefinedTorus(
         chain=torus.chain,
         seeds=torus.seeds,
         frequencies=tuple(frequencies),
-        amplitudes=dict(zip(torus.seeds, map(float, amplitudes), strict=True)),
+        amplitudes=dict(zip(torus.seeds, amplitudes, strict=True)),
         phases={q: float(phi) for q, phi in torus.phases.items()},
         harmonics=equation.harmonics,
         cosines=found.cosines.astype(float),
@@ -339,12 +446,15 @@ def _fraction(value: Any) -> Fraction:
 
 
 def _near_resonances(equation: InvarianceEquation, found: Iterate) -> tuple[NearResonance, ...]:
-    divisors = np.where(equation.mask, equation.divisors(found.shifts).astype(float), np.inf)
+    every = equation.divisors(found.shifts).astype(float)
+    divisors = np.where(equation.mask, every, np.inf)
     divisors[equation.seed_rows, equation.seed_columns] = np.inf
     order = np.argsort(np.abs(divisors), axis=None)[:SHOWN_DIVISORS]
     rows, columns = np.unravel_index(order, divisors.shape)
-    return tuple(
-        NearResonance(int(q) + 1, tuple(equation.harmonics[r].tolist()), float(divisors[r, q]), float(found.cosines[r, q]))
-        for r, q in zip(rows, columns, strict=True)
-        if np.isfinite(divisors[r, q])
-    )
+    nearest = []
+    for r, q in zip(rows, columns, strict=True):
+        if np.isfinite(divisors[r, q]):
+            harmonic = tuple(equation.harmonics[r].tolist())
+            divisor, coefficient = float(divisors[r, q]), float(found.cosines[r, q])
+            nearest.append(NearResonance(int(q) + 1, harmonic, divisor, coefficient))
+    return tuple(nearest)
