@@ -192,6 +192,7 @@ def test_a_resonance_is_named_and_located():
     assert "resonance of mode 17 with harmonic (15) at H = 0.0392110" in repr(event)
 
 
+@pytest.mark.long
 def test_a_resonance_of_two_frequencies_is_located():
     """|12 omega_1 - 8 omega_2| = Omega_4 on the torus with the energy of the event, and not on its neighbours."""
     found = family(WIDE, (1, 2), "0.45", from_energy="0.25", tolerance=1e-10)
@@ -214,6 +215,7 @@ def test_a_resonance_between_the_first_members_is_found():
     assert found.events[0].energy == pytest.approx(later.energy, rel=LOCATED)
 
 
+@pytest.mark.long
 def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
     """Where Newton's method finds no torus, or another one, the two members tell no more than that it lies between them."""
     other = resonant().members[0].torus
@@ -236,6 +238,7 @@ def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
         assert "(interpolated)" in repr(event)
 
 
+@pytest.mark.long
 def test_a_family_that_comes_back_to_rest_ends_there():
     """Mode 11 takes part on the way back, so that members of less energy and amplitude than the first are not yet those of the linear
     limit; the last one is: the orbit of the same amplitude that harmonic balance finds from there."""
