@@ -81,6 +81,7 @@ program pair
 end program pair
 """
 
+
 @pytest.fixture(scope="module", params=[pytest.param(name, marks=[pytest.mark.long] * name.endswith("long")) for name in FORMS])
 def form(request):
     """A case, the program of its series, its source, and whether the frequencies are a required argument."""

@@ -18,7 +18,7 @@ for limit in (0, 10**9):
 programs += [program_of(universal(UNIVERSAL[name]), UNIVERSAL[name]) for name in ("wrapped, order 1", "mixed, one mode")]
 for name, language in LANGUAGES.items():
     for program in programs:
-        print(name, hashlib.sha256(language.emit_series(program).encode()).hexdigest())
+        print(name, hashlib.sha256(language.series(program).encode()).hexdigest())
 """
 
 
