@@ -3,6 +3,7 @@
 import ctypes
 import subprocess
 from dataclasses import replace
+from functools import cache
 
 import mpmath
 import numpy as np
@@ -34,6 +35,7 @@ CASES = {
 }
 
 
+@cache
 def case(name, digits=DIGITS):
     """A case with amplitudes and phases drawn once."""
     chain, seeds, frequencies, order = CASES[name]

@@ -107,6 +107,11 @@ def torus(request):
     return made(request.param)
 
 
+@pytest.fixture(scope="module")
+def text(torus):
+    return source(torus, "example")
+
+
 @pytest.fixture
 def build(tmp_path):
     """Compiles texts, in order, without a word from the compiler; gives a function that runs the program."""
@@ -128,8 +133,8 @@ def numbers(done):
     return np.array(done.stdout.split(), dtype=float)
 
 
-def test_the_self_test_passes(build, torus):
-    done = build(source(torus, "example"), flags=["-DEXAMPLE_SELF_TEST"])()
+def test_the_self_test_passes(build, text):
+    done = build(text, flags=["-DEXAMPLE_SELF_TEST"])()
     assert done.returncode == 0, done.stderr
     deviations = [float(x) for x in re.findall(r"\d\.\d+E[+-]\d+", done.stdout)]
     assert len(deviations) == 3
@@ -146,7 +151,7 @@ def test_the_self_test_fails_for_a_wrong_coefficient(build):
     assert "above" in done.stderr
 
 
-def test_values_are_those_of_forty_digits(build, torus):
+def test_values_are_those_of_forty_digits(build, torus, text):
     rng = np.random.default_rng(5)
     times = [0.0, *rng.uniform(-2000, 2000, BLOCK + 4).tolist(), 123456789.125]
     picked = [0, 1, 31, BLOCK - 1, BLOCK, BLOCK + 1, len(times) - 1]  # many digits take long
@@ -154,7 +159,7 @@ def test_values_are_those_of_forty_digits(build, torus):
     modes = torus.chain.N - 1
     driver = DRIVER.replace("NAME", "example").replace("SEEDS", str(len(phases))).replace("MODES", str(modes))
     given = "\n".join([str(len(times)), *map(repr, times), *map(repr, phases)])
-    values = numbers(build(source(torus, "example"), driver)(given))
+    values = numbers(build(text, driver)(given))
     sizes = [modes * len(times)] * 5 + [len(times)] + [modes * len(times)]
     by_time = (part.reshape(len(times), -1)[picked] for part in np.split(values, np.cumsum(sizes)[:-1]))
     Q, P, Q_orbit, P_orbit, E, H, Q_default = by_time
@@ -200,8 +205,8 @@ def test_no_times_no_values(build):
     assert numbers(build(source(made("one seed, alpha"), "example"), driver)("0\n0.5\n")).size == 0
 
 
-def test_same_bytes_twice(torus):
-    assert source(torus, "example") == source(QTorus(torus.series, torus.amplitudes, torus.phases, torus.order, torus.order), "example")
+def test_same_bytes_twice(torus, text):
+    assert text == source(QTorus(torus.series, torus.amplitudes, torus.phases, torus.order, torus.order), "example")
 
 
 def test_tables_in_several_statements_are_whole(build, large):

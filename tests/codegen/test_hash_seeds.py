@@ -14,7 +14,7 @@ from tests.codegen.series_cases import CASES, UNIVERSAL, numeric, program_of, un
 programs = []
 for limit in (0, 10**9):
     series_program.STRAIGHT_LINE = limit
-    programs += [program_of(numeric(CASES[name]), CASES[name]) for name in ("wrapped modes", "one mode", "one parity only")]
+    programs += [program_of(numeric(CASES[name]), CASES[name]) for name in ("wrapped modes", "one mode")]
 programs += [program_of(universal(UNIVERSAL[name]), UNIVERSAL[name]) for name in ("wrapped, order 1", "mixed, one mode")]
 for name, language in LANGUAGES.items():
     for program in programs:
@@ -29,5 +29,5 @@ def test_same_bytes_whatever_the_order_of_sets():
         environment = {**os.environ, "PYTHONHASHSEED": seed}
         run = subprocess.run([sys.executable, "-c", HASHES], cwd=root, env=environment, capture_output=True, text=True, check=True)
         found.append(run.stdout.splitlines())
-    assert len(found[0]) == 5 * 8
+    assert len(found[0]) == 5 * 6
     assert found[0] == found[1]
