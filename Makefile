@@ -3,8 +3,9 @@ PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 # workers of pytest share the cores
+OLD := -W ignore::DeprecationWarning -W ignore::PendingDeprecationWarning # old releases call newer ones of each other
 
-.PHONY: install reproduce test bench sweeps long generated equations clean
+.PHONY: install reproduce test lowest bench sweeps long generated equations clean
 
 install: .venv/installed
 
@@ -23,13 +24,22 @@ test: install  ## lint, types, floors, tests
 	$(BIN)/lint-imports
 	$(ONE_THREAD) $(BIN)/python -m pytest -n auto --dist loadfile
 
+lowest: .venv-lowest/installed  ## tests with the lowest versions that pyproject.toml allows
+	$(ONE_THREAD) .venv-lowest/bin/python -m pytest -n auto --dist loadfile $(OLD)
+
+.venv-lowest/installed: pyproject.toml .ci/lowest.py
+	$(PYTHON) -m venv .venv-lowest
+	$(PYTHON) .ci/lowest.py > .venv-lowest/constraints.txt
+	.venv-lowest/bin/python -m pip install --quiet --constraint .venv-lowest/constraints.txt --editable '.[dev]'
+	touch $@
+
 sweeps: install  ## decide the propagation rule for all seed sets: N <= 12, up to 3 seeds, both models
 	mkdir -p $(OUT)
 	$(BIN)/symfpu sweep --model alpha --longest 12 --largest 3 --order 5 --file $(OUT)/alpha.jsonl -o $(OUT)/sweep-alpha.md
 	$(BIN)/symfpu sweep --model beta --longest 12 --largest 3 --order 3 --file $(OUT)/beta.jsonl -o $(OUT)/sweep-beta.md
 
-long: install  ## exact checks that take minutes
-	$(BIN)/python -m pytest -m long
+long: install  ## tests that `make test` leaves out: minutes of exact checks, notebooks, whole figures
+	$(ONE_THREAD) $(BIN)/python -m pytest -m long -n auto --dist worksteal
 
 bench: install  ## speed and memory, each beside a matrix product
 	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-columns=median,min,max -o addopts=--strict-markers
@@ -41,5 +51,5 @@ equations: install  ## docs/equations.md from the docstrings
 	$(BIN)/python docs/make_equations.py
 
 clean:
-	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	rm -rf .venv .venv-lowest out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -303,6 +303,7 @@ def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
     assert "met at no frequency order" in (folder / "report.md").read_text()
 
 
+@pytest.mark.long
 def test_reproduce_full_refines_every_row(capsys, monkeypatch, tmp_path):
     small_rows(monkeypatch)
     monkeypatch.setattr("symfpu.paper.targets.SCALED", ("Fig. 8",))
@@ -315,6 +316,7 @@ def test_reproduce_full_refines_every_row(capsys, monkeypatch, tmp_path):
     assert (tmp_path / "corrected-c.png").is_file()
 
 
+@pytest.mark.long
 def test_reproduce_table_has_every_row_and_its_verdict(capsys, monkeypatch, tmp_path):
     """Rows of all kinds but the two that take longest (tests/paper/test_errata.py has them); one exact torus, the others take minutes."""
     quick = tuple(row for row in APPENDIX_F if row.label not in ("Fig. 5d", "Fig. 9"))

@@ -94,6 +94,7 @@ def full(short, monkeypatch):
     monkeypatch.setattr(dimensions, "alignment_indices", partial(alignment_indices, **RUNS))
 
 
+@pytest.mark.long
 def test_full_says_how_long_and_goes_on_where_it_was_stopped(full, monkeypatch, capsys, tmp_path):
     """Stopped after a third by the interrupt key; the second run starts there, and ends in the bits of one that was never stopped."""
     fractions = []

@@ -1,6 +1,7 @@
 """Series with free amplitudes for the tests of every language, and their values by another route at many digits."""
 
 from fractions import Fraction
+from functools import cache
 
 import mpmath
 import numpy as np
@@ -43,12 +44,14 @@ UNIVERSAL = {
 }
 
 
+@cache
 def numeric(case, digits=DIGITS):
-    """The series of a case, by numbers."""
+    """The series of a case, by numbers; one for its program and all expected values."""
     chain, seeds, frequencies, order, frequency_order = case
     return lindstedt(chain, seeds, frequencies, max(order, frequency_order), digits=digits)
 
 
+@cache
 def universal(case):
     """The series of a case in universal form."""
     chain, seeds, _, order, frequency_order = case
@@ -78,17 +81,34 @@ def drawn(case, seed=3):
 
 def expected_orbit(case, amplitudes, phases, frequencies, times):
     """Q and P at many digits: the torus of the numeric series, its angles turning with the given frequencies."""
-    series = numeric(case)
-    seeds = series.seeds
-    by_seed = {q: mpmath.mpf(a) for q, a in zip(seeds, amplitudes, strict=True)}
-    torus = QTorus(series=series, amplitudes=by_seed, phases={}, frequency_order=0, order=case[3])
-    omega = tuple(Fraction(float(w)) for w in frequencies)
-    moved = FourierTorus(series.chain, seeds, omega, torus.harmonics, torus.cosines, dict(zip(seeds, phases, strict=True)), DIGITS)
+    doubles = (tuple(map(float, values)) for values in (amplitudes, phases, frequencies, times))
+    return _expected_orbit(case, *doubles)
+
+
+@cache
+def _expected_orbit(case, amplitudes, phases, frequencies, times):
+    """The same for every form of a case."""
+    torus = _torus(case, amplitudes)
+    omega = tuple(map(Fraction, frequencies))
+    angles = dict(zip(torus.seeds, phases, strict=True))
+    moved = FourierTorus(torus.chain, torus.seeds, omega, torus.harmonics, torus.cosines, angles, DIGITS)
     return moved.positions(times), moved.momenta(times)
+
+
+@cache
+def _torus(case, amplitudes):
+    series = numeric(case)
+    by_seed = {q: mpmath.mpf(a) for q, a in zip(series.seeds, amplitudes, strict=True)}
+    return QTorus(series=series, amplitudes=by_seed, phases={}, frequency_order=0, order=case[3])
 
 
 def expected_frequencies(case, amplitudes):
     """omega(A) (s,) and its Jacobian by A (s, s) at many digits."""
+    return _expected_frequencies(case, tuple(amplitudes))
+
+
+@cache
+def _expected_frequencies(case, amplitudes):
     with mpmath.workdps(DIGITS + 15):
         A = np.array([mpmath.mpf(a) for a in amplitudes], dtype=object)
         terms, slopes = numeric(case).frequency_terms(A**2, case[4])

@@ -1,10 +1,9 @@
 """Exported C against the series at forty digits: what a stranger's compiler makes of the file, and nothing of ours."""
 
 import ctypes
-import os
-import shutil
 import subprocess
 from dataclasses import replace
+from functools import cache
 
 import mpmath
 import numpy as np
@@ -16,17 +15,11 @@ from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.quasiperiodic import FourierTorus
 from symfpu.tori.torus import QTorus
+from tests.codegen.compilers import compile_c
 
 OF_LARGEST = 1e-13  # issue 5: of the largest coordinate or momentum; rounded sums leave some 1e-15
 OF_TAIL = 1e-12  # issue 5: of a mode's own largest value; cancelling terms cost a digit or two
 DIGITS = 40
-STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O2")
-
-COMPILER = next((c for c in ("gcc", "cc", "clang") if shutil.which(c)), None)
-NEEDS_COMPILER = pytest.mark.skipif(
-    COMPILER is None and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"), reason="no C compiler (gcc, cc or clang) in PATH"
-)
-pytestmark = NEEDS_COMPILER
 
 # Every amplitude is chosen freely: a sum of cosines need not be a torus to be evaluated.
 CASES = {
@@ -42,6 +35,7 @@ CASES = {
 }
 
 
+@cache
 def case(name, digits=DIGITS):
     """A case with amplitudes and phases drawn once."""
     chain, seeds, frequencies, order = CASES[name]
@@ -64,17 +58,6 @@ def random_times(draw, count):
 
 def program(torus, name="sample"):
     return torus_program(torus, name, torus_facts(torus))
-
-
-def compile_c(folder, sources, *options, output="a.out"):
-    """Compiled by a strict compiler without a word, by the path of what came out."""
-    for name, text in sources.items():
-        (folder / name).write_text(text)
-    run = subprocess.run(
-        [COMPILER or "gcc", *STRICT, *options, "-o", output, *sources, "-lm"], cwd=folder, capture_output=True, text=True, check=False
-    )
-    assert (run.returncode, run.stderr) == (0, "")
-    return folder / output
 
 
 def call(library, name, t, phases, shape):
@@ -112,7 +95,7 @@ def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
 
 @pytest.mark.parametrize("name", CASES)
 def test_self_test_of_the_file(name, tmp_path):
-    binary = compile_c(tmp_path, {"sample.c": emit_torus(program(case(name)))}, "-Dsample_SELF_TEST")
+    binary = compile_c(tmp_path, {"sample.c": emit_torus(program(case(name)))}, "-Dsample_SELF_TEST", "-O0")
     run = subprocess.run([binary], capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout
     assert "at most 1e-13" in run.stdout

@@ -2,18 +2,16 @@
 
 import ctypes
 import functools
-import os
 import re
 import shutil
 import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from symfpu.codegen.languages.c99_series import emit_series
+from tests.codegen.compilers import compile_c
 from tests.codegen.series_cases import (
     CASES,
     OF_TAIL,
@@ -28,20 +26,16 @@ from tests.codegen.series_cases import (
     universal,
 )
 
-STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O2")
 FORMS = {"tables": 0, "statements": 10**9}
-SLOW_AS_STATEMENTS = {"high order", "beta, four seeds", "alpha, five seeds"}  # seconds of SymPy each
+TOO_SLOW_AS_STATEMENTS = {"high order", "beta, four seeds", "alpha, five seeds"}  # seconds of SymPy each
+SLOW_AS_STATEMENTS = {"alpha, two seeds", "mixed, three seeds"}
 
-COMPILER = next((c for c in ("gcc", "cc", "clang") if shutil.which(c)), None)
-pytestmark = pytest.mark.skipif(
-    COMPILER is None and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"), reason="no C compiler (gcc, cc or clang) in PATH"
-)
-
-EVERY = [
+NUMERIC = [
     *(("tables", name) for name in CASES),
-    *(("statements", name) for name in CASES if name not in SLOW_AS_STATEMENTS),
-    *(("universal", name) for name in UNIVERSAL),
+    *(("statements", name) for name in CASES if name not in TOO_SLOW_AS_STATEMENTS | SLOW_AS_STATEMENTS),
+    *(pytest.param("statements", name, marks=pytest.mark.long) for name in sorted(SLOW_AS_STATEMENTS)),
 ]
+EVERY = [*NUMERIC, *(("universal", name) for name in UNIVERSAL)]
 FEW = [("tables", "wrapped modes"), ("statements", "wrapped modes"), ("universal", "mixed, one mode")]
 
 
@@ -65,18 +59,17 @@ def source_of(form, name):
     return emit_series(made(form, name))
 
 
-def compile_c(folder, sources, *options, output="a.out"):
-    """Compiled by a strict compiler without a word, by the path of what came out."""
-    for name, text in sources.items():
-        (folder / name).write_text(text)
-    command = [COMPILER or "gcc", *STRICT, *options, "-o", output, *sources, "-lm"]
-    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    assert (run.returncode, run.stderr) == (0, "")
-    return folder / output
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory):
+    """The library of a case in a form, compiled once."""
 
+    @functools.cache
+    def shared(form, name):
+        folder = tmp_path_factory.mktemp("shared")
+        sources = {"sample.c": source_of(form, name)}
+        return ctypes.CDLL(str(compile_c(folder, sources, "-shared", "-fPIC", output="sample.so")))
 
-def shared(folder, source):
-    return ctypes.CDLL(str(compile_c(folder, {"sample.c": source}, "-shared", "-fPIC", output="sample.so")))
+    return shared
 
 
 def pointer(values):
@@ -107,9 +100,9 @@ def corrected(library, form, case, amplitudes, frequencies):
 
 
 @pytest.mark.parametrize(("form", "name"), EVERY)
-def test_values_are_those_of_the_series_at_forty_digits(form, name, tmp_path):
+def test_values_are_those_of_the_series_at_forty_digits(form, name, shared):
     case = case_of(form, name)
-    library = shared(tmp_path, source_of(form, name))
+    library = shared(form, name)
     amplitudes, phases, others, times = drawn(case)
     divisors = np.array(case[2], dtype=float)
     frequencies = divisors if form == "universal" else others
@@ -121,9 +114,9 @@ def test_values_are_those_of_the_series_at_forty_digits(form, name, tmp_path):
 
 
 @pytest.mark.parametrize(("form", "name"), FEW)
-def test_phases_are_zero_by_default_and_far_times_keep_their_digits(form, name, tmp_path):
+def test_phases_are_zero_by_default_and_far_times_keep_their_digits(form, name, shared):
     case = case_of(form, name)
-    library = shared(tmp_path, source_of(form, name))
+    library = shared(form, name)
     amplitudes, _, _, _ = drawn(case)
     frequencies, times = np.array(case[2], dtype=float), [0.0, 1e15, -123456789012345.0]
     exact = expected_orbit(case, amplitudes, [0.0] * len(case[1]), frequencies, times)
@@ -131,10 +124,10 @@ def test_phases_are_zero_by_default_and_far_times_keep_their_digits(form, name, 
         assert_close(values, expected)
 
 
-@pytest.mark.parametrize(("form", "name"), [(form, name) for form, name in EVERY if form != "universal"])
-def test_frequencies_are_the_corrected_ones_by_default(form, name, tmp_path):
+@pytest.mark.parametrize(("form", "name"), NUMERIC)
+def test_frequencies_are_the_corrected_ones_by_default(form, name, shared):
     case = case_of(form, name)
-    library = shared(tmp_path, source_of(form, name))
+    library = shared(form, name)
     amplitudes, phases, _, _ = drawn(case)
     times = [0.0, 0.5, -3.0]
     omega = np.array(expected_frequencies(case, amplitudes)[0], dtype=float)
@@ -144,8 +137,8 @@ def test_frequencies_are_the_corrected_ones_by_default(form, name, tmp_path):
     assert_close(P, exact_P)
 
 
-def test_divisors_need_frequencies(tmp_path):
-    library = shared(tmp_path, source_of("universal", "mixed, one mode"))
+def test_divisors_need_frequencies(shared):
+    library = shared("universal", "mixed, one mode")
     t, A, Q = np.zeros(1), np.full(1, 0.1), np.full(1, 7.0)
     assert library.sample_positions(ctypes.c_size_t(1), pointer(t), pointer(A), None, None, pointer(Q)) == 2
     assert Q[0] == 7
@@ -153,8 +146,8 @@ def test_divisors_need_frequencies(tmp_path):
 
 @pytest.mark.parametrize(("form", "name"), EVERY)
 def test_self_test_of_the_file(form, name, tmp_path):
-    source = source_of(form, name)
-    run = subprocess.run([compile_c(tmp_path, {"sample.c": source}, "-Dsample_SELF_TEST")], capture_output=True, text=True, check=False)
+    binary = compile_c(tmp_path, {"sample.c": source_of(form, name)}, "-Dsample_SELF_TEST", "-O0")
+    run = subprocess.run([binary], capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout
     assert "at most 1e-13" in run.stdout
 
@@ -222,29 +215,3 @@ def test_facts_stay_in_their_comment_and_lines_are_short(form, name, tmp_path):
     assert source.isascii()
     assert "#error here" in source
     assert "hash of the series" in source
-
-
-TWICE = """
-import hashlib, sys
-import symfpu.codegen.series_program as series_program
-from symfpu.codegen.languages.c99_series import emit_series
-from tests.codegen.series_cases import CASES, UNIVERSAL, numeric, program_of, universal
-texts = []
-for limit in (0, 10**9):
-    series_program.STRAIGHT_LINE = limit
-    for name in ("wrapped modes", "one mode"):
-        texts.append(emit_series(program_of(numeric(CASES[name]), CASES[name])))
-for name in ("alpha, two seeds", "mixed, one mode"):
-    texts.append(emit_series(program_of(universal(UNIVERSAL[name]), UNIVERSAL[name])))
-print([hashlib.sha256(text.encode()).hexdigest() for text in texts])
-"""
-
-
-def test_same_bytes_whatever_the_order_of_sets():
-    root = Path(__file__).parents[2]
-    found = set()
-    for seed in ("1", "29"):
-        environment = {**os.environ, "PYTHONHASHSEED": seed}
-        run = subprocess.run([sys.executable, "-c", TWICE], cwd=root, env=environment, capture_output=True, text=True, check=True)
-        found.add(run.stdout)
-    assert len(found) == 1

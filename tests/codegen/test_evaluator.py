@@ -7,9 +7,9 @@ import pytest
 
 from symfpu.codegen.evaluator import compile_evaluator, find_compiler
 from symfpu.errors import InputError, SymfpuError
-from tests.codegen.test_c99 import NEEDS_COMPILER, OF_LARGEST, angles, assert_close, case, random_times
+from tests.codegen.compilers import program
+from tests.codegen.test_c99 import OF_LARGEST, angles, assert_close, case, random_times
 
-WITH_COMPILER = pytest.param("c", marks=NEEDS_COMPILER)
 LARGEST_TIME = 100  # NumPy rounds omega t: half a last place of it is 1e-14
 
 
@@ -18,7 +18,15 @@ def torus():
     return case("mixed, three seeds")
 
 
-@pytest.mark.parametrize("backend", [WITH_COMPILER, "numpy"])
+@pytest.fixture
+def backend(request):
+    """Its name, where it can run."""
+    if request.param == "c":
+        program("gcc")
+    return request.param
+
+
+@pytest.mark.parametrize("backend", ["c", "numpy"], indirect=True)
 def test_values_are_those_of_the_torus(torus, backend):
     evaluator, draw = compile_evaluator(torus, backend=backend), np.random.default_rng(3)
     t = random_times(draw, 21) % LARGEST_TIME
@@ -30,7 +38,7 @@ def test_values_are_those_of_the_torus(torus, backend):
         assert_close(evaluator.energy(t, phases)[:, None], exact.energy(t)[:, None])
 
 
-@pytest.mark.parametrize("backend", [WITH_COMPILER, "numpy"])
+@pytest.mark.parametrize("backend", ["c", "numpy"], indirect=True)
 def test_shapes_follow_the_times(torus, backend):
     evaluator = compile_evaluator(torus, backend=backend)
     for along in (evaluator.positions, evaluator.momenta, evaluator.harmonic_energies):
@@ -43,7 +51,7 @@ def test_shapes_follow_the_times(torus, backend):
     assert f"backend='{backend}'" in repr(evaluator)
 
 
-@pytest.mark.parametrize("backend", [WITH_COMPILER, "numpy"])
+@pytest.mark.parametrize("backend", ["c", "numpy"], indirect=True)
 def test_a_phase_left_out_is_that_of_the_torus(torus, backend):
     evaluator = compile_evaluator(torus, backend=backend)
     moved = evaluator.positions(3.0, {2: 0.5})
@@ -51,7 +59,7 @@ def test_a_phase_left_out_is_that_of_the_torus(torus, backend):
     assert np.abs(moved - evaluator.positions(3.0)).max() > 0.01
 
 
-@pytest.mark.parametrize("backend", [WITH_COMPILER, "numpy"])
+@pytest.mark.parametrize("backend", ["c", "numpy"], indirect=True)
 @pytest.mark.parametrize(
     ("argument", "t", "phases"),
     [
@@ -99,6 +107,6 @@ def test_without_a_compiler_numpy_is_the_default_and_c_is_refused(torus, monkeyp
         compile_evaluator(torus, backend="c")
 
 
-@NEEDS_COMPILER
 def test_with_a_compiler_c_is_the_default(torus):
+    program("gcc")
     assert compile_evaluator(torus).backend == "c"

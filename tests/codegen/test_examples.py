@@ -1,6 +1,5 @@
 """The examples of docs/export.md: programs outside the project that use the gallery, compiled and run."""
 
-import os
 import re
 import shutil
 import subprocess
@@ -15,6 +14,7 @@ import pytest
 
 from symfpu.codegen.gallery import GALLERY
 from symfpu.tori.quasiperiodic import FourierTorus
+from tests.codegen.compilers import program
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = re.findall(r"```(c|fortran|python|octave)\n(.*?)```", (ROOT / "docs" / "export.md").read_text(), re.DOTALL)
@@ -23,11 +23,6 @@ BUILD = {
     "fortran": ("gfortran", "use_it.f90", ["-std=f2008", "-Wall", "-Werror"], "F90"),
 }
 OF_SERIES = "two_torus_series"
-
-
-def needed(program):
-    if not shutil.which(program) and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"):
-        pytest.skip(f"{program} is not installed")
 
 
 @pytest.fixture(scope="module")
@@ -58,15 +53,13 @@ def test_a_program_outside_uses_an_exported_file(language, code, torus, tmp_path
         shutil.copy(ROOT / "generated" / f"{stem}.py", tmp_path)
         command = [sys.executable, "-c", code]
     elif language == "octave":
-        needed("octave-cli")
         shutil.copy(ROOT / "generated" / f"{stem}.m", tmp_path)
-        command = ["octave-cli", "--norc", "--eval", code]
+        command = [program("octave-cli"), "--norc", "--eval", code]
     else:
         compiler, name, flags, extension = BUILD[language]
-        needed(compiler)
         (tmp_path / name).write_text(code)
         sources = [str(ROOT / "generated" / f"{stem}.{extension}"), name]
-        subprocess.run([compiler, *flags, "-O2", *sources, "-o", "program", "-lm"], check=True, cwd=tmp_path)
+        subprocess.run([program(compiler), *flags, "-O2", *sources, "-o", "program", "-lm"], check=True, cwd=tmp_path)
         command = ["./program"]
     run = subprocess.run(command, check=True, capture_output=True, text=True, cwd=tmp_path)
     expected = [float(x) for x in (of_series(torus) if stem == OF_SERIES else of_torus(torus))]

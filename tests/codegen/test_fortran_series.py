@@ -1,10 +1,7 @@
 """Emitted Fortran of series with free amplitudes against forty digits: compiled without a warning, run, linked with a second one."""
 
-import os
 import re
 import subprocess
-import sys
-from functools import cache
 
 import numpy as np
 import pytest
@@ -14,7 +11,8 @@ from symfpu.codegen.languages.fortran_series import emit_series
 from symfpu.codegen.series_program import series_facts, series_program
 from symfpu.errors import InputError
 from symfpu.series.lindstedt import lindstedt
-from tests.codegen import series_cases, test_fortran
+from tests.codegen import test_fortran
+from tests.codegen.compilers import program
 from tests.codegen.series_cases import (
     CASES,
     OF_LARGEST,
@@ -29,14 +27,15 @@ from tests.codegen.series_cases import (
     universal,
 )
 
-build, gfortran, numbers = test_fortran.build, test_fortran.gfortran, test_fortran.numbers  # two fixtures among them
+build, numbers = test_fortran.build, test_fortran.numbers  # a fixture and a function
 
 LIMIT = "symfpu.codegen.series_program.STRAIGHT_LINE"
 TABLES_BY_DEFAULT = {"alpha, two seeds", "mixed, three seeds", "beta, four seeds", "alpha, five seeds", "high order"}
+SLOW_AS_STATEMENTS = ("alpha, two seeds", "mixed, three seeds")  # seconds of SymPy each
 FORMS = {  # of a case, and the operations up to which it becomes statements; universal ones always do
     **{f"{name}, tables": (name, 0) for name in CASES},
     **{f"{name}, straight": (name, None) for name in CASES if name not in TABLES_BY_DEFAULT},
-    **{f"{name}, long": (name, 10**9) for name in ("alpha, two seeds", "mixed, three seeds")},
+    **{f"{name}, long": (name, 10**9) for name in SLOW_AS_STATEMENTS},
     **{f"{name}, universal": (name, None) for name in UNIVERSAL},
 }
 FAR = (123456789.125, -98765432109876.5)
@@ -82,24 +81,8 @@ program pair
 end program pair
 """
 
-HASHES = """\
-import hashlib
-from symfpu.codegen.languages.fortran_series import emit_series
-from tests.codegen.series_cases import CASES, UNIVERSAL, numeric, program_of, universal
-for series, case in ((numeric, CASES["one parity only"]), (universal, UNIVERSAL["wrapped, order 1"])):
-    print(hashlib.sha256(emit_series(program_of(series(case), case)).encode()).hexdigest())
-"""
 
-
-@pytest.fixture(scope="module", autouse=True)
-def computed_once():
-    """The series of a case serves its program and the expected values."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(series_cases, "numeric", cache(numeric))
-        yield
-
-
-@pytest.fixture(scope="module", params=FORMS)
+@pytest.fixture(scope="module", params=[pytest.param(name, marks=[pytest.mark.long] * name.endswith("long")) for name in FORMS])
 def form(request):
     """A case, the program of its series, its source, and whether the frequencies are a required argument."""
     name, limit = FORMS[request.param]
@@ -108,7 +91,7 @@ def form(request):
     with pytest.MonkeyPatch.context() as patch:
         if limit is not None:
             patch.setattr(LIMIT, limit)
-        program = program_of((universal if required else series_cases.numeric)(case), case)
+        program = program_of((universal if required else numeric)(case), case)
     assert (program.straight is None) == request.param.endswith("tables")
     return case, program, emit_series(program), required
 
@@ -116,7 +99,7 @@ def form(request):
 def source(name, form="numeric", called="sample"):
     if form == "universal":
         return emit_series(program_of(universal(UNIVERSAL[name]), UNIVERSAL[name], called))
-    return emit_series(program_of(series_cases.numeric(CASES[name]), CASES[name], called))
+    return emit_series(program_of(numeric(CASES[name]), CASES[name], called))
 
 
 def driver(case, required):
@@ -211,9 +194,9 @@ def test_arrays_of_other_shapes_stop_the_program(stopped, call, message):
 
 
 @pytest.fixture(scope="module")
-def stopped(gfortran, tmp_path_factory):
+def stopped(tmp_path_factory):
     """What a program with one call says when it stops; the module is compiled once."""
-    folder = tmp_path_factory.mktemp("shapes")
+    folder, gfortran = tmp_path_factory.mktemp("shapes"), program("gfortran")
     (folder / "sample.F90").write_text(source("one mode"))
     subprocess.run([gfortran, "-c", "sample.F90"], cwd=folder, check=True)
 
@@ -226,16 +209,6 @@ def stopped(gfortran, tmp_path_factory):
         return done.stderr
 
     return stopped
-
-
-def test_same_bytes_whatever_the_hash_seed():
-    outputs = []
-    for seed in ("1", "2"):
-        done = subprocess.run([sys.executable, "-c", HASHES], env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        outputs.append(done.stdout.split())
-    assert outputs[0] == outputs[1]
-    assert len(outputs[0]) == 2
 
 
 def test_order_250_compiles_and_stays_finite(build):

@@ -1,7 +1,5 @@
 """Exported Octave against the torus at forty digits, all cases in one process of GNU Octave."""
 
-import os
-import shutil
 import subprocess
 from dataclasses import replace
 
@@ -12,14 +10,9 @@ from symfpu.chain.chain import Chain
 from symfpu.codegen.languages.octave import BLOCK, emit_torus
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.tori.quasiperiodic import FourierTorus
+from tests.codegen.compilers import program
 from tests.codegen.series_cases import OF_LARGEST, assert_close
 from tests.codegen.test_c99 import CASES, angles, case, random_times
-
-OCTAVE = shutil.which("octave-cli") or shutil.which("octave")
-NEEDS_OCTAVE = pytest.mark.skipif(
-    OCTAVE is None and not os.environ.get("SYMFPU_REQUIRE_COMPILERS"), reason="no GNU Octave (octave-cli or octave) in PATH"
-)
-pytestmark = NEEDS_OCTAVE
 
 SHOW = """
 function show(varargin)
@@ -48,7 +41,7 @@ def octave(folder, script):
     (folder / "refused.m").write_text(REFUSED.lstrip())
     (folder / "main_script.m").write_text("\n".join(script) + "\n")
     run = subprocess.run(
-        [OCTAVE or "octave-cli", "--no-init-file", "--quiet", "--eval", "main_script"],
+        [program("octave-cli"), "--no-init-file", "--quiet", "--eval", "main_script"],
         cwd=folder,
         capture_output=True,
         text=True,

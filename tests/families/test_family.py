@@ -1,14 +1,7 @@
-"""Families of tori against orbits found one by one, exact oscillators and located events; stopped, killed, damaged and gone on with."""
+"""Families of tori against orbits found one by one, exact oscillators and located events."""
 
-import json
-import os
 import re
-import signal
-import subprocess
-import sys
-import time
 from functools import lru_cache
-from pathlib import Path
 
 import mpmath
 import numpy as np
@@ -23,11 +16,10 @@ from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
 from symfpu.families import events
 from symfpu.families.continuation import first_torus
 from symfpu.families.family import Family, NotInFamily, family
-from symfpu.files.archive import BundleError
-from symfpu.refinement.tori import NoTorus, RefinedTorus, refine_at_energy, shifts_of
+from symfpu.refinement.tori import NoTorus, refine_at_energy, shifts_of
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
-from tests.bundles.test_bundle import same
+from tests.families.cases import ROUND, whole
 from tests.oracles.oscillators import cubic_oscillator
 
 # `family` asks for 1e-13; small divisors and other times between the grid points leave some of it.
@@ -51,7 +43,6 @@ LOCATED = 1e-8
 # A step of at most 0.6 in ln A, thus 1.2 in ln H, is halved eight times.
 STABILITY = 0.01
 
-ROUND = Chain(8, alpha="0.4", beta="0.1")
 PAIR = Chain(8, alpha="0.3")
 WIDE = Chain(6, alpha="0.4")
 LOOP = Chain(16, beta=1)
@@ -192,6 +183,7 @@ def test_a_resonance_is_named_and_located():
     assert "resonance of mode 17 with harmonic (15) at H = 0.0392110" in repr(event)
 
 
+@pytest.mark.long
 def test_a_resonance_of_two_frequencies_is_located():
     """|12 omega_1 - 8 omega_2| = Omega_4 on the torus with the energy of the event, and not on its neighbours."""
     found = family(WIDE, (1, 2), "0.45", from_energy="0.25", tolerance=1e-10)
@@ -214,6 +206,7 @@ def test_a_resonance_between_the_first_members_is_found():
     assert found.events[0].energy == pytest.approx(later.energy, rel=LOCATED)
 
 
+@pytest.mark.long
 def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
     """Where Newton's method finds no torus, or another one, the two members tell no more than that it lies between them."""
     other = resonant().members[0].torus
@@ -236,6 +229,7 @@ def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
         assert "(interpolated)" in repr(event)
 
 
+@pytest.mark.long
 def test_a_family_that_comes_back_to_rest_ends_there():
     """Mode 11 takes part on the way back, so that members of less energy and amplitude than the first are not yet those of the linear
     limit; the last one is: the orbit of the same amplitude that harmonic balance finds from there."""
@@ -401,201 +395,6 @@ def test_a_frequency_beyond_reach_is_not_in_the_family():
     assert failure.value.reached[0] < failure.value.reached[1] < 9
     with pytest.raises(InputError, match=r"^seed = 5"):
         breathers().at_frequency(5, 1)
-
-
-# folders
-
-RUNS = {
-    "breather": ((ROUND, (3,), "0.1"), {"multipliers": True, "from_energy": "0.001"}),
-    "pair": ((Chain(6, beta="0.3"), (1, 3), "0.01"), {"from_energy": "0.002", "tolerance": 1e-10}),
-    "appendix-a": ((ROUND, (1, 3), "0.01"), {"method": "appendix-a", "order": 4, "from_energy": "0.002"}),
-}
-
-
-@lru_cache
-def whole(run):
-    arguments, options = RUNS[run]
-    return family(*arguments, **options)
-
-
-def alike(found, other):
-    """Members bit for bit: tori, energies, residuals, multipliers; and the events."""
-    assert len(found.members) == len(other.members)
-    for m, n in zip(found.members, other.members, strict=True):
-        if isinstance(m.torus, RefinedTorus):
-            assert same(m.torus, n.torus)
-        else:
-            assert same((m.torus.frequencies, m.torus.cosines), (n.torus.frequencies, n.torus.cosines))
-        assert (m.amplitudes, m.energy, m.harmonic_energy, m.residual, m.warnings) == (
-            n.amplitudes,
-            n.energy,
-            n.harmonic_energy,
-            n.residual,
-            n.warnings,
-        )
-        assert (m.multipliers is None) == (n.multipliers is None)
-        assert m.multipliers is None or (m.multipliers.pairs == n.multipliers.pairs).all()
-    assert found.events == other.events
-    assert found.ending == other.ending
-
-
-@pytest.mark.parametrize("run", RUNS)
-def test_a_stopped_family_goes_on_as_if_it_had_not_been(run, tmp_path):
-    arguments, options = RUNS[run]
-    for members in (1, 5):
-        part = family(*arguments, **options, members=members, folder=tmp_path)
-        assert part.ending == f"was left after {members} members, the most asked for"
-        assert len(part.members) == members
-    alike(family(*arguments, **options, folder=tmp_path), whole(run))
-    alike(family(*arguments, **options, folder=tmp_path), whole(run))
-    assert len(list(tmp_path.glob("member-*.symfpu"))) == len(whole(run).members)
-
-
-def test_a_family_goes_on_to_another_goal(tmp_path):
-    """Where it began is in the folder; a goal below what was reached needs nothing more."""
-    near = family(ROUND, (3,), "0.01", folder=tmp_path)
-    far = family(ROUND, (3,), "0.05", folder=tmp_path)
-    assert [m.energy for m in far.members[: len(near.members)]] == [m.energy for m in near.members]
-    assert far.members[-1].energy >= 0.05
-    alike(family(ROUND, (3,), "0.005", folder=tmp_path), far)
-
-
-class Killed(BaseException):
-    pass
-
-
-@pytest.mark.parametrize("moment", [0, 1, 6, 7])
-def test_a_family_stopped_while_writing_goes_on(moment, tmp_path, monkeypatch):
-    """Every member is two files put in place; before any of them."""
-    (arguments, options), replace, calls = RUNS["breather"], os.replace, iter(range(10**6))
-
-    def stopping(*paths):
-        if next(calls) == moment:
-            raise Killed
-        replace(*paths)
-
-    with monkeypatch.context() as patched:
-        patched.setattr(os, "replace", stopping)
-        with pytest.raises(Killed):
-            family(*arguments, **options, folder=tmp_path)
-    alike(family(*arguments, **options, folder=tmp_path), whole("breather"))
-
-
-def test_a_killed_family_goes_on(tmp_path):
-    code = (
-        "from symfpu.chain.chain import Chain; from symfpu.families.family import family\n"
-        "family(Chain(8, alpha='0.4', beta='0.1'), (3,), '0.1', multipliers=True, from_energy='0.001', folder='.')"
-    )
-    process = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(Path.cwd())})
-    while process.poll() is None and not (tmp_path / "member-0003.symfpu").exists():
-        time.sleep(0.001)
-    process.send_signal(signal.SIGKILL)
-    process.wait()
-    assert (tmp_path / "family.json").exists()
-    arguments, options = RUNS["breather"]
-    alike(family(*arguments, **options, folder=tmp_path), whole("breather"))
-
-
-OTHERS = {
-    "N": ((Chain(9, alpha="0.4", beta="0.1"), (3,)), {}),
-    "alpha": ((Chain(8, alpha="0.3", beta="0.1"), (3,)), {}),
-    "beta": ((Chain(8, alpha="0.4", beta="0.2"), (3,)), {}),
-    "seeds": ((ROUND, (1,)), {}),
-    "start": ((ROUND, (3,)), {"from_energy": "0.002"}),
-    "order": ((ROUND, (3,)), {"method": "appendix-a", "order": 4}),
-    "multipliers": ((ROUND, (3,)), {"multipliers": False}),
-    "tolerance": ((ROUND, (3,)), {"tolerance": 1e-12}),
-    "ratio_of": ((ROUND, (3,)), {"amplitude_ratio": {3: 1}}),
-}
-
-
-@pytest.fixture(scope="module")
-def begun(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("begun")
-    arguments, options = RUNS["breather"]
-    family(*arguments, **options, members=3, folder=folder)
-    return folder
-
-
-@pytest.fixture
-def copy(begun, tmp_path):
-    for file in begun.iterdir():
-        (tmp_path / file.name).write_bytes(file.read_bytes())
-    return tmp_path
-
-
-@pytest.mark.parametrize("differs", OTHERS)
-def test_a_folder_of_another_family_is_refused(differs, begun):
-    arguments, options = OTHERS[differs]
-    before = {file.name: file.read_bytes() for file in begun.iterdir()}
-    chosen = {"multipliers": "method" not in options, "from_energy": "0.001"} | options
-    with pytest.raises(InputError, match=rf"^folder = .*its {differs} differs"):
-        family(*arguments, "0.1", folder=begun, **chosen)
-    assert {file.name: file.read_bytes() for file in begun.iterdir()} == before
-
-
-def changed(**entries):
-    return lambda text: json.dumps(json.loads(text) | entries)
-
-
-DAMAGE = {
-    "empty": lambda text: "",
-    "half": lambda text: text[: len(text) // 2],
-    "a list": lambda text: "[]",
-    "no plan": changed(plan=None),
-    "a plan of words": changed(plan="x"),
-    "a plan without seeds": changed(plan={}),
-    "no count": changed(members=None),
-    "a step of words": changed(step="long"),
-    "events of words": changed(events=["fold"]),
-    "an event of another kind": changed(events=[{"harmonic": [1], "colour": "red"}]),
-    "no events": changed(events=None),
-}
-
-
-def test_resonances_of_older_records_are_known_to_be_interpolated(copy):
-    """Records did not say so when no resonance was located."""
-    (arguments, options), record = RUNS["breather"], json.loads((copy / "family.json").read_text())
-    fold = {"kind": "fold", "what": "H", "after": 1, "energy": 0.05, "value": 0.05, "mode": 0, "harmonic": []}
-    record["events"] = [fold, fold | {"kind": "resonance", "what": "divisor", "mode": 7, "harmonic": [5]}]
-    (copy / "family.json").write_text(json.dumps(record))
-    known = family(*arguments, **options, members=3, folder=copy).events
-    assert [(e.kind, e.interpolated) for e in known] == [("fold", False), ("resonance", True)]
-
-
-@pytest.mark.parametrize("damage", DAMAGE)
-def test_a_damaged_record_is_refused(damage, copy):
-    record = copy / "family.json"
-    record.write_text(DAMAGE[damage](record.read_text()))
-    arguments, options = RUNS["breather"]
-    with pytest.raises(InputError, match=r"^folder = .*family\.json is damaged"):
-        family(*arguments, **options, folder=copy)
-
-
-def test_damaged_missing_and_foreign_members_are_refused(copy, tmp_path_factory):
-    (arguments, options), file = RUNS["breather"], copy / "member-0001.symfpu"
-    data = file.read_bytes()
-    file.write_bytes(data[: len(data) // 2])
-    with pytest.raises(BundleError, match=r"member-0001\.symfpu is damaged"):
-        family(*arguments, **options, folder=copy)
-    file.unlink()
-    with pytest.raises(InputError, match=r"^folder = .*member-0001\.symfpu"):
-        family(*arguments, **options, folder=copy)
-    other = tmp_path_factory.mktemp("other")
-    family(ROUND, (1,), "0.1", members=1, folder=other)
-    file.write_bytes((other / "member-0000.symfpu").read_bytes())
-    with pytest.raises(InputError, match=r"^folder = .*member-0001\.symfpu is another torus"):
-        family(*arguments, **options, folder=copy)
-
-
-def test_a_folder_that_is_a_file_is_refused(tmp_path):
-    (tmp_path / "file").write_text("mine")
-    with pytest.raises(InputError, match=r"^folder = .*a folder that can be written"):
-        family(ROUND, (3,), "0.1", folder=tmp_path / "file")
-    assert (tmp_path / "file").read_text() == "mine"
-
-
-# Appendix A
 
 
 def test_appendix_a_gives_series_of_growing_energy():

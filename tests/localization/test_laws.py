@@ -210,3 +210,9 @@ def test_bad_input_is_named(call, argument):
     with pytest.raises(InputError) as caught:
         call()
     assert caught.value.argument == argument
+
+
+@pytest.mark.parametrize("call", [lambda: profile_law("chain", 1, 1e-8), lambda: fit_profile(None, [1.0], 1)])
+def test_what_is_no_chain_has_no_law(call):
+    with pytest.raises(InputError, match=r"^chain = .* allowed is a Chain"):
+        call()

@@ -119,6 +119,7 @@ def computed():
     return figure1(labels.append), labels
 
 
+@pytest.mark.long
 def test_figure_1_is_computed_from_the_printed_frequencies(computed):
     data, labels = computed
     assert data.torus.series.frequencies == tuple(Fraction(w) for w in REFERENCE.frequencies)
@@ -138,6 +139,7 @@ def test_figure_1_is_computed_from_the_printed_frequencies(computed):
     assert (data.sums[0] >= data.sums[1] * (1 - 1e-12)).all()
 
 
+@pytest.mark.long
 def test_reproduce_fig1_writes_pictures_data_and_claims(computed, monkeypatch, capsys, tmp_path):
     """The alignment indices end at 1e3, before they decide."""
     monkeypatch.setattr("symfpu.paper.targets.figure1", lambda step: computed[0])

@@ -162,7 +162,9 @@ def test_reproduce_convergence_writes_page_data_and_pictures(cancellation, breat
     steps = []
     monkeypatch.setattr("symfpu.paper.targets.cancellation_study", lambda step: step("first") or cancellation)
     monkeypatch.setattr("symfpu.paper.targets.breather_study", lambda step: step("second") or breather)
-    page = TARGETS["convergence"](tmp_path, steps.append)
+    with monkeypatch.context() as unseen:
+        unseen.setattr("symfpu.paper.targets.draw_convergence", lambda *given: [])
+        page = TARGETS["convergence"](tmp_path, steps.append)
     assert steps == ["first", "second", "convergence: pictures"]
     assert page.markdown == convergence_markdown(cancellation, breather)
     code = main(["reproduce", "convergence", "-o", str(tmp_path / "out"), "--json"])

@@ -593,6 +593,7 @@ def test_absurd_monomials_are_refused(check, monomial):
     refused(check, signed(replaced(CERTIFICATES["refuted"], ("excited", i, "monomial"), monomial)))
 
 
+@pytest.mark.long
 def test_work_without_end_is_refused(check):
     """A long chain of excited modes whose witness would need a monomial with 10^20 divisors; an identity of high degree."""
     N, seeds, order = 101, list(range(1, 41)), 39

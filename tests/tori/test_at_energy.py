@@ -11,7 +11,7 @@ from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.tolerances import FIXED_ENERGY
 
 CASES = [
-    (Chain(16, alpha="0.33"), (1, 2), "0.01", 6),
+    (Chain(16, alpha="0.33"), (1, 2), "0.01", 4),
     (Chain(16, alpha="-0.33"), (14,), "0.05", 6),
     (Chain(2, beta=1), (1,), "0.2", 6),
     (Chain(9, beta="-0.2"), (1, 3, 8), "0.02", 3),

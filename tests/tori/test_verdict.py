@@ -71,6 +71,7 @@ def test_the_word_for_a_known_case(name):
     assert repr(assessment).startswith(f"Assessment({assessment.headline}: residual of the equations of motion")
 
 
+@pytest.mark.long
 def test_the_breather_of_fig_9_is_not_a_torus():
     """Its series ends below the printed amplitude, at A = 1.287: the root at order 242 is one of the polynomial only."""
     torus = solved(FIG9_BREATHER, FIG9_BREATHER.order)

@@ -1,6 +1,5 @@
-"""Results as text: no digit is lost, and every number of a row is there."""
+"""Tori as records and text: no digit is lost, and every number of a line is there."""
 
-import csv
 import json
 from dataclasses import replace
 
@@ -9,11 +8,6 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.files.writing import output_file, output_folder
-from symfpu.paper.fig1 import Figure1
-from symfpu.paper.pages import figure1_markdown, figure1_record, write_figure1_csv
-from symfpu.reports.tables import markdown_table
 from symfpu.reports.torus import assessment_text, torus_record
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -36,29 +30,6 @@ def test_a_record_survives_json_without_losing_a_digit(torus):
     assert record["residual"] == float(f"{torus.residual():.15g}")
     assert record["warnings"] == list(torus.warnings)
     assert len(record["smallest_divisors"]) == len(torus.series.smallest_divisors)
-
-
-def test_markdown_table():
-    assert markdown_table(["a", "b"], [["1", "2"]]) == "| a | b |\n| --- | --- |\n| 1 | 2 |"
-
-
-def test_output_folder_is_made_with_its_parents(tmp_path):
-    assert output_folder(tmp_path / "a" / "b").is_dir()
-    assert output_folder(tmp_path / "a" / "b").is_dir()
-
-
-def test_a_file_is_no_output_folder(tmp_path):
-    (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="output"):
-        output_folder(tmp_path / "file")
-
-
-def test_an_output_file_is_refused_before_anything_is_computed(tmp_path):
-    assert output_file(tmp_path / "new") == tmp_path / "new"
-    assert list(tmp_path.iterdir()) == []
-    for path in (tmp_path, tmp_path / "none" / "new"):
-        with pytest.raises(InputError, match="output"):
-            output_file(path)
 
 
 def test_the_evidence_has_a_line_for_some_orders(torus):
@@ -87,37 +58,6 @@ def test_the_evidence_of_a_long_series_is_short_and_has_its_best_order(torus):
     orders = [line.split()[0] for line in assessment_text(long).splitlines()[len(assessment.reasons) + 2 :]]
     assert {"0", "157", "242"} <= set(orders)
     assert len(orders) < 15
-
-
-def figure_of(torus):
-    times = np.linspace(0.0, 3.0, 4)
-    error = np.array([0.0, 1e-3, -2e-3, 0.1])
-    return Figure1(
-        torus=torus,
-        assessment=replace(
-            assess(torus.series, torus),
-            word="asymptotic",
-            best_order=4,
-            differences={2: (0.125, 0.0625)},
-            sums={1: (np.array([1.0, 0.5]), np.array([1.0, 0.25]))},
-            residuals=np.array([1.0, 0.75, 0.5, 0.375, 0.25]),
-        ),
-        spectra={4: np.arange(1.0, 8.0)},
-        times=times,
-        errors={4: (error / 10, error), 24: (error / 100, error)},
-        rounding=2.5e-13,
-    )
-
-
-def test_csv_files_hold_the_data_of_the_panels(torus, tmp_path):
-    data = figure_of(torus)
-    tables = {path.stem: list(csv.reader(path.read_text().splitlines())) for path in write_figure1_csv(data, tmp_path)}
-    assert set(tables) == {"fig1a", "fig1b", "fig1c", "fig1d"}
-    assert tables["fig1a"][1:] == [[str(q), str(float(q))] for q in range(1, 8)]
-    assert tables["fig1b"] == [["k", "delta_A1", "delta_A2"], ["2", "0.125", "0.0625"]]
-    assert tables["fig1c"][1:] == [["0", "1.0", "1.0"], ["1", "0.5", "0.25"]]
-    assert [float(row[0]) for row in tables["fig1d"][1:]] == data.times.tolist()
-    assert [float(row[2]) for row in tables["fig1d"][1:]] == data.errors[4][1].tolist()
 
 
 def test_json_numbers_have_at_most_fifteen_digits(torus):
@@ -155,28 +95,3 @@ def test_a_record_of_many_digits_keeps_them():
         for text, number in ((record["amplitudes"]["3"], torus.amplitudes[3]), (record["energy"], torus.energy())):
             assert abs(mpmath.mpf(text) / number - 1) < mpmath.mpf(10) ** -29
             assert abs(mpmath.mpf(text) / number - 1) > 0
-
-
-def test_figure_1_reads_its_evidence_from_the_verdict(torus):
-    """The class keeps no second copy of residuals, sums and differences."""
-    data = figure_of(torus)
-    assert data.residuals == {2: 0.5, 3: 0.375, 4: 0.25}
-    assert data.best_order == 4
-    assert data.differences == {2: (0.125, 0.0625)}
-    assert [s.tolist() for s in data.sums] == [[1.0, 0.5], [1.0, 0.25]]
-
-
-def test_the_page_on_fig_1_has_claims_verdict_and_pictures(torus, monkeypatch):
-    monkeypatch.setattr("symfpu.paper.fig1.FIG1_CANCELLATION_ORDER", 1)
-    data = figure_of(torus)
-    page, record = figure1_markdown(data), figure1_record(data)
-    assert "| energy error | about 1e-4 | 1.0e-02 at order 4, 1.0e-03 at order 24 |" in page
-    assert "| cancellation | four orders of magnitude at k = 14 | 0.3 orders of magnitude at k = 1 |" in page
-    assert "by coordinate order: 2: 5.0e-01, 4: 2.5e-01." in page
-    assert "The least is at order 4." in page
-    assert "Verdict on the series: asymptotic, best at order 4 (residual" in page
-    assert "the same to 2.5e-13" in page
-    assert all(page.count(f"![Fig. 1({panel})](fig1{panel}.png)") == 1 for panel in "abcd")
-    assert (record["best_order"], record["rounding_of_doubles"], record["digits"]) == (4, 2.5e-13, None)
-    assert record["claims"]["energy_error"]["computed"] == "1.0e-02 at order 4, 1.0e-03 at order 24"
-    assert record["assessment"]["verdict"] == "asymptotic, best at order 4"

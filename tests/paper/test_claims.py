@@ -1,0 +1,102 @@
+"""Claims: tables, pages and records hold what they were given."""
+
+import csv
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from symfpu.errors import InputError
+from symfpu.figures.panels import Curve, Panel
+from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY, Claim, PaperFigure, judged
+from symfpu.paper.claims_page import claims_markdown, claims_table, figure_markdown, figure_record, write_panel_csv
+from symfpu.paper.drawings import draw_panels
+
+X = np.array([1.0, 2.0, 4.0])
+
+
+def panel(*curves, **changes):
+    return replace(Panel("figXa", "Fig. X(a): test", r"$x$", r"$y$", curves, ("x_word", "y_word")), **changes)
+
+
+def claim(verdict=HOLDS, **changes):
+    return replace(Claim("4.1", "it is so", "1.5", "1.48", verdict), **changes)
+
+
+@pytest.fixture
+def figure():
+    curves = (Curve("$a$", X, 10 * X, name="a q=1"), Curve("b", X, 1 / X, "points"))
+    claims = (claim(), claim(FAILS), claim(FAILS, text="|eps_q| << 1", printed=""))
+    return PaperFigure("figX", "Fig. X: a test", (panel(*curves), panel(curves[1], name="figXb")), claims, ("Made by hand.",))
+
+
+@pytest.mark.parametrize(
+    ("holds", "partly", "verdict"), [(True, False, HOLDS), (True, True, HOLDS), (False, True, PARTLY), (False, False, FAILS)]
+)
+def test_verdicts(holds, partly, verdict):
+    assert judged(holds, partly) == verdict
+
+
+def test_unknown_verdicts_are_refused():
+    with pytest.raises(InputError, match="verdict"):
+        claim("probably")
+
+
+def test_a_table_has_every_point_under_the_name_of_its_curve(figure):
+    header, rows = figure.panels[0].table()
+    assert header == ["curve", "x_word", "y_word"]
+    assert list(rows) == [["a q=1", x, 10 * x] for x in X] + [["b", x, 1 / x] for x in X]
+
+
+def test_csv_files_hold_all_points_also_those_not_drawn(figure, tmp_path):
+    dark = replace(figure, panels=(panel(Curve("a", X, np.array([1.0, 0.0, np.nan]))),))
+    (path,) = write_panel_csv(dark, tmp_path)
+    assert path.name == "figXa.csv"
+    assert list(csv.reader(path.read_text().splitlines())) == [
+        ["curve", "x_word", "y_word"],
+        ["a", "1.0", "1.0"],
+        ["a", "2.0", "0.0"],
+        ["a", "4.0", "nan"],
+    ]
+
+
+def test_every_panel_is_written_as_png_and_pdf(figure, tmp_path):
+    paths = draw_panels(figure, tmp_path)
+    assert [path.name for path in paths] == ["figXa.png", "figXa.pdf", "figXb.png", "figXb.pdf"]
+    assert all(path.read_bytes().startswith(b"\x89PNG" if path.suffix == ".png" else b"%PDF") for path in paths)
+
+
+def test_the_page_has_every_claim_remark_and_picture(figure):
+    page = figure_markdown(figure)
+    assert page.startswith("## Fig. X: a test\n\nMade by hand.\n\n| section |")
+    assert "| 4.1 | it is so | 1.5 | 1.48 | **holds** |" in page
+    assert page.count("**does not hold**") == 2
+    assert page.endswith("![Fig. X(a): test](figXa.png)\n\n![Fig. X(a): test](figXb.png)\n")
+    assert "| section |" not in figure_markdown(replace(figure, claims=()))
+
+
+def test_moduli_do_not_end_the_cells_of_a_table():
+    row = claims_table([claim(text="|eps_q| << 1", printed="", ours="|v| grows")]).splitlines()[-1]
+    assert row == r"| 4.1 | \|eps_q\| << 1 | - | \|v\| grows | **holds** |"
+    assert row.replace(r"\|", "").count("|") == 6
+
+
+def test_the_summary_counts_by_verdict_and_figure(figure):
+    other = PaperFigure("figY", "Fig. Y", (), (claim(PARTLY), claim(OPEN), claim()))
+    page = claims_markdown([figure, other])
+    assert "2 holds, 1 holds in part, 2 does not hold, 1 undecided." in page
+    assert "| Fig. X: a test | 1 |  | 2 |  |" in page
+    assert "| Fig. Y | 1 | 1 |  | 1 |" in page
+
+
+def test_the_record_is_strict_json(figure):
+    record = json.loads(json.dumps(figure_record(figure), allow_nan=False))
+    assert record["panels"] == {"figXa": ["$a$", "b"], "figXb": ["b"]}
+    assert record["claims"][0] == {"section": "4.1", "text": "it is so", "printed": "1.5", "ours": "1.48", "verdict": "holds"}
+    assert (record["title"], record["remarks"]) == ("Fig. X: a test", ["Made by hand."])
+
+
+def test_a_figure_prints_its_verdicts(figure):
+    assert repr(figure) == "PaperFigure(figX, panels figXa, figXb; claims: 1 holds, 2 does not hold)"
+    assert repr(replace(figure, claims=())).endswith("claims: none)")

@@ -1,0 +1,75 @@
+"""The page, the record and the data files of Fig. 1, from data made by hand."""
+
+import csv
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from symfpu.chain.chain import Chain
+from symfpu.paper.fig1 import Figure1
+from symfpu.paper.pages import figure1_markdown, figure1_record, write_figure1_csv
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.verdict import assess
+
+
+@pytest.fixture(scope="module")
+def torus():
+    return solve_amplitudes(lindstedt(Chain(8, alpha="1/3", beta="0.1"), (1, 2), ("0.3905", "0.7663"), 4))
+
+
+def figure_of(torus):
+    times = np.linspace(0.0, 3.0, 4)
+    error = np.array([0.0, 1e-3, -2e-3, 0.1])
+    return Figure1(
+        torus=torus,
+        assessment=replace(
+            assess(torus.series, torus),
+            word="asymptotic",
+            best_order=4,
+            differences={2: (0.125, 0.0625)},
+            sums={1: (np.array([1.0, 0.5]), np.array([1.0, 0.25]))},
+            residuals=np.array([1.0, 0.75, 0.5, 0.375, 0.25]),
+        ),
+        spectra={4: np.arange(1.0, 8.0)},
+        times=times,
+        errors={4: (error / 10, error), 24: (error / 100, error)},
+        rounding=2.5e-13,
+    )
+
+
+def test_csv_files_hold_the_data_of_the_panels(torus, tmp_path):
+    data = figure_of(torus)
+    tables = {path.stem: list(csv.reader(path.read_text().splitlines())) for path in write_figure1_csv(data, tmp_path)}
+    assert set(tables) == {"fig1a", "fig1b", "fig1c", "fig1d"}
+    assert tables["fig1a"][1:] == [[str(q), str(float(q))] for q in range(1, 8)]
+    assert tables["fig1b"] == [["k", "delta_A1", "delta_A2"], ["2", "0.125", "0.0625"]]
+    assert tables["fig1c"][1:] == [["0", "1.0", "1.0"], ["1", "0.5", "0.25"]]
+    assert [float(row[0]) for row in tables["fig1d"][1:]] == data.times.tolist()
+    assert [float(row[2]) for row in tables["fig1d"][1:]] == data.errors[4][1].tolist()
+
+
+def test_figure_1_reads_its_evidence_from_the_verdict(torus):
+    """The class keeps no second copy of residuals, sums and differences."""
+    data = figure_of(torus)
+    assert data.residuals == {2: 0.5, 3: 0.375, 4: 0.25}
+    assert data.best_order == 4
+    assert data.differences == {2: (0.125, 0.0625)}
+    assert [s.tolist() for s in data.sums] == [[1.0, 0.5], [1.0, 0.25]]
+
+
+def test_the_page_on_fig_1_has_claims_verdict_and_pictures(torus, monkeypatch):
+    monkeypatch.setattr("symfpu.paper.fig1.FIG1_CANCELLATION_ORDER", 1)
+    data = figure_of(torus)
+    page, record = figure1_markdown(data), figure1_record(data)
+    assert "| energy error | about 1e-4 | 1.0e-02 at order 4, 1.0e-03 at order 24 |" in page
+    assert "| cancellation | four orders of magnitude at k = 14 | 0.3 orders of magnitude at k = 1 |" in page
+    assert "by coordinate order: 2: 5.0e-01, 4: 2.5e-01." in page
+    assert "The least is at order 4." in page
+    assert "Verdict on the series: asymptotic, best at order 4 (residual" in page
+    assert "the same to 2.5e-13" in page
+    assert all(page.count(f"![Fig. 1({panel})](fig1{panel}.png)") == 1 for panel in "abcd")
+    assert (record["best_order"], record["rounding_of_doubles"], record["digits"]) == (4, 2.5e-13, None)
+    assert record["claims"]["energy_error"]["computed"] == "1.0e-02 at order 4, 1.0e-03 at order 24"
+    assert record["assessment"]["verdict"] == "asymptotic, best at order 4"
