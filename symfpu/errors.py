@@ -26,6 +26,14 @@ def _rebuilt(kind: type[SymfpuError], args: tuple[Any, ...]) -> SymfpuError:
     return kind.__new__(kind, *args)
 
 
+class RunInterrupted(KeyboardInterrupt):
+    """The interrupt key in a run that is kept on disk. No SymfpuError: what catches errors lets it pass."""
+
+    def __init__(self, place: str, path: str) -> None:
+        self.place, self.path = place, path
+        super().__init__(f"interrupted {place}; kept in {path}: the same call, or command, goes on from there")
+
+
 class InputError(SymfpuError, ValueError):
     """An argument outside its range; raised by public functions, which check what they are given first.
 

@@ -141,13 +141,15 @@ def alignment_indices(
     samples : times, even in log t from 1 to T; each is a whole number of steps.
     seed : of numpy's default generator, for the vectors.
     block : the most steps between two orthonormalisations, halved where the frame is squeezed.
-    file : written every so many seconds and at the end, whole or not at all; with the same arguments a killed
-        run goes on from it and ends in the same bits; another T has other samples and is another run.
+    file : written every so many seconds, at the end, and when the interrupt key is pressed, whole or not at
+        all; with the same arguments an interrupted or killed run goes on from it and ends in the same bits.
+        With a larger T it goes on too: the samples there are stay, later ones are chosen for the new T, so
+        that bits are not those of a run to this T from the start.
     every : those seconds.
     progress : called as (label, fraction done).
 
-    Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint;
-    OrbitLost.
+    Raises InputError, also for a file of other parameters or of a longer run; BundleError for one that is no
+    checkpoint; OrbitLost; Interrupted, a KeyboardInterrupt, where there is a file.
 
     Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they are, vectors
     give GALI down to about 1e-16 for a direction, and an upper bound after that. So a frame is evolved
@@ -178,7 +180,7 @@ def alignment_indices(
     if file is not None:
         run.keep_in(checkpoint_path(file))
     run.go(progress or (lambda label, done: None))
-    times, volumes = np.asarray(marks * h, dtype=np.float64), np.cumsum(run.volumes, axis=1)[:, 1:] / math.log(10)
+    times, volumes = np.asarray(run.marks * h, dtype=np.float64), np.cumsum(run.volumes, axis=1)[:, 1:] / math.log(10)
     error = abs(float(chain.energy(*frame.orbit())) - before) / abs(before)
     return AlignmentIndices(chain, times, volumes, run.growth / times, h, error)
 
