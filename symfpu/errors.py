@@ -31,7 +31,10 @@ class RunInterrupted(KeyboardInterrupt):
 
     def __init__(self, place: str, path: str) -> None:
         self.place, self.path = place, path
-        super().__init__(f"interrupted {place}; kept in {path}: the same call, or command, goes on from there")
+        super().__init__(f"{place}; kept in {path}: the same call, or command, goes on from there")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.place, self.path)
 
 
 class InputError(SymfpuError, ValueError):

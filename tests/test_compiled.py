@@ -41,7 +41,11 @@ print(*np.abs(floquet(periodic_orbit(Chain(4, beta="0.3"), 1, "0.79")).pairs).ra
 def run(code, **environment):
     """The numbers it prints, line by line."""
     finished = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=True, env=os.environ | environment
+        [sys.executable, "-W", "error", "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=os.environ | environment,
     )
     return [[float(word) for word in line.split()] for line in finished.stdout.splitlines()]
 
@@ -50,7 +54,9 @@ def run(code, **environment):
 def installed(tmp_path):
     """A copy of the package beside whose sources no folder can be made, not by root either; and a folder for temporary files."""
     package = tmp_path / "lib" / "symfpu"
-    shutil.copytree(Path(symfpu.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        Path(symfpu.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__")
+    )
     for room in (package, *(path for path in package.rglob("*") if path.is_dir())):
         (room / "__pycache__").touch()
     (tmp_path / "tmp").mkdir()
@@ -61,7 +67,14 @@ def homeless(installed):
     """Runs the orbit without a home."""
     places = {"PYTHONPATH": str(installed / "lib"), "TMPDIR": str(installed / "tmp")}
     environment = places | {"HOME": os.devnull, "PATH": os.environ["PATH"]}
-    return subprocess.run([sys.executable, "-c", ORBIT], capture_output=True, text=True, check=False, env=environment, cwd=installed)
+    return subprocess.run(
+        [sys.executable, "-c", ORBIT],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+        cwd=installed,
+    )
 
 
 def test_a_read_only_installation_without_a_home_keeps_its_code_in_a_temporary_folder(installed):

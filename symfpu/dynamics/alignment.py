@@ -149,7 +149,7 @@ def alignment_indices(
     progress : called as (label, fraction done).
 
     Raises InputError, also for a file of other parameters or of a longer run; BundleError for one that is no
-    checkpoint; OrbitLost; Interrupted, a KeyboardInterrupt, where there is a file.
+    checkpoint; OrbitLost; RunInterrupted, a KeyboardInterrupt, where there is a file.
 
     Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they are, vectors
     give GALI down to about 1e-16 for a direction, and an upper bound after that. So a frame is evolved

@@ -30,8 +30,14 @@ SURE = 0.95  # weight of a dimension that is called decided
 POWER = 3  # of t: no regular orbit has a |v| that outgrows it
 OUTGROWN = 10.0  # e-foldings of |v| beyond this power that are called chaos; regular orbits were seen to have 0.3
 EARLY = 10.0  # time before which growth says nothing: |v| finds its directions
-PIECE, STRIDE = 1.0, 0.5  # decades of time in which |v| is asked to grow as t, and from one such piece to the next
-LOW, FULL = 2.0, 4.0  # decades with |v| as t before a torus of low dimension is believed, and one of full dimension
+PIECE, STRIDE = (
+    1.0,
+    0.5,
+)  # decades of time in which |v| is asked to grow as t, and from one such piece to the next
+LOW, FULL = (
+    2.0,
+    4.0,
+)  # decades with |v| as t before a torus of low dimension is believed, and one of full dimension
 
 
 @dataclass(frozen=True)
@@ -188,13 +194,18 @@ def _slope_doubt(seen: Evidence, steps: Floats, best: int, weight: float) -> tup
     late = seen.steps(seen.decades / 2)[:, 0]
     j = int(np.argmax(np.abs(late - expected)))
     if abs(late[j] - expected[j]) > ODD:
-        return reason, f", and log GALI_{j + 2} - log GALI_{j + 1} ends with {late[j]:.2f}: take a longer time"
+        return (
+            reason,
+            f", and log GALI_{j + 2} - log GALI_{j + 1} ends with {late[j]:.2f}: take a longer time",
+        )
     return reason, ""
 
 
 def _length_doubt(seen: Evidence, s: int) -> str:
     """Whether |v| has grown as t for too short a time to believe in a torus of dimension s; empty if not."""
-    special = s < seen.vectors and 2 * s <= seen.freedom  # an index falls, and more will not come to join s soon
+    special = (
+        s < seen.vectors and 2 * s <= seen.freedom
+    )  # an index falls, and more will not come to join s soon
     regular = seen.freedom == 1  # knows no chaos
     needed = LOW if special or regular else FULL
     length = linear_decades(seen.times, seen.growth)

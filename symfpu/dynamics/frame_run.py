@@ -110,7 +110,7 @@ class FrameRun:
             yield min(following, (self.done // self.portion + 1) * self.portion)
 
     def go(self, tell: Progress) -> None:
-        """To the last mark. Raises OrbitLost; Interrupted where the run is kept in a file."""
+        """To the last mark. Raises OrbitLost; RunInterrupted where the run is kept in a file."""
         last = int(self.marks[-1])
         with kept_run(self.path, self.every, self._write) as look:
             for end in self._ends():

@@ -123,7 +123,7 @@ def integrate(
     the averages here are of Eq. harmonicene, with it.
     Raises InputError, also for a file of other parameters or of a longer run, and for times before its end
     that it has not; BundleError for one that is no checkpoint; UnstableStep and EscapedOrbit with time, mode
-    and energy; Interrupted, a KeyboardInterrupt, where there is a file.
+    and energy; RunInterrupted, a KeyboardInterrupt, where there is a file.
 
     >>> integrate(Chain(N=2, beta=1), [0.0], [1.0], 100, step=0.125, samples=4).times
     array([  0.   ,   0.125,   1.125,  10.75 , 100.   ])
@@ -227,7 +227,7 @@ class _Run:
             yield min(following, (self.done // block + 1) * block)
 
     def go(self, each: Callable[..., Any], progress: Callable[[int, int], None]) -> None:
-        """To the last step. Raises OrbitStopped; Interrupted where the run is kept in a file."""
+        """To the last step. Raises OrbitStopped; RunInterrupted where the run is kept in a file."""
         with kept_run(self.path, self.every, self._write) as look:
             for end in self._ends():
                 self._move_to(end, each)

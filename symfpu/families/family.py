@@ -13,7 +13,7 @@ import mpmath
 import numpy as np
 
 from symfpu.chain.chain import Chain
-from symfpu.errors import InputError, Interrupted, SymfpuError
+from symfpu.errors import InputError, RunInterrupted, SymfpuError
 from symfpu.families.appendix_a import AppendixAMember, NoFurtherMember, appendix_a_members
 from symfpu.families.continuation import Event, Member, Way, extrapolated, first_torus, member, returned
 from symfpu.families.events import continued, events_between
@@ -197,7 +197,7 @@ def family(
     except KeyboardInterrupt as stop:
         if kept.folder is None:
             raise
-        raise Interrupted(f"after {len(kept.members)} members", str(kept.folder)) from stop
+        raise RunInterrupted(f"after {len(kept.members)} members", str(kept.folder)) from stop
 
 
 def _by_arclength(plan: Plan, kept: Kept, report: Report, *, lower: bool = True) -> Family:

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import pickle
 import random
 import resource
 import shutil
@@ -17,7 +18,7 @@ from symfpu.bundles.bundle import load
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import alignment_indices, seconds_needed
 from symfpu.dynamics.orbits import integrate
-from symfpu.errors import InputError, Interrupted
+from symfpu.errors import InputError, RunInterrupted
 from symfpu.files.archive import BundleError
 
 CHAIN = Chain(6, alpha="0.3", beta="0.2")
@@ -123,10 +124,11 @@ def test_the_interrupt_key_keeps_a_run_and_says_how_to_go_on(key, tmp_path, stat
         try:
             resumed = alignment_indices(CHAIN, **state, **SHORT, file=file, every=3600, progress=key)
             break
-        except Interrupted as stop:
+        except RunInterrupted as stop:
             said.append(str(stop))
     assert len(said) > 5
-    assert said[-1] == f"interrupted at t = 150 of 150; kept in {file}: the same call, or command, goes on from there"
+    assert str(pickle.loads(pickle.dumps(RunInterrupted("at t = 1 of 2", "there")))).startswith("at t = 1 of 2; kept in there")
+    assert said[-1] == f"at t = 150 of 150; kept in {file}: the same call, or command, goes on from there"
     same(resumed, alignment_indices(CHAIN, **state, **SHORT))
 
 
@@ -135,7 +137,7 @@ def test_a_longer_run_goes_on_from_the_end_of_a_shorter_one(tmp_path, state):
     short = alignment_indices(CHAIN, **state, **SHORT, file=tmp_path / "gali")
     shutil.copy(tmp_path / "gali", tmp_path / "copy")
     longer, seen = SHORT | {"T": 400.0}, []
-    with pytest.raises(Interrupted):
+    with pytest.raises(RunInterrupted):
         alignment_indices(CHAIN, **state, **longer, file=tmp_path / "gali", progress=press)
     one = alignment_indices(CHAIN, **state, **longer, file=tmp_path / "gali", progress=lambda label, done: seen.append(done))
     assert min(seen) > 150 / 400

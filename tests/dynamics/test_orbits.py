@@ -21,7 +21,7 @@ from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import SCHEMES, integrate
 from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep, potential, stretch_bounds
-from symfpu.errors import InputError, Interrupted
+from symfpu.errors import InputError, RunInterrupted
 from symfpu.files.archive import BundleError
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
@@ -379,10 +379,10 @@ def test_the_interrupt_key_keeps_a_run_and_says_how_to_go_on(key, workers, tmp_p
         try:
             resumed = integrate(MIXED, *start, 200.0, **keywords, file=file, every=3600, progress=key)
             break
-        except Interrupted as stop:
+        except RunInterrupted as stop:
             said.append(str(stop))
     assert len(said) >= 3
-    assert said[-1] == f"interrupted at t = 200 of 200; kept in {file}: the same call, or command, goes on from there"
+    assert said[-1] == f"at t = 200 of 200; kept in {file}: the same call, or command, goes on from there"
     for name in ("Q", "P", "averages"):
         assert np.array_equal(getattr(resumed, name), getattr(whole, name))
     assert signal.getsignal(signal.SIGINT) is before
@@ -391,7 +391,7 @@ def test_the_interrupt_key_keeps_a_run_and_says_how_to_go_on(key, workers, tmp_p
 def test_without_a_file_and_beside_the_main_thread_the_interrupt_key_is_left_alone(tmp_path, state):
     with pytest.raises(KeyboardInterrupt) as stop:
         integrate(MIXED, *state, 200.0, step=0.1, progress=press)
-    assert not isinstance(stop.value, Interrupted)
+    assert not isinstance(stop.value, RunInterrupted)
     with ThreadPoolExecutor(1) as pool:
         pool.submit(integrate, MIXED, *state, 20.0, step=0.1, file=tmp_path / "orbit").result()
 
@@ -421,7 +421,7 @@ def test_a_longer_run_keeps_its_samples_and_lays_out_later_ones(tmp_path, state,
     keywords = {"step": 0.1, "samples": 20}
     short = integrate(MIXED, *state, 30.0, file=tmp_path / "orbit", **keywords)
     shutil.copy(tmp_path / "orbit", tmp_path / "copy")
-    with pytest.raises(Interrupted):
+    with pytest.raises(RunInterrupted):
         integrate(MIXED, *state, 300.0, file=tmp_path / "orbit", **keywords, progress=press)
     longer, other = (integrate(MIXED, *state, 300.0, file=tmp_path / name, **keywords) for name in ("orbit", "copy"))
     assert np.array_equal(longer.Q, other.Q)
