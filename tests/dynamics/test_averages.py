@@ -84,7 +84,7 @@ def test_orbits_and_threads_do_not_mix(start):
 
 
 def test_an_interrupted_run_keeps_its_averages_bitwise(start, tmp_path):
-    class RunInterrupted(Exception):
+    class Interrupted(Exception):
         pass
 
     def stop_soon():
@@ -92,7 +92,7 @@ def test_an_interrupted_run_keeps_its_averages_bitwise(start, tmp_path):
 
         def progress(done, total):
             if next(calls) == 3:
-                raise RunInterrupted
+                raise Interrupted
 
         return progress
 
@@ -103,7 +103,7 @@ def test_an_interrupted_run_keeps_its_averages_bitwise(start, tmp_path):
         try:
             resumed = integrate(**run, file=tmp_path / "orbit", every=0, progress=stop_soon())
             break
-        except RunInterrupted:
+        except Interrupted:
             pass
     assert runs >= 4
     for name in ("Q", "P", "averages"):
