@@ -26,6 +26,17 @@ def _rebuilt(kind: type[SymfpuError], args: tuple[Any, ...]) -> SymfpuError:
     return kind.__new__(kind, *args)
 
 
+class RunInterrupted(KeyboardInterrupt):
+    """The interrupt key in a run that is kept on disk. No SymfpuError: what catches errors lets it pass."""
+
+    def __init__(self, place: str, path: str) -> None:
+        self.place, self.path = place, path
+        super().__init__(f"{place}; kept in {path}: the same call, or command, goes on from there")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.place, self.path)
+
+
 class InputError(SymfpuError, ValueError):
     """An argument outside its range; raised by public functions, which check what they are given first.
 

@@ -15,9 +15,12 @@ from typing import Any
 
 import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
+
+from symfpu.algebra import uncompiled
+from symfpu.compiled import JIT, compiled
 
 INT64 = ir.IntType(64)
 Float64 = types.float64
@@ -45,7 +48,7 @@ def _modular_product(builder: Any, a: Any, b: Any, modulus: Any, inverse: Any) -
 
 
 @intrinsic
-def modular_product(_context: Any, a: Any, b: Any, modulus: Any, inverse: Any) -> Any:
+def _modular_product_code(_context: Any, a: Any, b: Any, modulus: Any, inverse: Any) -> Any:
     """a b modulo the modulus for doubles below 2^40 in size, up to one multiple of it."""
 
     def generate(_target: Any, builder: Any, _signature: Any, args: Any) -> Any:
@@ -55,7 +58,7 @@ def modular_product(_context: Any, a: Any, b: Any, modulus: Any, inverse: Any) -
 
 
 @intrinsic
-def multiply_row(
+def _row_code(
     _context: Any,
     lanes: Any,
     left: Any,
@@ -137,7 +140,11 @@ def multiply_row(
     return signature, generate
 
 
-@njit(nogil=True, cache=True)
+modular_product: Any = _modular_product_code if JIT else uncompiled.modular_product
+multiply_row: Any = _row_code if JIT else uncompiled.multiply_row
+
+
+@compiled()
 def multiply(
     lanes: Any,
     left: Any,
@@ -222,7 +229,7 @@ def multiply(
                                 start,
                                 length,
                                 modulus,
-                            )  # type: ignore[call-arg]
+                            )
                         else:
                             multiply_row(
                                 lanes,
@@ -238,43 +245,40 @@ def multiply(
                                 start,
                                 length,
                                 modulus,
-                            )  # type: ignore[call-arg]
+                            )
                         count += length - start
     return count * len(lanes)
 
 
-@njit(nogil=True, cache=True)
+@compiled()
 def multiply_elements(left, right, modulus, out):  # type: ignore[no-untyped-def]
-    """out = left right modulo a prime below 2^40, element by element, in -p/2 ..
+    """out = left right modulo a prime below 2^40, element by element, in -p/2 .. p/2.
 
-    P/2; arrays of one shape, contiguous.
+    Arrays of one shape, contiguous.
     """
     inverse = 1.0 / modulus
     a, b, c = left.ravel(), right.ravel(), out.ravel()
     for n in range(len(a)):
-        value = modular_product(a[n], b[n], modulus, inverse)  # type: ignore[call-arg, var-annotated]
+        value = modular_product(a[n], b[n], modulus, inverse)
         c[n] = value - modulus * np.rint(value * inverse)
 
 
-@njit(nogil=True, cache=True)
+@compiled()
 def multiply_rows(values, factors, moduli):  # type: ignore[no-untyped-def]
-    """values[i] *= factors[i] modulo moduli[i], in -p/2 ..
-
-    P/2; values (primes, count), overwritten.
-    """
+    """values[i] *= factors[i] modulo moduli[i], in -p/2 .. p/2; values (primes, count), overwritten."""
     for i in range(len(values)):
         modulus, factor = moduli[i], factors[i]
         inverse = 1.0 / modulus
         for n in range(values.shape[1]):
-            value = modular_product(values[i, n], factor, modulus, inverse)  # type: ignore[call-arg, var-annotated]
+            value = modular_product(values[i, n], factor, modulus, inverse)
             values[i, n] = value - modulus * np.rint(value * inverse)
 
 
-@njit(nogil=True, cache=True)
+@compiled()
 def reduce_rows(values, moduli):  # type: ignore[no-untyped-def]
-    """values[i] modulo moduli[i], in -p/2 ..
+    """values[i] modulo moduli[i], in -p/2 .. p/2, for integers below 2^52 in size.
 
-    P/2, for integers below 2^52 in size; values (primes, count), overwritten.
+    values (primes, count), overwritten.
     """
     for i in range(len(values)):
         modulus = moduli[i]

@@ -11,8 +11,7 @@ on a chaotic orbit as exp(-t sum_{j<=k} (chi_1 - chi_j)). Logarithms are to base
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from numbers import Real
 from os import PathLike
 
@@ -20,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain, require_chain
+from symfpu.dynamics.dimension import DECADES, FEWEST, Evidence, TorusDimension, fits, torus_dimension
 from symfpu.dynamics.frame_run import FrameRun, Progress, seconds_a_step
 from symfpu.dynamics.tangent import moving_frame, step_length
 from symfpu.errors import InputError
@@ -32,15 +32,8 @@ Ints = NDArray[np.int64]
 STEP, SAMPLES, VECTORS, BLOCK = 0.4, 400, 7, 40
 MOST_VECTORS, MOST_SAMPLES, MOST_STEPS = 64, 1_000_000, 2**52
 LOST_ENERGY = 1e-3  # relative: an orbit that has lost so much is not one of the chain
-DECADES = 1.5  # of time, the last ones, in which slopes are fitted
-PARTS = 8  # of that range, left out one at a time for the uncertainty of a slope
-FEWEST = 4 * PARTS  # samples in it
 FEWEST_SAMPLES = 2 * FEWEST  # in all: rounding to steps unites some of the first
 SHORTEST = 100  # time, and steps
-FLOOR = 0.1  # least uncertainty of a slope in the choice of a dimension: transients and log-periodic waves that one window cannot show
-ODD = 1 / 3  # a slope so far from every integer it should be decides nothing
-SURE = 0.95  # weight of a dimension that is called decided
-CHAOTIC_GROWTH = 3.0  # d log |v| / d log t: 1 on a torus, lambda t on a chaotic orbit
 
 
 @dataclass(frozen=True)
@@ -53,22 +46,6 @@ class Slope:
 
     def __repr__(self) -> str:
         return f"GALI_{self.k}: {self.value:.2f} +- {self.error:.2f}"
-
-
-@dataclass(frozen=True)
-class TorusDimension:
-    """What the slopes say of the torus under an orbit.
-
-    verdict : 'regular, dimension s', 'regular, dimension s or more' if no index falls, 'chaotic' or 'undecided'. value : s, None for a
-    chaotic or undecided orbit. error : the standard deviation of s over the weights; weights : of each s, normalised, also where
-    nothing is decided. reason : the numbers behind the verdict.
-    """
-
-    verdict: str
-    value: int | None
-    error: float
-    weights: Mapping[int, float] = field(repr=False)
-    reason: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,67 +93,25 @@ class AlignmentIndices:
         The uncertainty is that of the delete-a-block jackknife over PARTS stretches of the window: it sees waves longer than the
         samples are apart, and bends. decades : of time, cut to what the samples span and widened to FEWEST of them. Raises InputError.
         """
-        return tuple(Slope(k, *found) for k, found in enumerate(self._fits(self.log10_gali, decades), start=2))
+        return tuple(Slope(k, *found) for k, found in enumerate(fits(self.times, self.log10_gali, decades), start=2))
 
     def dimension(self, decades: float = DECADES) -> TorusDimension:
-        """The dimension s of the torus, from how each further vector changes the slope (sections 3.2, 4).
+        """The dimension s of the torus by how each further vector changes the slope, chaos, or neither yet (sections 3.2, 4).
 
-        log GALI_j - log GALI_(j-1) has the slope 0 for j <= s, -1 for s < j <= 2n-s, -2 above. Each s has the weight exp(-chi^2/2)
-        of these differences, whose uncertainties are at least FLOOR and are enlarged where no s fits. The orbit is called chaotic if
-        the first vector grows faster than t^CHAOTIC_GROWTH (by three standard errors) and an index falls faster than a torus allows;
-        undecided if a slope is off its integer by more than ODD, if no s has the weight SURE, if the first vector does not yet grow as t
-        does (before that time indices stay constant on every torus), or if the orbit has lost LOST_ENERGY of its energy.
+        Chaotic is an orbit whose first vector has outgrown t^POWER by more than OUTGROWN e-foldings: that is never
+        taken back. Otherwise log GALI_j - log GALI_(j-1) has the slope 0 for j <= s, -1 for s < j <= 2n-s, -2 above,
+        and each s the weight exp(-chi^2/2) of these differences, whose uncertainties are at least FLOOR and are
+        enlarged where no s fits. Regular asks for the weight SURE, slopes within ODD of their integers in the window
+        and in its second half, and a first vector that grows as t, in every decade of the last LOW ones for a torus
+        of low dimension (an index falls, 2 s <= n) or with N = 2, of the last FULL ones for others: see
+        symfpu.dynamics.dimension. Undecided is everything else, and an orbit that has lost LOST_ENERGY of its
+        energy; the reason says what it would take. Raises InputError.
         """
         if not self.energy_error <= LOST_ENERGY:
             reason = f"the orbit is off by {self.energy_error:.1g} of its energy: take a shorter step than {self.step:g}"
             return TorusDimension("undecided", None, math.nan, {}, reason)
-        growth, doubt = self._fits((self.lyapunov * self.times / math.log(10))[:, None], decades)[0]
-        steps = np.array(self._fits(np.diff(self.log10_gali, axis=1, prepend=0.0), decades))
-        reason = f"|v| grows as t^{growth:.2f} +- {doubt:.2f}"
-        if growth - 3 * doubt > CHAOTIC_GROWTH and steps[:, 0].min() < -2 - ODD:
-            return TorusDimension("chaotic", None, 0.0, {}, reason)
-        n, errors = self.chain.N - 1, np.maximum(steps[:, 1], FLOOR)
-        offsets = {s: steps[:, 0] - _expected(s, n, self.vectors) for s in range(1, min(self.vectors, n) + 1)}
-        squares = {s: float(np.sum((off / errors) ** 2)) for s, off in offsets.items()}
-        best = min(squares, key=lambda s: squares[s])
-        scale = max(1.0, squares[best] / len(errors))
-        weights = {s: math.exp((squares[best] - square) / (2 * scale)) for s, square in squares.items()}
-        weights = {s: w / sum(weights.values()) for s, w in weights.items()}
-        error = math.sqrt(sum(w * (s - best) ** 2 for s, w in weights.items()))
-        j = int(np.argmax(np.abs(offsets[best])))
-        if abs(growth - 1) > ODD:
-            return TorusDimension("undecided", None, error, weights, f"{reason}, on a torus as t^1 in the end: take a longer time")
-        reason += (
-            f"; log GALI_{j + 2} - log GALI_{j + 1}, the farthest from its integer, has the slope {steps[j, 0]:.2f} +- {steps[j, 1]:.2f}, "
-            f"on a torus of dimension {best} it is {_expected(best, n, self.vectors)[j]}"
-        )
-        if abs(offsets[best][j]) > ODD or weights[best] < SURE:
-            return TorusDimension("undecided", None, error, weights, f"{reason}: take a longer time")
-        more = " or more" if best == self.vectors < n else ""
-        return TorusDimension(f"regular, dimension {best}{more}", best, error, weights, reason)
-
-    def _fits(self, values: Floats, decades: float) -> list[tuple[float, float]]:
-        """Slopes of columns against log10 t over the last decades, with jackknife errors."""
-        x = np.log10(self.times)
-        first = min(int(np.searchsorted(x, x[-1] - _span(x, decades) - 1e-9)), max(0, len(x) - FEWEST))
-        x, values = x[first:], values[first:]
-        part = np.arange(len(x)) * PARTS // len(x)
-        whole = np.polyfit(x, values, 1)[0]
-        without = np.array([np.polyfit(x[part != i], values[part != i], 1)[0] for i in range(PARTS)])
-        errors = np.sqrt((PARTS - 1) / PARTS * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
-        return list(zip(whole.tolist(), errors.tolist(), strict=True))
-
-
-def _span(log_time: Floats, decades: float) -> float:
-    if not decades > 0:
-        raise InputError("decades", decades, "a positive number", "take one or two")
-    return min(decades, float(log_time[-1] - log_time[0]))
-
-
-def _expected(s: int, n: int, vectors: int) -> Ints:
-    """Slopes of log GALI_j - log GALI_(j-1), j = 2 .. vectors, on a torus of dimension s in a phase space of dimension 2n."""
-    j = np.arange(2, vectors + 1)
-    return -np.add(j > s, j > 2 * n - s, dtype=np.int64)
+        growth = self.lyapunov * self.times
+        return torus_dimension(Evidence(self.times, growth, self.log10_gali, self.chain.N - 1, decades))
 
 
 def alignment_indices(
@@ -206,13 +141,15 @@ def alignment_indices(
     samples : times, even in log t from 1 to T; each is a whole number of steps.
     seed : of numpy's default generator, for the vectors.
     block : the most steps between two orthonormalisations, halved where the frame is squeezed.
-    file : written every so many seconds and at the end, whole or not at all; with the same arguments a killed
-        run goes on from it and ends in the same bits; another T has other samples and is another run.
+    file : written every so many seconds, at the end, and when the interrupt key is pressed, whole or not at
+        all; with the same arguments an interrupted or killed run goes on from it and ends in the same bits.
+        With a larger T it goes on too: the samples there are stay, later ones are chosen for the new T, so
+        that bits are not those of a run to this T from the start.
     every : those seconds.
     progress : called as (label, fraction done).
 
-    Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint;
-    OrbitLost.
+    Raises InputError, also for a file of other parameters or of a longer run; BundleError for one that is no
+    checkpoint; OrbitLost; RunInterrupted, a KeyboardInterrupt, where there is a file.
 
     Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they are, vectors
     give GALI down to about 1e-16 for a direction, and an upper bound after that. So a frame is evolved
@@ -243,7 +180,7 @@ def alignment_indices(
     if file is not None:
         run.keep_in(checkpoint_path(file))
     run.go(progress or (lambda label, done: None))
-    times, volumes = np.asarray(marks * h, dtype=np.float64), np.cumsum(run.volumes, axis=1)[:, 1:] / math.log(10)
+    times, volumes = np.asarray(run.marks * h, dtype=np.float64), np.cumsum(run.volumes, axis=1)[:, 1:] / math.log(10)
     error = abs(float(chain.energy(*frame.orbit())) - before) / abs(before)
     return AlignmentIndices(chain, times, volumes, run.growth / times, h, error)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,8 @@ from numpy.typing import NDArray
 from symfpu.dynamics.tangent import MovingFrame
 from symfpu.errors import SymfpuError
 from symfpu.files.archive import BundleError
-from symfpu.files.checkpoint import ADVICE, ALIGNMENT, digest, read_checkpoint, write_checkpoint
+from symfpu.files.checkpoint import ADVICE, ALIGNMENT, digest, marks_of, read_checkpoint, write_checkpoint
+from symfpu.files.interruption import kept_run
 from symfpu.numbers.typed import decimal
 
 Floats = NDArray[np.float64]
@@ -43,16 +45,20 @@ class FrameRun:
     """
 
     def __init__(self, frame: MovingFrame, marks: Ints, step: float, longest: int, every: float) -> None:
-        self.frame, self.marks, self.step, self.longest, self.every = frame, marks, step, longest, every
+        self.frame, self.step, self.longest, self.every = frame, step, longest, every
         m = frame.vectors
         self.portion = max(longest, PORTION // (frame.chain.N * len(frame.dx)))
         self.done, self.block = 0, longest
         self.columns, self.diagonal, self.norms = np.eye(m), np.zeros(m), np.zeros(m)
-        self.volumes, self.growth = np.zeros((len(marks), m)), np.zeros(len(marks))
         self.path: Path | None = None
+        self._sample_at(marks)
+
+    def _sample_at(self, marks: Ints) -> None:
+        self.marks = marks
+        self.volumes, self.growth = np.zeros((len(marks), self.frame.vectors)), np.zeros(len(marks))
 
     def keep_in(self, path: Path) -> None:
-        """Goes on from the file, if there is one."""
+        """Goes on from the file, if there is one, which may hold a shorter run."""
         self.path, frame = path, self.frame
         self.parameters = {
             "N": frame.chain.N,
@@ -71,6 +77,7 @@ class FrameRun:
         if kept is None:
             return
         done, arrays = kept
+        self._sample_at(marks_of(path, arrays.get("sampled", np.zeros(0)), done, self.marks, exact=False))
         room, block = self._arrays(done), arrays.pop("block", np.zeros(0))
         right = {name: values.shape for name, values in arrays.items()} == {name: values.shape for name, values in room.items()}
         if not right or done > self.marks[-1] or block.shape != (1,) or not 1 <= block[0] <= self.longest:
@@ -90,6 +97,7 @@ class FrameRun:
             "columns": self.columns,
             "diagonal": self.diagonal,
             "norms": self.norms,
+            "sampled": self.marks[:known].astype(np.float64),
             "volumes": self.volumes[:known],
             "growth": self.growth[:known],
         }
@@ -102,19 +110,27 @@ class FrameRun:
             yield min(following, (self.done // self.portion + 1) * self.portion)
 
     def go(self, tell: Progress) -> None:
-        saved, last = time.perf_counter(), int(self.marks[-1])
-        for end in self._ends():
-            self.block = carried(self.frame, end - self.done, self.block, self.longest, self.columns, self.diagonal, self.norms)
-            if not np.isfinite(self.norms).all():
-                raise OrbitLost(float(end * self.step), self.step)
-            self.done = end
-            place = int(np.searchsorted(self.marks, end))
-            if self.marks[place] == end:
-                self.volumes[place], self.growth[place] = self.diagonal - self.norms, self.diagonal[0]
-            if self.path is not None and (end == last or time.perf_counter() - saved >= self.every):
-                write_checkpoint(self.path, self.parameters, end, self._arrays(end) | {"block": np.array([float(self.block)])}, ALIGNMENT)
-                saved = time.perf_counter()
-            tell(f"t = {end * self.step:.3g}", end / last)
+        """To the last mark. Raises OrbitLost; RunInterrupted where the run is kept in a file."""
+        last = int(self.marks[-1])
+        with kept_run(self.path, self.every, self._write) as look:
+            for end in self._ends():
+                self._move_to(end)
+                place = f"at t = {end * self.step:.6g} of {last * self.step:.6g}"
+                look(place, end == last, partial(tell, f"t = {end * self.step:.3g}", end / last))
+
+    def _move_to(self, end: int) -> None:
+        self.block = carried(self.frame, end - self.done, self.block, self.longest, self.columns, self.diagonal, self.norms)
+        if not np.isfinite(self.norms).all():
+            raise OrbitLost(float(end * self.step), self.step)
+        self.done = end
+        place = int(np.searchsorted(self.marks, end))
+        if self.marks[place] == end:
+            self.volumes[place], self.growth[place] = self.diagonal - self.norms, self.diagonal[0]
+
+    def _write(self) -> None:
+        assert self.path is not None
+        block = np.array([float(self.block)])
+        write_checkpoint(self.path, self.parameters, self.done, self._arrays(self.done) | {"block": block}, ALIGNMENT)
 
 
 def carried(frame: MovingFrame, steps: int, block: int, longest: int, columns: Floats, diagonal: Floats, norms: Floats) -> int:

@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from symfpu.chain.bonds import stiffness, tension
+from symfpu.compiled import compiled
 
-_compiled = njit(nogil=True, cache=True, fastmath={"contract"})
-_tension, _stiffness = _compiled(tension), _compiled(stiffness)
+_compiled, _inlined = compiled(fastmath={"contract"}), compiled(fastmath={"contract"}, keep=False)
+_tension, _stiffness = _inlined(tension), _inlined(stiffness)
 
 
 @_compiled

@@ -10,13 +10,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from symfpu.chain.bonds import tension
+from symfpu.compiled import compiled
 
 _ONE = np.uint64(1)
-_compiled = njit(nogil=True, cache=True, error_model="numpy")
-_tension = _compiled(tension)
+_compiled = compiled(error_model="numpy")
+_tension = compiled(error_model="numpy", keep=False)(tension)
 
 
 @_compiled

@@ -7,10 +7,11 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from numbers import Real
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,7 +27,8 @@ from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep, r
 from symfpu.dynamics.yoshida4 import YOSHIDA4
 from symfpu.errors import InputError
 from symfpu.files.archive import BundleError
-from symfpu.files.checkpoint import ADVICE, checkpoint_path, digest, read_checkpoint, write_checkpoint
+from symfpu.files.checkpoint import ADVICE, checkpoint_path, digest, marks_of, read_checkpoint, seconds_between, write_checkpoint
+from symfpu.files.interruption import kept_run
 from symfpu.numbers.typed import decimal, integer
 
 Floats = NDArray[np.float64]
@@ -108,16 +110,20 @@ def integrate(
         moved to the nearest step.
     averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if longer;
         samples are then moved to looks.
-    file : written every so many seconds and at the end, whole or not at all; with the same arguments a killed
-        run goes on from it and ends in the same bits.
+    file : written every so many seconds, at the end, and when the interrupt key is pressed, whole or not at
+        all; with the same arguments an interrupted or killed run goes on from it and ends in the same bits.
+        With a larger T, a multiple of the same step, it goes on too. Samples there are stay. A number of
+        samples is laid out for the new T, and those beyond the old are taken; times are taken as they are,
+        and where they have the old end among them the bits are those of a run to this T from the start.
     every : those seconds.
     workers : threads, among which orbits are shared out.
     progress : called as (steps done, steps).
 
     Solves Eq. eqmo, in particles or in modes. Section 3.2 averages P^2 + Omega^2 Q^2 without the factor 1/2;
     the averages here are of Eq. harmonicene, with it.
-    Raises InputError, also for a file of other parameters; BundleError for one that is no checkpoint;
-    UnstableStep and EscapedOrbit with time, mode and energy.
+    Raises InputError, also for a file of other parameters or of a longer run, and for times before its end
+    that it has not; BundleError for one that is no checkpoint; UnstableStep and EscapedOrbit with time, mode
+    and energy; RunInterrupted, a KeyboardInterrupt, where there is a file.
 
     >>> integrate(Chain(N=2, beta=1), [0.0], [1.0], 100, step=0.125, samples=4).times
     array([  0.   ,   0.125,   1.125,  10.75 , 100.   ])
@@ -131,10 +137,9 @@ def integrate(
     run = _Run(chain, found, T, looks * stride, stride * _sample_steps(T, looks, samples), Q, P)
     if averages:
         run.take_averages(stride)
-    if isinstance(every, bool) or not isinstance(every, Real) or not float(every) >= 0:
-        raise InputError("every", every, "seconds, 0 or more", "leave it out")
+    seconds = seconds_between(every)
     if file is not None:
-        run.keep_in(checkpoint_path(file), float(every))
+        run.keep_in(checkpoint_path(file), seconds, exact=not _is_count(samples))
     with ThreadPoolExecutor(workers) as pool:
         run.go(map if workers == 1 or run.orbits == 1 else pool.map, progress or (lambda done, total: None))
     return run.result()
@@ -144,7 +149,7 @@ class _Run:
     """The state of an integration: its coordinates after so many steps, and the samples so far."""
 
     def __init__(self, chain: Chain, scheme: Scheme, T: float, steps: int, sampled: Ints, Q: Floats, P: Floats) -> None:
-        self.chain, self.scheme, self.T, self.steps, self.sampled, self.shape = chain, scheme, T, steps, sampled, Q.shape
+        self.chain, self.scheme, self.T, self.steps, self.shape = chain, scheme, T, steps, Q.shape
         self.step = T / steps
         Q, P = Q.reshape(-1, chain.N - 1), P.reshape(-1, chain.N - 1)
         self.orbits, self.done, self.begun = len(Q), 0, time.perf_counter()
@@ -158,7 +163,7 @@ class _Run:
         self.start = chain.harmonic_energies(Q, P)
         bounds = np.array([limit[:2] for limit in limits]).reshape(-1, 2)
         self.motion = Motion(chain, scheme, self.step, bounds)
-        self.Q, self.P = (np.zeros((len(sampled), self.orbits, chain.N - 1)) for _ in range(2))
+        self._sample_at(sampled)
         self.Q[0], self.P[0] = Q, P
         self.state = self.motion.coordinates(Q, P)
         stretches = np.asarray(chain.stretches(Q))
@@ -166,14 +171,17 @@ class _Run:
         if outside.any():
             self._stop(int(np.argmax(outside)), 0, escaped=True)
 
+    def _sample_at(self, sampled: Ints) -> None:
+        self.sampled = sampled
+        self.Q, self.P, self.averages = (np.zeros((len(sampled), self.orbits, self.chain.N - 1)) for _ in range(3))
+
     def take_averages(self, stride: int) -> None:
         """Looks at the orbits every so many steps."""
         self.stride, self.running = stride, RunningAverages(self.chain, self.Q[0], self.P[0])
-        self.averages = np.zeros_like(self.Q)
         self.averages[0] = self.running.start
 
-    def keep_in(self, path: Path, every: float) -> None:
-        """Goes on from the file, if there is one."""
+    def keep_in(self, path: Path, every: float, *, exact: bool) -> None:
+        """Goes on from the file, if there is one, which may hold a shorter run. exact : as for `marks_of`."""
         self.path, self.every = path, every
         chain, scheme = self.chain, self.scheme
         self.parameters = {
@@ -191,6 +199,7 @@ class _Run:
         kept = read_checkpoint(path, self.parameters)
         if kept is not None:
             self.done, arrays = kept
+            self._sample_at(marks_of(path, arrays.get("sampled", np.zeros(0)), self.done, self.sampled, exact=exact))
             known = int(np.searchsorted(self.sampled, self.done, side="right"))
             due = {name: values.shape for name, values in self._kept(known).items()}
             if {name: values.shape for name, values in arrays.items()} != due or self.done > self.steps:
@@ -202,7 +211,8 @@ class _Run:
 
     def _kept(self, known: int) -> dict[str, Floats]:
         """What a checkpoint holds after so many samples, as views of it."""
-        kept = {"Q": self.Q[:known], "P": self.P[:known], "state": self.state}
+        marks = self.sampled[:known].astype(np.float64)
+        kept = {"sampled": marks, "Q": self.Q[:known], "P": self.P[:known], "state": self.state}
         return kept | {"averages": self.averages[:known], "total": self.running.total} if self.stride else kept
 
     def _ends(self) -> Iterator[int]:
@@ -217,24 +227,30 @@ class _Run:
             yield min(following, (self.done // block + 1) * block)
 
     def go(self, each: Callable[..., Any], progress: Callable[[int, int], None]) -> None:
-        saved = time.perf_counter()
-        for end in self._ends():
-            before = self.state.copy()
-            done = self._moved(end - self.done, each)
-            inside = np.isfinite(self.state).all(axis=(1, 2)) & (np.array(done) == end - self.done)
-            if not inside.all():
-                self._stopped_in_block(before, int(np.argmin(np.where(inside, self.steps, done))), done)
-            self.done = end
-            place = int(np.searchsorted(self.sampled, end))
-            if self.sampled[place] == end:
-                self.Q[place], self.P[place] = self.motion.modes(self.state)
-                if self.stride:
-                    self.averages[place] = self.running.now()
-            if self.path is not None and (end == self.steps or time.perf_counter() - saved >= self.every):
-                known = int(np.searchsorted(self.sampled, end, side="right"))
-                write_checkpoint(self.path, self.parameters, end, self._kept(known))
-                saved = time.perf_counter()
-            progress(end, self.steps)
+        """To the last step. Raises OrbitStopped; RunInterrupted where the run is kept in a file."""
+        with kept_run(self.path, self.every, self._write) as look:
+            for end in self._ends():
+                self._move_to(end, each)
+                place = f"at t = {self.step * end:.6g} of {self.T:.6g}"
+                look(place, end == self.steps, partial(progress, end, self.steps))
+
+    def _move_to(self, end: int, each: Callable[..., Any]) -> None:
+        before = self.state.copy()
+        done = self._moved(end - self.done, each)
+        inside = np.isfinite(self.state).all(axis=(1, 2)) & (np.array(done) == end - self.done)
+        if not inside.all():
+            self._stopped_in_block(before, int(np.argmin(np.where(inside, self.steps, done))), done)
+        self.done = end
+        place = int(np.searchsorted(self.sampled, end))
+        if self.sampled[place] == end:
+            self.Q[place], self.P[place] = self.motion.modes(self.state)
+            if self.stride:
+                self.averages[place] = self.running.now()
+
+    def _write(self) -> None:
+        assert self.path is not None
+        known = int(np.searchsorted(self.sampled, self.done, side="right"))
+        write_checkpoint(self.path, self.parameters, self.done, self._kept(known))
 
     def _moved(self, steps: int, each: Callable[..., Any]) -> list[int]:
         """The steps done by each orbit."""
@@ -303,9 +319,14 @@ def _scheme(name: object) -> Scheme:
     return SCHEMES[name]
 
 
+def _is_count(samples: object) -> TypeGuard[int]:
+    """Whether samples are so many, not times; True and False are refused as numbers."""
+    return isinstance(samples, (bool, int, np.integer))
+
+
 def _sample_steps(T: float, steps: int, samples: object) -> Ints:
     """Steps after which samples are taken, 0 and the last among them."""
-    if isinstance(samples, (bool, int, np.integer)):
+    if _is_count(samples):
         count = min(integer(samples, "samples", 1), steps)
         inner = np.rint(np.geomspace(1, steps, count)) if count > 1 else np.array([steps])
     else:

@@ -10,15 +10,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from symfpu.chain.bonds import stiffness, tension
+from symfpu.compiled import compiled
 
 LANES = 8  # deviation vectors moved by one instruction stream
 LENGTHEN, SHORTEN = 1e-3, 1e-5  # least ratio of a diagonal entry of R to its column, above and below which the block changes
 
-_compiled = njit(nogil=True, cache=True, error_model="numpy")
-_tension, _stiffness = _compiled(tension), _compiled(stiffness)
+_compiled, _inlined = compiled(error_model="numpy"), compiled(error_model="numpy", keep=False)
+_tension, _stiffness = _inlined(tension), _inlined(stiffness)
 
 
 @_compiled

@@ -13,7 +13,7 @@ import mpmath
 import numpy as np
 
 from symfpu.chain.chain import Chain
-from symfpu.errors import InputError, SymfpuError
+from symfpu.errors import InputError, RunInterrupted, SymfpuError
 from symfpu.families.appendix_a import AppendixAMember, NoFurtherMember, appendix_a_members
 from symfpu.families.continuation import Event, Member, Way, extrapolated, first_torus, member, returned
 from symfpu.families.events import continued, events_between
@@ -188,13 +188,16 @@ def family(
     plan = checked_family(chain, seeds, *arguments)
     kept = Kept(plan, None if folder is None else Path(folder))
     tell = progress or (lambda label, done: None)
-    if order is not None:
-        return _by_appendix_a(kept.plan, order, kept, tell)
 
     def report(line: str) -> None:
         tell(f"member {len(kept.members) + 1}: {line}", kept.plan.done(kept.members))
 
-    return _by_arclength(kept.plan, kept, report)
+    try:
+        return _by_arclength(kept.plan, kept, report) if order is None else _by_appendix_a(kept.plan, order, kept, tell)
+    except KeyboardInterrupt as stop:
+        if kept.folder is None:
+            raise
+        raise RunInterrupted(f"after {len(kept.members)} members", str(kept.folder)) from stop
 
 
 def _by_arclength(plan: Plan, kept: Kept, report: Report, *, lower: bool = True) -> Family:

@@ -16,8 +16,10 @@ from symfpu.files.archive import FORMAT, SCHEMA, Archive, BundleError, Json, dig
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 ADVICE = "name another file, or remove this one"
+LENGTH = ("steps", "sampled steps")  # parameters that a longer run, which goes on from a shorter one, has otherwise
 
 
 class Kind(NamedTuple):
@@ -70,8 +72,10 @@ def write_checkpoint(path: Path, parameters: Json, steps: int, arrays: dict[str,
 
 
 def read_checkpoint(path: Path, parameters: Json, kind: Kind = ORBIT) -> tuple[int, dict[str, Floats]] | None:
-    """Steps done and the arrays, or None where there is no file. Raises InputError for a checkpoint of other parameters, BundleError
-    for a file that is none."""
+    """Steps done and the arrays, or None where there is no file. The checkpoint may be one of fewer steps in all.
+
+    Raises InputError for a checkpoint of other parameters, BundleError for a file that is none.
+    """
     if not path.exists():
         return None
     with path.open("rb") as stream:
@@ -95,8 +99,26 @@ class Refused(InputError):
     """A checkpoint of another run."""
 
 
+def marks_of(path: Path, known: Floats, done: int, asked: Ints, *, exact: bool) -> Ints:
+    """Where a run that goes on has its samples: those it has, and after them those asked for.
+
+    known : numbers of steps at which there are samples, up to `done`. exact : whether those asked for before `done`
+    must be among them. Raises InputError if they are not, BundleError if known are none.
+    """
+    marks = known.astype(np.int64)
+    rising = bool(np.all(np.diff(marks) > 0)) and bool(np.all(marks == known))
+    if known.ndim != 1 or not rising or (marks.size and not 0 <= marks[0] <= marks[-1] <= done):
+        raise BundleError(path, "is damaged (its samples are in no order)", ADVICE)
+    missing = np.setdiff1d(asked[asked <= done], marks)
+    if exact and missing.size:
+        allowed = f"samples that the run in the file has, or later ones (there is none after {missing[0]} steps)"
+        raise Refused("samples", f"{asked.size} times", allowed, ADVICE)
+    return np.concatenate([marks, asked[asked > done]])
+
+
 def _require_same(path: Path, found: Json, parameters: Json, kind: Kind) -> None:
+    longer = integer(found["steps"], "steps", 0) < parameters["steps"]
     for name, value in parameters.items():
-        if found.get(name) != value:
+        if found.get(name) != value and not (longer and name in LENGTH):
             was, now = (f"{str(v)[:40]}" for v in (found.get(name), value))
             raise Refused("file", str(path), f"a checkpoint of the same {kind.name} ({name} is {was} in it, {now} here)", ADVICE)

@@ -2,6 +2,13 @@
 
 import csv
 import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+import zipfile
 
 import pytest
 
@@ -10,6 +17,21 @@ from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+
+PRESSED = """
+import os, pathlib, sys
+from symfpu.dynamics import motion, frame_run
+from symfpu.cli.main import main
+
+def marked(inner):
+    def outer(*given):
+        pathlib.Path(os.environ["BEGUN"]).touch()
+        return inner(*given)
+    return outer
+
+motion.Motion.look, frame_run.carried = marked(motion.Motion.look), marked(frame_run.carried)
+sys.exit(main(sys.argv[1:]))
+"""
 
 
 @pytest.fixture(scope="module")
@@ -60,14 +82,38 @@ def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, kept, tmp_
     first, second = (run(capsys, *words, "--time", "200") for _ in range(2))
     assert first == second
     assert first[0] == 0
+    assert json.loads(run(capsys, *words, "--time", "300")[1])["time"] == 300
     begun = (tmp_path / "run").stat().st_mtime_ns
-    code, out, err = run(capsys, *words, "--time", "300")
+    code, out, err = run(capsys, *words, "--time", "200")
     assert (code, out) == (2, "")
-    assert "a checkpoint of the same alignment indices (steps is 500 in it, 750 here)" in err
+    assert "a checkpoint of the same alignment indices (steps is 750 in it, 500 here)" in err
     assert (tmp_path / "run").stat().st_mtime_ns == begun
     code, out, err = run(capsys, "gali", str(tmp_path / "run"), "--time", "200")
     assert (code, out) == (1, "")
     assert "is a checkpoint of alignment indices" in err
+
+
+@pytest.mark.parametrize(("verb", "options"), [("gali", ["--samples", "64"]), ("orbit", ["--samples", "9"])])
+def test_the_interrupt_key_keeps_a_run_that_was_not_written_yet(capsys, kept, tmp_path, verb, options):
+    """Pressed in a process of its own, while the first checkpoint is seconds away; then the run is gone on with."""
+    file, begun = tmp_path / "run", tmp_path / "begun"
+    process = subprocess.Popen(
+        [sys.executable, "-c", PRESSED, verb, str(kept), "--time", "1e9", *options, "--checkpoint", str(file)],
+        env=os.environ | {"BEGUN": str(begun)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while process.poll() is None and not begun.exists():
+        time.sleep(0.01)
+    assert not file.exists()
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out) == (130, "")
+    message = rf"symfpu: interrupted: at t = \S+ of 1e\+09; kept in {file}: the same call, or command, goes on from there"
+    assert re.fullmatch(message, err.splitlines()[-1])
+    body = json.loads(zipfile.ZipFile(file).read("bundle.json"))
+    assert 0 < body["steps"] < body["parameters"]["steps"]
 
 
 def test_an_estimate_grows_with_the_time_and_computes_nothing(capsys, kept, tmp_path):

@@ -82,9 +82,11 @@ def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, saved, tmp
     options = ("orbit", saved, "--checkpoint", str(tmp_path / "run"), "--samples", "9", "--json")
     first, second = (json.loads(run(capsys, *options, "--time", "50")[1]) for _ in range(2))
     assert first["energy_error"] == second["energy_error"]
-    code, out, err = run(capsys, *options, "--time", "60")
+    longer = json.loads(run(capsys, *options, "--time", "60")[1])
+    assert (longer["time"], longer["energy"]) == (60, first["energy"])
+    code, out, err = run(capsys, *options, "--time", "50")
     assert (code, out) == (2, "")
-    assert "a checkpoint of the same orbit (steps is 250 in it, 300 here)" in err
+    assert "a checkpoint of the same orbit (steps is 300 in it, 250 here)" in err
 
 
 @pytest.mark.parametrize(

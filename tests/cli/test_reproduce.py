@@ -113,7 +113,8 @@ def test_full_says_how_long_and_goes_on_where_it_was_stopped(full, monkeypatch, 
     assert (code, out) == (130, "")
     assert "--full, about: fig9 0.0 h; stopped and started again, alignment indices go on from" in err
     assert str(tmp_path) in err
-    assert err.splitlines()[-1] == f"symfpu: interrupted: the same command goes on from {tmp_path}/*.checkpoint"
+    assert err.splitlines()[-1].startswith("symfpu: interrupted: at t = ")
+    assert str(tmp_path / "fig9-gali.checkpoint") in err.splitlines()[-1]
     assert [path.name for path in tmp_path.iterdir()] == ["fig9-gali.checkpoint"]
     reached = max(fractions)
     fractions.clear()

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.alignment import _expected, _random_frame, alignment_indices
+from symfpu.dynamics.alignment import _random_frame, alignment_indices
+from symfpu.dynamics.dimension import expected_steps
 from symfpu.dynamics.tangent import tangent_steps
 from symfpu.errors import InputError, SymfpuError
 from symfpu.refinement.tori import refine
@@ -73,7 +74,7 @@ def test_the_exponents_are_those_of_the_theory():
     """Skokos, Bountis, Antonopoulos 2008: t^0, t^-(k-s), t^-2(k-n), summed from the differences."""
     n = 7
     for s in range(1, n + 1):
-        sums = np.cumsum(_expected(s, n, 2 * n))
+        sums = np.cumsum(expected_steps(s, n, 2 * n))
         theory = [0 if k <= s else s - k if k <= 2 * n - s else -2 * (k - n) for k in range(2, 2 * n + 1)]
         assert sums.tolist() == theory
 

@@ -2,8 +2,10 @@
 
 import errno
 import os
+import pickle
 import random
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,7 +18,7 @@ from symfpu.bundles.bundle import load
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import alignment_indices, seconds_needed
 from symfpu.dynamics.orbits import integrate
-from symfpu.errors import InputError
+from symfpu.errors import InputError, RunInterrupted
 from symfpu.files.archive import BundleError
 
 CHAIN = Chain(6, alpha="0.3", beta="0.2")
@@ -67,16 +69,16 @@ def test_a_killed_run_goes_on_bitwise(tmp_path):
     same(alignment_indices(*run, samples=80, file=file, progress=lambda label, done: pytest.fail("it was finished")), whole)
 
 
-class Interrupted(Exception):
+class Stopped(Exception):
     pass
 
 
-def interrupted_at(count):
+def stopped_at(count):
     def progress(label, done):
         nonlocal count
         count -= 1
         if count == 0:
-            raise Interrupted
+            raise Stopped
 
     return progress
 
@@ -96,12 +98,54 @@ def test_an_interrupted_run_goes_on_bitwise_from_marks_and_between_them(T, block
     while True:
         runs += 1
         try:
-            resumed = alignment_indices(CHAIN, **start, **run, file=file, every=0, progress=interrupted_at(1))
+            resumed = alignment_indices(CHAIN, **start, **run, file=file, every=0, progress=stopped_at(1))
             break
-        except Interrupted:
+        except Stopped:
             pass
     assert runs == len(ends) + 1
     same(resumed, whole)
+
+
+def press(label, done):
+    """The interrupt key."""
+    os.kill(os.getpid(), signal.SIGINT)
+
+
+def interrupt(label, done):
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("key", [press, interrupt])
+def test_the_interrupt_key_keeps_a_run_and_says_how_to_go_on(key, tmp_path, state, monkeypatch):
+    """Long before the first checkpoint is due; the run ends in the bits of one that was not interrupted."""
+    monkeypatch.setattr(PORTION, 100)
+    file, said = tmp_path / "gali", []
+    while True:
+        try:
+            resumed = alignment_indices(CHAIN, **state, **SHORT, file=file, every=3600, progress=key)
+            break
+        except RunInterrupted as stop:
+            said.append(str(stop))
+    assert len(said) > 5
+    assert str(pickle.loads(pickle.dumps(RunInterrupted("at t = 1 of 2", "there")))).startswith("at t = 1 of 2; kept in there")
+    assert said[-1] == f"at t = 150 of 150; kept in {file}: the same call, or command, goes on from there"
+    same(resumed, alignment_indices(CHAIN, **state, **SHORT))
+
+
+def test_a_longer_run_goes_on_from_the_end_of_a_shorter_one(tmp_path, state):
+    """It keeps the samples there are, and ends in the same bits where it is interrupted."""
+    short = alignment_indices(CHAIN, **state, **SHORT, file=tmp_path / "gali")
+    shutil.copy(tmp_path / "gali", tmp_path / "copy")
+    longer, seen = SHORT | {"T": 400.0}, []
+    with pytest.raises(RunInterrupted):
+        alignment_indices(CHAIN, **state, **longer, file=tmp_path / "gali", progress=press)
+    one = alignment_indices(CHAIN, **state, **longer, file=tmp_path / "gali", progress=lambda label, done: seen.append(done))
+    assert min(seen) > 150 / 400
+    same(one, alignment_indices(CHAIN, **state, **longer, file=tmp_path / "copy"))
+    whole = alignment_indices(CHAIN, **state, **longer)
+    assert np.array_equal(one.times, np.append(short.times, whole.times[whole.times > 150]))
+    assert np.array_equal(one.log10_gali[: len(short.times)], short.log10_gali)
+    assert one.log10_gali[-1] == pytest.approx(whole.log10_gali[-1], abs=1e-6)
 
 
 def test_a_run_is_written_every_so_many_seconds_and_at_the_end(tmp_path, state, monkeypatch):
@@ -118,7 +162,7 @@ def test_a_run_is_written_every_so_many_seconds_and_at_the_end(tmp_path, state, 
     [
         ({"chain": Chain(6, alpha="0.31", beta="0.2")}, "alpha"),
         ({"Q": np.full(5, 0.1)}, "start"),
-        ({"T": 160.0}, "steps"),
+        ({"T": 140.0}, "steps"),
         ({"step": 0.125}, "step"),
         ({"vectors": 5}, "vectors"),
         ({"samples": 70}, "sampled steps"),

@@ -6,10 +6,12 @@ import json
 import os
 import random
 import resource
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -19,7 +21,7 @@ from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import SCHEMES, integrate
 from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep, potential, stretch_bounds
-from symfpu.errors import InputError
+from symfpu.errors import InputError, RunInterrupted
 from symfpu.files.archive import BundleError
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
@@ -266,16 +268,16 @@ def test_a_killed_run_goes_on_bitwise(tmp_path, monkeypatch):
     assert np.array_equal(again.P, whole.P)
 
 
-class Interrupted(Exception):
+class Stopped(Exception):
     pass
 
 
-def interrupted_at(count):
+def stopped_at(count):
     def progress(done, total):
         nonlocal count
         count -= 1
         if count == 0:
-            raise Interrupted
+            raise Stopped
 
     return progress
 
@@ -289,9 +291,9 @@ def test_an_interrupted_run_goes_on_bitwise_from_every_block(name, tmp_path, sta
     while True:
         runs += 1
         try:
-            resumed = integrate(MIXED, *state, 200.0, **keywords, file=file, every=0, progress=interrupted_at(2))
+            resumed = integrate(MIXED, *state, 200.0, **keywords, file=file, every=0, progress=stopped_at(2))
             break
-        except Interrupted:
+        except Stopped:
             pass
     assert runs >= 5
     assert np.array_equal(resumed.Q, whole.Q)
@@ -303,7 +305,7 @@ def test_an_interrupted_run_goes_on_bitwise_from_every_block(name, tmp_path, sta
     [
         ({"chain": Chain(7, alpha="0.31", beta="0.2")}, "alpha"),
         ({"Q": np.zeros(6)}, "start"),
-        ({"T": 11.0}, "steps"),
+        ({"T": 9.0}, "steps"),
         ({"step": 0.05}, "step"),
         ({"scheme": "aba864"}, "scheme"),
         ({"samples": 7}, "sampled steps"),
@@ -353,6 +355,88 @@ def test_a_full_disk_loses_nothing_already_written(tmp_path, state, monkeypatch)
     resumed = integrate(MIXED, *state, 1000.0, **keywords, progress=lambda done, total: seen.append(done))
     assert seen[0] > 20
     assert np.array_equal(resumed.Q, integrate(MIXED, *state, 1000.0, step=0.1, samples=100).Q)
+
+
+def press(done, total):
+    """The interrupt key, pressed again at every look."""
+    os.kill(os.getpid(), signal.SIGINT)
+
+
+def interrupt(done, total):
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("key", [press, interrupt])
+@pytest.mark.parametrize("workers", [1, 2])
+def test_the_interrupt_key_keeps_a_run_and_says_how_to_go_on(key, workers, tmp_path, state, monkeypatch):
+    """Long before the first checkpoint is due; the run ends in the bits of one that was not interrupted."""
+    monkeypatch.setattr("symfpu.dynamics.orbits.BLOCK", 10_000)
+    before, file, said = signal.getsignal(signal.SIGINT), tmp_path / "orbit", []
+    start = [np.stack([part, 0.5 * part]) for part in state]
+    keywords = {"step": 0.1, "samples": 4, "averages": True, "workers": workers}
+    whole = integrate(MIXED, *start, 200.0, **keywords)
+    while True:
+        try:
+            resumed = integrate(MIXED, *start, 200.0, **keywords, file=file, every=3600, progress=key)
+            break
+        except RunInterrupted as stop:
+            said.append(str(stop))
+    assert len(said) >= 3
+    assert said[-1] == f"at t = 200 of 200; kept in {file}: the same call, or command, goes on from there"
+    for name in ("Q", "P", "averages"):
+        assert np.array_equal(getattr(resumed, name), getattr(whole, name))
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_without_a_file_and_beside_the_main_thread_the_interrupt_key_is_left_alone(tmp_path, state):
+    with pytest.raises(KeyboardInterrupt) as stop:
+        integrate(MIXED, *state, 200.0, step=0.1, progress=press)
+    assert not isinstance(stop.value, RunInterrupted)
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(integrate, MIXED, *state, 20.0, step=0.1, file=tmp_path / "orbit").result()
+
+
+# longer runs
+
+
+@EVERY
+@pytest.mark.parametrize("averages", [False, True])
+def test_a_finished_run_is_made_longer_bitwise_where_its_times_permit(name, averages, tmp_path, state):
+    keywords = {"step": 0.1, "scheme": name, "averages": averages}
+    file, times = tmp_path / "orbit", np.arange(0.0, 61.0, 5.0)
+    integrate(MIXED, *state, 30.0, samples=times[times <= 30], file=file, **keywords)
+    seen = []
+    longer = integrate(MIXED, *state, 60.0, samples=times, file=file, **keywords, progress=lambda done, total: seen.append(done))
+    whole = integrate(MIXED, *state, 60.0, samples=times, **keywords)
+    assert min(seen) > 300
+    assert np.array_equal(longer.times, whole.times)
+    assert np.array_equal(longer.Q, whole.Q)
+    assert np.array_equal(longer.P, whole.P)
+    assert not averages or np.array_equal(longer.averages, whole.averages)
+
+
+def test_a_longer_run_keeps_its_samples_and_lays_out_later_ones(tmp_path, state, monkeypatch):
+    """Log-spaced ones: those to the old end, then those of the new time; interrupted on the way, it ends in the same bits."""
+    monkeypatch.setattr("symfpu.dynamics.orbits.BLOCK", 10_000)
+    keywords = {"step": 0.1, "samples": 20}
+    short = integrate(MIXED, *state, 30.0, file=tmp_path / "orbit", **keywords)
+    shutil.copy(tmp_path / "orbit", tmp_path / "copy")
+    with pytest.raises(RunInterrupted):
+        integrate(MIXED, *state, 300.0, file=tmp_path / "orbit", **keywords, progress=press)
+    longer, other = (integrate(MIXED, *state, 300.0, file=tmp_path / name, **keywords) for name in ("orbit", "copy"))
+    assert np.array_equal(longer.Q, other.Q)
+    whole = integrate(MIXED, *state, 300.0, **keywords)
+    assert longer.times == pytest.approx(np.append(short.times, whole.times[whole.times > 30]))
+    assert np.array_equal(longer.Q[: len(short.Q)], short.Q)
+    assert longer.Q[-1] == pytest.approx(whole.Q[-1], abs=1e-9)
+
+
+def test_what_a_longer_run_cannot_have_is_refused(tmp_path, state):
+    file = tmp_path / "orbit"
+    integrate(MIXED, *state, 30.0, step=0.1, samples=[10.0, 20.0], file=file)
+    for change, name in (({"T": 20.0}, "steps"), ({"T": 60.05}, "step"), ({"T": 60.0, "samples": [5.0, 50.0]}, "none after 50 steps")):
+        with pytest.raises(InputError, match=name):
+            integrate(**{"chain": MIXED, "Q": state[0], "P": state[1], "step": 0.1, "samples": [20.0], "file": file} | change)
 
 
 def test_a_checkpoint_is_json_and_arrays(tmp_path, state):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -11,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
+from symfpu.errors import InputError, RunInterrupted
 from symfpu.families.family import family
 from symfpu.files.archive import BundleError
 from symfpu.refinement.tori import RefinedTorus
@@ -38,6 +39,20 @@ def alike(found, other):
         assert m.multipliers is None or (m.multipliers.pairs == n.multipliers.pairs).all()
     assert found.events == other.events
     assert found.ending == other.ending
+
+
+def test_the_interrupt_key_leaves_a_family_in_its_folder_and_says_so(tmp_path):
+    def stop(label, done):
+        if label.startswith("member 3"):
+            raise KeyboardInterrupt
+
+    message = f"after 2 members; kept in {tmp_path}: the same call, or command, goes on from there"
+    with pytest.raises(RunInterrupted, match=re.escape(message)):
+        family(ROUND, (3,), "0.02", folder=tmp_path, progress=stop)
+    alike(family(ROUND, (3,), "0.02", folder=tmp_path), family(ROUND, (3,), "0.02"))
+    with pytest.raises(KeyboardInterrupt) as bare:
+        family(ROUND, (3,), "0.02", progress=stop)
+    assert not isinstance(bare.value, RunInterrupted)
 
 
 @pytest.mark.parametrize("run", RUNS)
