@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.codegen.languages.c99 import emit_torus
+from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.errors import InputError, SymfpuError
 from symfpu.series.series import LindstedtSeries
@@ -146,7 +146,7 @@ def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Ev
         raise SymfpuError(NO_COMPILER)
     if compiler is None:
         return Evaluator(torus, "numpy", NumpyFunctions(torus.in_doubles()))
-    source = emit_torus(torus_program(torus, NAME, torus_facts(torus)))
+    source = C.torus(torus_program(torus, NAME, torus_facts(torus)))
     return Evaluator(torus, "c", compiled(source, torus.chain.N - 1, compiler))
 
 

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from symfpu.codegen.languages import (
-    c99,
-    c99_series,
+    c,
     fortran,
     fortran_series,
     mpmath_series,
@@ -42,7 +41,7 @@ class Language(NamedTuple):
 
 
 LANGUAGES = {
-    "c": Language(c99.EXTENSION, c99.emit_torus, c99_series.emit_series),
+    "c": Language(c.C.extension, c.C.torus, c.C.series),
     "fortran": Language(fortran.EXTENSION, fortran.emit_torus, fortran_series.emit_series),
     "numpy": Language(numpy_source.EXTENSION, numpy_source.emit_torus, numpy_series.emit_series),
     "mpmath": Language(mpmath_source.EXTENSION, mpmath_source.emit_torus, mpmath_series.emit_series),

@@ -62,6 +62,21 @@ class StraightLine:
         results = (*self.positions, *self.momenta, *self.corrected, *(x for row in self.jacobian for x in row))
         return int(sum(sympy.count_ops(e) for e in (*(e for _, e in statements), *results)))
 
+    @property
+    def coefficient_symbols(self) -> set[str]:
+        """Names in the statements of the coefficients."""
+        return _symbols(e for _, e in self.coefficients)
+
+    @property
+    def frequency_symbols(self) -> set[str]:
+        """Names in corrected frequencies, their Jacobian, and the statements for both."""
+        results = (*self.corrected, *(x for row in self.jacobian for x in row))
+        return _symbols((*(e for _, e in self.frequency_statements), *results))
+
+
+def _symbols(expressions: Iterable[sympy.Expr]) -> set[str]:
+    return {str(symbol) for e in expressions for symbol in e.free_symbols}
+
 
 Row = tuple[tuple[int, ...], tuple[int, ...], int, Any]  # harmonic, powers of A, mode, coefficient
 

@@ -7,7 +7,7 @@ blocks, each with the modes of its parity: half of the coefficients are never st
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -130,6 +130,29 @@ def turns(program: TorusProgram) -> tuple[tuple[float, float], ...]:
             high = float(exact)
             pairs.append((high, float(exact - high)))
     return tuple(pairs)
+
+
+def rates(harmonics: Ints, frequencies: Sequence[Fraction]) -> list[float]:
+    """nu.omega of harmonics (H, s), correctly rounded."""
+    return [float(sum(n * w for n, w in zip(nu, frequencies, strict=True))) for nu in harmonics.tolist()]
+
+
+def bond_cosines(N: int) -> list[float]:
+    """cos(k pi / 2N) for k = 0 .. 4N-1, correctly rounded."""
+    with mpmath.workdps(SPLIT_DIGITS):
+        return [float(mpmath.cospi(mpmath.mpf(k) / (2 * N))) for k in range(4 * N)]
+
+
+def bond_norm(N: int) -> float:
+    """sqrt(2/N), correctly rounded."""
+    with mpmath.workdps(SPLIT_DIGITS):
+        return float(mpmath.sqrt(mpmath.mpf(2) / N))
+
+
+def blocks_or_zero(program: TorusProgram) -> tuple[Block, ...]:
+    """The blocks of a torus; one with a coefficient of zero for a torus at rest, which has none."""
+    zero = Block((1,), np.zeros((1, len(program.seeds)), dtype=np.int64), np.zeros((1, 1)))
+    return program.blocks or (zero,)
 
 
 def _check(torus: QuasiPeriodic) -> Check:
