@@ -12,7 +12,6 @@ from typing import NamedTuple
 from symfpu.codegen.languages import (
     c,
     fortran,
-    fortran_series,
     mpmath_series,
     mpmath_source,
     numpy_series,
@@ -42,7 +41,7 @@ class Language(NamedTuple):
 
 LANGUAGES = {
     "c": Language(c.C.extension, c.C.torus, c.C.series),
-    "fortran": Language(fortran.EXTENSION, fortran.emit_torus, fortran_series.emit_series),
+    "fortran": Language(fortran.FORTRAN.extension, fortran.FORTRAN.torus, fortran.FORTRAN.series),
     "numpy": Language(numpy_source.EXTENSION, numpy_source.emit_torus, numpy_series.emit_series),
     "mpmath": Language(mpmath_source.EXTENSION, mpmath_source.emit_torus, mpmath_series.emit_series),
     "octave": Language(octave.EXTENSION, octave.emit_torus, octave_series.emit_series),

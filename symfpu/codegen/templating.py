@@ -39,14 +39,14 @@ class Language:
     def torus(self, program: TorusProgram) -> str:
         """The source of a torus: Q(t), P(t), E_q(t) and H(t), with adjustable phases; the same bytes for the same program."""
         words = common_words(program) | self.torus_words(program)
-        return self._filled("torus", words)
+        return self.filled("torus", words)
 
     def series(self, program: SeriesProgram) -> str:
         """The source of a series: Q(t; A), P(t; A), omega(A) and its Jacobian; the same bytes for the same program."""
         words = common_words(program) | self.series_words(program)
-        return self._filled("series", words)
+        return self.filled("series", words)
 
-    def _filled(self, kind: str, words: Words) -> str:
+    def filled(self, kind: str, words: Words) -> str:
         template = self._environment.get_template(f"{kind}.{self.templates}.jinja")
         return template.render(words)
 
