@@ -12,10 +12,8 @@ from typing import NamedTuple
 from symfpu.codegen.languages import (
     c,
     fortran,
-    mpmath_series,
-    mpmath_source,
-    numpy_series,
-    numpy_source,
+    mpmath,
+    numpy,
     octave,
     octave_series,
 )
@@ -42,8 +40,8 @@ class Language(NamedTuple):
 LANGUAGES = {
     "c": Language(c.C.extension, c.C.torus, c.C.series),
     "fortran": Language(fortran.FORTRAN.extension, fortran.FORTRAN.torus, fortran.FORTRAN.series),
-    "numpy": Language(numpy_source.EXTENSION, numpy_source.emit_torus, numpy_series.emit_series),
-    "mpmath": Language(mpmath_source.EXTENSION, mpmath_source.emit_torus, mpmath_series.emit_series),
+    "numpy": Language(numpy.NUMPY.extension, numpy.NUMPY.torus, numpy.NUMPY.series),
+    "mpmath": Language(mpmath.MPMATH.extension, mpmath.MPMATH.torus, mpmath.MPMATH.series),
     "octave": Language(octave.EXTENSION, octave.emit_torus, octave_series.emit_series),
 }
 

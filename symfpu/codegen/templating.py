@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 Words = dict[str, Any]  # what a template is given, by name
-Filter = Callable[..., str]
+Filter = Callable[..., Any]
 
 
 @dataclass(frozen=True, eq=False)

@@ -132,6 +132,14 @@ def turns(program: TorusProgram) -> tuple[tuple[float, float], ...]:
     return tuple(pairs)
 
 
+def inverse_turn() -> tuple[float, float]:
+    """1 / 2 pi as the sum of two doubles."""
+    with mpmath.workdps(SPLIT_DIGITS):
+        exact = 1 / (2 * mpmath.pi)
+        high = float(exact)
+        return high, float(exact - high)
+
+
 def rates(harmonics: Ints, frequencies: Sequence[Fraction]) -> list[float]:
     """nu.omega of harmonics (H, s), correctly rounded."""
     return [float(sum(n * w for n, w in zip(nu, frequencies, strict=True))) for nu in harmonics.tolist()]
