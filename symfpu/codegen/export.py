@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
-from typing import NamedTuple
 
-from symfpu.codegen.languages import (
-    c,
-    fortran,
-    mpmath,
-    numpy,
-    octave,
-    octave_series,
-)
-from symfpu.codegen.series_program import SeriesProgram, series_facts, series_program
-from symfpu.codegen.torus_program import TorusProgram, torus_facts, torus_program
+from symfpu.codegen.languages.c import C
+from symfpu.codegen.languages.fortran import FORTRAN
+from symfpu.codegen.languages.mpmath import MPMATH
+from symfpu.codegen.languages.numpy import NUMPY
+from symfpu.codegen.languages.octave import OCTAVE
+from symfpu.codegen.series_program import series_facts, series_program
+from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.numbers.arithmetic import text
@@ -29,20 +24,12 @@ from symfpu.tori.torus import QTorus
 LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
 
 
-class Language(NamedTuple):
-    """extension : of the file. torus, series : what writes the program of either as text."""
-
-    extension: str
-    torus: Callable[[TorusProgram], str]
-    series: Callable[[SeriesProgram], str]
-
-
 LANGUAGES = {
-    "c": Language(c.C.extension, c.C.torus, c.C.series),
-    "fortran": Language(fortran.FORTRAN.extension, fortran.FORTRAN.torus, fortran.FORTRAN.series),
-    "numpy": Language(numpy.NUMPY.extension, numpy.NUMPY.torus, numpy.NUMPY.series),
-    "mpmath": Language(mpmath.MPMATH.extension, mpmath.MPMATH.torus, mpmath.MPMATH.series),
-    "octave": Language(octave.EXTENSION, octave.emit_torus, octave_series.emit_series),
+    "c": C,
+    "fortran": FORTRAN,
+    "numpy": NUMPY,
+    "mpmath": MPMATH,
+    "octave": OCTAVE,
 }
 
 
@@ -113,20 +100,7 @@ def legal_name(name: str) -> str:
     return name
 
 
-RESERVED = frozenset(
-    """
-    auto break case char const continue default do double else enum extern float for goto if inline int long main register restrict
-    return short signed sizeof static struct switch typedef union unsigned void volatile while
-    program module end subroutine function real integer
-    numpy mpmath
-    catch classdef elseif end_try_catch end_unwind_protect endarguments endclassdef endenumeration endevents endfor endfunction endif
-    endmethods endparfor endproperties endspmd endswitch endwhile global otherwise parfor persistent spmd try until unwind_protect
-    unwind_protect_cleanup arguments enumeration events methods properties import
-    abs any cell cos error find fprintf full imag isa ischar isempty isnan isnumeric isreal max min nargin nargout numel ones pi prod
-    reshape round sin size sparse sprintf sqrt sscanf strcmp sum unique vertcat zeros ans eps exp inf nan i j e clear disp eval exit
-    feval help isargout load log path plot quit save test version who whos
-    """.split()  # noqa: SIM905 - of C, Fortran, the Python files, and words and functions of Octave and MATLAB
-)
+RESERVED = frozenset().union(*(language.reserved for language in LANGUAGES.values()))
 
 
 def _orders(torus: QuasiPeriodic) -> dict[str, str]:
