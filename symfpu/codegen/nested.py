@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symfpu.codegen.torus_program import Block, Ints, TorusProgram
+from symfpu.algebra.grading import Ints
+from symfpu.codegen.torus_program import Block, TorusProgram
 from symfpu.numbers.arithmetic import Numbers
 
 

@@ -21,9 +21,11 @@ import sympy
 from sympy.printing.c import C99CodePrinter
 
 from symfpu.chain.chain import linear_frequencies
-from symfpu.codegen.series_program import SeriesBlock, SeriesProgram, SeriesTables
+from symfpu.codegen.constants import bond_cosines, bond_norm, rates, turns
+from symfpu.codegen.series_program import SeriesProgram
+from symfpu.codegen.series_tables import SeriesBlock, SeriesTables
 from symfpu.codegen.templating import Language, Words, packed
-from symfpu.codegen.torus_program import Block, TorusProgram, blocks_or_zero, bond_cosines, bond_norm, rates, turns
+from symfpu.codegen.torus_program import Block, TorusProgram, blocks_or_zero
 
 WIDTH = 116  # columns of a line
 TIMES = 16  # evaluated together: two vectors of AVX-512
@@ -109,7 +111,7 @@ def _torus(program: TorusProgram) -> Words:
     layout = _layout(program.N, blocks, highest)
     for block in layout["blocks"]:
         block["rates"] = rates(block["harmonics"], program.frequencies)
-    high, low = zip(*turns(program), strict=True)
+    high, low = zip(*turns(program.frequencies), strict=True)
     return {
         **layout,
         **_bonds(program),

@@ -27,16 +27,12 @@ from sympy.printing.fortran import FCodePrinter
 from sympy.printing.precedence import precedence
 
 from symfpu.chain.chain import linear_frequencies
-from symfpu.codegen.series_program import SeriesProgram, SeriesTables
+from symfpu.codegen.constants import WORK_DIGITS, bond_cosines, bond_norm, rates
+from symfpu.codegen.series_program import SeriesProgram
+from symfpu.codegen.series_tables import SeriesTables
 from symfpu.codegen.straight_line import StraightLine
 from symfpu.codegen.templating import Language, Words, packed
-from symfpu.codegen.torus_program import (
-    SPLIT_DIGITS,
-    TorusProgram,
-    bond_cosines,
-    bond_norm,
-    rates,
-)
+from symfpu.codegen.torus_program import TorusProgram
 from symfpu.errors import InputError
 
 WIDTH = 120  # columns of a line; the standard allows 132
@@ -206,7 +202,7 @@ def split(value: Any) -> list[float]:
 
 
 def _torus(program: TorusProgram) -> Words:
-    with mpmath.workdps(SPLIT_DIGITS):
+    with mpmath.workdps(WORK_DIGITS):
         radian = 1 / (2 * mpmath.pi)
         frequencies = [mpmath.mpf(w.numerator) / w.denominator for w in program.frequencies]
         turns = [split(w / (2 * mpmath.pi)) for w in frequencies]
@@ -224,7 +220,7 @@ def _torus(program: TorusProgram) -> Words:
 
 
 def _series(program: SeriesProgram) -> Words:
-    with mpmath.workdps(SPLIT_DIGITS):
+    with mpmath.workdps(WORK_DIGITS):
         radian = split(1 / (2 * mpmath.pi))
     if program.straight is not None:
         return {"radian": radian, **_names(program.straight, program.seeds)}

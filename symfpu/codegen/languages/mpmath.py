@@ -8,11 +8,9 @@ from sympy.printing.pycode import MpmathPrinter
 from symfpu.codegen.languages.numpy import Waves, filters, kept
 from symfpu.codegen.series_program import SeriesProgram
 from symfpu.codegen.templating import Language, Words
-from symfpu.codegen.torus_program import TOLERANCE, TorusProgram
+from symfpu.codegen.torus_program import DOUBLE_DIGITS, TOLERANCE, TorusProgram
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import decimal
-
-DOUBLE_DIGITS = 17
 
 
 class _Printer(Waves, MpmathPrinter):  # type: ignore[misc]

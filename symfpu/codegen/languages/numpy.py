@@ -11,10 +11,11 @@ import sympy
 from sympy.printing.codeprinter import CodePrinter
 from sympy.printing.numpy import NumPyPrinter
 
+from symfpu.codegen.constants import inverse_turn, turns
 from symfpu.codegen.nested import Slice, nest
 from symfpu.codegen.series_program import SeriesProgram
 from symfpu.codegen.templating import Filter, Language, Words, double
-from symfpu.codegen.torus_program import TorusProgram, inverse_turn, number, turns
+from symfpu.codegen.torus_program import TorusProgram, number
 
 WIDTH = 118  # columns of a line
 LARGEST_PRODUCT = 4  # powers up to it are written as products
@@ -112,7 +113,7 @@ def kept(program: SeriesProgram) -> str:
 def _torus(program: TorusProgram) -> Words:
     nested = nest(program)
     return {
-        "turns": turns(program),
+        "turns": turns(program.frequencies),
         "leading": nested.leading,
         "trailing": nested.trailing,
         "nested": [_nested_words(slices) for slices in nested.slices],

@@ -19,9 +19,12 @@ import numpy as np
 import sympy
 from sympy.printing.octave import OctaveCodePrinter
 
-from symfpu.codegen.series_program import SeriesBlock, SeriesProgram
+from symfpu.algebra.grading import Ints
+from symfpu.codegen.constants import inverse_turn, turns
+from symfpu.codegen.series_program import SeriesProgram
+from symfpu.codegen.series_tables import SeriesBlock
 from symfpu.codegen.templating import Language, Words, double
-from symfpu.codegen.torus_program import Block, Ints, TorusProgram, inverse_turn, turns
+from symfpu.codegen.torus_program import Block, TorusProgram
 
 WIDTH = 100  # columns of a line of numbers or comments, before what begins and ends it
 CHUNK = 200  # lines of text in one statement
@@ -96,7 +99,7 @@ class _Printer(OctaveCodePrinter):  # type: ignore[misc]
 
 
 def _torus(program: TorusProgram) -> Words:
-    return {"turns": turns(program), "times": BLOCK}
+    return {"turns": turns(program.frequencies), "times": BLOCK}
 
 
 def _series(program: SeriesProgram) -> Words:
