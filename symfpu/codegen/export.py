@@ -1,4 +1,4 @@
-"""A torus or a series as source code in a file: the languages there are, legal names, and the file itself."""
+"""A torus or a series as source code in a file: the languages there are, and legal names."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import keyword
 import re
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 from symfpu.codegen.languages.c import C
 from symfpu.codegen.languages.fortran import FORTRAN
@@ -13,16 +14,18 @@ from symfpu.codegen.languages.mpmath import MPMATH
 from symfpu.codegen.languages.numpy import NUMPY
 from symfpu.codegen.languages.octave import OCTAVE
 from symfpu.codegen.series_program import series_facts, series_program
-from symfpu.codegen.torus_program import torus_facts, torus_program
+from symfpu.codegen.templating import Language
+from symfpu.codegen.torus_program import (
+    DOUBLE_DIGITS,
+    torus_facts,
+    torus_program,
+)
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.numbers.arithmetic import text
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus
-
-LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
-
 
 LANGUAGES = {
     "c": C,
@@ -31,6 +34,9 @@ LANGUAGES = {
     "mpmath": MPMATH,
     "octave": OCTAVE,
 }
+
+RESERVED = frozenset().union(*(language.reserved for language in LANGUAGES.values()))
+LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
 
 
 def export(
@@ -67,44 +73,85 @@ def export(
     ...     export(lindstedt(Chain(N=4, beta=1), (1,), ("0.8",), 1), "c", f"{folder}/mode").name
     'mode.c'
     """
-    if language not in LANGUAGES:
-        raise InputError("language", language, f"one of {', '.join(LANGUAGES)}", "name one of these")
-    chosen = LANGUAGES[language]
-    file = Path(path)
-    if file.name and not file.suffix:
-        file = file.with_suffix(f".{chosen.extension}")
-    output_file(file, "path", "choose another")
-    name = legal_name(file.stem)
-    if file.exists() and not force:
-        raise InputError("path", str(file), "a file that does not exist yet", "choose another, or replace it with force (--force)")
-    orders = {key: value for key, value in (("order", order), ("frequency_order", frequency_order)) if value is not None}
-    kind = "series" if isinstance(solution, LindstedtSeries) else "torus"
-    words = ", ".join([kind, repr(language), repr(file.name), *(f"{key}={value}" for key, value in orders.items())])
-    made = {"written by": f"symfpu {version('symfpu')}", "made by": command or f"symfpu.export({words})"}
+    chosen = _language(language)
+    file = _file(Path(path), chosen.extension, force)
+    given = {"order": order, "frequency_order": frequency_order}
+    orders = {key: value for key, value in given.items() if value is not None}
+    facts = {
+        "written by": f"symfpu {version('symfpu')}",
+        "made by": command or _call(solution, language, file, orders),
+    }
     if isinstance(solution, LindstedtSeries):
-        facts = {**made, **series_facts(solution, order=order, frequency_order=frequency_order)}
-        source = chosen.series(series_program(solution, name, facts, order=order, frequency_order=frequency_order))
-    elif orders:
-        raise InputError(next(iter(orders)), next(iter(orders.values())), "none for a torus, which has its orders", "export its series")
+        facts |= series_facts(solution, **orders)
+        series = series_program(solution, file.stem, facts, **orders)
+        source = chosen.series(series)
     else:
-        source = chosen.torus(torus_program(solution, name, {**made, **_orders(solution), **torus_facts(solution)}))
+        _refuse_orders(orders)
+        facts |= _orders(solution) | torus_facts(solution)
+        torus = torus_program(solution, file.stem, facts)
+        source = chosen.torus(torus)
     write_text(file, source)
     return file
 
 
+def _language(name: str) -> Language:
+    if name not in LANGUAGES:
+        known = ", ".join(LANGUAGES)
+        raise InputError("language", name, f"one of {known}", "name one of these")
+    return LANGUAGES[name]
+
+
+def _file(path: Path, extension: str, force: bool) -> Path:
+    """The path with an extension; InputError if it cannot be written, or for an illegal name."""
+    file = path
+    if file.name and not file.suffix:
+        file = file.with_suffix(f".{extension}")
+    output_file(file, "path", "choose another")
+    legal_name(file.stem)
+    if file.exists() and not force:
+        raise InputError(
+            "path",
+            str(file),
+            "a file that does not exist yet",
+            "choose another, or replace it with force (--force)",
+        )
+    return file
+
+
+def _call(solution: Any, language: str, file: Path, orders: dict[str, int]) -> str:
+    """The call that makes this file, for its header."""
+    kind = "series" if isinstance(solution, LindstedtSeries) else "torus"
+    keywords = [f"{key}={value}" for key, value in orders.items()]
+    words = [kind, repr(language), repr(file.name), *keywords]
+    return f"symfpu.export({', '.join(words)})"
+
+
+def _refuse_orders(orders: dict[str, int]) -> None:
+    for key, value in orders.items():
+        allowed = "none for a torus, which has its orders"
+        raise InputError(key, value, allowed, "export its series")
+
+
 def legal_name(name: str) -> str:
     """The name, if it is an identifier in every language; InputError otherwise."""
-    allowed = f"a lower-case letter, then letters, digits and underscores, at most {LONGEST_NAME}"
-    if not re.fullmatch(rf"[a-z][a-z0-9_]{{0,{LONGEST_NAME - 1}}}", name, re.ASCII) or keyword.iskeyword(name) or name in RESERVED:
-        raise InputError("path", name, f"a file name that is also an identifier: {allowed}, no reserved word", "rename the file")
+    letters = re.fullmatch(r"[a-z][a-z0-9_]*", name, re.ASCII)
+    reserved = keyword.iskeyword(name) or name in RESERVED
+    if not letters or len(name) > LONGEST_NAME or reserved:
+        allowed = (
+            "a file name that is also an identifier: a lower-case letter, then letters, "
+            f"digits and underscores, at most {LONGEST_NAME}, no reserved word"
+        )
+        raise InputError("path", name, allowed, "rename the file")
     return name
 
 
-RESERVED = frozenset().union(*(language.reserved for language in LANGUAGES.values()))
-
-
 def _orders(torus: QuasiPeriodic) -> dict[str, str]:
+    """Orders and amplitudes of a torus that has them."""
     if not isinstance(torus, QTorus):
         return {}
-    amplitudes = ", ".join(f"A_{q} = {text(a, torus.digits or 17)}" for q, a in torus.amplitudes.items())
-    return {"orders": f"frequencies {torus.frequency_order}, coordinates {torus.order}", "amplitudes": amplitudes}
+    digits = torus.digits or DOUBLE_DIGITS
+    amplitudes = [f"A_{q} = {text(a, digits)}" for q, a in torus.amplitudes.items()]
+    return {
+        "orders": f"frequencies {torus.frequency_order}, coordinates {torus.order}",
+        "amplitudes": ", ".join(amplitudes),
+    }

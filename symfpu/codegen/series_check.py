@@ -1,4 +1,7 @@
-"""Test vectors that a file of a series carries, evaluated with more digits than its coefficients have."""
+"""Test vectors that a file of a series carries.
+
+They are evaluated with more digits than the coefficients have.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
-import mpmath
 import numpy as np
 
 from symfpu.codegen.series_tables import (
@@ -16,8 +17,8 @@ from symfpu.codegen.series_tables import (
     series_frequencies,
     series_orbit,
 )
-from symfpu.codegen.torus_program import DOUBLE_DIGITS, EXTRA_DIGITS
-from symfpu.numbers.arithmetic import MULTIPRECISION, text
+from symfpu.codegen.torus_program import DOUBLE_DIGITS, EXTRA_DIGITS, texts
+from symfpu.numbers.arithmetic import MULTIPRECISION
 from symfpu.numbers.typed import decimal
 
 TIMES = ("0.0", "2.75", "-13.0625", "160.5")
@@ -54,40 +55,49 @@ def series_check(
     times = [float(t) for t in TIMES]
     with MULTIPRECISION.context(places + EXTRA_DIGITS):
         Q, P = series_orbit(tables, N, amplitudes, phases, rates, times)
-        corrected, jacobian = series_frequencies(tables, amplitudes)
-
-        def row(values: Iterable[Any]) -> tuple[str, ...]:
-            return tuple(text(mpmath.mpf(x), places + 2) for x in values)
-
-        return SeriesCheck(
-            amplitudes=_decimals(amplitudes),
-            phases=_decimals(phases),
-            frequencies=_decimals(rates),
-            times=TIMES,
-            positions=tuple(map(row, Q)),
-            momenta=tuple(map(row, P)),
-            corrected=row(corrected),
-            jacobian=tuple(map(row, jacobian)),
-        )
+        omega, slopes = series_frequencies(tables, amplitudes)
+        positions = texts(Q, places + 2)
+        momenta = texts(P, places + 2)
+        corrected = texts(omega[None], places + 2)
+        jacobian = texts(slopes, places + 2)
+    return SeriesCheck(
+        amplitudes=_decimals(amplitudes),
+        phases=_decimals(phases),
+        frequencies=_decimals(rates),
+        times=TIMES,
+        positions=positions,
+        momenta=momenta,
+        corrected=corrected[0],
+        jacobian=jacobian,
+    )
 
 
 def _decimals(values: Iterable[float]) -> tuple[str, ...]:
-    return tuple(decimal(Fraction(x)) for x in values)
+    fractions = map(Fraction, values)
+    return tuple(map(decimal, fractions))
 
 
 def _amplitudes(tables: SeriesTables) -> list[float]:
     """Different for every seed, with few binary digits."""
     s = len(tables.scales)
     size = _moderate(tables)
-    largest = [min(1.0, size / float(x)) for x in tables.scales]
-    return [_short(a * (1 - i / (2 * s))) for i, a in enumerate(largest)]
+    amplitudes = []
+    for i, scale in enumerate(tables.scales):
+        largest = min(1.0, size / float(scale))
+        part = 1 - i / (2 * s)
+        amplitudes.append(_short(largest * part))
+    return amplitudes
 
 
 def _moderate(tables: SeriesTables) -> float:
     """A scaled amplitude at which higher powers are smaller than lower ones."""
     largest = _largest_of_degrees(tables)
-    growth = [(c / largest[1]) ** (1 / (d - 1)) for d, c in largest.items() if d > 1]
-    steepest = max([1e-3, *growth])
+    steepest = 1e-3
+    for degree, coefficient in largest.items():
+        if degree > 1:
+            ratio = coefficient / largest[1]
+            growth: float = ratio ** (1 / (degree - 1))
+            steepest = max(steepest, growth)
     return 1 / (4 * len(tables.scales) * steepest)
 
 
@@ -96,13 +106,17 @@ def _largest_of_degrees(tables: SeriesTables) -> dict[int, float]:
     degrees = tables.powers.sum(axis=1)
     largest: dict[int, float] = {}
     for block in tables.blocks:
-        of_row = np.abs(block.coefficients.astype(float)).max(axis=1)
-        for d, c in zip(degrees[block.powers].tolist(), of_row.tolist(), strict=True):
-            largest[d] = max(largest.get(d, 0.0), c)
+        values = np.abs(block.coefficients.astype(float))
+        of_row = values.max(axis=1).tolist()
+        row_degrees = degrees[block.powers].tolist()
+        for degree, value in zip(row_degrees, of_row, strict=True):
+            known = largest.get(degree, 0.0)
+            largest[degree] = max(known, value)
     return largest
 
 
 def _short(value: float) -> float:
     """Rounded to 10 binary digits."""
     mantissa, exponent = math.frexp(value)
-    return math.ldexp(round(mantissa * 1024) / 1024, exponent)
+    digits = round(mantissa * 1024)
+    return math.ldexp(digits / 1024, exponent)

@@ -10,7 +10,6 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
 
 from symfpu.codegen.series_check import SeriesCheck, series_check
 from symfpu.codegen.series_tables import (
@@ -71,22 +70,28 @@ def series_program(
     universal series too large for straight-line code.
     """
     cuts = _cuts(series, order, frequency_order)
-    if series.point is not None:
-        allowed = "a series of numbers or in universal form"
-        raise InputError("series", "residues", allowed, "compute it with lindstedt")
-    straight, tables, rates = _universal(series, cuts) if series.symbolic else _numeric(series, cuts)
-    digest = _hash(tables) if straight is None else straight.digest
+    _refuse_residues(series)
+    forms = _universal if series.symbolic else _numeric
+    straight, tables, rates = forms(series, cuts)
+    digest = straight.digest if straight else _hash(tables)
+    N, digits = series.chain.N, series.digits
     return SeriesProgram(
         name=name,
         facts={**facts, "hash of the series": digest},
-        N=series.chain.N,
+        N=N,
         seeds=series.seeds,
-        digits=series.digits,
+        digits=digits,
         universal=series.symbolic,
         straight=straight,
-        tables=tables if straight is None else None,
-        check=series_check(tables, series.chain.N, rates, series.digits),
+        tables=None if straight else tables,
+        check=series_check(tables, N, rates, digits),
     )
+
+
+def _refuse_residues(series: LindstedtSeries) -> None:
+    if series.point is not None:
+        allowed = "a series of numbers or in universal form"
+        raise InputError("series", "residues", allowed, "compute it with lindstedt")
 
 
 def series_facts(
@@ -97,13 +102,15 @@ def series_facts(
 ) -> dict[str, str]:
     """The header of a series: chain, seeds, frequencies of its divisors, orders."""
     cut, frequency_cut = _cuts(series, order, frequency_order)
+    seeds = map(str, series.seeds)
     frequencies = ", ".join(map(decimal, series.frequencies or ()))
+    precision = "exact" if series.symbolic else precision_text(series.digits)
     return {
         "chain": repr(series.chain),
-        "seeds": ", ".join(map(str, series.seeds)),
+        "seeds": ", ".join(seeds),
         "frequencies of the divisors": frequencies or "those given at a call",
         "orders": f"frequencies {frequency_cut}, coordinates {cut}",
-        "precision": "exact" if series.symbolic else precision_text(series.digits),
+        "precision": precision,
     }
 
 
@@ -122,18 +129,26 @@ def _universal(series: LindstedtSeries, cuts: Cuts) -> Forms:
     frequencies = _near_linear(series)
     digits = DOUBLE_DIGITS + EXTRA_DIGITS
     known = lindstedt(series.chain, series.seeds, frequencies, max(cuts), digits=digits)
-    return straight, series_tables(known, *cuts), [float(w) for w in frequencies]
+    rates = [float(w) for w in frequencies]
+    return straight, series_tables(known, *cuts), rates
 
 
 def _numeric(series: LindstedtSeries, cuts: Cuts) -> Forms:
     """Tables, and statements where these are short; angles turn with other frequencies."""
     tables = series_tables(series, *cuts)
-    divisors = [float(w) for w in series.frequencies or ()]
-    rates = [_rounded(w) + (i + 1) / 1024 for i, w in enumerate(divisors)]
-    return _short_statements(series, tables, cuts[0]), tables, rates
+    straight = _short_statements(series, tables, cuts[0])
+    rates = []
+    for i, w in enumerate(series.frequencies or ()):
+        shift = (i + 1) / 1024
+        rates.append(_rounded(float(w)) + shift)
+    return straight, tables, rates
 
 
-def _short_statements(series: LindstedtSeries, tables: SeriesTables, order: int) -> StraightLine | None:
+def _short_statements(
+    series: LindstedtSeries,
+    tables: SeriesTables,
+    order: int,
+) -> StraightLine | None:
     """Statements of at most STRAIGHT_LINE operations, or None."""
     least = 2 * tables.coefficient_count  # a product and a sum each
     if least > STRAIGHT_LINE:
@@ -148,8 +163,9 @@ def _near_linear(series: LindstedtSeries) -> list[Fraction]:
     values = []
     for i, q in enumerate(series.seeds):
         linear = float(series.chain.linear_frequency(q))
-        shifted = linear * (1 + 1 / (64 + 8 * i))
-        values.append(Fraction(_rounded(shifted)))
+        above = 1 / (64 + 8 * i)
+        shifted = _rounded(linear * (1 + above))
+        values.append(Fraction(shifted))
     return values
 
 
@@ -163,7 +179,8 @@ def _hash(tables: SeriesTables) -> str:
     digest = hashlib.sha256()
     for block in tables.blocks:
         powers = tables.powers[block.powers]
-        places: Any = block.modes, block.harmonics.tolist(), powers.tolist(), block.starts.tolist()
+        arrays = block.harmonics, powers, block.starts
+        places = block.modes, *(array.tolist() for array in arrays)
         digest.update(repr(places).encode())
         digest.update(hashed_numbers(block.coefficients))
     digest.update(hashed_numbers(tables.frequency_coefficients))

@@ -62,20 +62,22 @@ class SeriesTables:
     @property
     def coefficient_count(self) -> int:
         """Coefficients that are not zero."""
-        return sum(int(np.count_nonzero(block.coefficients)) for block in self.blocks)
+        counts = [np.count_nonzero(block.coefficients) for block in self.blocks]
+        return int(sum(counts))
 
 
 def series_tables(series: LindstedtSeries, order: int, frequency_order: int) -> SeriesTables:
     """The tables of a series with chosen frequencies, rows without a coefficient left out."""
     terms = [series.amplitude_terms(k) for k in range(order + 1)]
-    nu, e, values = (np.concatenate(parts) for parts in zip(*terms, strict=True))
+    nu, e, values = map(np.concatenate, zip(*terms, strict=True))
     powers, which = np.unique(e, axis=0, return_inverse=True)
     blocks = _blocks(series, nu, which.reshape(-1), values)
     linear = _linear(series)
-    frequency_powers, coefficients = _frequencies(series, linear, frequency_order)
+    frequencies = _frequencies(series, linear, frequency_order)
     with MULTIPRECISION.context(series.digits or DOUBLE_DIGITS):
-        scales = np.array([mpf(x) for x in series.seed_factors], dtype=object)
-    return SeriesTables(scales, powers, blocks, linear, frequency_powers, coefficients)
+        factors = [mpf(x) for x in series.seed_factors]
+    scales = np.array(factors, dtype=object)
+    return SeriesTables(scales, powers, blocks, linear, *frequencies)
 
 
 def _blocks(
@@ -84,25 +86,29 @@ def _blocks(
     which: Ints,
     values: Numbers,
 ) -> tuple[SeriesBlock, ...]:
-    """Rows in the order of harmonics, by parity. nu : (R, s). which : (R,). values : (R, N-1)."""
+    """Rows in the order of harmonics, by parity.
+
+    nu : (R, s). which : (R,), rows of the powers. values : (R, N-1).
+    """
     parities = nu @ np.array(series.seeds) % 2
     modes = np.arange(1, series.chain.N)
     by_harmonic = np.lexsort((which, *nu.T[::-1]))
     blocks = []
     for parity in (0, 1):
-        columns = np.flatnonzero(modes % 2 == parity)
+        own_modes = modes[modes % 2 == parity]
         rows = by_harmonic[parities[by_harmonic] == parity]
-        silent = (values[np.ix_(rows, columns)] == 0).all(axis=1)
-        rows = rows[~silent]
-        if not len(rows):
+        coefficients = values[np.ix_(rows, own_modes - 1)]
+        audible = (coefficients != 0).any(axis=1)
+        if not audible.any():
             continue
+        rows = rows[audible]
         harmonics, starts = np.unique(nu[rows], axis=0, return_index=True)
         block = SeriesBlock(
-            modes=tuple(modes[columns].tolist()),
-            harmonics=harmonics,
+            tuple(own_modes.tolist()),
+            harmonics,
             starts=np.append(starts, len(rows)),
             powers=which[rows],
-            coefficients=values[np.ix_(rows, columns)],
+            coefficients=coefficients[audible],
         )
         blocks.append(block)
     return tuple(blocks)
@@ -115,29 +121,37 @@ def _linear(series: LindstedtSeries) -> Numbers:
     return np.array(frequencies, dtype=object)
 
 
-def _frequencies(series: LindstedtSeries, linear: Numbers, order: int) -> tuple[Ints, Numbers]:
+def _frequencies(
+    series: LindstedtSeries,
+    linear: Numbers,
+    order: int,
+) -> tuple[Ints, Numbers]:
     """Powers of x^2, (F, s), and coefficients, (F, s), of omega - Omega in multiprecision."""
     s = len(series.seeds)
     with MULTIPRECISION.context(series.digits or DOUBLE_DIGITS):
         polynomials = [_frequency(series, i, w, order) for i, w in enumerate(linear)]
-        every = {e for polynomial in polynomials for e in polynomial}
-        powers = sorted(every, key=lambda e: (sum(e), e))
         zero = mpmath.mpf(0)
-        table = [[polynomial.get(e, zero) for polynomial in polynomials] for e in powers]
-    exponents = np.array(powers, dtype=np.int64).reshape(-1, s)
-    return exponents, np.array(table, dtype=object).reshape(-1, s)
+    every = set().union(*polynomials)
+    powers = sorted(every, key=lambda e: (sum(e), e))
+    table = [[p.get(e, zero) for p in polynomials] for e in powers]
+    exponents = np.array(powers, dtype=np.int64)
+    coefficients = np.array(table, dtype=object)
+    return exponents.reshape(-1, s), coefficients.reshape(-1, s)
 
 
 def _frequency(series: LindstedtSeries, i: int, linear: Any, order: int) -> Polynomial:
     """omega_i - Omega_i in powers of x^2; the series may have its own Omega, rounded to doubles."""
-    known = series.chain.frequencies(series.numbers)[series.seeds[i] - 1]
-    ratio = (linear / mpf(known)) ** 2
-    squares = [_scaled(series.squared_polynomial(i, k), ratio) for k in range(order + 1)]
-    roots = square_root(squares, linear)
+    known = series.chain.frequencies(series.numbers)
+    own = known[series.seeds[i] - 1]
+    ratio = (linear / mpf(own)) ** 2
+    known_squares = [series.squared_polynomial(i, k) for k in range(order + 1)]
+    squares = [_scaled(polynomial, ratio) for polynomial in known_squares]
+    _, *roots = square_root(squares, linear)
     sign = -1 if series.chain.mu < 0 else 1
     result: Polynomial = {}
-    for k, root in enumerate(roots[1:], 1):
-        result |= {e: sign**k * c for e, c in root.items() if c != 0}
+    for k, root in enumerate(roots, 1):
+        factor = sign**k
+        result |= {e: factor * c for e, c in root.items() if c != 0}
     return result
 
 
@@ -152,16 +166,18 @@ def frequency_polynomials(tables: SeriesTables, digits: int | None) -> list[Poly
     exponents = (2 * tables.frequency_powers).tolist()
     with MULTIPRECISION.context(digits or DOUBLE_DIGITS):
         for e, row in zip(exponents, tables.frequency_coefficients, strict=True):
-            factor = monomial(tables.scales, e)
+            powers = tuple(e)
+            factor = monomial(tables.scales, powers)
             for polynomial, c in zip(polynomials, row, strict=True):
                 if c != 0:
-                    polynomial[tuple(e)] = c * factor
+                    polynomial[powers] = c * factor
     return polynomials
 
 
 def monomial(x: Iterable[Any], exponents: Iterable[int]) -> Any:
     """The product of powers, at the working precision of mpmath."""
-    return mpmath.fprod(v**n for v, n in zip(x, exponents, strict=True))
+    powers = [v**n for v, n in zip(x, exponents, strict=True)]
+    return mpmath.fprod(powers)
 
 
 def series_orbit(
@@ -174,26 +190,40 @@ def series_orbit(
 ) -> tuple[Numbers, Numbers]:
     """Q and P (T, N-1) of the tables at the working precision of mpmath."""
     x = tables.scales * exact_numbers(amplitudes)
-    monomials = np.array([monomial(x, e) for e in tables.powers.tolist()], dtype=object)
-    omega = np.array(exact_numbers(rates), dtype=object)
-    phi = np.array(exact_numbers(phases), dtype=object)
+    omega = exact_numbers(rates)
+    phi = exact_numbers(phases)
     angles = [omega * mpmath.mpf(t) + phi for t in times]
-    Q = MULTIPRECISION.zeros((len(times), N - 1))
-    P = MULTIPRECISION.zeros((len(times), N - 1))
+    shape = len(times), N - 1
+    Q = MULTIPRECISION.zeros(shape)
+    P = MULTIPRECISION.zeros(shape)
+    monomials = [monomial(x, e) for e in tables.powers.tolist()]
     for block in tables.blocks:
         columns = np.array(block.modes) - 1
         harmonics = block.harmonics.astype(object)
-        rows = exact_numbers(block.coefficients) * monomials[block.powers][:, None]
-        cosines = np.add.reduceat(rows, block.starts[:-1], axis=0)
         turning = harmonics @ omega
+        cosines = _cosines(block, np.array(monomials, dtype=object))
         for i, theta in enumerate(angles):
             along = harmonics @ theta
-            Q[i, columns] += MULTIPRECISION.cos(along) @ cosines
-            P[i, columns] -= (MULTIPRECISION.sin(along) * turning) @ cosines
+            cosine = MULTIPRECISION.cos(along)
+            slope = MULTIPRECISION.sin(along) * turning
+            Q[i, columns] += cosine @ cosines
+            P[i, columns] -= slope @ cosines
     return Q, P
 
 
-def series_frequencies(tables: SeriesTables, amplitudes: Sequence[Any]) -> tuple[Numbers, Numbers]:
+def _cosines(block: SeriesBlock, monomials: Numbers) -> Numbers:
+    """Coefficients of cos(nu.theta), (H, M), at the values of the monomials, (E,)."""
+    coefficients = exact_numbers(block.coefficients)
+    factors = monomials[block.powers]
+    rows = coefficients * factors[:, None]
+    cosines: Numbers = np.add.reduceat(rows, block.starts[:-1], axis=0)
+    return cosines
+
+
+def series_frequencies(
+    tables: SeriesTables,
+    amplitudes: Sequence[Any],
+) -> tuple[Numbers, Numbers]:
     """omega(A) (s,) and d omega_i / d A_j (s, s) at the working precision of mpmath."""
     s = len(tables.scales)
     x = tables.scales * exact_numbers(amplitudes)
@@ -201,9 +231,12 @@ def series_frequencies(tables: SeriesTables, amplitudes: Sequence[Any]) -> tuple
     jacobian = MULTIPRECISION.zeros((s, s))
     exponents = 2 * tables.frequency_powers
     for e, row in zip(exponents, tables.frequency_coefficients, strict=True):
-        omega = omega + row * monomial(x, e.tolist())
+        value = monomial(x, e.tolist())
+        omega = omega + row * value
         for j in np.flatnonzero(e).tolist():
-            lowered = e - (np.arange(s) == j)
-            slope = monomial(x, lowered.tolist())
-            jacobian[:, j] += row * slope * int(e[j]) * tables.scales[j]
+            lowered = e.tolist()
+            lowered[j] -= 1
+            slope = monomial(x, lowered)
+            power = int(e[j])
+            jacobian[:, j] += row * slope * power * tables.scales[j]
     return omega, jacobian

@@ -1,4 +1,4 @@
-"""Small series as statements after common-subexpression elimination, for SymPy's printers of every language.
+"""Small series as statements after common-subexpression elimination, for SymPy's printers.
 
 A harmonic coefficient c_k(A) is computed once a call, a cosine and a sine of every harmonic once a
 time: Q_q = sum c_k cos(nu.theta), P_q = sum d_k sin(nu.theta) with d_k = -(nu.omega) c_k.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,12 +18,13 @@ import sympy
 
 from symfpu.algebra.polynomials import Polynomial
 from symfpu.chain.chain import Chain
+from symfpu.codegen.series_tables import monomial
 from symfpu.codegen.torus_program import DOUBLE_DIGITS
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 from symfpu.series.series import LindstedtSeries
 
-# Up to so many operations a call with few times is faster than by tables, and compiling takes no longer.
+# Operations, up to which a call with few times is faster than by tables, and compiling is too.
 STRAIGHT_LINE = 1000
 
 # Operations of a universal form before and after elimination: 7 s of compiling.
@@ -72,13 +73,15 @@ class StraightLine:
     def digest(self) -> str:
         """SHA-256 of all statements and results as text."""
         named = [f"{name} = {sympy.srepr(e)}" for name, e in self.statements]
-        described = [*named, *map(sympy.srepr, self.results)]
-        return hashlib.sha256(repr(described).encode()).hexdigest()
+        results = map(sympy.srepr, self.results)
+        described = repr([*named, *results])
+        return hashlib.sha256(described.encode()).hexdigest()
 
     @property
     def operations(self) -> int:
         """Additions, multiplications and function calls, all of them."""
-        expressions = (*(e for _, e in self.statements), *self.results)
+        expressions = [e for _, e in self.statements]
+        expressions += self.results
         return sum(int(sympy.count_ops(e)) for e in expressions)
 
     @property
@@ -89,8 +92,9 @@ class StraightLine:
     @property
     def frequency_symbols(self) -> set[str]:
         """Names in corrected frequencies, their Jacobian, and the statements for both."""
-        statements = (e for _, e in self.frequency_statements)
-        return _symbols((*statements, *self.corrected, *sum(self.jacobian, ())))
+        expressions = [e for _, e in self.frequency_statements]
+        slopes = sum(self.jacobian, ())
+        return _symbols([*expressions, *self.corrected, *slopes])
 
 
 def _symbols(expressions: Iterable[sympy.Expr]) -> set[str]:
@@ -110,23 +114,23 @@ def straight_line(
     """
     amplitudes = _Symbols("A", seeds)
     orbit = _Orbit(N, seeds, rows)
-    corrected = [
-        sympy.Add(*(value * amplitudes.monomial(e) for e, value in polynomial.items()))
-        for polynomial in frequencies
-    ]
-    slopes = [sympy.diff(w, a) for w in corrected for a in amplitudes.symbols]
-    shared, reduced = _shared([*corrected, *slopes], "y")
+    omega = [amplitudes.polynomial(terms) for terms in frequencies]
+    slopes = [sympy.diff(w, a) for w in omega for a in amplitudes.symbols]
+    shared, reduced = _shared([*omega, *slopes], "y")
     s = len(seeds)
-    used = _symbols((*(e for _, e in (*orbit.coefficients, *shared)), *reduced))
+    corrected, *jacobian = (tuple(reduced[i : i + s]) for i in range(0, len(reduced), s))
+    needed = [e for _, e in (*orbit.coefficients, *shared)]
+    used = _symbols([*needed, *reduced])
+    names = sorted(used & constants.keys())
     return StraightLine(
-        constants={name: constants[name] for name in sorted(constants) if name in used},
-        coefficients=tuple(_eliminated(orbit.coefficients, "x")),
+        constants={name: constants[name] for name in names},
+        coefficients=_eliminated(orbit.coefficients, "x"),
         waves=tuple(orbit.waves),
         positions=tuple(orbit.positions),
         momenta=tuple(orbit.momenta),
         frequency_statements=tuple(shared),
-        corrected=tuple(reduced[:s]),
-        jacobian=tuple(tuple(reduced[s * i : s * (i + 1)]) for i in range(1, s + 1)),
+        corrected=corrected,
+        jacobian=tuple(jacobian),
     )
 
 
@@ -138,18 +142,26 @@ class _Symbols:
 
     def monomial(self, powers: Sequence[int]) -> sympy.Expr:
         """The product of powers."""
-        return sympy.Mul(*(x**e for x, e in zip(self.symbols, powers, strict=True)))
+        factors = [x**e for x, e in zip(self.symbols, powers, strict=True)]
+        return sympy.Mul(*factors)
+
+    def polynomial(self, coefficients: Polynomial) -> sympy.Expr:
+        """The sum of monomials times their coefficients."""
+        terms = [value * self.monomial(e) for e, value in coefficients.items()]
+        return sympy.Add(*terms)
 
     def combination(self, numbers: Sequence[int]) -> sympy.Expr:
         """The sum of multiples."""
-        return sympy.Add(*(n * x for n, x in zip(numbers, self.symbols, strict=True)))
+        terms = [n * x for n, x in zip(numbers, self.symbols, strict=True)]
+        return sympy.Add(*terms)
 
 
 class _Orbit:
     """Statements and sums of Q and P, built harmonic by harmonic."""
 
     def __init__(self, N: int, seeds: Sequence[int], rows: Iterable[Row]) -> None:
-        self.omega, self.theta = _Symbols("omega", seeds), _Symbols("theta", seeds)
+        self.omega = _Symbols("omega", seeds)
+        self.theta = _Symbols("theta", seeds)
         self.coefficients: list[Statement] = []
         self.waves: list[Statement] = []
         self.positions = [sympy.Integer(0)] * (N - 1)
@@ -157,53 +169,64 @@ class _Orbit:
         sums = _sums(seeds, rows)
         harmonics = sorted(sums, key=lambda nu: (sum(map(abs, nu)), nu))
         for h, nu in enumerate(harmonics):
-            if any(nu):
+            moving = any(nu)
+            if moving:
                 self._add_wave(h, nu)
-            for mode, coefficient in sorted(sums[nu].items()):
-                self._add_term(h, mode, coefficient, moving=any(nu))
+            for mode, terms in sorted(sums[nu].items()):
+                self._add_term(h, mode, sympy.Add(*terms), moving=moving)
 
     def _add_wave(self, h: int, nu: Powers) -> None:
         angle = self.theta.combination(nu)
+        rate = self.omega.combination(nu)
         self.waves.append((f"cos{h}", sympy.cos(angle)))
         self.waves.append((f"sin{h}", sympy.sin(angle)))
-        self.coefficients.append((f"rate{h}", self.omega.combination(nu)))
+        self.coefficients.append((f"rate{h}", rate))
 
     def _add_term(self, h: int, mode: int, coefficient: sympy.Expr, *, moving: bool) -> None:
         """A harmonic that does not move has no wave, and no momentum."""
-        c = sympy.Symbol(f"c{h}_{mode}")
-        d = sympy.Symbol(f"d{h}_{mode}")
+        c, d = sympy.symbols(f"c{h}_{mode} d{h}_{mode}")
+        column = mode - 1
         self.coefficients.append((c.name, coefficient))
         if not moving:
-            self.positions[mode - 1] += c
+            self.positions[column] += c
             return
-        self.positions[mode - 1] += c * sympy.Symbol(f"cos{h}")
-        self.momenta[mode - 1] += d * sympy.Symbol(f"sin{h}")
-        self.coefficients.append((d.name, -sympy.Symbol(f"rate{h}") * c))
+        cosine, sine, rate = sympy.symbols(f"cos{h} sin{h} rate{h}")
+        self.positions[column] += c * cosine
+        self.momenta[column] += d * sine
+        self.coefficients.append((d.name, -rate * c))
 
 
-def _sums(seeds: Sequence[int], rows: Iterable[Row]) -> dict[Powers, dict[int, sympy.Expr]]:
-    """The coefficient of every harmonic in every mode that has it."""
+def _sums(
+    seeds: Sequence[int],
+    rows: Iterable[Row],
+) -> dict[Powers, dict[int, list[sympy.Expr]]]:
+    """The terms of every harmonic in every mode that has it."""
     amplitudes = _Symbols("A", seeds)
-    terms: dict[Powers, dict[int, list[sympy.Expr]]] = {}
+    sums: dict[Powers, dict[int, list[sympy.Expr]]] = {}
     for nu, powers, mode, value in rows:
-        of_harmonic = terms.setdefault(nu, {})
-        term = value * amplitudes.monomial(powers)
-        of_harmonic.setdefault(mode, []).append(term)
-    return {nu: {mode: sympy.Add(*parts) for mode, parts in modes.items()} for nu, modes in terms.items()}
+        of_harmonic = sums.setdefault(nu, {})
+        terms = of_harmonic.setdefault(mode, [])
+        terms.append(value * amplitudes.monomial(powers))
+    return sums
 
 
-def _shared(expressions: Sequence[sympy.Expr], prefix: str) -> tuple[list[Statement], list[sympy.Expr]]:
+def _shared(
+    expressions: Sequence[sympy.Expr],
+    prefix: str,
+) -> tuple[list[Statement], list[sympy.Expr]]:
     """Statements for what expressions have in common, and the expressions in these names."""
     names = sympy.numbered_symbols(prefix)
     shared, reduced = sympy.cse(list(expressions), symbols=names)
-    return [(str(name), e) for name, e in shared], reduced
+    statements = [(str(name), e) for name, e in shared]
+    return statements, reduced
 
 
-def _eliminated(statements: Sequence[Statement], prefix: str) -> list[Statement]:
+def _eliminated(statements: Sequence[Statement], prefix: str) -> tuple[Statement, ...]:
     """The same statements without common subexpressions, whose new names come first."""
     names, expressions = zip(*statements, strict=True)
     shared, reduced = _shared(expressions, prefix)
-    return list(_ordered([*shared, *zip(names, reduced, strict=True)]))
+    own = zip(names, reduced, strict=True)
+    return tuple(_ordered([*shared, *own]))
 
 
 def _ordered(statements: Sequence[Statement]) -> Iterator[Statement]:
@@ -215,7 +238,8 @@ def _ordered(statements: Sequence[Statement]) -> Iterator[Statement]:
         if name in done or name not in known:
             return
         done.add(name)
-        for other in sorted(map(str, known[name].free_symbols)):
+        needed = map(str, known[name].free_symbols)
+        for other in sorted(needed):
             yield from visit(other)
         yield name, known[name]
 
@@ -232,19 +256,28 @@ def numeric_statements(
     """Of a series with chosen frequencies. frequencies : of every seed, in powers of A."""
     places = DOUBLE_DIGITS if series.digits is None else series.digits + 2
     with MULTIPRECISION.context(places):
-        rows = [row for k in range(order + 1) for row in _numeric_rows(series, k, scales, places)]
+        rows: list[Row] = []
+        for k in range(order + 1):
+            rows += _numeric_rows(series, k, scales, places)
         polynomials = [_numbers(polynomial, places) for polynomial in frequencies]
     return straight_line(series.chain.N, series.seeds, rows, polynomials, {})
 
 
-def _numeric_rows(series: LindstedtSeries, k: int, scales: Numbers, places: int) -> Iterator[Row]:
+def _numeric_rows(
+    series: LindstedtSeries,
+    k: int,
+    scales: Numbers,
+    places: int,
+) -> Iterator[Row]:
     """Terms of order k in the amplitudes themselves."""
     terms = [part.tolist() for part in series.amplitude_terms(k)]
-    for nu, powers, values in zip(*terms, strict=True):
-        factor = mpmath.fprod(x**e for x, e in zip(scales, powers, strict=True))
+    for nu, e, values in zip(*terms, strict=True):
+        harmonic, powers = tuple(nu), tuple(e)
+        factor = monomial(scales, powers)
         for q, value in enumerate(values, 1):
             if value != 0:
-                yield tuple(nu), tuple(powers), q, number(factor * value, places)
+                coefficient = number(factor * value, places)
+                yield harmonic, powers, q, coefficient
 
 
 def _numbers(polynomial: Polynomial, places: int) -> Polynomial:
@@ -253,23 +286,26 @@ def _numbers(polynomial: Polynomial, places: int) -> Polynomial:
 
 def number(value: Any, digits: int) -> sympy.Float:
     """An mpf as SymPy's Float."""
-    return sympy.Float(mpmath.nstr(value, digits + 3), digits)
+    text = mpmath.nstr(value, digits + 3)
+    return sympy.Float(text, digits)
 
 
-def universal_statements(series: LindstedtSeries, order: int, frequency_order: int) -> StraightLine:
-    """Of a series in universal form, with the multipliers L_q(nu) written out in the frequencies.
+def universal_statements(
+    series: LindstedtSeries,
+    order: int,
+    frequency_order: int,
+) -> StraightLine:
+    """Of a series in universal form, its multipliers L_q(nu) written out in the frequencies.
 
     Raises InputError where the expressions are too large for straight-line code.
     """
     N, seeds = series.chain.N, series.seeds
     _refuse_large(_expressions(series, order, frequency_order))
     known = _Multipliers(series.chain, seeds)
-    rows = [
-        row
-        for q in range(1, N)
-        for k in range(order + 1)
-        for row in _universal_rows(series, q, k, known)
-    ]
+    rows: list[Row] = []
+    for q in range(1, N):
+        for k in range(order + 1):
+            rows += _universal_rows(series, q, k, known)
     frequencies = [_universal_frequency(series, q, frequency_order, known) for q in seeds]
     straight = straight_line(N, seeds, rows, frequencies, known.constants)
     if straight.operations > LARGEST_ELIMINATED:
@@ -281,10 +317,12 @@ def _expressions(series: LindstedtSeries, order: int, frequency_order: int) -> I
     """All coefficients of coordinates and frequencies."""
     for q in range(1, series.chain.N):
         for k in range(order + 1):
-            yield from series.coefficients(q, k)[1]
+            _, values = series.coefficients(q, k)
+            yield from values
     for q in series.seeds:
         for k in range(frequency_order + 1):
-            yield from series.frequency_coefficients(q, k)[1]
+            _, values = series.frequency_coefficients(q, k)
+            yield from values
 
 
 def _refuse_large(expressions: Iterable[Any]) -> None:
@@ -304,26 +342,39 @@ def _too_large(largest: int) -> InputError:
     )
 
 
-def _universal_rows(series: LindstedtSeries, q: int, k: int, known: _Multipliers) -> Iterator[Row]:
+def _universal_rows(
+    series: LindstedtSeries,
+    q: int,
+    k: int,
+    known: _Multipliers,
+) -> Iterator[Row]:
     """Terms of mode q at order k, from powers of e^(i theta) A and of e^(-i theta) A."""
     exponents, values = series.coefficients(q, k)
     for e, value in zip(exponents, values, strict=True):
         plus, minus = e[0::2], e[1::2]
-        nu, powers = plus - minus, plus + minus
+        nu = plus - minus
+        powers = plus + minus
+        degree = int(powers.sum())
         pair = 2 if nu.any() else 1
-        factor = sympy.Rational(pair, 2 ** int(powers.sum()))
+        factor = sympy.Rational(pair, 2**degree)
         coefficient = factor * known.mu**k * known.written_out(value)
         yield tuple(nu.tolist()), tuple(powers.tolist()), q, coefficient
 
 
-def _universal_frequency(series: LindstedtSeries, q: int, order: int, known: _Multipliers) -> Polynomial:
+def _universal_frequency(
+    series: LindstedtSeries,
+    q: int,
+    order: int,
+    known: _Multipliers,
+) -> Polynomial:
     """omega_q(A) up to an order."""
     polynomial: Polynomial = {}
     for k in range(order + 1):
         exponents, values = series.frequency_coefficients(q, k)
         for e, value in zip(exponents, values, strict=True):
-            powers = tuple(int(x) for x in e)
-            polynomial[powers] = known.mu**k * known.written_out(value)
+            powers = tuple(e.tolist())
+            coefficient = known.mu**k * known.written_out(value)
+            polynomial[powers] = coefficient
     return polynomial
 
 
@@ -342,9 +393,11 @@ class _Multipliers:
         self._known: dict[Any, sympy.Expr] = {}
 
     def _small_parameter(self) -> sympy.Expr:
-        alpha, beta, twice = self.chain.alpha, self.chain.beta, 2 * self.chain.N
+        alpha, beta = self.chain.alpha, self.chain.beta
+        twice = 2 * self.chain.N
         if alpha == 0:
-            return sympy.Rational(beta.numerator, beta.denominator) / twice
+            coupling = sympy.Rational(beta.numerator, beta.denominator)
+            return coupling / twice
         with mpmath.workdps(CONSTANT_DIGITS):
             coupling = mpmath.mpf(alpha.numerator) / alpha.denominator
             value = coupling / mpmath.sqrt(twice)
@@ -355,31 +408,34 @@ class _Multipliers:
     def written_out(self, value: Any) -> sympy.Expr:
         """A coefficient of the universal form as an expression in A, omega and constants."""
         expression = sympy.sympify(value)
-        known: Mapping[sympy.Symbol, sympy.Expr] = {
-            symbol: self._written_out(symbol) for symbol in expression.free_symbols
-        }
+        symbols = expression.free_symbols
+        known = {symbol: self._written_out(symbol) for symbol in symbols}
         return expression.xreplace(known)
 
     def _written_out(self, symbol: sympy.Symbol) -> sympy.Expr:
         if symbol not in self._known:
-            mode, *harmonic = map(int, re.findall(r"-?\d+", symbol.name))
-            is_multiplier = symbol.name.startswith("L_")
-            written = self._multiplier(mode, harmonic) if is_multiplier else self._linear(mode)
-            self._known[symbol] = written
+            numbers = re.findall(r"-?\d+", symbol.name)
+            mode, *harmonic = map(int, numbers)
+            if symbol.name.startswith("L_"):
+                self._known[symbol] = self._multiplier(mode, harmonic)
+            else:
+                self._known[symbol] = self._linear(mode)
         return self._known[symbol]
 
     def _linear(self, q: int) -> sympy.Symbol:
-        name, twice = f"linear{q}", 2 * self.chain.N
+        name = f"linear{q}"
         if name not in self.constants:
             with mpmath.workdps(CONSTANT_DIGITS):
                 value = self.chain.linear_frequency(q)
-            self.constants[name] = value, f"2 * mp.sinpi(mp.mpf({q}) / {twice})"
+            text = f"2 * mp.sinpi(mp.mpf({q}) / {2 * self.chain.N})"
+            self.constants[name] = value, text
         return sympy.Symbol(name)
 
     def _multiplier(self, mode: int, harmonic: Sequence[int]) -> sympy.Expr:
         linear = self._linear(mode)
         own = linear
         if mode in self.seeds:
-            own = self.omega.symbols[self.seeds.index(mode)]
+            i = self.seeds.index(mode)
+            own = self.omega.symbols[i]
         rate = self.omega.combination(harmonic)
         return linear**2 / (own**2 - rate**2)

@@ -74,17 +74,20 @@ class TorusProgram:
 
 def torus_program(torus: QuasiPeriodic, name: str, facts: Mapping[str, str]) -> TorusProgram:
     """Order the numbers of a torus for code; facts come first in the header."""
+    chain, seeds = torus.chain, torus.seeds
     blocks = _blocks(torus)
     digest = coefficient_hash(blocks)
+    all_facts = {**facts, "hash of the coefficients": digest}
+    phases = [torus.phases[q] for q in seeds]
     return TorusProgram(
         name=name,
-        facts={**facts, "hash of the coefficients": digest},
-        N=torus.chain.N,
-        seeds=torus.seeds,
+        facts=all_facts,
+        N=chain.N,
+        seeds=seeds,
         frequencies=torus.frequencies,
-        phases=tuple(torus.phases[q] for q in torus.seeds),
-        alpha=torus.chain.alpha,
-        beta=torus.chain.beta,
+        phases=tuple(phases),
+        alpha=chain.alpha,
+        beta=chain.beta,
         digits=torus.digits,
         blocks=tuple(blocks),
         check=_check(torus),
@@ -103,25 +106,29 @@ def _blocks(torus: QuasiPeriodic) -> list[Block]:
         silent = (coefficients == 0).all(axis=1)
         if silent.all():
             continue
-        own_modes = tuple(modes[columns].tolist())
+        own_modes = modes[columns].tolist()
         harmonics = torus.harmonics[rows[~silent]]
-        blocks.append(Block(own_modes, harmonics, coefficients[~silent]))
+        block = Block(tuple(own_modes), harmonics, coefficients[~silent])
+        blocks.append(block)
     return blocks
 
 
 def highest_numbers(harmonics: Sequence[Ints], s: int) -> tuple[int, ...]:
     """Largest |nu_i| of every seed among arrays of harmonics (H, s)."""
     none = np.zeros((1, s), dtype=np.int64)
-    largest = np.abs(np.concatenate([none, *harmonics])).max(axis=0)
+    every = np.concatenate([none, *harmonics])
+    largest = np.abs(every).max(axis=0)
     return tuple(largest.tolist())
 
 
 def torus_facts(torus: QuasiPeriodic) -> dict[str, str]:
     """The header of a torus: chain, seeds, frequencies; exact numbers as they were typed."""
+    seeds = map(str, torus.seeds)
+    frequencies = map(decimal, torus.frequencies)
     return {
         "chain": repr(torus.chain),
-        "seeds": ", ".join(map(str, torus.seeds)),
-        "frequencies": ", ".join(map(decimal, torus.frequencies)),
+        "seeds": ", ".join(seeds),
+        "frequencies": ", ".join(frequencies),
         "precision": precision_text(torus.digits),
     }
 
@@ -155,9 +162,11 @@ def number(value: Any, digits: int = DOUBLE_DIGITS) -> str:
 
 def blocks_or_zero(program: TorusProgram) -> tuple[Block, ...]:
     """The blocks of a torus; a coefficient of zero for a torus at rest, which has none."""
+    if program.blocks:
+        return program.blocks
     harmonic = np.zeros((1, len(program.seeds)), dtype=np.int64)
-    zero = Block((1,), harmonic, np.zeros((1, 1)))
-    return program.blocks or (zero,)
+    zero = np.zeros((1, 1))
+    return (Block((1,), harmonic, zero),)
 
 
 def _check(torus: QuasiPeriodic) -> Check:
@@ -168,23 +177,27 @@ def _check(torus: QuasiPeriodic) -> Check:
     Q, P = exact.positions(times), exact.momenta(times)
     with MULTIPRECISION.context(places + EXTRA_DIGITS):
         H = exact.chain.energy(Q, P)
+    positions = texts(Q, places + 2)
+    momenta = texts(P, places + 2)
+    (energies,) = texts(H[None], places + 2)
+    return Check(tuple(map(repr, times)), positions, momenta, energies)
 
-    def row(values: Iterable[Any]) -> tuple[str, ...]:
-        return tuple(text(x, places + 2) for x in values)
 
-    return Check(
-        times=tuple(map(repr, times)),
-        positions=tuple(map(row, Q)),
-        momenta=tuple(map(row, P)),
-        energies=row(H),
-    )
+def texts(rows: Iterable[Iterable[Any]], digits: int) -> tuple[tuple[str, ...], ...]:
+    """Numbers as decimal text."""
+    table = []
+    for row in rows:
+        words = [text(x, digits) for x in row]
+        table.append(tuple(words))
+    return tuple(table)
 
 
 def _check_times(torus: QuasiPeriodic) -> list[float]:
     """The same numbers in decimal and in binary."""
     slowest = min(map(float, torus.frequencies))
     period = 2 * np.pi / slowest
-    return [round(n * period * 64) / 64 for n in CHECK_PERIODS]
+    times = [n * period for n in CHECK_PERIODS]
+    return [round(t * 64) / 64 for t in times]
 
 
 def replace_digits(torus: QuasiPeriodic, digits: int) -> FourierTorus:
@@ -192,15 +205,8 @@ def replace_digits(torus: QuasiPeriodic, digits: int) -> FourierTorus:
     with MULTIPRECISION.context(digits):
         cosines = np.asarray(exact_numbers(torus.cosines), dtype=object)
         phases = {q: mpmath.mpf(phi) for q, phi in torus.phases.items()}
-    return FourierTorus(
-        chain=torus.chain,
-        seeds=torus.seeds,
-        frequencies=torus.frequencies,
-        harmonics=torus.harmonics,
-        cosines=cosines,
-        phases=phases,
-        digits=digits,
-    )
+    same = torus.chain, torus.seeds, torus.frequencies, torus.harmonics
+    return FourierTorus(*same, cosines, phases, digits)
 
 
 # A double is the number it is here, not its shortest decimal.

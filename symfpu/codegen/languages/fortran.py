@@ -17,6 +17,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from numbers import Integral
 from typing import Any
 
@@ -44,12 +45,17 @@ WORD = 24  # bits of the leading parts of omega / 2 pi: times halves of a time t
 EXACT = 2**53  # integers below are doubles
 BREAKS = re.compile(r"(?<=[ (])|(?<=[^*]\*)(?!\*)|(?<=/)")  # after a blank, a bracket, one star, a slash
 OPEN = "\N{WHITE SQUARE}"  # stands for the module's name, and occurs nowhere else
+HARMLESS = {"\\": "/", "*/": "* /", "/*": "/ *"}  # in comments
+TABLES = {"default_phases"}
+TABLES |= {"nu_even", "nu_odd", "rates_even", "rates_odd", "c_even", "c_odd"}
 
 
 def comment(text: str) -> str:
-    """A fact as lines of a comment; the preprocessor would take some signs for comments of C."""
-    text = " ".join(text.split()).encode("ascii", "backslashreplace").decode()
-    text = text.replace("\\", "/").replace("*/", "* /").replace("/*", "/ *")
+    """A fact as lines of a comment, without what the preprocessor takes for comments of C."""
+    one_line = " ".join(text.split())
+    text = one_line.encode("ascii", "backslashreplace").decode()
+    for sign, harmless in HARMLESS.items():
+        text = text.replace(sign, harmless)
     lines = textwrap.wrap(
         text,
         WIDTH - 4,
@@ -62,12 +68,15 @@ def comment(text: str) -> str:
 
 def listed(numbers: str) -> str:
     """Numbers as lines of a comment."""
-    indent = "!     "
-    return textwrap.fill(numbers, WIDTH - 4, initial_indent=indent, subsequent_indent=indent)
+    lines = textwrap.wrap(numbers, WIDTH - 10)
+    return "\n".join(f"!     {line}" for line in lines)
 
 
 def literal(value: Any) -> str:
-    """A number that no compiler rounds to single precision or warns of: those below the normal doubles are zero."""
+    """A number that no compiler rounds to single precision, or warns of.
+
+    Numbers below the normal doubles are zero.
+    """
     if isinstance(value, Integral):
         return str(value)
     value = float(value)
@@ -79,7 +88,10 @@ def literal(value: Any) -> str:
 
 def columns(rows: Iterable[Iterable[Any]], name: str) -> str:
     """DATA statements for name(i, 1), name(i, 2) and so on."""
-    statements = [data(column, f"{name}(i, {j})") for j, column in enumerate(zip(*rows, strict=True), 1)]
+    statements = []
+    for j, column in enumerate(zip(*rows, strict=True), 1):
+        element = f"{name}(i, {j})"
+        statements.append(data(column, element))
     return "\n".join(statements)
 
 
@@ -87,16 +99,18 @@ def data(values: Iterable[Any], element: str, first: int = 1) -> str:
     """DATA statements for an element of an array, its index i running from first."""
     statements = []
     for lines in _chunks(map(literal, values)):
-        last = first + sum(line.count(",") for line in lines) - 1
-        body = " &\n    ".join(lines).removesuffix(",")
-        statements.append(f"  data ({element}, i = {first}, {last}) / &\n    {body} /")
+        body = " &\n    ".join(lines)
+        last = first + body.count(",") - 1
+        numbers = body.removesuffix(",")
+        statements.append(f"  data ({element}, i = {first}, {last}) / &\n    {numbers} /")
         first = last + 1
     return "\n".join(statements)
 
 
 def _chunks(numbers: Iterable[str]) -> Iterator[list[str]]:
     """Lines of numbers with commas behind them, as many together as one statement may have."""
-    lines = packed((f"{number}," for number in numbers), WIDTH - 7)
+    pieces = (f"{number}," for number in numbers)
+    lines = packed(pieces, WIDTH - 7)
     for first in range(0, len(lines), LINES):
         yield lines[first : first + LINES]
 
@@ -108,28 +122,36 @@ def parity(modes: Sequence[int]) -> str:
 
 def declared(names: Iterable[str]) -> str:
     """Declarations of doubles."""
-    lines = textwrap.wrap(", ".join(names), WIDTH - 20)
-    return "\n".join(f"    real(rk) :: {line.removesuffix(',')}" for line in lines)
+    wrapped = textwrap.wrap(", ".join(names), WIDTH - 20)
+    lines = [line.removesuffix(",") for line in wrapped]
+    return "\n".join(f"    real(rk) :: {line}" for line in lines)
 
 
 def assigned(expression: sympy.Expr, name: str, indent: int) -> str:
     """Statements name = expression; a long sum takes several."""
     terms = expression.as_ordered_terms()
-    lines = []
+    lines: list[str] = []
     for first in range(0, len(terms), TERMS):
-        part = sympy.Add(*terms[first : first + TERMS])
-        value = _PRINTER.doprint(part)
+        part = terms[first : first + TERMS]
+        value = _PRINTER.doprint(sympy.Add(*part))
         if first:
-            value = f"{name} - {value[1:]}" if value.startswith("-") else f"{name} + {value}"
+            value = _added(name, value)
         lines += _continued(f"{name} = {value}")
-    return "\n".join(" " * indent + line for line in lines)
+    return textwrap.indent("\n".join(lines), " " * indent)
+
+
+def _added(name: str, value: str) -> str:
+    if value.startswith("-"):
+        return f"{name} - {value[1:]}"
+    return f"{name} + {value}"
 
 
 def _continued(statement: str) -> list[str]:
     lines = []
     line = ""
     for piece in BREAKS.split(statement):
-        if len(line) + len(piece) > WIDTH - 14:
+        size = len(line) + len(piece)
+        if size > WIDTH - 14:
             lines.append(f"{line.rstrip()} &")
             line = "  "
         line += piece
@@ -151,13 +173,15 @@ class _Printer(FCodePrinter):  # type: ignore[misc]
     def _print_Rational(self, number: sympy.Rational) -> str:
         if max(abs(number.p), number.q) > EXACT:
             return literal(float(number))
-        return f"{literal(float(number.p))}/{literal(float(number.q))}"
+        p, q = float(number.p), float(number.q)
+        return f"{literal(p)}/{literal(q)}"
 
     def _print_Pow(self, power: sympy.Pow) -> str:
         base, exponent = power.as_base_exp()
         n = int(exponent)
-        factor = self.parenthesize(base, precedence(power), strict=False)
-        written = factor if abs(n) == 1 else f"{factor}**{abs(n)}"
+        written = self.parenthesize(base, precedence(power), strict=False)
+        if abs(n) != 1:
+            written = f"{written}**{abs(n)}"
         return written if n > 0 else f"1d0/{written}"
 
 
@@ -170,23 +194,21 @@ class Modules(Language):
     def filled(self, kind: str, words: Words) -> str:
         """Raises InputError for a name that the module needs itself."""
         name = words["name"]
-        code = super().filled(kind, words | {"name": OPEN, "macro": f"{name.upper()}_SELF_TEST"})
+        macro = f"{name.upper()}_SELF_TEST"
+        code = super().filled(kind, words | {"name": OPEN, "macro": macro})
         own = _identifiers(code) | TABLES
-        identifier = re.fullmatch(r"[a-z][a-z0-9_]{0,49}", name.lower(), re.ASCII)
-        if not identifier or name.lower() in own:
-            raise InputError(
-                "path",
-                name,
-                "a file name that is a Fortran identifier the module does not use itself",
-                "rename the file",
-            )
+        legal = re.fullmatch(r"[a-z][a-z0-9_]{0,49}", name.lower(), re.ASCII)
+        if not legal or name.lower() in own:
+            allowed = "a file name that is a Fortran identifier the module does not use itself"
+            raise InputError("path", name, allowed, "rename the file")
         return code.replace(OPEN, name)
 
 
 def _identifiers(code: str) -> set[str]:
     """Names outside strings and comments, but for those that begin with the module's."""
     bare = re.sub(r"'[^'\n]*'|!.*", "", code)
-    return set(re.findall(rf"(?<![\w{OPEN}])[a-z]\w*", bare.lower()))
+    names = re.findall(rf"(?<![\w{OPEN}])[a-z]\w*", bare.lower())
+    return set(names)
 
 
 def split(value: Any) -> list[float]:
@@ -202,64 +224,67 @@ def split(value: Any) -> list[float]:
 
 
 def _torus(program: TorusProgram) -> Words:
+    N = program.N
+    words = _kernel(program.highest)
+    words["turns"] = [_turns(w) for w in program.frequencies]
+    words["radian"] = _turns(Fraction(1))
+    words["linear"] = linear_frequencies(N).tolist()
+    words["cosines"] = bond_cosines(N)
+    words["norm"] = bond_norm(N)
+    return words
+
+
+def _turns(frequency: Fraction) -> list[float]:
+    """omega / 2 pi in three parts."""
     with mpmath.workdps(WORK_DIGITS):
-        radian = 1 / (2 * mpmath.pi)
-        frequencies = [mpmath.mpf(w.numerator) / w.denominator for w in program.frequencies]
-        turns = [split(w / (2 * mpmath.pi)) for w in frequencies]
-        parts = split(radian)
-    return {
-        "turns": turns,
-        "radian": parts,
-        "linear": linear_frequencies(program.N).tolist(),
-        "cosines": bond_cosines(program.N),
-        "norm": bond_norm(program.N),
-        "highest": max(2, *program.highest),  # compilers warn of a loop from 2 to 1
-        "times": TIMES,
-        "tile": TILE,
-    }
+        exact = mpmath.mpf(frequency.numerator) / frequency.denominator
+        return split(exact / (2 * mpmath.pi))
+
+
+def _kernel(highest: Sequence[int]) -> Words:
+    """Sizes in the sums over harmonics. highest : numbers in these, of every seed."""
+    largest = max(2, *highest)  # compilers warn of a loop from 2 to 1
+    return {"highest": largest, "times": TIMES, "tile": TILE}
 
 
 def _series(program: SeriesProgram) -> Words:
-    with mpmath.workdps(WORK_DIGITS):
-        radian = split(1 / (2 * mpmath.pi))
-    if program.straight is not None:
-        return {"radian": radian, **_names(program.straight, program.seeds)}
-    assert program.tables is not None
-    return {"radian": radian, **_sizes(program.tables)}
+    words: Words = {"radian": _turns(Fraction(1))}
+    if program.straight:
+        words |= _names(program.straight, program.seeds)
+    if program.tables:
+        words |= _kernel(program.tables.highest)
+        words |= _corrections(program.tables)
+    return words
 
 
 def _names(straight: StraightLine, seeds: Sequence[int]) -> Words:
     """What is to be declared."""
-    given = [f"{letter}{q}" for letter in ("A", "omega") for q in seeds]
-    angles = [f"theta{q}" for q in seeds]
-    coefficients, waves, frequencies = (
-        [name for name, _ in statements] for statements in (straight.coefficients, straight.waves, straight.frequency_statements)
-    )
-    of_coefficients = [name for name in given if name in straight.coefficient_symbols]
+    given = [f"A{q}" for q in seeds]
+    given += [f"omega{q}" for q in seeds]
+    names = [name for name in given if name in straight.coefficient_symbols]
+    names += [name for name, _ in straight.coefficients]
+    names += [f"theta{q}" for q in seeds]
+    names += [name for name, _ in straight.waves]
     of_frequencies = [name for name in given if name in straight.frequency_symbols]
-    return {
-        "names": [*of_coefficients, *coefficients, *angles, *waves],
-        "frequency_names": [*of_frequencies, *frequencies],
-    }
+    of_frequencies += [name for name, _ in straight.frequency_statements]
+    return {"names": names, "frequency_names": of_frequencies}
 
 
-def _sizes(tables: SeriesTables) -> Words:
-    """Sizes of tables, and corrections of the frequencies: one of zero where there is none, as a table must have a row."""
-    zero = np.zeros((1, len(tables.scales)), dtype=int)
-    even_powers = 2 * tables.frequency_powers
-    corrected = len(even_powers) > 0
+def _corrections(tables: SeriesTables) -> Words:
+    """Corrections of the frequencies; where there are none, one of zero: a table has a row."""
+    powers = 2 * tables.frequency_powers
+    coefficients = tables.frequency_coefficients
+    if not len(powers):
+        powers = np.zeros((1, len(tables.scales)), dtype=np.int64)
+        coefficients = np.zeros(powers.shape)
+    degree = max(2, tables.powers.max(), powers.max())
     return {
         "blocks": tables.blocks,
-        "highest": max(2, *tables.highest),  # compilers warn of a loop from 2 to 1
-        "degree": max(2, tables.powers.max(), even_powers.max(initial=0)),
-        "even_powers": even_powers if corrected else zero,
-        "correction": tables.frequency_coefficients if corrected else zero.astype(float),
-        "times": TIMES,
-        "tile": TILE,
+        "degree": degree,
+        "even_powers": powers,
+        "correction": coefficients,
     }
 
-
-TABLES = {"default_phases", *(f"{kind}_{p}" for kind in ("nu", "rates", "c") for p in ("even", "odd"))}
 
 FORTRAN = Modules(
     extension="F90",  # the capital lets compilers run the preprocessor

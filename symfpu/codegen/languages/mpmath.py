@@ -1,4 +1,4 @@
-"""mpmath: one module whose coefficients carry the digits of the solution and which evaluates at any mp.dps."""
+"""mpmath: one module with coefficients of all digits, which evaluates at any mp.dps."""
 
 from __future__ import annotations
 
@@ -29,27 +29,27 @@ class _Printer(Waves, MpmathPrinter):  # type: ignore[misc]
 
 
 def _torus(program: TorusProgram) -> Words:
-    precision = _precision(program)
-    phases = tuple(text(p, precision["digits"]) for p in program.phases)
-    return precision | {
-        "frequency_texts": tuple(map(decimal, program.frequencies)),
-        "phase_texts": phases,
-    }
+    words = _precision(program)
+    digits = words["digits"]
+    phases = [text(p, digits) for p in program.phases]
+    words["frequency_texts"] = tuple(map(decimal, program.frequencies))
+    words["phase_texts"] = tuple(phases)
+    return words
 
 
 def _series(program: SeriesProgram) -> Words:
-    precision = _precision(program)
-    return precision | {
-        "kept": kept(program),
-        "places": precision["digits"] + 3,
-    }
+    words = _precision(program)
+    words["kept"] = kept(program)
+    words["places"] = words["digits"] + 3
+    return words
 
 
 def _precision(program: TorusProgram | SeriesProgram) -> Words:
     """Two digits are left to the self-test."""
-    if program.digits is None:
+    digits = program.digits
+    if digits is None:
         return {"digits": DOUBLE_DIGITS, "tolerance": TOLERANCE}
-    return {"digits": program.digits, "tolerance": f"1e-{program.digits - 2}"}
+    return {"digits": digits, "tolerance": f"1e-{digits - 2}"}
 
 
 MPMATH = Language(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
@@ -19,20 +20,22 @@ from symfpu.codegen.torus_program import TorusProgram, number
 
 WIDTH = 118  # columns of a line
 LARGEST_PRODUCT = 4  # powers up to it are written as products
-PRODUCT = 100  # binds more tightly than any operator of SymPy's printers: all but names and numbers get parentheses
+PRODUCT = 100  # binds more tightly than any operator of SymPy's printers
 
 
 def words(values: Any) -> str:
     """Integers or decimal text, of arrays row by row, in short lines."""
-    every = " ".join(map(str, np.ravel(values)))
-    lines = textwrap.wrap(every, WIDTH, break_long_words=False, break_on_hyphens=False)
+    every = map(str, np.ravel(values))
+    lines = _wrapped(" ".join(every), WIDTH)
     return "\n".join(lines)
 
 
 def numbers(values: Any, digits: int | None = None) -> str:
     """Numbers of so many digits, default those of doubles, in short lines."""
     every = np.ravel(values)
-    return words([double(x) if digits is None else number(x, digits) for x in every])
+    if digits is None:
+        return words([double(x) for x in every])
+    return words([number(x, digits) for x in every])
 
 
 def named(seeds: Sequence[int], letter: str) -> str:
@@ -42,10 +45,22 @@ def named(seeds: Sequence[int], letter: str) -> str:
 
 def statement(text: str, start: str) -> str:
     """One statement in short lines, broken at spaces inside parentheses."""
-    if len(start) + len(text) + 4 <= WIDTH:
+    size = len(start) + len(text) + 4
+    if size <= WIDTH:
         return f"    {start}{text}"
-    lines = textwrap.wrap(text, WIDTH - 8, break_long_words=False, break_on_hyphens=False)
-    return "\n".join([f"    {start}(", *(f"        {line}" for line in lines), "    )"])
+    lines = [f"    {start}("]
+    lines += [f"        {line}" for line in _wrapped(text, WIDTH - 8)]
+    return "\n".join([*lines, "    )"])
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    """Lines broken at blanks only."""
+    return textwrap.wrap(
+        text,
+        width,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 class Waves:
@@ -54,10 +69,15 @@ class Waves:
     module = "np"
 
     def _print_cos(self, expression: sympy.Expr) -> str:
-        return f"{self.module}.cos({self._print(expression.args[0])})"  # type: ignore[attr-defined]
+        return self._called("cos", expression)
 
     def _print_sin(self, expression: sympy.Expr) -> str:
-        return f"{self.module}.sin({self._print(expression.args[0])})"  # type: ignore[attr-defined]
+        return self._called("sin", expression)
+
+    def _called(self, function: str, expression: sympy.Expr) -> str:
+        (angle,) = expression.args
+        text = self._print(angle)  # type: ignore[attr-defined]
+        return f"{self.module}.{function}({text})"
 
 
 class _Printer(Waves, NumPyPrinter):  # type: ignore[misc]
@@ -74,21 +94,31 @@ class _Printer(Waves, NumPyPrinter):  # type: ignore[misc]
 
     def _print_Pow(self, power: sympy.Pow, rational: bool = False) -> str:
         base, exponent = power.as_base_exp()
-        if not exponent.is_Integer or not 1 < abs(exponent) <= LARGEST_PRODUCT:
+        small = exponent.is_Integer and 1 < abs(exponent) <= LARGEST_PRODUCT
+        if not small:
             return str(super()._print_Pow(power, rational=rational))
-        factors = [self.parenthesize(base, PRODUCT)] * abs(int(exponent))
-        product = " * ".join(factors)
-        return f"({product})" if exponent > 0 else f"(1 / ({product}))"
+        n = int(exponent)
+        factor = self.parenthesize(base, PRODUCT)
+        product = " * ".join([factor] * abs(n))
+        return f"({product})" if n > 0 else f"(1 / ({product}))"
 
 
-def filters(printer: CodePrinter, constant: Callable[[tuple[Any, str]], str]) -> dict[str, Filter]:
-    """Those of Python files. constant : of straight-line code as text, from its value and its expression in mpmath."""
+def filters(
+    printer: CodePrinter,
+    constant: Callable[[tuple[Any, str]], str],
+) -> dict[str, Filter]:
+    """Those of Python files.
+
+    constant : of straight-line code as text, from its value and its expression in mpmath.
+    """
 
     def row(values: Iterable[sympy.Expr]) -> str:
-        return "[" + ", ".join(map(printer.doprint, values)) + "]"
+        items = map(printer.doprint, values)
+        return f"[{', '.join(items)}]"
 
     def matrix(rows: Iterable[Iterable[sympy.Expr]]) -> str:
-        return "[" + ", ".join(map(row, rows)) + "]"
+        items = map(row, rows)
+        return f"[{', '.join(items)}]"
 
     return {
         "code": printer.doprint,
@@ -103,28 +133,31 @@ def filters(printer: CodePrinter, constant: Callable[[tuple[Any, str]], str]) ->
 
 
 def kept(program: SeriesProgram) -> str:
-    """The coefficients that a call computes once, of cosines c and of sines d; other statements only lead to them."""
+    """The coefficients of cosines, c.., and of sines, d..; other statements lead to them."""
     if program.straight is None:
         return ""
-    names = [name for name, _ in program.straight.coefficients]
-    return "".join(f"{name}, " for name in names if name[0] in "cd" and name[1].isdigit())
+    statements = program.straight.coefficients
+    names = [name for name, _ in statements if re.match(r"[cd]\d", name)]
+    return "".join(f"{name}, " for name in names)
 
 
 def _torus(program: TorusProgram) -> Words:
     nested = nest(program)
-    return {
-        "turns": turns(program.frequencies),
-        "leading": nested.leading,
-        "trailing": nested.trailing,
-        "nested": [_nested_words(slices) for slices in nested.slices],
-    }
+    words: Words = {"turns": turns(program.frequencies)}
+    words["leading"] = nested.leading
+    words["trailing"] = nested.trailing
+    words["nested"] = list(map(_nested_words, nested.slices))
+    return words
 
 
 def _nested_words(slices: Sequence[Slice]) -> Words:
-    return {
-        "layout": [(part.leading, part.start, len(part.coefficients)) for part in slices],
-        "coefficients": np.concatenate([part.coefficients.ravel() for part in slices]),
-    }
+    """The slices of a block behind each other."""
+    layout: list[int] = []
+    coefficients = []
+    for part in slices:
+        layout += part.leading, part.start, len(part.coefficients)
+        coefficients.append(part.coefficients)
+    return {"layout": layout, "coefficients": np.concatenate(coefficients)}
 
 
 def _series(program: SeriesProgram) -> Words:

@@ -35,9 +35,15 @@ STRAIGHT_BLOCK = 1024  # times together: statements are interpreted once for the
 
 def comment(text: str, indent: int) -> str:
     """Lines of a comment, whatever characters the text has."""
-    ascii_text = text.encode("ascii", "backslashreplace").decode()
-    lines = textwrap.wrap(ascii_text, WIDTH, subsequent_indent=INDENT, break_on_hyphens=False)
-    return "\n".join(f"%{indent * ' '}{line}" for line in lines)
+    encoded = text.encode("ascii", "backslashreplace")
+    lines = textwrap.wrap(
+        encoded.decode(),
+        WIDTH,
+        subsequent_indent=INDENT,
+        break_on_hyphens=False,
+    )
+    start = "%" + indent * " "
+    return "\n".join(start + line for line in lines)
 
 
 def doubles(values: Any) -> list[str]:
@@ -47,26 +53,33 @@ def doubles(values: Any) -> list[str]:
 
 def chunks(numbers: Any) -> list[list[str]]:
     """Lines of numbers, as many together as one statement has."""
-    text = " ".join(map(str, np.ravel(numbers)))
-    lines = textwrap.wrap(text, WIDTH, break_long_words=False, break_on_hyphens=False)
-    return [lines[i : i + CHUNK] for i in range(0, len(lines), CHUNK)]
+    every = map(str, np.ravel(numbers))
+    lines = _wrapped(" ".join(every))
+    starts = range(0, len(lines), CHUNK)
+    return [lines[i : i + CHUNK] for i in starts]
 
 
 def vector(values: Iterable[Any]) -> str:
     """A short row of numbers, continued in further lines."""
-    words = ", ".join(str(x) if isinstance(x, int) else double(x) for x in values)
-    lines = textwrap.wrap(words, WIDTH - 20, break_on_hyphens=False)
-    return "[" + f" ...\n{2 * INDENT}".join(lines) + "]"
+    words = [str(x) if isinstance(x, int) else double(x) for x in values]
+    lines = textwrap.wrap(", ".join(words), WIDTH - 20, break_on_hyphens=False)
+    body = f" ...\n{2 * INDENT}".join(lines)
+    return f"[{body}]"
 
 
 def cells(items: Iterable[str]) -> str:
     """A cell array in a row."""
-    return "{" + f", ...\n{INDENT}".join(items) + "}"
+    body = f", ...\n{INDENT}".join(items)
+    return f"{{{body}}}"
 
 
 def of_each(blocks: Sequence[Block | SeriesBlock], pattern: str) -> list[str]:
     """A pattern filled in for every block: {k} from 1, {s} seeds, {modes} how many."""
-    return [pattern.format(k=k, s=block.harmonics.shape[1], modes=len(block.modes)) for k, block in enumerate(blocks, 1)]
+    texts = []
+    for k, block in enumerate(blocks, 1):
+        s, modes = block.harmonics.shape[1], len(block.modes)
+        texts.append(pattern.format(k=k, s=s, modes=modes))
+    return texts
 
 
 def owners(starts: Ints) -> Ints:
@@ -78,14 +91,20 @@ def owners(starts: Ints) -> Ints:
 def statement(expression: str, name: str, indent: int = 0) -> str:
     """One statement, continued in further lines; broken between operators."""
     spaced = re.sub(r"(\.[*/])", r" \1 ", expression)
-    lines = textwrap.wrap(
-        f"{name} = {spaced};",
+    lines = _wrapped(f"{name} = {spaced};")
+    margin = " " * indent
+    body = f" ...\n{margin}{INDENT}".join(lines)
+    return margin + body
+
+
+def _wrapped(text: str) -> list[str]:
+    """Lines broken at blanks only."""
+    return textwrap.wrap(
+        text,
         WIDTH,
         break_long_words=False,
         break_on_hyphens=False,
     )
-    margin = " " * indent
-    return margin + f" ...\n{margin}{INDENT}".join(lines)
 
 
 class _Printer(OctaveCodePrinter):  # type: ignore[misc]
@@ -103,12 +122,11 @@ def _torus(program: TorusProgram) -> Words:
 
 
 def _series(program: SeriesProgram) -> Words:
-    tables = program.tables
-    return {
-        "inverse": inverse_turn(),
-        "times": BLOCK if tables else STRAIGHT_BLOCK,
-        "corrected": tables is not None and len(tables.frequency_powers) > 0,
-    }
+    words: Words = {"inverse": inverse_turn(), "times": STRAIGHT_BLOCK}
+    if program.tables:
+        words["times"] = BLOCK
+        words["corrected"] = len(program.tables.frequency_powers) > 0
+    return words
 
 
 RESERVED = """
