@@ -7,12 +7,13 @@ size. Where a slice has no coefficient it holds a zero.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from symfpu.algebra.grading import Ints
-from symfpu.codegen.torus_program import Block, TorusProgram
+from symfpu.codegen.torus_program import Block
 from symfpu.numbers.arithmetic import Numbers
 
 
@@ -37,19 +38,19 @@ class Nested:
     slices: tuple[tuple[Slice, ...], ...]
 
 
-def nest(program: TorusProgram) -> Nested:
-    """Arrange the blocks of a program.
+def nest(blocks: Sequence[Block], seeds: tuple[int, ...]) -> Nested:
+    """Arrange the blocks of a torus, one at least.
 
     Few leading parts and long inner sums are what matrix products are fastest at.
     """
-    split = min(1, len(program.seeds) - 1)
-    harmonics = [block.harmonics for block in program.blocks]
+    split = min(1, len(seeds) - 1)
+    harmonics = [block.harmonics for block in blocks]
     first, others = np.hsplit(np.concatenate(harmonics), [split])
     leading = np.unique(first, axis=0)
     trailing = np.unique(others, axis=0)
-    order = _by_parity(trailing, program.seeds[split:])
+    order = _by_parity(trailing, seeds[split:])
     trailing = trailing[order]
-    slices = [_slices(block, leading, trailing) for block in program.blocks]
+    slices = [_slices(block, leading, trailing) for block in blocks]
     return Nested(leading, trailing, tuple(slices))
 
 

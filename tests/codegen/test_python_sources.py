@@ -4,6 +4,7 @@ import importlib.util
 import subprocess
 import sys
 from dataclasses import replace
+from fractions import Fraction
 
 import mpmath
 import numpy as np
@@ -17,6 +18,7 @@ from symfpu.codegen.nested import nest
 from symfpu.codegen.torus_program import replace_digits, torus_facts, torus_program
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.quasiperiodic import FourierTorus
 
 LARGEST, TAIL = 1e-13, 1e-12  # of the largest coordinate, and of each mode's own largest: sums of some thousand rounded terms
 
@@ -118,7 +120,7 @@ def test_mpmath_carries_the_digits_of_the_series(tmp_path):
 
 def test_nesting_keeps_every_coefficient(torus):
     program = torus_program(torus, "my_torus", {})
-    nested = nest(program)
+    nested = nest(program.blocks, program.seeds)
     for block, slices in zip(program.blocks, nested.slices, strict=True):
         found = {}
         for part in slices:
@@ -129,6 +131,15 @@ def test_nesting_keeps_every_coefficient(torus):
         for harmonic, row in zip(block.harmonics.tolist(), block.coefficients, strict=True):
             assert (found.pop(tuple(harmonic)) == row).all()
         assert not any(row.any() for row in found.values())
+
+
+@pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
+def test_a_torus_at_rest_stays_there(emitter, tmp_path):
+    seeds, frequencies = (1, 2), (Fraction(5, 8), Fraction(19, 16))
+    rest = FourierTorus(Chain(5, alpha=1), seeds, frequencies, np.zeros((1, 2), dtype=int), np.zeros((1, 4)), {1: 0.0, 2: 0.0})
+    loaded = module(source(rest, emitter), tmp_path / "my_torus.py")
+    assert [list(values) for values in loaded.orbit(2.5)] == [[0, 0, 0, 0]] * 2
+    assert loaded.energy(2.5) == 0
 
 
 @pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])

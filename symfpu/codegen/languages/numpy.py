@@ -16,7 +16,7 @@ from symfpu.codegen.constants import inverse_turn, turns
 from symfpu.codegen.nested import Slice, nest
 from symfpu.codegen.series_program import SeriesProgram
 from symfpu.codegen.templating import Filter, Language, Words, double
-from symfpu.codegen.torus_program import TorusProgram, number
+from symfpu.codegen.torus_program import TorusProgram, blocks_or_zero, number
 
 WIDTH = 118  # columns of a line
 LARGEST_PRODUCT = 4  # powers up to it are written as products
@@ -142,8 +142,9 @@ def kept(program: SeriesProgram) -> str:
 
 
 def _torus(program: TorusProgram) -> Words:
-    nested = nest(program)
-    words: Words = {"turns": turns(program.frequencies)}
+    blocks = blocks_or_zero(program)
+    nested = nest(blocks, program.seeds)
+    words: Words = {"blocks": blocks, "turns": turns(program.frequencies)}
     words["leading"] = nested.leading
     words["trailing"] = nested.trailing
     words["nested"] = list(map(_nested_words, nested.slices))
