@@ -1,1 +1,1 @@
-"""Evaluators as source code: one program, one emitter a language."""
+"""Evaluators as source code: one program, two templates a language."""

@@ -16,14 +16,16 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.codegen.languages.c99 import emit_torus
+from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.errors import InputError, SymfpuError
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
 Floats = NDArray[np.float64]
-Call = Callable[[Floats, Floats | None], Floats]
+Angles = Floats | None  # (s,), or those of the torus
+Call = Callable[[Floats, Angles], Floats]
+Phases = Mapping[int, float] | ArrayLike | None  # by seed, or in the order of the seeds
 
 BACKENDS = ("c", "numpy")
 COMPILERS = ("cc", "gcc", "clang")
@@ -36,10 +38,10 @@ NO_COMPILER = f"no C compiler: {ABSENT}; install one or take 'numpy'"
 class Backend(Protocol):
     """Functions of times (T,) and phases (s,) or None for the torus' own."""
 
-    def positions(self, t: Floats, phases: Floats | None) -> Floats: ...
-    def momenta(self, t: Floats, phases: Floats | None) -> Floats: ...
-    def harmonic_energies(self, t: Floats, phases: Floats | None) -> Floats: ...
-    def energy(self, t: Floats, phases: Floats | None) -> Floats: ...
+    def positions(self, t: Floats, phases: Angles) -> Floats: ...
+    def momenta(self, t: Floats, phases: Angles) -> Floats: ...
+    def harmonic_energies(self, t: Floats, phases: Angles) -> Floats: ...
+    def energy(self, t: Floats, phases: Angles) -> Floats: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,46 +67,57 @@ class Evaluator:
     functions: Backend = field(repr=False)
 
     def __repr__(self) -> str:
+        chain = repr(self.torus.chain)
         seeds = ",".join(map(str, self.torus.seeds))
-        return f"Evaluator({self.torus.chain!r}, seeds={seeds}, {len(self.torus.harmonics)} harmonics, backend={self.backend!r})"
+        harmonics = f"{len(self.torus.harmonics)} harmonics"
+        return f"Evaluator({chain}, seeds={seeds}, {harmonics}, backend={self.backend!r})"
 
-    def positions(self, t: ArrayLike, phases: Mapping[int, float] | ArrayLike | None = None) -> Floats:
+    def positions(self, t: ArrayLike, phases: Phases = None) -> Floats:
         """Mode coordinates Q_q(t); (N-1,) for a number, (T, N-1) for an array."""
         return self._at(t, phases, self.functions.positions)
 
-    def momenta(self, t: ArrayLike, phases: Mapping[int, float] | ArrayLike | None = None) -> Floats:
-        """Mode momenta P_q(t); (N-1,) for a number, (T, N-1) for an array."""
+    def momenta(self, t: ArrayLike, phases: Phases = None) -> Floats:
+        """Mode momenta P_q(t), in the shapes of positions."""
         return self._at(t, phases, self.functions.momenta)
 
-    def harmonic_energies(self, t: ArrayLike = 0.0, phases: Mapping[int, float] | ArrayLike | None = None) -> Floats:
+    def harmonic_energies(self, t: ArrayLike = 0.0, phases: Phases = None) -> Floats:
         """Harmonic energies E_q(t) (Eq. harmonicene); (N-1,) for a number, (T, N-1) for an array."""
         return self._at(t, phases, self.functions.harmonic_energies)
 
-    def energy(self, t: ArrayLike = 0.0, phases: Mapping[int, float] | ArrayLike | None = None) -> Any:
+    def energy(self, t: ArrayLike = 0.0, phases: Phases = None) -> Any:
         """Total energy H; a number, or (T,) for an array."""
         return self._at(t, phases, self.functions.energy)
 
-    def _at(self, t: ArrayLike, phases: Mapping[int, float] | ArrayLike | None, function: Call) -> Floats:
-        times = _finite("t", t, "a finite number or a one-dimensional array of them")
+    def _at(self, t: ArrayLike, phases: Phases, function: Call) -> Floats:
+        allowed = "a finite number or a one-dimensional array of them"
+        times = _finite("t", t, allowed)
         if times.ndim > 1:
-            raise InputError("t", t, "a finite number or a one-dimensional array of them", "flatten it")
-        values = function(np.ascontiguousarray(times.reshape(-1)), self._angles(phases))
+            raise InputError("t", t, allowed, "flatten it")
+        flat = np.ascontiguousarray(times.reshape(-1))
+        values = function(flat, self._angles(phases))
         result: Floats = values[0] if times.ndim == 0 else values
         return result
 
-    def _angles(self, phases: Mapping[int, float] | ArrayLike | None) -> Floats | None:
+    def _angles(self, phases: Phases) -> Angles:
         if phases is None:
             return None
         seeds = self.torus.seeds
-        allowed = f"{len(seeds)} finite angles, of the seeds {', '.join(map(str, seeds))}"
+        names = ", ".join(map(str, seeds))
+        allowed = f"{len(seeds)} finite angles, of the seeds {names}"
         if isinstance(phases, Mapping):
             if set(phases) - set(seeds):
                 raise InputError("phases", phases, allowed, "name seeds only")
-            phases = [float(x) if isinstance(x, Real) else x for x in (phases.get(q, self.torus.phases[q]) for q in seeds)]
+            given = {**self.torus.phases, **phases}
+            phases = [_double(given[q]) for q in seeds]
         angles = _finite("phases", phases, allowed)
         if angles.shape != (len(seeds),):
             raise InputError("phases", phases, allowed, "give one for each seed")
         return np.ascontiguousarray(angles)
+
+
+def _double(value: Any) -> Any:
+    """A real number as a double; anything else as it is."""
+    return float(value) if isinstance(value, Real) else value
 
 
 def _finite(argument: str, values: Any, allowed: str) -> Floats:
@@ -138,19 +151,27 @@ def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Ev
     [-0.5, 0.0, 0.0]
     """
     if isinstance(torus, LindstedtSeries):
-        raise InputError("torus", "a series without amplitudes", "a torus", "call solve_amplitudes(series) first, or export the series")
+        advice = "call solve_amplitudes(series) first, or export the series"
+        raise InputError("torus", "a series without amplitudes", "a torus", advice)
     if backend is not None and backend not in BACKENDS:
-        raise InputError("backend", backend, f"one of {', '.join(BACKENDS)}, or None", "name a backend or leave it out")
+        allowed = f"one of {', '.join(BACKENDS)}, or None"
+        raise InputError("backend", backend, allowed, "name a backend or leave it out")
     compiler = None if backend == "numpy" else find_compiler()
     if backend == "c" and compiler is None:
         raise SymfpuError(NO_COMPILER)
     if compiler is None:
-        return Evaluator(torus, "numpy", NumpyFunctions(torus.in_doubles()))
-    source = emit_torus(torus_program(torus, NAME, torus_facts(torus)))
-    return Evaluator(torus, "c", compiled(source, torus.chain.N - 1, compiler))
+        doubles = torus.in_doubles()
+        return Evaluator(torus, "numpy", NumpyFunctions(doubles))
+    source = C.torus(torus_program(torus, NAME, torus_facts(torus)))
+    functions = compiled(source, torus.chain.N - 1, compiler)
+    return Evaluator(torus, "c", functions)
 
 
-def compiled(source: str, modes: int, compiler: list[str] | None = None) -> CompiledFunctions:
+def compiled(
+    source: str,
+    modes: int,
+    compiler: list[str] | None = None,
+) -> CompiledFunctions:
     """The functions of an exported C file; SymfpuError without a compiler, or if it fails."""
     command = compiler or find_compiler()
     if command is None:
@@ -159,27 +180,41 @@ def compiled(source: str, modes: int, compiler: list[str] | None = None) -> Comp
 
 
 def find_compiler() -> list[str] | None:
-    """The command of a C compiler: $CC if it is set, else what PATH has of cc, gcc and clang; None if there is none."""
+    """The command of a C compiler; None if there is none.
+
+    It is $CC if that is set, else what PATH has of cc, gcc and clang.
+    """
     if command := os.environ.get("CC", "").split():
         return command
-    found = next((path for name in COMPILERS if (path := shutil.which(name))), None)
-    return None if found is None else [found]
+    for name in COMPILERS:
+        if path := shutil.which(name):
+            return [path]
+    return None
 
 
 def _library(source: str, compiler: list[str]) -> ctypes.CDLL:
     """The loaded functions; their files are gone when this returns."""
     with tempfile.TemporaryDirectory(prefix="symfpu-", ignore_cleanup_errors=True) as folder:
-        written, library = Path(folder) / f"{NAME}.c", Path(folder) / f"{NAME}.so"
+        written = Path(folder, f"{NAME}.c")
+        library = Path(folder, f"{NAME}.so")
         written.write_text(source, encoding="ascii")
-        command = [*compiler, *FLAGS, "-o", str(library), str(written), "-lm"]
-        try:
-            run = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
-        except OSError as error:
-            raise SymfpuError(f"the C compiler {compiler[0]} does not start: {error.strerror}; set CC or take 'numpy'") from error
-        if run.returncode:
-            first = next(iter(run.stderr.strip().splitlines()), f"exit status {run.returncode}")
-            raise SymfpuError(f"the C compiler {compiler[0]} failed: {first}; set CC or take 'numpy'")
+        files = ["-o", str(library), str(written), "-lm"]
+        _run([*compiler, *FLAGS, *files])
         return ctypes.CDLL(str(library))
+
+
+def _run(command: list[str]) -> None:
+    """Run a compiler; SymfpuError if it does not start, or fails."""
+    compiler = f"the C compiler {command[0]}"
+    advice = "set CC or take 'numpy'"
+    try:
+        run = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
+    except OSError as error:
+        raise SymfpuError(f"{compiler} does not start: {error.strerror}; {advice}") from error
+    if run.returncode:
+        said = run.stderr.strip() or f"exit status {run.returncode}"
+        first = said.splitlines()[0]
+        raise SymfpuError(f"{compiler} failed: {first}; {advice}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,24 +233,29 @@ class CompiledFunctions:
         """Itself: loaded functions do not change."""
         return self
 
-    def positions(self, t: Floats, phases: Floats | None) -> Floats:
-        return self._call("positions", t, phases, (len(t), self.modes))
+    def positions(self, t: Floats, phases: Angles) -> Floats:
+        return self._call("positions", t, phases, self.modes)
 
-    def momenta(self, t: Floats, phases: Floats | None) -> Floats:
-        return self._call("momenta", t, phases, (len(t), self.modes))
+    def momenta(self, t: Floats, phases: Angles) -> Floats:
+        return self._call("momenta", t, phases, self.modes)
 
-    def harmonic_energies(self, t: Floats, phases: Floats | None) -> Floats:
-        return self._call("harmonic_energies", t, phases, (len(t), self.modes))
+    def harmonic_energies(self, t: Floats, phases: Angles) -> Floats:
+        return self._call("harmonic_energies", t, phases, self.modes)
 
-    def energy(self, t: Floats, phases: Floats | None) -> Floats:
-        return self._call("energy", t, phases, (len(t),))
+    def energy(self, t: Floats, phases: Angles) -> Floats:
+        return self._call("energy", t, phases)
 
-    def _call(self, name: str, t: Floats, phases: Floats | None, shape: tuple[int, ...]) -> Floats:
-        function, values = getattr(self.library, f"{NAME}_{name}"), np.empty(shape)
+    def _call(self, name: str, t: Floats, phases: Angles, *columns: int) -> Floats:
+        function = getattr(self.library, f"{NAME}_{name}")
         function.restype = None
-        angles = None if phases is None else ctypes.c_void_p(phases.ctypes.data)
-        function(ctypes.c_size_t(len(t)), ctypes.c_void_p(t.ctypes.data), angles, ctypes.c_void_p(values.ctypes.data))
+        values = np.empty((len(t), *columns))
+        count = ctypes.c_size_t(len(t))
+        function(count, _pointer(t), _pointer(phases), _pointer(values))
         return values
+
+
+def _pointer(values: Floats | None) -> ctypes.c_void_p | None:
+    return None if values is None else ctypes.c_void_p(values.ctypes.data)
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,19 +264,20 @@ class NumpyFunctions:
 
     torus: FourierTorus
 
-    def positions(self, t: Floats, phases: Floats | None) -> Floats:
+    def positions(self, t: Floats, phases: Angles) -> Floats:
         return self._with(phases).positions(t)
 
-    def momenta(self, t: Floats, phases: Floats | None) -> Floats:
+    def momenta(self, t: Floats, phases: Angles) -> Floats:
         return self._with(phases).momenta(t)
 
-    def harmonic_energies(self, t: Floats, phases: Floats | None) -> Floats:
+    def harmonic_energies(self, t: Floats, phases: Angles) -> Floats:
         return self._with(phases).harmonic_energies(t)
 
-    def energy(self, t: Floats, phases: Floats | None) -> Floats:
+    def energy(self, t: Floats, phases: Angles) -> Floats:
         return np.asarray(self._with(phases).energy(t))
 
-    def _with(self, phases: Floats | None) -> FourierTorus:
+    def _with(self, phases: Angles) -> FourierTorus:
         if phases is None:
             return self.torus
-        return replace(self.torus, phases=dict(zip(self.torus.seeds, phases.tolist(), strict=True)))
+        by_seed = zip(self.torus.seeds, phases.tolist(), strict=True)
+        return replace(self.torus, phases=dict(by_seed))

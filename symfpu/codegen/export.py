@@ -1,28 +1,25 @@
-"""A torus or a series as source code in a file: the languages there are, legal names, and the file itself."""
+"""A torus or a series as source code in a file: the languages there are, and legal names."""
 
 from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
-from symfpu.codegen.languages import (
-    c99,
-    c99_series,
-    fortran,
-    fortran_series,
-    mpmath_series,
-    mpmath_source,
-    numpy_series,
-    numpy_source,
-    octave,
-    octave_series,
+from symfpu.codegen.languages.c import C
+from symfpu.codegen.languages.fortran import FORTRAN
+from symfpu.codegen.languages.mpmath import MPMATH
+from symfpu.codegen.languages.numpy import NUMPY
+from symfpu.codegen.languages.octave import OCTAVE
+from symfpu.codegen.series_program import series_facts, series_program
+from symfpu.codegen.templating import Language
+from symfpu.codegen.torus_program import (
+    DOUBLE_DIGITS,
+    torus_facts,
+    torus_program,
 )
-from symfpu.codegen.series_program import SeriesProgram, series_facts, series_program
-from symfpu.codegen.torus_program import TorusProgram, torus_facts, torus_program
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.numbers.arithmetic import text
@@ -30,24 +27,16 @@ from symfpu.series.series import LindstedtSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus
 
-LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
-
-
-class Language(NamedTuple):
-    """extension : of the file. torus, series : what writes the program of either as text."""
-
-    extension: str
-    torus: Callable[[TorusProgram], str]
-    series: Callable[[SeriesProgram], str]
-
-
 LANGUAGES = {
-    "c": Language(c99.EXTENSION, c99.emit_torus, c99_series.emit_series),
-    "fortran": Language(fortran.EXTENSION, fortran.emit_torus, fortran_series.emit_series),
-    "numpy": Language(numpy_source.EXTENSION, numpy_source.emit_torus, numpy_series.emit_series),
-    "mpmath": Language(mpmath_source.EXTENSION, mpmath_source.emit_torus, mpmath_series.emit_series),
-    "octave": Language(octave.EXTENSION, octave.emit_torus, octave_series.emit_series),
+    "c": C,
+    "fortran": FORTRAN,
+    "numpy": NUMPY,
+    "mpmath": MPMATH,
+    "octave": OCTAVE,
 }
+
+RESERVED = frozenset().union(*(language.reserved for language in LANGUAGES.values()))
+LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
 
 
 def export(
@@ -84,57 +73,85 @@ def export(
     ...     export(lindstedt(Chain(N=4, beta=1), (1,), ("0.8",), 1), "c", f"{folder}/mode").name
     'mode.c'
     """
-    if language not in LANGUAGES:
-        raise InputError("language", language, f"one of {', '.join(LANGUAGES)}", "name one of these")
-    chosen = LANGUAGES[language]
-    file = Path(path)
-    if file.name and not file.suffix:
-        file = file.with_suffix(f".{chosen.extension}")
-    output_file(file, "path", "choose another")
-    name = legal_name(file.stem)
-    if file.exists() and not force:
-        raise InputError("path", str(file), "a file that does not exist yet", "choose another, or replace it with force (--force)")
-    orders = {key: value for key, value in (("order", order), ("frequency_order", frequency_order)) if value is not None}
-    kind = "series" if isinstance(solution, LindstedtSeries) else "torus"
-    words = ", ".join([kind, repr(language), repr(file.name), *(f"{key}={value}" for key, value in orders.items())])
-    made = {"written by": f"symfpu {version('symfpu')}", "made by": command or f"symfpu.export({words})"}
+    chosen = _language(language)
+    file = _file(Path(path), chosen.extension, force)
+    given = {"order": order, "frequency_order": frequency_order}
+    orders = {key: value for key, value in given.items() if value is not None}
+    facts = {
+        "written by": f"symfpu {version('symfpu')}",
+        "made by": command or _call(solution, language, file, orders),
+    }
     if isinstance(solution, LindstedtSeries):
-        facts = {**made, **series_facts(solution, order=order, frequency_order=frequency_order)}
-        source = chosen.series(series_program(solution, name, facts, order=order, frequency_order=frequency_order))
-    elif orders:
-        raise InputError(next(iter(orders)), next(iter(orders.values())), "none for a torus, which has its orders", "export its series")
+        facts |= series_facts(solution, **orders)
+        series = series_program(solution, file.stem, facts, **orders)
+        source = chosen.series(series)
     else:
-        source = chosen.torus(torus_program(solution, name, {**made, **_orders(solution), **torus_facts(solution)}))
+        _refuse_orders(orders)
+        facts |= _orders(solution) | torus_facts(solution)
+        torus = torus_program(solution, file.stem, facts)
+        source = chosen.torus(torus)
     write_text(file, source)
     return file
 
 
+def _language(name: str) -> Language:
+    if name not in LANGUAGES:
+        known = ", ".join(LANGUAGES)
+        raise InputError("language", name, f"one of {known}", "name one of these")
+    return LANGUAGES[name]
+
+
+def _file(path: Path, extension: str, force: bool) -> Path:
+    """The path with an extension; InputError if it cannot be written, or for an illegal name."""
+    file = path
+    if file.name and not file.suffix:
+        file = file.with_suffix(f".{extension}")
+    output_file(file, "path", "choose another")
+    legal_name(file.stem)
+    if file.exists() and not force:
+        raise InputError(
+            "path",
+            str(file),
+            "a file that does not exist yet",
+            "choose another, or replace it with force (--force)",
+        )
+    return file
+
+
+def _call(solution: Any, language: str, file: Path, orders: dict[str, int]) -> str:
+    """The call that makes this file, for its header."""
+    kind = "series" if isinstance(solution, LindstedtSeries) else "torus"
+    keywords = [f"{key}={value}" for key, value in orders.items()]
+    words = [kind, repr(language), repr(file.name), *keywords]
+    return f"symfpu.export({', '.join(words)})"
+
+
+def _refuse_orders(orders: dict[str, int]) -> None:
+    for key, value in orders.items():
+        allowed = "none for a torus, which has its orders"
+        raise InputError(key, value, allowed, "export its series")
+
+
 def legal_name(name: str) -> str:
     """The name, if it is an identifier in every language; InputError otherwise."""
-    allowed = f"a lower-case letter, then letters, digits and underscores, at most {LONGEST_NAME}"
-    if not re.fullmatch(rf"[a-z][a-z0-9_]{{0,{LONGEST_NAME - 1}}}", name, re.ASCII) or keyword.iskeyword(name) or name in RESERVED:
-        raise InputError("path", name, f"a file name that is also an identifier: {allowed}, no reserved word", "rename the file")
+    letters = re.fullmatch(r"[a-z][a-z0-9_]*", name, re.ASCII)
+    reserved = keyword.iskeyword(name) or name in RESERVED
+    if not letters or len(name) > LONGEST_NAME or reserved:
+        allowed = (
+            "a file name that is also an identifier: a lower-case letter, then letters, "
+            f"digits and underscores, at most {LONGEST_NAME}, no reserved word"
+        )
+        raise InputError("path", name, allowed, "rename the file")
     return name
 
 
-RESERVED = frozenset(
-    """
-    auto break case char const continue default do double else enum extern float for goto if inline int long main register restrict
-    return short signed sizeof static struct switch typedef union unsigned void volatile while
-    program module end subroutine function real integer
-    numpy mpmath
-    catch classdef elseif end_try_catch end_unwind_protect endarguments endclassdef endenumeration endevents endfor endfunction endif
-    endmethods endparfor endproperties endspmd endswitch endwhile global otherwise parfor persistent spmd try until unwind_protect
-    unwind_protect_cleanup arguments enumeration events methods properties import
-    abs any cell cos error find fprintf full imag isa ischar isempty isnan isnumeric isreal max min nargin nargout numel ones pi prod
-    reshape round sin size sparse sprintf sqrt sscanf strcmp sum unique vertcat zeros ans eps exp inf nan i j e clear disp eval exit
-    feval help isargout load log path plot quit save test version who whos
-    """.split()  # noqa: SIM905 - of C, Fortran, the Python files, and words and functions of Octave and MATLAB
-)
-
-
 def _orders(torus: QuasiPeriodic) -> dict[str, str]:
+    """Orders and amplitudes of a torus that has them."""
     if not isinstance(torus, QTorus):
         return {}
-    amplitudes = ", ".join(f"A_{q} = {text(a, torus.digits or 17)}" for q, a in torus.amplitudes.items())
-    return {"orders": f"frequencies {torus.frequency_order}, coordinates {torus.order}", "amplitudes": amplitudes}
+    digits = torus.digits or DOUBLE_DIGITS
+    amplitudes = [f"A_{q} = {text(a, digits)}" for q, a in torus.amplitudes.items()]
+    return {
+        "orders": f"frequencies {torus.frequency_order}, coordinates {torus.order}",
+        "amplitudes": ", ".join(amplitudes),
+    }

@@ -1,6 +1,7 @@
-"""The gallery `generated/`: a few tori in every language, each with the commands that make it and a hash. `make generated` rebuilds it.
+"""The gallery `generated/`: a few tori in every language, with commands and hashes.
 
-Tori are solved with digits to spare and rounded once, so the same commands give the same bytes on any machine.
+`make generated` rebuilds it. Tori are solved with digits to spare and rounded once, so the
+same commands give the same bytes on any machine.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from symfpu.codegen.export import LANGUAGES, export
 from symfpu.files.writing import write_text
 from symfpu.numbers.typed import decimal
 from symfpu.series.lindstedt import lindstedt
+from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.torus import QTorus
 
@@ -24,7 +26,10 @@ DIGITS = 30  # of the series; doubles have 17
 
 
 class Example(NamedTuple):
-    """One torus of the gallery. series_orders : where its series with free amplitudes is cut; empty where it is not shown."""
+    """One torus of the gallery.
+
+    series_orders : where its series with free amplitudes is cut; empty where it is not shown.
+    """
 
     chain: Chain
     seeds: tuple[int, ...]
@@ -34,55 +39,106 @@ class Example(NamedTuple):
 
     def solve_command(self, name: str) -> str:
         """The command that writes it as name.symfpu."""
-        couplings = " ".join(
-            f"--{key} {decimal(value)}" for key, value in (("alpha", self.chain.alpha), ("beta", self.chain.beta)) if value
-        )
-        seeds, omega = ",".join(map(str, self.seeds)), ",".join(self.frequencies)
-        return (
-            f"symfpu solve -N {self.chain.N} {couplings} --seeds {seeds} --omega {omega} --order {self.order} "
-            f"--digits {DIGITS} -o {name}.symfpu"
-        )
+        couplings = {"alpha": self.chain.alpha, "beta": self.chain.beta}
+        words = [f"symfpu solve -N {self.chain.N}"]
+        words += [f"--{key} {decimal(value)}" for key, value in couplings.items() if value]
+        words.append(f"--seeds {','.join(map(str, self.seeds))}")
+        words.append(f"--omega {','.join(self.frequencies)}")
+        words.append(f"--order {self.order} --digits {DIGITS} -o {name}.symfpu")
+        return " ".join(words)
 
     def torus(self) -> QTorus:
         """The torus itself."""
-        return solve_amplitudes(lindstedt(self.chain, self.seeds, self.frequencies, self.order, digits=DIGITS))
+        series = lindstedt(
+            self.chain,
+            self.seeds,
+            self.frequencies,
+            self.order,
+            digits=DIGITS,
+        )
+        return solve_amplitudes(series)
 
+
+FOUR_FREQUENCIES = (
+    "0.09813690483108113",
+    "0.19603499627351076",
+    "0.29346131418681830",
+    "0.39018079936090050",
+)
+SERIES_ORDERS = {"order": 3, "frequency_order": 4}
 
 GALLERY = {
-    "two_torus": Example(Chain(16, "0.33"), (1, 2), ("0.19626", "0.39046"), 12, {"order": 3, "frequency_order": 4}),
+    "two_torus": Example(
+        Chain(16, "0.33"),
+        seeds=(1, 2),
+        frequencies=("0.19626", "0.39046"),
+        order=12,
+        series_orders=SERIES_ORDERS,
+    ),
     "four_torus": Example(
         Chain(32, "0.33"),
-        (1, 2, 3, 4),
-        ("0.09813690483108113", "0.19603499627351076", "0.29346131418681830", "0.39018079936090050"),
-        4,
+        seeds=(1, 2, 3, 4),
+        frequencies=FOUR_FREQUENCIES,
+        order=4,
     ),
-    "breather_25": Example(Chain(32, "0.33"), (25,), ("1.8830741847088537",), 12),
-    "beta_torus": Example(Chain(16, beta="0.6"), (2, 3), ("0.3925", "0.5845"), 4, {"order": 3, "frequency_order": 4}),
+    "breather_25": Example(
+        Chain(32, "0.33"),
+        seeds=(25,),
+        frequencies=("1.8830741847088537",),
+        order=12,
+    ),
+    "beta_torus": Example(
+        Chain(16, beta="0.6"),
+        seeds=(2, 3),
+        frequencies=("0.3925", "0.5845"),
+        order=4,
+        series_orders=SERIES_ORDERS,
+    ),
 }
+
+Manifest = dict[str, dict[str, object]]  # file -> its commands and hash
 
 
 def build(folder: Path) -> Path:
-    """Write every example in every language, and the manifest; returns its path. Existing files are replaced."""
+    """Write every example in every language, and the manifest; existing files are replaced."""
     folder.mkdir(parents=True, exist_ok=True)
-    manifest: dict[str, dict[str, object]] = {}
+    manifest: Manifest = {}
     for name, example in GALLERY.items():
         torus = example.torus()
         for language in LANGUAGES:
-            stem = f"{name}_mp" if language == "mpmath" else name
-            for solution, file, orders in ((torus, stem, {}), (torus.series, f"{stem}_series", example.series_orders)):
-                if solution is torus or orders:
-                    words = ["", *(["--series"] if orders else []), *(f"--{key.replace('_', '-')} {k}" for key, k in orders.items())]
-                    command = f"symfpu export {name}.symfpu --lang {language} -o {file}{' '.join(words)}"
-                    path = export(solution, language, folder / file, **orders, force=True, command=command)
-                    digest = hashlib.sha256(path.read_bytes()).hexdigest()
-                    manifest[path.name] = {"commands": [example.solve_command(name), command], "sha256": digest}
+            manifest |= _written(folder, name, torus, language, {})
+            if example.series_orders:
+                manifest |= _written(folder, name, torus.series, language, example.series_orders)
     return write_manifest(folder, manifest)
 
 
-def write_manifest(folder: Path, manifest: dict[str, dict[str, object]]) -> Path:
+def _written(
+    folder: Path,
+    name: str,
+    solution: QTorus | LindstedtSeries,
+    language: str,
+    orders: dict[str, int],
+) -> Manifest:
+    """Write one file; its entry of the manifest. orders : of a series."""
+    file = f"{name}_mp" if language == "mpmath" else name  # NumPy has the same extension
+    words = []
+    if orders:
+        file = f"{file}_series"
+        words.append("--series")
+        words += [f"--{key.replace('_', '-')} {k}" for key, k in orders.items()]
+    begin = f"symfpu export {name}.symfpu --lang {language} -o {file}"
+    command = " ".join([begin, *words])
+    path = export(solution, language, folder / file, **orders, force=True, command=command)
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    commands = [GALLERY[name].solve_command(name), command]
+    return {path.name: {"commands": commands, "sha256": digest}}
+
+
+def write_manifest(folder: Path, manifest: Manifest) -> Path:
     """The list of files with their commands and hashes."""
     path = folder / "manifest.json"
-    write_text(path, json.dumps(manifest, indent=1) + "\n")
+    text = json.dumps(manifest, indent=1)
+    write_text(path, text + "\n")
     return path
 
 

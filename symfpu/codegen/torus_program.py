@@ -1,29 +1,29 @@
-"""What every language is given: the numbers of a torus in an order that loops run through, and nothing of the package.
+"""What every language is given: the numbers of a torus in an order that loops run through.
 
-Q_q(t) = sum c_q[nu] cos(nu.(omega t + phi)). A harmonic appears in modes of one parity only, so the harmonics fall into two
-blocks, each with the modes of its parity: half of the coefficients are never stored, multiplied or added.
+Q_q(t) = sum c_q[nu] cos(nu.(omega t + phi)). A harmonic appears in modes of one parity only, so
+the harmonics fall into two blocks, each with the modes of its parity: half of the coefficients
+are never stored, multiplied or added.
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
 import mpmath
 import numpy as np
-from numpy.typing import NDArray
 
+from symfpu.algebra.grading import Ints
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
-Ints = NDArray[np.int64]
-CHECK_PERIODS = (0.0, 0.37, 41.3)  # times of the embedded test vectors, in periods of the slowest seed
+CHECK_PERIODS = (0.0, 0.37, 41.3)  # times of the test vectors, in periods of the slowest seed
+DOUBLE_DIGITS = 17  # after which decimal text reads back as the same double
 EXTRA_DIGITS = 5
-SPLIT_DIGITS = 60  # from which omega / 2 pi is split into two doubles
 TOLERANCE = 1e-13  # of the self-test, relative to the largest coordinate or momentum
 
 
@@ -38,7 +38,10 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class Check:
-    """Test vectors: times (T,), positions and momenta (T, N-1), energies (T,), all as decimal text."""
+    """Test vectors as decimal text.
+
+    times : (T,). positions, momenta : (T, N-1). energies : (T,).
+    """
 
     times: tuple[str, ...]
     positions: tuple[tuple[str, ...], ...]
@@ -48,7 +51,7 @@ class Check:
 
 @dataclass(frozen=True, eq=False)
 class TorusProgram:
-    """A torus as data for an emitter. facts : what the header says, in order. highest : largest |nu_i| of every seed."""
+    """A torus as data for a language. facts : what the header says, in order."""
 
     name: str
     facts: Mapping[str, str]
@@ -64,96 +67,147 @@ class TorusProgram:
 
     @property
     def highest(self) -> tuple[int, ...]:
-        return tuple(max((int(np.abs(b.harmonics[:, i]).max(initial=0)) for b in self.blocks), default=0) for i in range(len(self.seeds)))
-
-    @property
-    def coefficient_count(self) -> int:
-        return sum(b.coefficients.size for b in self.blocks)
+        """Largest |nu_i| of every seed."""
+        harmonics = [block.harmonics for block in self.blocks]
+        return highest_numbers(harmonics, len(self.seeds))
 
 
 def torus_program(torus: QuasiPeriodic, name: str, facts: Mapping[str, str]) -> TorusProgram:
     """Order the numbers of a torus for code; facts come first in the header."""
-    parity = torus.harmonics @ np.array(torus.seeds) % 2
-    modes = np.arange(1, torus.chain.N)
-    blocks = []
-    for p in (0, 1):
-        columns = np.flatnonzero(modes % 2 == p)
-        rows = np.flatnonzero(parity == p)
-        rows = rows[(torus.cosines[np.ix_(rows, columns)] != 0).any(axis=1)] if len(rows) and len(columns) else rows[:0]
-        if len(rows):
-            blocks.append(Block(tuple(map(int, modes[columns])), torus.harmonics[rows], torus.cosines[np.ix_(rows, columns)]))
+    chain, seeds = torus.chain, torus.seeds
+    blocks = _blocks(torus)
+    digest = coefficient_hash(blocks)
+    all_facts = {**facts, "hash of the coefficients": digest}
+    phases = [torus.phases[q] for q in seeds]
     return TorusProgram(
         name=name,
-        facts=dict(facts) | {"hash of the coefficients": coefficient_hash(blocks)},
-        N=torus.chain.N,
-        seeds=torus.seeds,
+        facts=all_facts,
+        N=chain.N,
+        seeds=seeds,
         frequencies=torus.frequencies,
-        phases=tuple(torus.phases[q] for q in torus.seeds),
-        alpha=torus.chain.alpha,
-        beta=torus.chain.beta,
+        phases=tuple(phases),
+        alpha=chain.alpha,
+        beta=chain.beta,
         digits=torus.digits,
         blocks=tuple(blocks),
         check=_check(torus),
     )
 
 
+def _blocks(torus: QuasiPeriodic) -> list[Block]:
+    """Of both parities, as far as they have coefficients; harmonics without one are left out."""
+    parities = torus.harmonics @ np.array(torus.seeds) % 2
+    modes = np.arange(1, torus.chain.N)
+    blocks = []
+    for parity in (0, 1):
+        columns = np.flatnonzero(modes % 2 == parity)
+        rows = np.flatnonzero(parities == parity)
+        coefficients = torus.cosines[np.ix_(rows, columns)]
+        silent = (coefficients == 0).all(axis=1)
+        if silent.all():
+            continue
+        own_modes = modes[columns].tolist()
+        harmonics = torus.harmonics[rows[~silent]]
+        block = Block(tuple(own_modes), harmonics, coefficients[~silent])
+        blocks.append(block)
+    return blocks
+
+
+def highest_numbers(harmonics: Sequence[Ints], s: int) -> tuple[int, ...]:
+    """Largest |nu_i| of every seed among arrays of harmonics (H, s)."""
+    none = np.zeros((1, s), dtype=np.int64)
+    every = np.concatenate([none, *harmonics])
+    largest = np.abs(every).max(axis=0)
+    return tuple(largest.tolist())
+
+
 def torus_facts(torus: QuasiPeriodic) -> dict[str, str]:
     """The header of a torus: chain, seeds, frequencies; exact numbers as they were typed."""
+    seeds = map(str, torus.seeds)
+    frequencies = map(decimal, torus.frequencies)
     return {
         "chain": repr(torus.chain),
-        "seeds": ", ".join(map(str, torus.seeds)),
-        "frequencies": ", ".join(map(decimal, torus.frequencies)),
-        "precision": "doubles" if torus.digits is None else f"{torus.digits} digits",
+        "seeds": ", ".join(seeds),
+        "frequencies": ", ".join(frequencies),
+        "precision": precision_text(torus.digits),
     }
 
 
-def coefficient_hash(blocks: list[Block]) -> str:
+def precision_text(digits: int | None) -> str:
+    """Digits as a header names them."""
+    return "doubles" if digits is None else f"{digits} digits"
+
+
+def coefficient_hash(blocks: Iterable[Block]) -> str:
     """SHA-256 of harmonics and coefficients as decimal text."""
     digest = hashlib.sha256()
     for block in blocks:
-        digest.update(repr((block.modes, block.harmonics.tolist())).encode())
-        digest.update("\n".join(number(c) for c in block.coefficients.flat).encode())
+        places = block.modes, block.harmonics.tolist()
+        digest.update(repr(places).encode())
+        digest.update(hashed_numbers(block.coefficients))
     return digest.hexdigest()
 
 
-def number(value: Any, digits: int = 17) -> str:
-    """A coefficient as decimal text that reads back as the same double; an mpf to so many digits."""
-    return repr(float(value)) if isinstance(value, float) else text(value, digits)
+def hashed_numbers(values: Numbers) -> bytes:
+    """The numbers of an array as a hash sees them."""
+    return "\n".join(map(number, values.flat)).encode()
 
 
-def turns(program: TorusProgram) -> tuple[tuple[float, float], ...]:
-    """omega / 2 pi of every seed as the sum of two doubles."""
-    pairs = []
-    with mpmath.workdps(SPLIT_DIGITS):
-        for w in program.frequencies:
-            exact = mpmath.mpf(w.numerator) / w.denominator / (2 * mpmath.pi)
-            high = float(exact)
-            pairs.append((high, float(exact - high)))
-    return tuple(pairs)
+def number(value: Any, digits: int = DOUBLE_DIGITS) -> str:
+    """A coefficient as decimal text: a double so that it reads back, an mpf to so many digits."""
+    if isinstance(value, float):
+        return repr(float(value))
+    return text(value, digits)
+
+
+def blocks_or_zero(program: TorusProgram) -> tuple[Block, ...]:
+    """The blocks of a torus; a coefficient of zero for a torus at rest, which has none."""
+    if program.blocks:
+        return program.blocks
+    harmonic = np.zeros((1, len(program.seeds)), dtype=np.int64)
+    zero = np.zeros((1, 1))
+    return (Block((1,), harmonic, zero),)
 
 
 def _check(torus: QuasiPeriodic) -> Check:
     """Test vectors of the stored coefficients, evaluated with more digits than these have."""
-    places = 17 if torus.digits is None else torus.digits
+    places = DOUBLE_DIGITS if torus.digits is None else torus.digits
     exact = replace_digits(torus, places + EXTRA_DIGITS)
-    period = 2 * np.pi / min(float(w) for w in torus.frequencies)
-    times = [round(n * period * 64) / 64 for n in CHECK_PERIODS]  # the same number in decimal and in binary
+    times = _check_times(torus)
     Q, P = exact.positions(times), exact.momenta(times)
     with MULTIPRECISION.context(places + EXTRA_DIGITS):
         H = exact.chain.energy(Q, P)
+    positions = texts(Q, places + 2)
+    momenta = texts(P, places + 2)
+    (energies,) = texts(H[None], places + 2)
+    return Check(tuple(map(repr, times)), positions, momenta, energies)
 
-    def rows(values: Numbers) -> tuple[tuple[str, ...], ...]:
-        return tuple(tuple(text(x, places + 2) for x in row) for row in values)
 
-    return Check(tuple(map(repr, times)), rows(Q), rows(P), tuple(text(h, places + 2) for h in H))
+def texts(rows: Iterable[Iterable[Any]], digits: int) -> tuple[tuple[str, ...], ...]:
+    """Numbers as decimal text."""
+    table = []
+    for row in rows:
+        words = [text(x, digits) for x in row]
+        table.append(tuple(words))
+    return tuple(table)
+
+
+def _check_times(torus: QuasiPeriodic) -> list[float]:
+    """The same numbers in decimal and in binary."""
+    slowest = min(map(float, torus.frequencies))
+    period = 2 * np.pi / slowest
+    times = [n * period for n in CHECK_PERIODS]
+    return [round(t * 64) / 64 for t in times]
 
 
 def replace_digits(torus: QuasiPeriodic, digits: int) -> FourierTorus:
     """The same coefficients, to be evaluated with so many digits."""
     with MULTIPRECISION.context(digits):
-        cosines = np.asarray(_EXACT(torus.cosines), dtype=object)
+        cosines = np.asarray(exact_numbers(torus.cosines), dtype=object)
         phases = {q: mpmath.mpf(phi) for q, phi in torus.phases.items()}
-    return FourierTorus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, cosines, phases, digits)
+    same = torus.chain, torus.seeds, torus.frequencies, torus.harmonics
+    return FourierTorus(*same, cosines, phases, digits)
 
 
-_EXACT = np.frompyfunc(mpmath.mpf, 1, 1)  # a double is the number it is here, not its shortest decimal
+# A double is the number it is here, not its shortest decimal.
+exact_numbers = np.frompyfunc(mpmath.mpf, 1, 1)

@@ -59,7 +59,7 @@ def universal(case):
 
 
 def program_of(series, case, name="sample"):
-    """What the emitters are given; series_program.STRAIGHT_LINE decides its form."""
+    """What the languages are given; series_program.STRAIGHT_LINE decides its form."""
     orders = {"order": case[3], "frequency_order": case[4]}
     return series_program(series, name, series_facts(series, **orders), **orders)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.codegen.languages.c99 import emit_torus
+from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.quasiperiodic import FourierTorus
@@ -82,7 +82,7 @@ def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
     torus = case(name)
     draw = np.random.default_rng(5)
     t, modes = random_times(draw, 19), torus.chain.N - 1
-    library = ctypes.CDLL(str(compile_c(tmp_path, {"sample.c": emit_torus(program(torus))}, "-shared", "-fPIC", output="sample.so")))
+    library = ctypes.CDLL(str(compile_c(tmp_path, {"sample.c": C.torus(program(torus))}, "-shared", "-fPIC", output="sample.so")))
     for phases in (None, angles(draw, torus.seeds)):
         exact = torus if phases is None else replace(torus, phases=phases)
         given = None if phases is None else list(phases.values())
@@ -95,7 +95,7 @@ def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
 
 @pytest.mark.parametrize("name", CASES)
 def test_self_test_of_the_file(name, tmp_path):
-    binary = compile_c(tmp_path, {"sample.c": emit_torus(program(case(name)))}, "-Dsample_SELF_TEST", "-O0")
+    binary = compile_c(tmp_path, {"sample.c": C.torus(program(case(name)))}, "-Dsample_SELF_TEST", "-O0")
     run = subprocess.run([binary], capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout
     assert "at most 1e-13" in run.stdout
@@ -105,7 +105,7 @@ def test_self_test_sees_a_changed_coefficient(tmp_path):
     torus = case("alpha, one seed", digits=None)
     broken = program(torus)
     largest = max((c for block in broken.blocks for c in block.coefficients.flat), key=abs)
-    source = emit_torus(broken)
+    source = C.torus(broken)
     at = source.index("coefficients_")
     assert repr(float(largest)) in source[at:]
     source = source[:at] + source[at:].replace(repr(float(largest)), repr(float(largest) * (1 + 1e-11)))
@@ -132,7 +132,7 @@ int main(void)
 
 def test_two_files_in_one_program(tmp_path):
     first, second = case("alpha, one seed"), case("one mode")
-    sources = {"first.c": emit_torus(program(first, "first")), "second.c": emit_torus(program(second, "second")), "main.c": MAIN}
+    sources = {"first.c": C.torus(program(first, "first")), "second.c": C.torus(program(second, "second")), "main.c": MAIN}
     run = subprocess.run([compile_c(tmp_path, sources)], capture_output=True, text=True, check=True)
     expected = [first.positions(2.5)[0], first.momenta(2.5)[6], second.positions(2.5)[0], second.momenta(2.5)[0]]
     assert np.array(run.stdout.split(), dtype=float) == pytest.approx(np.array(expected, dtype=float), rel=OF_TAIL)
@@ -140,8 +140,8 @@ def test_two_files_in_one_program(tmp_path):
 
 @pytest.mark.parametrize("name", ["mixed, three seeds", "one mode"])
 def test_same_bytes_twice_in_short_lines(name):
-    source = emit_torus(program(case(name)))
-    assert source == emit_torus(program(case(name)))
+    source = C.torus(program(case(name)))
+    assert source == C.torus(program(case(name)))
     assert max(map(len, source.splitlines())) < 120
     assert source.isascii()
 
@@ -149,7 +149,7 @@ def test_same_bytes_twice_in_short_lines(name):
 def test_facts_cannot_leave_their_comment(tmp_path):
     torus = case("one mode")
     facts = {"command": "export */ #error here /* ??/ \\", "title": "x" * 300}
-    source = emit_torus(torus_program(torus, "sample", facts))
+    source = C.torus(torus_program(torus, "sample", facts))
     compile_c(tmp_path, {"sample.c": source}, "-c", output="sample.o")
     assert "#error here" in source
     assert "hash of the coefficients" in source
@@ -158,5 +158,5 @@ def test_facts_cannot_leave_their_comment(tmp_path):
 def test_a_torus_at_rest(tmp_path):
     chain, seeds = Chain(5, alpha=1), (1, 2)
     rest = FourierTorus(chain, seeds, case("order 0").frequencies, np.zeros((1, 2), dtype=int), np.zeros((1, 4)), {1: 0.0, 2: 0.0})
-    binary = compile_c(tmp_path, {"sample.c": emit_torus(program(rest))}, "-Dsample_SELF_TEST")
+    binary = compile_c(tmp_path, {"sample.c": C.torus(program(rest))}, "-Dsample_SELF_TEST")
     assert subprocess.run([binary], capture_output=True, check=False).returncode == 0

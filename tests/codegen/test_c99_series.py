@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symfpu.codegen.languages.c99_series import emit_series
+from symfpu.codegen.languages.c import C
 from tests.codegen.compilers import compile_c
 from tests.codegen.series_cases import (
     CASES,
@@ -56,7 +56,7 @@ def made(form, name, called="sample"):
 
 @functools.cache
 def source_of(form, name):
-    return emit_series(made(form, name))
+    return C.series(made(form, name))
 
 
 @pytest.fixture(scope="module")
@@ -185,7 +185,7 @@ int main(void)
 
 def test_files_of_every_form_in_one_program(tmp_path):
     programs = {called: made(form, name, called) for called, (form, name) in zip(("first", "second", "third"), FEW, strict=True)}
-    sources = {f"{called}.c": emit_series(program) for called, program in programs.items()}
+    sources = {f"{called}.c": C.series(program) for called, program in programs.items()}
     run = subprocess.run([compile_c(tmp_path, {**sources, "main.c": MAIN})], capture_output=True, text=True, check=True)
     two = expected_orbit(CASES["wrapped modes"], [0.125, 0.0625], [0.0, 0.0], [1.421875, 1.859375], [2.5])
     one = expected_orbit(UNIVERSAL["mixed, one mode"], [0.125], [0.0], [1.421875], [2.5])
@@ -209,7 +209,7 @@ def test_facts_stay_in_their_comment_and_lines_are_short(form, name, tmp_path):
     called = "n" * 40  # the longest name that export allows
     program = made(form, name, called)
     facts = {"command": "export */ #error here /* ??/ \\", "title": "x" * 300, **program.facts}
-    source = emit_series(replace(program, facts=facts))
+    source = C.series(replace(program, facts=facts))
     compile_c(tmp_path, {"sample.c": source}, f"-D{called}_SELF_TEST")
     assert max(map(len, source.splitlines())) < 120
     assert source.isascii()

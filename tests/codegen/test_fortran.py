@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.codegen.languages.fortran import EXTENSION, emit_torus
+from symfpu.codegen.languages.fortran import FORTRAN
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.errors import InputError
 from symfpu.series.lindstedt import lindstedt
@@ -99,7 +99,7 @@ def large():
 
 
 def source(torus, name):
-    return emit_torus(torus_program(torus, name, torus_facts(torus)))
+    return FORTRAN.torus(torus_program(torus, name, torus_facts(torus)))
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -118,8 +118,8 @@ def build(tmp_path):
 
     def build(*texts, flags=()):
         for i, text in enumerate(texts):
-            (tmp_path / f"{i}.{EXTENSION}").write_text(text)
-        files = [f"{i}.{EXTENSION}" for i in range(len(texts))]
+            (tmp_path / f"{i}.{FORTRAN.extension}").write_text(text)
+        files = [f"{i}.{FORTRAN.extension}" for i in range(len(texts))]
         command = [program("gfortran"), *FLAGS, *flags, *files, "-o", "program"]
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
         assert (done.returncode, done.stdout + done.stderr) == (0, "")
@@ -219,7 +219,7 @@ def test_tables_in_several_statements_are_whole(build, large):
 
 def test_lines_respect_the_limits_of_the_standard(large):
     facts = {"made by": "a long command " * 20 + "out/*.F90 \\", "tricky": "first\ncall exit() é"}
-    lines = emit_torus(torus_program(large, "example", facts)).splitlines()
+    lines = FORTRAN.torus(torus_program(large, "example", facts)).splitlines()
     assert max(map(len, lines)) <= LONGEST_LINE
     longest = run = 0
     for line in lines:
@@ -233,7 +233,7 @@ def test_lines_respect_the_limits_of_the_standard(large):
 def test_the_header_carries_all_facts():
     torus = made("three seeds, wrapped")
     program = torus_program(torus, "example", {"made by": "a test", **torus_facts(torus)})
-    header = emit_torus(program).split("module example")[0]
+    header = FORTRAN.torus(program).split("module example")[0]
     for key, value in program.facts.items():
         assert f"{key}: {value}" in " ".join(header.replace("\n!", " ").split())
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.codegen.languages.fortran_series import emit_series
+from symfpu.codegen.languages.fortran import FORTRAN
 from symfpu.codegen.series_program import series_facts, series_program
 from symfpu.errors import InputError
 from symfpu.series.lindstedt import lindstedt
@@ -93,13 +93,13 @@ def form(request):
             patch.setattr(LIMIT, limit)
         program = program_of((universal if required else numeric)(case), case)
     assert (program.straight is None) == request.param.endswith("tables")
-    return case, program, emit_series(program), required
+    return case, program, FORTRAN.series(program), required
 
 
 def source(name, form="numeric", called="sample"):
     if form == "universal":
-        return emit_series(program_of(universal(UNIVERSAL[name]), UNIVERSAL[name], called))
-    return emit_series(program_of(numeric(CASES[name]), CASES[name], called))
+        return FORTRAN.series(program_of(universal(UNIVERSAL[name]), UNIVERSAL[name], called))
+    return FORTRAN.series(program_of(numeric(CASES[name]), CASES[name], called))
 
 
 def driver(case, required):
@@ -214,7 +214,7 @@ def stopped(tmp_path_factory):
 def test_order_250_compiles_and_stays_finite(build):
     chain = Chain(2, alpha="0.2", beta="0.3")
     series = lindstedt(chain, (1,), ("1.421875",), 250)
-    text = emit_series(series_program(series, "sample", series_facts(series)))
+    text = FORTRAN.series(series_program(series, "sample", series_facts(series)))
     assert "starts_odd" in text
     assert not re.search(r"\binf|nan\b", text.split("contains")[0])
     done = build(text, flags=["-DSAMPLE_SELF_TEST", "-O0"])()

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.codegen.languages.octave import BLOCK, emit_torus
+from symfpu.codegen.languages.octave import BLOCK
+from symfpu.codegen.languages.octave import OCTAVE as LANGUAGE
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.tori.quasiperiodic import FourierTorus
 from tests.codegen.compilers import program
@@ -66,7 +67,7 @@ def listed(values):
 
 
 def source(torus, name="sample"):
-    return emit_torus(torus_program(torus, name, torus_facts(torus)))
+    return LANGUAGE.torus(torus_program(torus, name, torus_facts(torus)))
 
 
 def test_values_shapes_and_self_tests_of_all_cases(tmp_path):
@@ -124,8 +125,8 @@ def test_changed_coefficient_bad_arguments_and_rest(tmp_path):
 def test_same_bytes_twice_in_short_lines_of_ascii(name):
     torus = case(name)
     program = torus_program(torus, "n" * 40, {"title": "\N{GREEK SMALL LETTER ALPHA} %{ ... " + "x" * 300})
-    text = emit_torus(program)
-    assert text == emit_torus(program)
+    text = LANGUAGE.torus(program)
+    assert text == LANGUAGE.torus(program)
     assert text.isascii()
     assert max(map(len, text.splitlines())) < 120
 

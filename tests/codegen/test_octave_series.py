@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu.codegen.languages.octave_series import emit_series
+from symfpu.codegen.languages.octave import OCTAVE as LANGUAGE
 from tests.codegen import series_cases
 from tests.codegen.series_cases import CASES, OF_LARGEST, UNIVERSAL, assert_close, assert_frequencies
 from tests.codegen.test_octave import arrays, listed, octave
@@ -22,7 +22,7 @@ def series(name):
 def written(folder, name, solved, case):
     """The form that was written: straight-line or tables."""
     program = series_cases.program_of(solved, case, name)
-    (folder / f"{name}.m").write_text(emit_series(program))
+    (folder / f"{name}.m").write_text(LANGUAGE.series(program))
     return program.straight is not None
 
 
@@ -90,7 +90,7 @@ def test_changed_coefficient_and_bad_arguments(tmp_path, monkeypatch):
     written(tmp_path, "sample", series("alpha, one seed"), case)
     monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", 0)
     program = series_cases.program_of(series("alpha, one seed"), case, "broken")
-    text = emit_series(program)
+    text = LANGUAGE.series(program)
     largest = repr(max((float(c) for block in program.tables.blocks for c in block.coefficients.flat), key=abs))
     at = text.index("function values = coefficientTable1")
     assert largest in text[at:]
@@ -109,8 +109,8 @@ def test_changed_coefficient_and_bad_arguments(tmp_path, monkeypatch):
 def test_same_bytes_twice_in_short_lines_of_ascii(limit, monkeypatch):
     monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", limit)
     program = series_cases.program_of(series("wrapped modes"), CASES["wrapped modes"], "n" * 40)
-    text = emit_series(program)
-    assert text == emit_series(program)
+    text = LANGUAGE.series(program)
+    assert text == LANGUAGE.series(program)
     assert text.isascii()
     assert max(map(len, text.splitlines())) < 120
     assert "Machine-written" in text

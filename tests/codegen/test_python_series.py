@@ -8,7 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.codegen.languages import mpmath_series, numpy_series
+from symfpu.codegen.languages.mpmath import MPMATH
+from symfpu.codegen.languages.numpy import NUMPY
 from tests.codegen.series_cases import (
     CASES,
     DIGITS,
@@ -37,14 +38,14 @@ def module(text, path):
 
 def emitted(emitter, series, case, folder):
     program = program_of(series, case)
-    return module(emitter.emit_series(program), folder / "my_series.py"), program
+    return module(emitter.series(program), folder / "my_series.py"), program
 
 
 @pytest.mark.parametrize(("name", "form"), NUMERIC)
 def test_numpy_values_are_those_of_the_series(name, form, tmp_path, monkeypatch):
     monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", FORMS[form])
     case = CASES[name]
-    ours, program = emitted(numpy_series, numeric(case), case, tmp_path)
+    ours, program = emitted(NUMPY, numeric(case), case, tmp_path)
     assert (program.straight is None) == (form == "tables")
     A, phases, omega, t = drawn(case)
     Q, P = expected_orbit(case, A, phases, omega, t)
@@ -58,7 +59,7 @@ def test_numpy_values_are_those_of_the_series(name, form, tmp_path, monkeypatch)
 @pytest.mark.parametrize("name", UNIVERSAL)
 def test_numpy_values_of_a_universal_series(name, tmp_path):
     case = UNIVERSAL[name]
-    ours, _ = emitted(numpy_series, universal(case), case, tmp_path)
+    ours, _ = emitted(NUMPY, universal(case), case, tmp_path)
     A, phases, _, t = drawn(case)
     omega = [float(w) for w in case[2]]
     for values, exact in zip(ours.orbit(t, A, omega, phases), expected_orbit(case, A, phases, omega, t), strict=True):
@@ -71,7 +72,7 @@ def test_numpy_values_of_a_universal_series(name, tmp_path):
 def test_mpmath_keeps_the_digits_of_the_series(name, form, tmp_path, monkeypatch):
     monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", FORMS[form])
     case = CASES[name]
-    ours, _ = emitted(mpmath_series, numeric(case), case, tmp_path)
+    ours, _ = emitted(MPMATH, numeric(case), case, tmp_path)
     A, phases, omega, t = drawn(case)
     Q, P = expected_orbit(case, A, phases, omega, t[:3])
     with mpmath.workdps(DIGITS + 5):
@@ -88,7 +89,7 @@ def test_mpmath_keeps_the_digits_of_the_series(name, form, tmp_path, monkeypatch
 @pytest.mark.parametrize("name", UNIVERSAL)
 def test_mpmath_of_a_universal_series_has_any_digits(name, tmp_path):
     case = UNIVERSAL[name]
-    ours, _ = emitted(mpmath_series, universal(case), case, tmp_path)
+    ours, _ = emitted(MPMATH, universal(case), case, tmp_path)
     A, phases, _, t = drawn(case)
     omega = [mpmath.mpf(float(w)) for w in case[2]]
     Q, P = expected_orbit(case, A, phases, omega, t[:2])
@@ -99,10 +100,10 @@ def test_mpmath_of_a_universal_series_has_any_digits(name, tmp_path):
     assert ours.self_test() <= ours.TOLERANCE
 
 
-@pytest.mark.parametrize("emitter", [numpy_series, mpmath_series])
+@pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_the_file_runs_by_itself_and_sees_a_changed_number(emitter, tmp_path):
     case = CASES["wrapped modes"]
-    text = emitter.emit_series(program_of(numeric(case, digits=None), case))
+    text = emitter.series(program_of(numeric(case, digits=None), case))
     at = text.index("c0_")
     digit = next(i for i in range(at, len(text)) if text[i].isdigit() and text[i - 9 : i].isdigit() and text[i] != "9")
     broken = text[:digit] + str(int(text[digit]) + 1) + text[digit + 1 :]
@@ -113,7 +114,7 @@ def test_the_file_runs_by_itself_and_sees_a_changed_number(emitter, tmp_path):
         assert "allowed 1" in run.stdout
 
 
-@pytest.mark.parametrize("emitter", [numpy_series, mpmath_series])
+@pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_wrong_numbers_of_parameters_are_refused(emitter, tmp_path):
     case = CASES["wrapped modes"]
     ours, _ = emitted(emitter, numeric(case, digits=None), case, tmp_path)

@@ -4,6 +4,7 @@ import importlib.util
 import subprocess
 import sys
 from dataclasses import replace
+from fractions import Fraction
 
 import mpmath
 import numpy as np
@@ -11,11 +12,13 @@ import pytest
 
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
-from symfpu.codegen.languages import mpmath_source, numpy_source
+from symfpu.codegen.languages.mpmath import MPMATH
+from symfpu.codegen.languages.numpy import NUMPY
 from symfpu.codegen.nested import nest
 from symfpu.codegen.torus_program import replace_digits, torus_facts, torus_program
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.quasiperiodic import FourierTorus
 
 LARGEST, TAIL = 1e-13, 1e-12  # of the largest coordinate, and of each mode's own largest: sums of some thousand rounded terms
 
@@ -40,7 +43,7 @@ def torus(request):
 
 
 def source(torus, emitter, name="my_torus"):
-    return emitter.emit_torus(torus_program(torus, name, torus_facts(torus)))
+    return emitter.torus(torus_program(torus, name, torus_facts(torus)))
 
 
 def module(text, path):
@@ -61,7 +64,7 @@ def check(ours, exact):
 
 
 def test_numpy_agrees_with_40_digits(torus, tmp_path):
-    loaded = module(source(torus, numpy_source), tmp_path / "my_torus.py")
+    loaded = module(source(torus, NUMPY), tmp_path / "my_torus.py")
     times = np.concatenate([np.random.default_rng(3).uniform(0, 2000, 12), [0.0, 98765.4321]])
     phases = np.random.default_rng(4).uniform(-3, 3, len(torus.seeds))
     exact = replace_digits(replace(torus, phases=dict(zip(torus.seeds, phases, strict=True))), 40)
@@ -75,7 +78,7 @@ def test_numpy_agrees_with_40_digits(torus, tmp_path):
 
 
 def test_numbers_and_arrays_of_times_have_the_shapes_of_the_torus(torus, tmp_path):
-    loaded = module(source(torus, numpy_source), tmp_path / "my_torus.py")
+    loaded = module(source(torus, NUMPY), tmp_path / "my_torus.py")
     assert loaded.positions(1.5).shape == torus.positions(1.5).shape
     assert loaded.positions([1.5]).shape == torus.positions([1.5]).shape
     assert loaded.positions([]).shape == (0, torus.chain.N - 1)
@@ -84,7 +87,7 @@ def test_numbers_and_arrays_of_times_have_the_shapes_of_the_torus(torus, tmp_pat
         loaded.positions(1.0, [0.0] * (len(torus.seeds) + 1))
 
 
-@pytest.mark.parametrize("emitter", [numpy_source, mpmath_source], ids=["numpy", "mpmath"])
+@pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_a_file_tests_itself_without_symfpu(torus, emitter, tmp_path):
     path = tmp_path / "my_torus.py"
     text = source(torus, emitter)
@@ -104,7 +107,7 @@ def test_a_file_tests_itself_without_symfpu(torus, emitter, tmp_path):
 def test_mpmath_carries_the_digits_of_the_series(tmp_path):
     series = lindstedt(Chain(16, "0.33"), (1, 2), ("0.19626", "0.39046"), 5, digits=30)
     torus = solve_amplitudes(series)
-    loaded = module(source(torus, mpmath_source), tmp_path / "my_torus.py")
+    loaded = module(source(torus, MPMATH), tmp_path / "my_torus.py")
     with mpmath.workdps(30):
         exact = torus.positions(mpmath.mpf("123.25"))
         ours = loaded.positions("123.25")
@@ -117,7 +120,7 @@ def test_mpmath_carries_the_digits_of_the_series(tmp_path):
 
 def test_nesting_keeps_every_coefficient(torus):
     program = torus_program(torus, "my_torus", {})
-    nested = nest(program)
+    nested = nest(program.blocks, program.seeds)
     for block, slices in zip(program.blocks, nested.slices, strict=True):
         found = {}
         for part in slices:
@@ -130,7 +133,16 @@ def test_nesting_keeps_every_coefficient(torus):
         assert not any(row.any() for row in found.values())
 
 
-@pytest.mark.parametrize("emitter", [numpy_source, mpmath_source], ids=["numpy", "mpmath"])
+@pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
+def test_a_torus_at_rest_stays_there(emitter, tmp_path):
+    seeds, frequencies = (1, 2), (Fraction(5, 8), Fraction(19, 16))
+    rest = FourierTorus(Chain(5, alpha=1), seeds, frequencies, np.zeros((1, 2), dtype=int), np.zeros((1, 4)), {1: 0.0, 2: 0.0})
+    loaded = module(source(rest, emitter), tmp_path / "my_torus.py")
+    assert [list(values) for values in loaded.orbit(2.5)] == [[0, 0, 0, 0]] * 2
+    assert loaded.energy(2.5) == 0
+
+
+@pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_the_same_program_gives_the_same_bytes_in_short_lines(torus, emitter):
     first, second = source(torus, emitter), source(torus, emitter)
     assert first == second

@@ -1,1 +1,1 @@
-"""One language a file: source text from a program as data."""
+"""One language a file: what its templates need of a program."""

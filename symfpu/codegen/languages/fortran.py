@@ -1,137 +1,214 @@
-"""A torus as one module of Fortran 2008 that needs nothing but a compiler.
+"""Fortran 2008: one module that needs nothing but a compiler.
 
-Blocks of times go together. Powers of e^(i theta) of every seed are tabled, a harmonic costs one complex product with the leading
-factors of its neighbour, and what remains is two matrix products a parity, which `matmul` of the compiler's library does.
-Tables are DATA statements in chunks: compilers read those in linear time, and constructors of this length not at all.
+Blocks of times go together. Powers of e^(i theta) of every seed are tabled, a harmonic costs
+one complex product with the leading factors of its neighbour, and what remains is two matrix
+products a parity, which `matmul` of the compiler's library does. Tables are DATA statements in
+chunks: compilers read those in linear time, and constructors of this length not at all.
+
+Of a series, statements of the amplitudes run once a call, waves and their sums once a time.
+Tables are summed over the powers of the amplitudes once a call; the times then go through the
+kernel of a torus.
+
+Procedures have the same names in every module, to be renamed on use where two modules meet.
 """
 
 from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from string import Template
+from numbers import Integral
 from typing import Any
 
 import mpmath
 import numpy as np
+import sympy
+from sympy.printing.fortran import FCodePrinter
+from sympy.printing.precedence import precedence
 
 from symfpu.chain.chain import linear_frequencies
-from symfpu.codegen.languages.fortran_text import ANGLES, END, EVALUATE, FUNCTIONS, HARMONICS, HEADER, MODULE, SELF_TEST
-from symfpu.codegen.torus_program import TOLERANCE, Block, TorusProgram
+from symfpu.codegen.constants import WORK_DIGITS, bond_cosines, bond_norm, rates
+from symfpu.codegen.series_program import SeriesProgram
+from symfpu.codegen.series_tables import SeriesTables
+from symfpu.codegen.straight_line import StraightLine
+from symfpu.codegen.templating import Language, Words, packed
+from symfpu.codegen.torus_program import TorusProgram
 from symfpu.errors import InputError
-
-EXTENSION = "F90"  # the capital lets compilers run the preprocessor
 
 WIDTH = 120  # columns of a line; the standard allows 132
 LINES = 200  # of a DATA statement; the standard allows 255 continuations
+TERMS = 100  # of a sum in one statement
 TIMES = 64  # evaluated together
 TILE = 256  # harmonics of one matrix product: cosines and sines of 64 times are 256 kB
-WORD = 24  # bits of the leading parts of omega / 2 pi: their products with halves of a time are exact
-WORK_DIGITS = 60
-PARITIES = {0: "even", 1: "odd"}  # of the modes of a block
-KERNEL = EVALUATE + ANGLES + HARMONICS + END
+WORD = 24  # bits of the leading parts of omega / 2 pi: times halves of a time they are exact
+EXACT = 2**53  # integers below are doubles
+BREAKS = re.compile(r"(?<=[ (])|(?<=[^*]\*)(?!\*)|(?<=/)")  # after a blank, a bracket, one star, a slash
+OPEN = "\N{WHITE SQUARE}"  # stands for the module's name, and occurs nowhere else
+HARMLESS = {"\\": "/", "*/": "* /", "/*": "/ *"}  # in comments
+TABLES = {"default_phases"}
+TABLES |= {"nu_even", "nu_odd", "rates_even", "rates_odd", "c_even", "c_odd"}
 
 
-def emit_torus(program: TorusProgram) -> str:
-    """The Fortran source of a torus: Q(t), P(t), E_q(t) and H(t) for arrays of times, with adjustable phases.
-
-    Deterministic: the same program gives the same bytes. program.name becomes the module; its procedures are positions,
-    momenta, orbit, harmonic_energies and energy, to be renamed on use where two modules meet. The macro NAME_SELF_TEST, in
-    capitals, adds a main program. Raises InputError for a name that the module needs itself.
-    """
-    words = _words(program)
-    parts = (MODULE, FUNCTIONS, KERNEL, SELF_TEST)
-    module, functions, kernel, test = (Template(part).substitute(words) for part in parts)
-    tables = "".join((_chain_tables(program), *(_block_tables(block, program.frequencies) for block in program.blocks)))
-    test = test.replace("@DATA@\n", _check_tables(program))
-    return "".join((_header(program, words), module, tables, functions, kernel, test))
-
-
-def _words(program: TorusProgram) -> dict[str, Any]:
-    return {
-        "name": _module_name(program.name),
-        "macro": f"{program.name.upper()}_SELF_TEST",
-        "bonds": program.N,
-        "modes": program.N - 1,
-        "seeds": len(program.seeds),
-        "highest": max(2, *program.highest),  # compilers warn of a loop from 2 to 1
-        "times": TIMES,
-        "tile": TILE,
-        "tolerance": literal(TOLERANCE),
-        "cubic": literal(float(program.alpha / 3)),
-        "quartic": literal(float(program.beta / 4)),
-        "checks": len(program.check.times),
-        "arguments": "phases",
-        "declarations": "    real(rk) :: phi(seeds)",
-        "start": "    phi = default_phases",
-        "calls": "\n".join(_call(block.modes) for block in program.blocks),
-    }
-
-
-def _module_name(name: str) -> str:
-    tables = ["default_phases", *(f"{kind}_{parity}" for kind in ("nu", "rates", "c") for parity in PARITIES.values())]
-    return module_name(name, " ".join((MODULE, FUNCTIONS, KERNEL, SELF_TEST, *tables)))
-
-
-def module_name(name: str, code: str) -> str:
-    """The name, if it can be that of a module with this code; InputError otherwise."""
-    code = re.sub(r"'[^'\n]*'|!.*", "", code)
-    own = set(re.findall(r"(?<![${\w])[a-z]\w*", code.lower()))
-    if not re.fullmatch(r"[a-z][a-z0-9_]{0,49}", name.lower(), re.ASCII) or name.lower() in own:
-        raise InputError("path", name, "a file name that is a Fortran identifier the module does not use itself", "rename the file")
-    return name
-
-
-def _call(modes: Sequence[int]) -> str:
-    return add_harmonics(modes, "nu_{0}, rates_{0}, c_{0}".format(PARITIES[modes[0] % 2]))
-
-
-def add_harmonics(modes: Sequence[int], tables: str) -> str:
-    """The call that adds the harmonics of these modes, all those of one parity."""
-    first = modes[0]
-    return f"      call add_harmonics({tables}, re, im, &\n        cosine_sums(1:n, {first}::2), sine_sums(1:n, {first}::2), moving)"
-
-
-def _header(program: TorusProgram, words: dict[str, Any]) -> str:
-    phases = ", ".join(repr(float(x)) for x in program.phases)
-    default = textwrap.fill(phases, WIDTH - 4, initial_indent="!     ", subsequent_indent="!     ")
-    return Template(HEADER).substitute(words, facts=fact_lines(program.facts), default=default)
-
-
-def fact_lines(facts: Mapping[str, str]) -> str:
-    """The facts of a header as lines of comment."""
-    lines = []
-    for key, value in facts.items():
-        text = " ".join(f"{key}: {value}".split()).encode("ascii", "backslashreplace").decode().replace("\\", "/")
-        text = text.replace("*/", "* /").replace("/*", "/ *")  # the preprocessor takes these for comments of C
-        lines += textwrap.wrap(text, WIDTH - 4, initial_indent="  ", subsequent_indent="      ", break_on_hyphens=False)
+def comment(text: str) -> str:
+    """A fact as lines of a comment, without what the preprocessor takes for comments of C."""
+    one_line = " ".join(text.split())
+    text = one_line.encode("ascii", "backslashreplace").decode()
+    for sign, harmless in HARMLESS.items():
+        text = text.replace(sign, harmless)
+    lines = textwrap.wrap(
+        text,
+        WIDTH - 4,
+        initial_indent="  ",
+        subsequent_indent="      ",
+        break_on_hyphens=False,
+    )
     return "\n".join(f"!{line}" for line in lines)
 
 
-def _chain_tables(program: TorusProgram) -> str:
-    """Frequencies in turns, phases, and what the energies need; correctly rounded."""
-    with mpmath.workdps(WORK_DIGITS):
-        turns = [split(mpmath.mpf(w.numerator) / w.denominator / (2 * mpmath.pi)) for w in program.frequencies]
-        radian = split(1 / (2 * mpmath.pi))
-        cosines = [float(mpmath.cospi(mpmath.mpf(k) / (2 * program.N))) for k in range(4 * program.N)]
-        norm = float(mpmath.sqrt(mpmath.mpf(2) / program.N))
-    seeds = range(1, len(turns) + 1)
-    return "".join(
-        (
-            "\n  ! omega / (2 pi) of every seed and 1 / (2 pi), in three parts each, exact in doubles\n",
-            f"  real(rk), save :: turns(3, seeds), radian(3), default_phases(seeds), norm, omega({program.N - 1})\n",
-            f"  real(rk), save :: cosines(0:{4 * program.N - 1})\n",
-            *(data("turns", f"i, {i}", parts, 1) for i, parts in zip(seeds, turns, strict=True)),
-            data("radian", "i", radian, 1),
-            data("default_phases", "i", map(float, program.phases), 1),
-            "  ! sqrt(2/N), linear frequencies Omega_q, cos(k pi / 2N)\n",
-            f"  data norm / {literal(norm)} /\n",
-            data("omega", "i", linear_frequencies(program.N).tolist(), 1),
-            data("cosines", "i", cosines, 0),
-        )
-    )
+def listed(numbers: str) -> str:
+    """Numbers as lines of a comment."""
+    lines = textwrap.wrap(numbers, WIDTH - 10)
+    return "\n".join(f"!     {line}" for line in lines)
+
+
+def literal(value: Any) -> str:
+    """A number that no compiler rounds to single precision, or warns of.
+
+    Numbers below the normal doubles are zero.
+    """
+    if isinstance(value, Integral):
+        return str(value)
+    value = float(value)
+    if abs(value) < np.finfo(float).tiny:
+        return "0d0"
+    text = repr(value).removesuffix(".0")
+    return text.replace("e", "d") if "e" in text else f"{text}d0"
+
+
+def columns(rows: Iterable[Iterable[Any]], name: str) -> str:
+    """DATA statements for name(i, 1), name(i, 2) and so on."""
+    statements = []
+    for j, column in enumerate(zip(*rows, strict=True), 1):
+        element = f"{name}(i, {j})"
+        statements.append(data(column, element))
+    return "\n".join(statements)
+
+
+def data(values: Iterable[Any], element: str, first: int = 1) -> str:
+    """DATA statements for an element of an array, its index i running from first."""
+    statements = []
+    for lines in _chunks(map(literal, values)):
+        body = " &\n    ".join(lines)
+        last = first + body.count(",") - 1
+        numbers = body.removesuffix(",")
+        statements.append(f"  data ({element}, i = {first}, {last}) / &\n    {numbers} /")
+        first = last + 1
+    return "\n".join(statements)
+
+
+def _chunks(numbers: Iterable[str]) -> Iterator[list[str]]:
+    """Lines of numbers with commas behind them, as many together as one statement may have."""
+    pieces = (f"{number}," for number in numbers)
+    lines = packed(pieces, WIDTH - 7)
+    for first in range(0, len(lines), LINES):
+        yield lines[first : first + LINES]
+
+
+def parity(modes: Sequence[int]) -> str:
+    """The name of a block."""
+    return "odd" if modes[0] % 2 else "even"
+
+
+def declared(names: Iterable[str]) -> str:
+    """Declarations of doubles."""
+    wrapped = textwrap.wrap(", ".join(names), WIDTH - 20)
+    lines = [line.removesuffix(",") for line in wrapped]
+    return "\n".join(f"    real(rk) :: {line}" for line in lines)
+
+
+def assigned(expression: sympy.Expr, name: str, indent: int) -> str:
+    """Statements name = expression; a long sum takes several."""
+    terms = expression.as_ordered_terms()
+    lines: list[str] = []
+    for first in range(0, len(terms), TERMS):
+        part = terms[first : first + TERMS]
+        value = _PRINTER.doprint(sympy.Add(*part))
+        if first:
+            value = _added(name, value)
+        lines += _continued(f"{name} = {value}")
+    return textwrap.indent("\n".join(lines), " " * indent)
+
+
+def _added(name: str, value: str) -> str:
+    if value.startswith("-"):
+        return f"{name} - {value[1:]}"
+    return f"{name} + {value}"
+
+
+def _continued(statement: str) -> list[str]:
+    lines = []
+    line = ""
+    for piece in BREAKS.split(statement):
+        size = len(line) + len(piece)
+        if size > WIDTH - 14:
+            lines.append(f"{line.rstrip()} &")
+            line = "  "
+        line += piece
+    return [*lines, line]
+
+
+class _Printer(FCodePrinter):  # type: ignore[misc]
+    """Every number is the nearest double; lines are wrapped elsewhere."""
+
+    def _format_code(self, lines: list[str]) -> list[str]:
+        return lines
+
+    def _print_Float(self, number: sympy.Float) -> str:
+        return literal(float(number))
+
+    def _print_Integer(self, number: sympy.Integer) -> str:
+        return literal(float(number))
+
+    def _print_Rational(self, number: sympy.Rational) -> str:
+        if max(abs(number.p), number.q) > EXACT:
+            return literal(float(number))
+        p, q = float(number.p), float(number.q)
+        return f"{literal(p)}/{literal(q)}"
+
+    def _print_Pow(self, power: sympy.Pow) -> str:
+        base, exponent = power.as_base_exp()
+        n = int(exponent)
+        written = self.parenthesize(base, precedence(power), strict=False)
+        if abs(n) != 1:
+            written = f"{written}**{abs(n)}"
+        return written if n > 0 else f"1d0/{written}"
+
+
+_PRINTER = _Printer({"standard": 2008, "source_format": "free", "name_mangling": False})
+
+
+class Modules(Language):
+    """Of the names in a file, the module must have one that nothing in it has."""
+
+    def filled(self, kind: str, words: Words) -> str:
+        """Raises InputError for a name that the module needs itself."""
+        name = words["name"]
+        macro = f"{name.upper()}_SELF_TEST"
+        code = super().filled(kind, words | {"name": OPEN, "macro": macro})
+        own = _identifiers(code) | TABLES
+        legal = re.fullmatch(r"[a-z][a-z0-9_]{0,49}", name.lower(), re.ASCII)
+        if not legal or name.lower() in own:
+            allowed = "a file name that is a Fortran identifier the module does not use itself"
+            raise InputError("path", name, allowed, "rename the file")
+        return code.replace(OPEN, name)
+
+
+def _identifiers(code: str) -> set[str]:
+    """Names outside strings and comments, but for those that begin with the module's."""
+    bare = re.sub(r"'[^'\n]*'|!.*", "", code)
+    names = re.findall(rf"(?<![\w{OPEN}])[a-z]\w*", bare.lower())
+    return set(names)
 
 
 def split(value: Any) -> list[float]:
@@ -139,71 +216,91 @@ def split(value: Any) -> list[float]:
     parts = []
     for _ in range(2):
         mantissa, exponent = mpmath.frexp(value)
-        parts.append(float(mpmath.ldexp(mpmath.nint(mpmath.ldexp(mantissa, WORD)), exponent - WORD)))
-        value -= parts[-1]
+        leading = mpmath.nint(mpmath.ldexp(mantissa, WORD))
+        part = float(mpmath.ldexp(leading, exponent - WORD))
+        parts.append(part)
+        value -= part
     return [*parts, float(value)]
 
 
-def _block_tables(block: Block, frequencies: Sequence[Fraction]) -> str:
-    parity = PARITIES[block.modes[0] % 2]
-    count, seeds = block.harmonics.shape
-    rates = [float(sum(n * w for n, w in zip(nu, frequencies, strict=True))) for nu in block.harmonics.tolist()]
-    name = {kind: f"{kind}_{parity}" for kind in ("nu", "rates", "c")}
-    return "".join(
-        (
-            f"\n  ! Harmonics of the {parity} modes: nu, rates nu.omega, and coefficients of cos(nu.theta)\n",
-            f"  integer, save :: {name['nu']}({count}, seeds)\n",
-            f"  real(rk), save :: {name['rates']}({count}), {name['c']}({count}, {len(block.modes)})\n",
-            *(data(name["nu"], f"i, {i + 1}", block.harmonics[:, i].tolist(), 1) for i in range(seeds)),
-            data(name["rates"], "i", rates, 1),
-            *(data(name["c"], f"i, {m + 1}", map(float, block.coefficients[:, m]), 1) for m in range(len(block.modes))),
-        )
-    )
+def _torus(program: TorusProgram) -> Words:
+    N = program.N
+    words = _kernel(program.highest)
+    words["turns"] = [_turns(w) for w in program.frequencies]
+    words["radian"] = _turns(Fraction(1))
+    words["linear"] = linear_frequencies(N).tolist()
+    words["cosines"] = bond_cosines(N)
+    words["norm"] = bond_norm(N)
+    return words
 
 
-def data(name: str, index: str, values: Iterable[Any], first: int) -> str:
-    """DATA statements for name(index), the index i running from first."""
-    return "".join(_statements(name, index, [literal(x) for x in values], first))
+def _turns(frequency: Fraction) -> list[float]:
+    """omega / 2 pi in three parts."""
+    with mpmath.workdps(WORK_DIGITS):
+        exact = mpmath.mpf(frequency.numerator) / frequency.denominator
+        return split(exact / (2 * mpmath.pi))
 
 
-def _statements(name: str, index: str, items: Sequence[str], first: int) -> Iterator[str]:
-    lines: list[str] = []
-    line, start, end = "", 0, 0
-    for item in items:
-        if len(line) + len(item) + 8 > WIDTH:
-            lines.append(line)
-            line = ""
-        if len(lines) == LINES:
-            yield _statement(name, index, lines, first + start, first + end - 1)
-            lines, start = [], end
-        line += item + ","
-        end += 1
-    if line:
-        yield _statement(name, index, [*lines, line], first + start, first + end - 1)
+def _kernel(highest: Sequence[int]) -> Words:
+    """Sizes in the sums over harmonics. highest : numbers in these, of every seed."""
+    largest = max(2, *highest)  # compilers warn of a loop from 2 to 1
+    return {"highest": largest, "times": TIMES, "tile": TILE}
 
 
-def _statement(name: str, index: str, lines: list[str], first: int, last: int) -> str:
-    body = " &\n    ".join(lines)
-    return f"  data ({name}({index}), i = {first}, {last}) / &\n    {body[:-1]} /\n"
+def _series(program: SeriesProgram) -> Words:
+    words: Words = {"radian": _turns(Fraction(1))}
+    if program.straight:
+        words |= _names(program.straight, program.seeds)
+    if program.tables:
+        words |= _kernel(program.tables.highest)
+        words |= _corrections(program.tables)
+    return words
 
 
-def literal(value: Any) -> str:
-    """A number that no compiler rounds to single precision or warns of: numbers below the normal doubles are zero."""
-    if isinstance(value, int):
-        return str(value)
-    if abs(value) < np.finfo(float).tiny:
-        return "0d0"
-    text = repr(float(value)).removesuffix(".0")
-    return text.replace("e", "d") if "e" in text else f"{text}d0"
+def _names(straight: StraightLine, seeds: Sequence[int]) -> Words:
+    """What is to be declared."""
+    given = [f"A{q}" for q in seeds]
+    given += [f"omega{q}" for q in seeds]
+    names = [name for name in given if name in straight.coefficient_symbols]
+    names += [name for name, _ in straight.coefficients]
+    names += [f"theta{q}" for q in seeds]
+    names += [name for name, _ in straight.waves]
+    of_frequencies = [name for name in given if name in straight.frequency_symbols]
+    of_frequencies += [name for name, _ in straight.frequency_statements]
+    return {"names": names, "frequency_names": of_frequencies}
 
 
-def _check_tables(program: TorusProgram) -> str:
-    check = program.check
-    return "".join(
-        (
-            data("t", "i", map(float, check.times), 1),
-            *(data("positions_of_t", f"i, {k}", map(float, row), 1) for k, row in enumerate(check.positions, 1)),
-            *(data("momenta_of_t", f"i, {k}", map(float, row), 1) for k, row in enumerate(check.momenta, 1)),
-            data("energies_of_t", "i", map(float, check.energies), 1),
-        )
-    )
+def _corrections(tables: SeriesTables) -> Words:
+    """Corrections of the frequencies; where there are none, one of zero: a table has a row."""
+    powers = 2 * tables.frequency_powers
+    coefficients = tables.frequency_coefficients
+    if not len(powers):
+        powers = np.zeros((1, len(tables.scales)), dtype=np.int64)
+        coefficients = np.zeros(powers.shape)
+    degree = max(2, tables.powers.max(), powers.max())
+    return {
+        "blocks": tables.blocks,
+        "degree": degree,
+        "even_powers": powers,
+        "correction": coefficients,
+    }
+
+
+FORTRAN = Modules(
+    extension="F90",  # the capital lets compilers run the preprocessor
+    templates="F90",
+    filters={
+        "assigned": assigned,
+        "columns": columns,
+        "comment": comment,
+        "data": data,
+        "declared": declared,
+        "listed": listed,
+        "literal": literal,
+        "parity": parity,
+        "rates": rates,
+    },
+    torus_words=_torus,
+    series_words=_series,
+    reserved=frozenset({"program", "module", "end", "subroutine", "function", "real", "integer"}),
+)
