@@ -43,7 +43,7 @@ TIMES = 64  # evaluated together
 TILE = 256  # harmonics of one matrix product: cosines and sines of 64 times are 256 kB
 WORD = 24  # bits of the leading parts of omega / 2 pi: times halves of a time they are exact
 EXACT = 2**53  # integers below are doubles
-BREAKS = re.compile(r"(?<=[ (])|(?<=[^*]\*)(?!\*)|(?<=/)")  # after a blank, a bracket, one star, a slash
+BREAKS = re.compile(r"(?<=[ (])|(?<=[^*]\*)(?!\*)|(?<=/)")  # after blank, bracket, star, slash
 OPEN = "\N{WHITE SQUARE}"  # stands for the module's name, and occurs nowhere else
 HARMLESS = {"\\": "/", "*/": "* /", "/*": "/ *"}  # in comments
 TABLES = {"default_phases"}
