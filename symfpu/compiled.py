@@ -1,8 +1,8 @@
-"""The decorator of all compiled loops: numba's, with a cache on disk wherever there is a place for one.
+"""The decorator of all compiled loops: numba's, with a cache on disk wherever there is a place for it.
 
-Numba keeps machine code beside the source or in the user's cache folder, and refuses a function where it may
-write to neither, as in a read-only installation without a home. There the cache is a folder of temporary files
-of this user, or there is none. Importing this module imports numba.
+Numba keeps machine code beside the source or in the user's cache folder, and refuses a function
+where it may write to neither, as in a read-only installation without a home. There the cache is a
+folder of temporary files of this user, or there is none. Importing this module imports numba.
 """
 
 from __future__ import annotations
@@ -23,8 +23,9 @@ JIT = not CONFIG.DISABLE_JIT  # with NUMBA_DISABLE_JIT=1 loops run as Python, sl
 def compiled(*, keep: bool = True, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """A decorator of loops that release the interpreter. options : of numba.njit.
 
-    keep : whether machine code is cached. A function that several modules compile, each with options of its own,
-    must not be: numba's cache knows functions by file and name, and would give one module the code of another.
+    keep : whether machine code is cached. A function that several modules compile, each with
+    options of its own, must not be: numba's cache knows functions by file and name, and would
+    give one module the code of another.
     """
 
     def decorate(function: Callable[..., Any]) -> Any:

@@ -54,9 +54,7 @@ def run(code, **environment):
 def installed(tmp_path):
     """A copy of the package beside whose sources no folder can be made, not by root either; and a folder for temporary files."""
     package = tmp_path / "lib" / "symfpu"
-    shutil.copytree(
-        Path(symfpu.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__")
-    )
+    shutil.copytree(Path(symfpu.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
     for room in (package, *(path for path in package.rglob("*") if path.is_dir())):
         (room / "__pycache__").touch()
     (tmp_path / "tmp").mkdir()

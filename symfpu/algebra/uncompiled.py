@@ -1,4 +1,4 @@
-"""What the kernels write in machine code, in NumPy: for NUMBA_DISABLE_JIT=1, where everything is interpreted."""
+"""What the kernels write in machine code, in NumPy: for NUMBA_DISABLE_JIT=1, which interprets all."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ SPLIT = 2.0**27 + 1  # cuts a double into two halves whose products are exact
 
 
 def modular_product(a: Any, b: Any, modulus: float, inverse: float) -> Any:
-    """a b modulo the modulus for integers below 2^40 in size, up to one multiple of it; numbers or arrays of doubles."""
+    """a b modulo the modulus for integers below 2^40 in size, up to one multiple of it.
+
+    Numbers or arrays of doubles.
+    """
     high, low = _exact_product(a, b)
     multiple, rest = _exact_product(np.rint(high * inverse), modulus)
     return (high - multiple) - rest + low
@@ -31,7 +34,10 @@ def multiply_row(
     stop: int,
     modulus: float | None,
 ) -> None:
-    """out[o + table[t + n]] += weight left[i] right[j + n] for start <= n < stop, modulo the modulus if it is not None."""
+    """out[o + table[t + n]] += weight left[i] right[j + n] for start <= n < stop.
+
+    Modulo the modulus, if it is not None.
+    """
     factor = left[i] * weight
     for n in range(start, stop):
         other = right[j + n]

@@ -1,10 +1,11 @@
 """What alignment indices say of an orbit: on a torus, of which dimension; chaotic; or not yet to be told.
 
-Two things are looked at. The first deviation vector grows as t on every torus, in the end, and exponentially on a
-chaotic orbit. The volumes GALI_k fall as powers of t that depend on the dimension s of the torus. An orbit on a
-torus of low dimension shows it by indices that fall, and a chaotic one does not do so by chance; but where no index
-falls, or few, a chaotic orbit looks like one on a torus of full dimension before its exponential growth sets in.
-Such orbits were seen to grow as t for 3.6 decades of time first (N = 4, beta = 1): four are asked for there.
+Two things are looked at. The first deviation vector grows as t on every torus, in the end, and
+exponentially on a chaotic orbit. The volumes GALI_k fall as powers of t that depend on the
+dimension s of the torus. An orbit on a torus of low dimension shows it by indices that fall, and
+a chaotic one does not do so by chance; but where no index falls, or few, a chaotic orbit looks
+like one on a torus of full dimension before its exponential growth sets in. Such orbits were seen
+to grow as t for 3.6 decades of time first (N = 4, beta = 1): four are asked for there.
 """
 
 from __future__ import annotations
@@ -28,26 +29,22 @@ FLOOR = 0.1  # least uncertainty of a slope in the choice of a dimension: for wh
 ODD = 1 / 3  # a slope so far from every integer it should be decides nothing
 SURE = 0.95  # weight of a dimension that is called decided
 POWER = 3  # of t: no regular orbit has a |v| that outgrows it
-OUTGROWN = 10.0  # e-foldings of |v| beyond this power that are called chaos; regular orbits were seen to have 0.3
+OUTGROWN = 10.0  # e-foldings of |v| beyond this power that are called chaos; regular: up to 0.3
 EARLY = 10.0  # time before which growth says nothing: |v| finds its directions
-PIECE, STRIDE = (
-    1.0,
-    0.5,
-)  # decades of time in which |v| is asked to grow as t, and from one such piece to the next
-LOW, FULL = (
-    2.0,
-    4.0,
-)  # decades with |v| as t before a torus of low dimension is believed, and one of full dimension
+PIECE = 1.0  # decades of time in which |v| is asked to grow as t
+STRIDE = 0.5  # decades from one such piece to the next
+LOW = 2.0  # decades with |v| as t before a torus of low dimension is believed
+FULL = 4.0  # and one of full dimension
 
 
 @dataclass(frozen=True)
 class TorusDimension:
     """What the slopes say of the torus under an orbit.
 
-    verdict : 'regular, dimension s', 'regular, dimension s or more' if no index falls, 'chaotic' or 'undecided'.
-    value : s, None for a chaotic or undecided orbit. error : the standard deviation of s over the weights; weights :
-    of each s, normalised, also where nothing is decided. reason : the numbers behind the verdict, and for an
-    undecided one what it would take.
+    verdict : 'regular, dimension s', 'regular, dimension s or more' if no index falls, 'chaotic'
+    or 'undecided'. value : s, None for a chaotic or undecided orbit. error : the standard
+    deviation of s over the weights; weights : of each s, normalised, also where nothing is
+    decided. reason : the numbers behind the verdict, and for an undecided one what it would take.
     """
 
     verdict: str
@@ -79,7 +76,7 @@ class Evidence:
         return fits(self.times, self.growth[:, None] / math.log(10), self.decades)[0]
 
     def steps(self, decades: float) -> Floats:
-        """Slopes of log GALI_j - log GALI_(j-1), j = 2 .. vectors, and their uncertainties; (vectors-1, 2)."""
+        """Slopes of log GALI_j - log GALI_(j-1), j = 2 .. vectors, with errors; (vectors-1, 2)."""
         return np.array(fits(self.times, np.diff(self.log10_gali, axis=1, prepend=0.0), decades))
 
 
@@ -105,13 +102,18 @@ def torus_dimension(seen: Evidence) -> TorusDimension:
 
 
 def expected_steps(s: int, n: int, vectors: int) -> Ints:
-    """Slopes of log GALI_j - log GALI_(j-1), j = 2 .. vectors, on a torus of dimension s in a phase space of dimension 2n."""
+    """Slopes of log GALI_j - log GALI_(j-1), j = 2 .. vectors, on a torus of dimension s.
+
+    2n : dimension of the phase space.
+    """
     j = np.arange(2, vectors + 1)
     return -np.add(j > s, j > 2 * n - s, dtype=np.int64)
 
 
 def outgrown_powers(times: Floats, growth: Floats) -> float:
-    """The most e-foldings by which |v| came to exceed t^POWER times the largest |v| before, from EARLY on; 0 or more.
+    """The most e-foldings by which |v| came to exceed t^POWER times the largest |v| before.
+
+    From EARLY on; 0 or more.
 
     Never less after a longer time: what has once been called chaotic stays so.
     """
@@ -122,7 +124,10 @@ def outgrown_powers(times: Floats, growth: Floats) -> float:
 
 
 def linear_decades(times: Floats, growth: Floats) -> float:
-    """For how many decades from EARLY to the end |v| has grown as t: in every PIECE of them, to ODD in the exponent."""
+    """For how many decades |v| has grown as t, counted back from the end, at most to EARLY.
+
+    In every PIECE of them, to ODD in the exponent.
+    """
     x, y, length = np.log10(times), growth / math.log(10), 0.0
     end = float(x[-1])
     while end - PIECE >= math.log10(EARLY) - 1e-2:
@@ -153,7 +158,10 @@ def _span(log_time: Floats, decades: float) -> float:
 
 
 def _weights(steps: Floats, seen: Evidence) -> tuple[dict[int, float], int]:
-    """The weight exp(-chi^2/2) of each s, normalised, and the heaviest; errors are enlarged where no s fits."""
+    """The weight exp(-chi^2/2) of each s, normalised, and the heaviest s.
+
+    Errors are enlarged where no s fits.
+    """
     n, errors = seen.freedom, np.maximum(steps[:, 1], FLOOR)
     squares = {}
     for s in range(1, min(seen.vectors, n) + 1):
@@ -172,8 +180,8 @@ def _growth_doubt(seen: Evidence, outgrown: float) -> tuple[str, str]:
     reason = f"|v| grows as t^{exponent:.2f} +- {error:.2f}"
     if exponent > 1 + ODD:
         return reason, (
-            f", faster than on a torus, but not by so much that it must be chaos: by e^{outgrown:.2g} more than "
-            f"t^{POWER}, where e^{OUTGROWN:g} would do; take a longer time"
+            f", faster than on a torus, but not by so much that it must be chaos: "
+            f"by e^{outgrown:.2g} more than t^{POWER}, where e^{OUTGROWN:g} would do; take a longer time"
         )
     if exponent < 1 - ODD:
         return reason, ", on a torus as t^1 in the end: take a longer time"
@@ -214,6 +222,7 @@ def _length_doubt(seen: Evidence, s: int) -> str:
     until = seen.times[-1] * 10 ** (needed - length)
     more = " or take more vectors" if s == seen.vectors < seen.freedom else ""
     return (
-        f"; |v| has grown as t for {length:.1f} decades, and {needed:g} are needed to tell such a torus from an orbit "
-        f"whose chaos shows late: take a longer time, about {until:.0e},{more or ' or more'}"
+        f"; |v| has grown as t for {length:.1f} decades, and {needed:g} are needed to tell "
+        f"such a torus from an orbit whose chaos shows late: "
+        f"take a longer time, about {until:.0e},{more or ' or more'}"
     )

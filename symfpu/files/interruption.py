@@ -1,4 +1,4 @@
-"""The interrupt key in a run that is kept on disk: it ends at its next consistent state, is written, and says so."""
+"""The interrupt key in a run that is kept on disk: it is written whole, and says so."""
 
 from __future__ import annotations
 
@@ -16,10 +16,13 @@ Look = Callable[[str, bool, Callable[[], None]], None]
 
 @contextmanager
 def kept_run(path: Path | None, every: float, write: Callable[[], None]) -> Iterator[Look]:
-    """A function (place, finished, tell) for a run to call at each consistent state: it writes where that is due, and tells.
+    """A function (place, finished, tell) for a run to call at each consistent state.
 
-    Due is every so many seconds, at the end, and when the interrupt key was pressed: then RunInterrupted is raised, with
-    the place in its message. Without a path nothing is written, and the key acts at once.
+    It writes where that is due, and tells.
+
+    Due is every so many seconds, at the end, and when the interrupt key was pressed: then
+    RunInterrupted is raised, with the place in its message. Without a path nothing is written,
+    and the key acts at once.
     """
     if path is None:
         yield lambda place, finished, tell: tell()
@@ -50,7 +53,10 @@ def kept_run(path: Path | None, every: float, write: Callable[[], None]) -> Iter
 
 @contextmanager
 def _interrupts_noted() -> Iterator[Callable[[], bool]]:
-    """Whether the interrupt key was pressed; pressed again, it does what it does elsewhere. Only the main thread hears of it."""
+    """Whether the interrupt key was pressed; pressed again, it does what it does elsewhere.
+
+    Only the main thread hears of it.
+    """
     before, pressed = signal.getsignal(signal.SIGINT), False
     if threading.current_thread() is not threading.main_thread() or not callable(before):
         yield lambda: False

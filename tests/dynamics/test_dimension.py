@@ -50,18 +50,14 @@ def mixed(seed):
 def made(growth, steps, vectors=5, N=16):
     """Indices with the slopes of a torus and any growth of the first vector."""
     falls = np.cumsum(np.broadcast_to(steps, vectors - 1))
-    return AlignmentIndices(
-        Chain(N, alpha="0.33"), TIMES, np.log10(TIMES)[:, None] * falls, growth / TIMES, 0.4, 1e-12
-    )
+    return AlignmentIndices(Chain(N, alpha="0.33"), TIMES, np.log10(TIMES)[:, None] * falls, growth / TIMES, 0.4, 1e-12)
 
 
 @pytest.mark.parametrize("frame", range(6))
 @pytest.mark.parametrize(("seed", "T"), [(0, 1e4), (1, 3e4), (2, 3e3)])
 def test_a_chaotic_orbit_is_not_called_regular_before_its_chaos_shows(seed, T, frame):
     x, p = state(31, 0.3, seed)
-    found = alignment_indices(
-        MIXED, MIXED.modes(x), MIXED.modes(p), T, vectors=2, seed=frame
-    ).dimension()
+    found = alignment_indices(MIXED, MIXED.modes(x), MIXED.modes(p), T, vectors=2, seed=frame).dimension()
     assert found.verdict == "undecided"
     assert "take a longer time" in found.reason
 
@@ -69,9 +65,7 @@ def test_a_chaotic_orbit_is_not_called_regular_before_its_chaos_shows(seed, T, f
 @pytest.mark.parametrize("seed", range(6))
 def test_it_is_called_chaotic_once_it_shows_with_two_vectors_too(seed):
     said = verdicts(mixed(seed), 1e5)
-    assert said == ["undecided"] * said.index("chaotic") + ["chaotic"] * (
-        len(said) - said.index("chaotic")
-    )
+    assert said == ["undecided"] * said.index("chaotic") + ["chaotic"] * (len(said) - said.index("chaotic"))
 
 
 def test_a_vector_that_has_grown_by_e_to_the_58_is_that_of_a_chaotic_orbit():
@@ -126,11 +120,7 @@ def test_what_is_undecided_says_what_it_would_take():
     assert reason.endswith("take a longer time, about 1e+08, or take more vectors")
     assert made(late + np.log(np.maximum(TIMES, 1e6) / 1e6), 0.0).dimension().verdict == "undecided"
     assert "e^10 would do" in made(2 * np.log(TIMES), 0.0).dimension().reason
-    assert (
-        made(0 * late, 0.0)
-        .dimension()
-        .reason.endswith("on a torus as t^1 in the end: take a longer time")
-    )
+    assert made(0 * late, 0.0).dimension().reason.endswith("on a torus as t^1 in the end: take a longer time")
 
 
 def test_a_low_dimension_needs_fewer_decades_than_a_full_one():
