@@ -1,4 +1,7 @@
-"""Frequencies to amplitudes: the truncated equations omega_q = Omega_q + sum mu^k omega_q^(k)(A) (Eq. omeser)."""
+"""Frequencies to amplitudes: the truncated equations of Eq. omeser.
+
+omega_q = Omega_q + sum mu^k omega_q^(k)(A).
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,13 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
+from symfpu.errors import (
+    DidNotConverge,
+    InputError,
+    NoRealAmplitude,
+    SymfpuError,
+    UndeterminedAmplitudes,
+)
 from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf, with_digits
 from symfpu.numbers.typed import decimal, exact, integer
 from symfpu.series.series import LindstedtSeries
@@ -20,11 +29,14 @@ from symfpu.tori.root_certificate import certify_root
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
-RESIDUAL_FLOOR = 1e-10  # relative residual below which growth with the order is no reason to doubt
+# relative residual below which growth with the order is no reason to doubt
+RESIDUAL_FLOOR = 1e-10
 LARGEST_GUESS = 1e12
-LARGE_RESIDUAL = 1e-4  # relative residual above which the solution is doubtful whatever the orders say
+# relative residual above which the solution is doubtful whatever the orders say
+LARGE_RESIDUAL = 1e-4
 RESIDUAL_POINTS = 128  # angles at which two neighbouring orders are compared, about
-SHIFT_GUARD = 35  # digits beyond the asked ones, of which the difference of two nearly equal frequencies loses some
+# digits beyond the asked ones, of which the difference of two nearly equal frequencies loses some
+SHIFT_GUARD = 35
 NEWTON_STEPS = 50
 LOST_DIGITS = 5  # of the guard digits of an evaluation, at a root
 ROUNDING = 256 * np.finfo(float).eps  # of the sum of moduli of the series: what a root may leave
@@ -35,7 +47,8 @@ AGREEMENT = 1e-3  # relative change from the neighbouring order above which a ro
 class AmplitudeHistory:
     """Amplitudes A(K) by frequency order K, and why orders without a root have none.
 
-    Made by `amplitude_history`; dimensionless. Fig. 1(b) shows the differences |A(K+2) - A(K)| of a torus.
+    Made by `amplitude_history`; dimensionless. Fig. 1(b) shows the differences |A(K+2) - A(K)| of
+    a torus.
 
     seeds : the modes. orders : all K at which the frequency series gains a term.
     amplitudes : K -> (A of each seed), shape (s,). failures : K -> the error.
@@ -51,13 +64,25 @@ class AmplitudeHistory:
     failures: Mapping[int, SymfpuError]
 
     def __repr__(self) -> str:
-        last = next((f", A({K}) = {self.amplitudes[K]}" for K in reversed(self.orders) if K in self.amplitudes), "")
-        return f"AmplitudeHistory(seeds={self.seeds}, {len(self.amplitudes)} of {len(self.orders)} orders have a root{last})"
+        with_root = [K for K in self.orders if K in self.amplitudes]
+        last = ""
+        if with_root:
+            K = with_root[-1]
+            last = f", A({K}) = {self.amplitudes[K]}"
+        counted = f"{len(self.amplitudes)} of {len(self.orders)} orders have a root"
+        return f"AmplitudeHistory(seeds={self.seeds}, {counted}{last})"
 
     def differences(self) -> dict[int, tuple[float, ...]]:
-        """Delta A(k) = |A(k + step) - A(k)| between orders that have a root (section 3.2, where step is 2)."""
-        pairs = ((a, b) for a, b in itertools.pairwise(self.orders) if a in self.amplitudes and b in self.amplitudes)
-        return {a: tuple(float(abs(y - x)) for x, y in zip(self.amplitudes[a], self.amplitudes[b], strict=True)) for a, b in pairs}
+        """Delta A(k) = |A(k + step) - A(k)| between orders that have a root.
+
+        Section 3.2, where step is 2.
+        """
+        found = {}
+        for K, following in itertools.pairwise(self.orders):
+            if K in self.amplitudes and following in self.amplitudes:
+                pairs = zip(self.amplitudes[K], self.amplitudes[following], strict=True)
+                found[K] = tuple(float(abs(after - before)) for before, after in pairs)
+        return found
 
 
 def frequency_orders(series: LindstedtSeries) -> tuple[int, ...]:
@@ -67,14 +92,15 @@ def frequency_orders(series: LindstedtSeries) -> tuple[int, ...]:
 
 
 def amplitude_history(series: LindstedtSeries) -> AmplitudeHistory:
-    """The amplitudes for every frequency order up to the series' order, each found from the one before.
+    """The amplitudes for every frequency order, each found from the one before.
 
     series : with chosen frequencies; amplitudes are dimensionless, mpf if it has digits.
 
-    Solves Eq. omeser truncated at every order (section 3.2). The lowest order is linear in A^2 and needs no
-    guess.
-    Raises InputError for a series in universal form or without corrections, UndeterminedAmplitudes if the
-    lowest order does not determine A^2. Orders without a root are kept with their error.
+    Solves Eq. omeser truncated at every order (section 3.2). The lowest order is linear in A^2
+    and needs no guess.
+    Raises InputError for a series in universal form or without corrections,
+    UndeterminedAmplitudes if the lowest order does not determine A^2. Orders without a root are
+    kept with their error.
 
     >>> from symfpu import Chain, lindstedt
     >>> history = amplitude_history(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6))
@@ -103,45 +129,53 @@ def solve_amplitudes(
     phases: Mapping[int, float] | None = None,
     guess: Mapping[int, float] | None = None,
 ) -> QTorus:
-    """Seed amplitudes whose truncated frequency series equals the chosen frequencies (Eq. omeser): a QTorus.
+    """Seed amplitudes whose truncated frequency series equals the chosen frequencies: a QTorus.
+
+    Solves Eq. omeser.
 
     series : with chosen frequencies; all quantities are dimensionless.
     frequency_order : K of the frequency series, up to series.order; default the whole series.
-    order : truncation of Q_q(t), up to series.order; default the whole series. The two are independent.
+    order : truncation of Q_q(t), up to series.order; default the whole series. The two are
+        independent.
     phases : by seed, radians; default 0.
-    guess : amplitudes by seed; default none needed: the lowest correction is linear in A^2, and each order
-        starts from the root of the one before.
+    guess : amplitudes by seed; default none needed: the lowest correction is linear in A^2, and
+        each order starts from the root of the one before.
 
-    Gauge: A_q multiplies cos(omega_q t + phi_q) in Q_q, and is not Q_q(0). The paper's table and captions do
-    not always mean the same truncation; here they are two arguments.
-    Raises InputError for arguments out of range and for frequencies that are commensurable within the
-    harmonics of the series; NoRealAmplitude if an A^2 comes out negative (names the seed), also where the
-    lowest order has no real root and no later one up to frequency_order has; DidNotConverge with the last
-    iterate and residual; UndeterminedAmplitudes if no correction determines the amplitudes. Where
-    neighbouring frequency orders disagree, the torus says so in its warnings. For a series with digits the
-    root is polished to them by mpmath, and its certificate says whether ball arithmetic proves that it exists
-    within 10^-digits.
+    Gauge: A_q multiplies cos(omega_q t + phi_q) in Q_q, and is not Q_q(0). The paper's table and
+    captions do not always mean the same truncation; here they are two arguments.
+    Raises InputError for arguments out of range and for frequencies that are commensurable within
+    the harmonics of the series; NoRealAmplitude if an A^2 comes out negative (names the seed),
+    also where the lowest order has no real root and no later one up to frequency_order has;
+    DidNotConverge with the last iterate and residual; UndeterminedAmplitudes if no correction
+    determines the amplitudes. Where neighbouring frequency orders disagree, the torus says so in
+    its warnings. For a series with digits the root is polished to them by mpmath, and its
+    certificate says whether ball arithmetic proves that it exists within 10^-digits.
 
     >>> from symfpu import Chain, lindstedt
-    >>> torus = solve_amplitudes(lindstedt(Chain(N=16, alpha="0.33"), (1, 2), ("0.19626", "0.39046"), 8))
+    >>> chain = Chain(N=16, alpha="0.33")
+    >>> torus = solve_amplitudes(lindstedt(chain, (1, 2), ("0.19626", "0.39046"), 8))
     >>> {q: round(A, 7) for q, A in torus.amplitudes.items()}
     {1: 0.5843165, 2: 0.4118684}
     """
     if series.frequencies is None:
-        raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
+        allowed = "a series with chosen frequencies"
+        raise InputError("series", "universal form", allowed, "give frequencies= to lindstedt")
     _refuse_commensurable(series)
     K = order_argument("frequency_order", frequency_order, series)
     coordinate_order = order_argument("order", order, series)
-    angles = dict.fromkeys(series.seeds, 0.0) | by_seed("phases", phases, series)
+    at_rest = dict.fromkeys(series.seeds, 0.0)
+    angles = at_rest | by_seed("phases", phases, series)
     orders = [k for k in frequency_orders(series) if k <= K]
     if not orders:
         first = 2 // series.chain.degree_step
+        allowed = f"{first} or more, the order of the first frequency correction"
         advice = "compute a longer series" if series.order < first else f"take {first} or more"
-        raise InputError("frequency_order", K, f"{first} or more, the order of the first frequency correction", advice)
+        raise InputError("frequency_order", K, allowed, advice)
     history = amplitude_history(series)
     start = _start(series, orders, history, guess)
     squares, residual = root_squares(series, orders[-1], start)
     amplitudes = _square_roots(series, squares)
+    certificate = certify_root(series, list(squares), K) if series.digits else None
     torus = QTorus(
         series=series,
         amplitudes=dict(zip(series.seeds, amplitudes, strict=True)),
@@ -150,9 +184,10 @@ def solve_amplitudes(
         order=coordinate_order,
         history=dict(history.amplitudes),
         root_residual=residual,
-        certificate=certify_root(series, list(squares), K) if series.digits else None,
+        certificate=certificate,
     )
-    return torus.doubted((*order_doubts(amplitudes, orders, history), *residual_doubts(torus)))
+    doubts = order_doubts(amplitudes, orders, history)
+    return torus.doubted((*doubts, *residual_doubts(torus)))
 
 
 def _square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:
@@ -162,52 +197,72 @@ def _square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:
 
 
 def _refuse_commensurable(series: LindstedtSeries) -> None:
-    """Refuse frequencies for which two harmonics of the series coincide, or one is at rest: the orbit fills no torus of s angles."""
+    """Refuse frequencies for which two harmonics of the series coincide, or one is at rest.
+
+    The orbit then fills no torus of s angles.
+    """
     assert series.frequencies is not None
     common = lcm(*(w.denominator for w in series.frequencies))
     whole = [int(w * common) for w in series.frequencies]
-    seen: dict[int, tuple[int, ...]] = {0: (0,) * len(series.seeds)}
+    constant = (0,) * len(series.seeds)
+    by_rate: dict[int, tuple[int, ...]] = {0: constant}
     for order in range(series.order + 1):
-        for row in series.grading.harmonics(series.degree(order))[0].tolist():
+        harmonics, *_ = series.grading.harmonics(series.degree(order))
+        for row in harmonics.tolist():
             nu = tuple(row)
-            other = seen.setdefault(abs(sum(n * w for n, w in zip(nu, whole, strict=True))), nu)
+            rate = sum(n * w for n, w in zip(nu, whole, strict=True))
+            other = by_rate.setdefault(abs(rate), nu)
             if other != nu:
+                typed = tuple(map(decimal, series.frequencies))
                 allowed = "incommensurable up to the harmonics of the series"
-                advice = (
-                    f"harmonics {nu} and {other} of the seeds {series.seeds} coincide: change omega_{series.seeds[-1]} or lower the order"
-                )
-                raise InputError("frequencies", tuple(map(decimal, series.frequencies)), allowed, advice)
+                coincide = f"harmonics {nu} and {other} of the seeds {series.seeds} coincide"
+                change = f"change omega_{series.seeds[-1]} or lower the order"
+                raise InputError("frequencies", typed, allowed, f"{coincide}: {change}")
 
 
 def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
-    """An order at which a series is cut, by default its own; InputError naming the argument if the series ends before."""
+    """An order at which a series is cut, by default its own.
+
+    InputError naming the argument if the series ends before.
+    """
     if value is None:
         return series.order
     if integer(value, name, 0) > series.order:
-        raise InputError(name, value, f"0..{series.order}, the series' order", "compute a longer series or lower it")
+        allowed = f"0..{series.order}, the series' order"
+        raise InputError(name, value, allowed, "compute a longer series or lower it")
     return int(value)
 
 
 def by_seed(name: str, values: Mapping[int, Any] | None, series: LindstedtSeries) -> dict[int, Any]:
-    """Numbers by seed in the arithmetic of the series; InputError naming the argument for other keys or values."""
+    """Numbers by seed in the arithmetic of the series.
+
+    InputError naming the argument for other keys or values.
+    """
     if values is not None and not isinstance(values, Mapping):
-        raise InputError(name, values, f"a mapping from the seeds {series.seeds} to numbers", "write it as {seed: number}")
-    for q in values or {}:
+        allowed = f"a mapping from the seeds {series.seeds} to numbers"
+        raise InputError(name, values, allowed, "write it as {seed: number}")
+    given = values or {}
+    for q in given:
         if q not in series.seeds:
             raise InputError(name, q, f"seeds {series.seeds} as keys", "name seeds only")
     with series.numbers.context(series.digits):
-        return {int(q): series.numbers.number(exact(v, name)) for q, v in (values or {}).items()}
+        return {int(q): series.numbers.number(exact(v, name)) for q, v in given.items()}
 
 
-def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory, guess: Mapping[int, float] | None) -> Numbers:
+def _start(
+    series: LindstedtSeries,
+    orders: list[int],
+    history: AmplitudeHistory,
+    guess: Mapping[int, float] | None,
+) -> Numbers:
     if guess is not None:
         given = by_seed("guess", guess, series)
         if set(given) != set(series.seeds):
-            raise InputError("guess", dict(guess), f"an amplitude for each of the seeds {series.seeds}", "complete it or leave it out")
+            allowed = f"an amplitude for each of the seeds {series.seeds}"
+            raise InputError("guess", dict(guess), allowed, "complete it or leave it out")
         if not all(0 < abs(a) < LARGEST_GUESS for a in given.values()):
-            raise InputError(
-                "guess", dict(guess), f"amplitudes that are not 0 and below {LARGEST_GUESS:g}", "take them near the expected ones"
-            )
+            allowed = f"amplitudes that are not 0 and below {LARGEST_GUESS:g}"
+            raise InputError("guess", dict(guess), allowed, "take them near the expected ones")
         return np.array([float(given[q]) ** 2 for q in series.seeds])
     earlier = [k for k in orders if k in history.amplitudes]
     if not earlier:
@@ -219,19 +274,27 @@ def _start(series: LindstedtSeries, orders: list[int], history: AmplitudeHistory
 def shifts(series: LindstedtSeries) -> Numbers:
     """omega_q - Omega_q of the seeds, correctly rounded; shape (s,)."""
     assert series.frequencies is not None
+    differences = []
     with mpmath.workdps((series.digits or 17) + SHIFT_GUARD):
-        exact = [mpf(w) - series.chain.linear_frequency(q) for q, w in zip(series.seeds, series.frequencies, strict=True)]
-    return np.array([float(x) for x in exact]) if series.digits is None else np.array(exact, dtype=object)
+        for q, w in zip(series.seeds, series.frequencies, strict=True):
+            linear = series.chain.linear_frequency(q)
+            differences.append(mpf(w) - linear)
+    if series.digits is None:
+        return np.array([float(x) for x in differences])
+    return np.array(differences, dtype=object)
 
 
 def _lowest_order(series: LindstedtSeries) -> Floats:
     """A^2 from the lowest correction, which is linear in A^2; it may be negative."""
     first = frequency_orders(series)[0]
-    _, jacobian = series.frequency_terms(np.zeros(len(series.seeds)), first)
+    at_rest = np.zeros(len(series.seeds))
+    _, jacobian = series.frequency_terms(at_rest, first)
     matrix = jacobian[first].astype(float)
-    if not np.any(matrix) or np.linalg.cond(matrix) > 1 / np.finfo(float).eps:
+    largest_condition = 1 / np.finfo(float).eps
+    if not np.any(matrix) or np.linalg.cond(matrix) > largest_condition:
         raise UndeterminedAmplitudes(series.seeds, first)
-    return np.asarray(np.linalg.solve(matrix, shifts(series).astype(float)))
+    target = shifts(series).astype(float)
+    return np.asarray(np.linalg.solve(matrix, target))
 
 
 def root_squares(series: LindstedtSeries, K: int, start: Numbers) -> tuple[Numbers, float]:
@@ -244,30 +307,57 @@ def root_squares(series: LindstedtSeries, K: int, start: Numbers) -> tuple[Numbe
 
     def equations(y: Numbers) -> tuple[Numbers, Numbers]:
         terms, jacobian = series.frequency_terms(y * scale, K)
-        return (terms[1:].sum(axis=0) - target) / unit, jacobian[1:].sum(axis=0) * scale / unit[:, None]
+        left = terms[1:].sum(axis=0) - target
+        slopes = jacobian[1:].sum(axis=0) * scale
+        return left / unit, slopes / unit[:, None]
 
     def doubles(y: Floats) -> tuple[Floats, Floats]:
         values, jacobian = equations(y)
         return values.astype(float), jacobian.astype(float)
 
-    with np.errstate(over="ignore", invalid="ignore"), series.numbers.context(series.digits):
-        near = root(doubles, (start / scale).astype(float), jac=True, method="hybr", tol=1e-15).x
-        squares = (near if series.digits is None else _polished(equations, near, series.digits)) * scale
+    digits = series.digits
+    with np.errstate(over="ignore", invalid="ignore"), series.numbers.context(digits):
+        first = (start / scale).astype(float)
+        near = root(doubles, first, jac=True, method="hybr", tol=1e-15).x
+        scaled = near if digits is None else _polished(equations, near, digits)
+        squares = scaled * scale
         terms, _ = series.frequency_terms(squares, K)
-        residual = float(np.max(np.abs(terms[1:].sum(axis=0) - target)))
-        rounding = ROUNDING if series.digits is None else 10.0 ** -(series.digits + GUARD_DIGITS - LOST_DIGITS)
-        allowed = rounding * float(np.max(np.abs(terms[1:]).sum(axis=0) + np.abs(target)))
-    if not residual <= allowed:  # also when it is not a number
-        iterate = {q: float(np.sign(float(x)) * abs(float(x)) ** 0.5) for q, x in zip(series.seeds, squares, strict=True)}
-        raise DidNotConverge(K, iterate, residual)
-    for q, x in zip(series.seeds, squares, strict=True):
-        if x <= 0:
-            raise NoRealAmplitude(q, float(x), K)
+        corrections = terms[1:]
+        residual = float(np.max(np.abs(corrections.sum(axis=0) - target)))
+        moduli = np.abs(corrections).sum(axis=0) + np.abs(target)
+        allowed = _root_rounding(digits) * float(np.max(moduli))
+    _refuse_no_root(series.seeds, squares, K, residual, allowed)
     return squares, residual
 
 
-def _polished(equations: Callable[[Numbers], tuple[Numbers, Numbers]], near: Floats, digits: int) -> Numbers:
-    """The root near a point to all digits, by mpmath's Newton iteration; the last iterate where it does not converge."""
+def _root_rounding(digits: int | None) -> float:
+    """What a root may leave, relative to the sum of moduli of the series."""
+    if digits is None:
+        return ROUNDING
+    return 10.0 ** -(digits + GUARD_DIGITS - LOST_DIGITS)
+
+
+def _refuse_no_root(
+    seeds: tuple[int, ...], squares: Numbers, K: int, residual: float, allowed: float
+) -> None:
+    if not residual <= allowed:  # also when it is not a number
+        iterate = {}
+        for q, x in zip(seeds, squares, strict=True):
+            square = float(x)
+            iterate[q] = float(np.sign(square) * abs(square) ** 0.5)
+        raise DidNotConverge(K, iterate, residual)
+    for q, x in zip(seeds, squares, strict=True):
+        if x <= 0:
+            raise NoRealAmplitude(q, float(x), K)
+
+
+def _polished(
+    equations: Callable[[Numbers], tuple[Numbers, Numbers]], near: Floats, digits: int
+) -> Numbers:
+    """The root near a point to all digits, by mpmath's Newton iteration.
+
+    The last iterate where it does not converge.
+    """
     known: dict[tuple[Any, ...], tuple[Numbers, Numbers]] = {}
 
     def at(point: tuple[Any, ...]) -> tuple[Numbers, Numbers]:
@@ -276,35 +366,63 @@ def _polished(equations: Callable[[Numbers], tuple[Numbers, Numbers]], near: Flo
         return known[point]
 
     def values(*point: Any) -> list[Any]:
-        return list(at(point)[0])
+        left, _ = at(point)
+        return list(left)
 
     def jacobian(*point: Any) -> Any:
-        return mpmath.matrix(at(point)[1].tolist())
+        _, slopes = at(point)
+        return mpmath.matrix(slopes.tolist())
 
     start = [mpmath.mpf(float(x)) for x in near]
     tolerance = mpmath.mpf(10) ** -(digits + GUARD_DIGITS - LOST_DIGITS)
-    found = mpmath.findroot(values, start, solver="mdnewton", J=jacobian, tol=tolerance, maxsteps=NEWTON_STEPS, verify=False)
+    found = mpmath.findroot(
+        values,
+        start,
+        solver="mdnewton",
+        J=jacobian,
+        tol=tolerance,
+        maxsteps=NEWTON_STEPS,
+        verify=False,
+    )
     return np.array(list(found), dtype=object)
 
 
-def order_doubts(amplitudes: tuple[Any, ...], orders: list[int], history: AmplitudeHistory) -> tuple[str, ...]:
+def order_doubts(
+    amplitudes: tuple[Any, ...], orders: list[int], history: AmplitudeHistory
+) -> tuple[str, ...]:
     """Why the root may be one of the truncated polynomial only."""
     K = orders[-1]
     if len(orders) == 1:
         return (f"order {K} is the only frequency order: nothing to compare the amplitudes with",)
     before = orders[-2]
-    if before not in history.amplitudes:
-        return (f"frequency order {before} has no root: the root at order {K} may be one of the truncated polynomial only",)
-    change = max(abs(float(a / b - 1)) for a, b in zip(amplitudes, history.amplitudes[before], strict=True))
+    earlier = history.amplitudes.get(before)
+    if earlier is None:
+        no_root = f"frequency order {before} has no root"
+        doubt = f"the root at order {K} may be one of the truncated polynomial only"
+        return (f"{no_root}: {doubt}",)
+    changes = [abs(float(a / b - 1)) for a, b in zip(amplitudes, earlier, strict=True)]
+    change = max(changes)
     doubts = []
     if change > AGREEMENT:
-        doubts.append(f"the amplitudes of frequency orders {before} and {K} differ by {change:.1%}: not a torus to that accuracy")
-    differences = {k: max(d) for k, d in history.differences().items() if k < K}
-    best = min(differences, key=lambda k: differences[k]) if differences else K
-    if differences and max(orders.index(K) - orders.index(best), 0) > 2 and differences[before] > 2 * differences[best]:
-        after = orders[orders.index(best) + 1]
-        doubts.append(f"the amplitudes agree best between frequency orders {best} and {after} and move apart beyond")
+        differ = f"the amplitudes of frequency orders {before} and {K} differ by {change:.1%}"
+        doubts.append(f"{differ}: not a torus to that accuracy")
+    doubts += _parting_doubts(orders, history)
     return tuple(doubts)
+
+
+def _parting_doubts(orders: list[int], history: AmplitudeHistory) -> list[str]:
+    """Whether the amplitudes agreed better between lower orders; the last two have roots."""
+    K, before = orders[-1], orders[-2]
+    differences = {k: max(d) for k, d in history.differences().items() if k < K}
+    if not differences:
+        return []
+    best = min(differences, key=lambda k: differences[k])
+    at = orders.index(best)
+    orders_beyond = orders.index(K) - at
+    if orders_beyond <= 2 or not differences[before] > 2 * differences[best]:
+        return []
+    agree = f"the amplitudes agree best between frequency orders {best} and {orders[at + 1]}"
+    return [f"{agree} and move apart beyond"]
 
 
 def residual_doubts(torus: QTorus) -> tuple[str, ...]:
@@ -312,14 +430,18 @@ def residual_doubts(torus: QTorus) -> tuple[str, ...]:
 
     Decided at few angles; the one residual that is stated is `torus.residual()`.
     """
-    points = None if torus.digits else max(3, round(RESIDUAL_POINTS ** (1 / len(torus.seeds))))
-    residual, before = torus.residual(points), torus.order - 2
+    points = None
+    if not torus.digits:
+        points = max(3, round(RESIDUAL_POINTS ** (1 / len(torus.seeds))))
+    residual = torus.residual(points)
     doubts = []
     if residual > LARGE_RESIDUAL:
         met = f"{torus.residual():.2g}"
         doubts.append(f"the equations of motion are met only to {met} of the largest acceleration")
+    before = torus.order - 2
     if before >= 1 and residual > RESIDUAL_FLOOR:
-        earlier = replace(torus, order=before).residual(points)
+        shorter = replace(torus, order=before)
+        earlier = shorter.residual(points)
         if residual > 1.05 * earlier:
             growth = f"grows, {residual / earlier:.3g} times from order {before} to {torus.order}"
             advice = "cut the series earlier, by order="

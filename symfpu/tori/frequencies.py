@@ -1,7 +1,10 @@
-"""Amplitudes to frequencies: omega_q = Omega_q + sum mu^k omega_q^(k)(A; omega), whose divisors hold the omega themselves.
+"""Amplitudes to frequencies: Eq. omeser whose divisors hold the omega themselves.
 
-Eq. omeser read from the other side. The unknowns are the shifts omega_q - Omega_q; a trial costs one series. Every trial frequency
-is an exact decimal with so many places that its shift keeps all its digits.
+omega_q = Omega_q + sum mu^k omega_q^(k)(A; omega).
+
+Eq. omeser read from the other side. The unknowns are the shifts omega_q - Omega_q; a trial costs
+one series. Every trial frequency is an exact decimal with so many places that its shift keeps all
+its digits.
 """
 
 from __future__ import annotations
@@ -22,50 +25,78 @@ from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.amplitudes import amplitude_history, by_seed, frequency_orders, order_doubts, residual_doubts, shifts
+from symfpu.tori.amplitudes import (
+    amplitude_history,
+    by_seed,
+    frequency_orders,
+    order_doubts,
+    residual_doubts,
+    shifts,
+)
 from symfpu.tori.broyden import Found, NotFound, solve, walk
 from symfpu.tori.root_certificate import certify_root
 from symfpu.tori.torus import QTorus
 
-EXTREME = 10**60  # size of an amplitude or a weight
+LARGEST_NUMBER = 10**60  # size of an amplitude or a weight
 SMALLEST_SHIFT = 1e-30  # of a frequency; what `shifts` still sees in doubles
 PLACES = 40  # decimals at most beyond the significant ones
-ROUNDING = 256 * np.finfo(float).eps  # of the sum of moduli of the series: what a solution may leave
-LEAST = 4 * np.finfo(float).eps  # what is not worth another series
-SPARE = 3  # digits beyond the asked ones to which a solution with digits is found; its series carry more
-REACH = 0.1  # change of the shifts from their prediction, relative, that stays on the family
-SAME = 1e-6  # relative difference of amplitudes that are the same root
+# of the sum of moduli of the series: what a solution may leave
+ROUNDING = 256 * np.finfo(float).eps
+LEAST_RESIDUAL = 4 * np.finfo(float).eps  # what is not worth another series
+# digits beyond the asked ones to which a solution with digits is found; its series carry more
+SPARE_DIGITS = 3
+LARGEST_DEVIATION = (
+    0.1  # change of the shifts from their prediction, relative, that stays on the family
+)
+SAME_ROOT = 1e-6  # relative difference of amplitudes that are the same root
 
 
 class NoSelfConsistentFrequencies(SymfpuError):
-    """No frequencies for these amplitudes: raised by `torus_at_amplitudes` where the walk from rest ends.
+    """No frequencies for these amplitudes: the walk from rest ends before.
 
-    frequency_order : K. amplitudes : asked for; reached : by seed, the last ones on the way that have
-        frequencies.
-    frequencies : the last iterate by seed; residual : what it leaves, relative to the shifts. reason : in
-        words. All dimensionless. Ours.
+    Raised by `torus_at_amplitudes`.
+
+    frequency_order : K. amplitudes : asked for; reached : by seed, the last ones on the way that
+        have frequencies.
+    frequencies : the last iterate by seed; residual : what it leaves, relative to the shifts.
+        reason : in words. All dimensionless. Ours.
     """
 
-    def __init__(self, search: Frequencies, squares: Numbers, reached: Numbers, failure: NotFound) -> None:
+    def __init__(
+        self, search: Frequencies, squares: Numbers, reached: Numbers, failure: NotFound
+    ) -> None:
         seeds = search.seeds
-        self.frequency_order, self.reason, self.residual = search.frequency_order, failure.reason, failure.residual
-        self.amplitudes = {q: float(x) ** 0.5 for q, x in zip(seeds, squares, strict=True)}
-        self.reached = {q: float(x) ** 0.5 for q, x in zip(seeds, reached, strict=True)}
-        self.frequencies = dict(zip(seeds, (search.linear * (1 + failure.iterate.astype(float))).tolist(), strict=True))
-        asked, last, omega = (
-            ", ".join(f"{name}_{q} = {v:.6g}" for q, v in values.items())
-            for name, values in (("A", self.amplitudes), ("A", self.reached), ("omega", self.frequencies))
-        )
+        self.frequency_order = search.frequency_order
+        self.reason = failure.reason
+        self.residual = failure.residual
+        self.amplitudes = _roots_by_seed(seeds, squares)
+        self.reached = _roots_by_seed(seeds, reached)
+        iterate = search.linear * (1 + failure.iterate.astype(float))
+        self.frequencies = dict(zip(seeds, iterate.tolist(), strict=True))
+        asked = _listed("A", self.amplitudes)
+        last = _listed("A", self.reached)
+        omega = _listed("omega", self.frequencies)
         left = "" if np.isnan(self.residual) else f" and leaves {self.residual:.2g} of the shifts"
-        super().__init__(
-            f"no frequencies for {asked} at frequency order {self.frequency_order}: {self.reason}; the last iterate is {omega}{left}; "
-            f"solutions were followed from rest to {last}: take smaller amplitudes"
-        )
+        where = f"no frequencies for {asked} at frequency order {self.frequency_order}"
+        end = f"the last iterate is {omega}{left}"
+        way = f"solutions were followed from rest to {last}"
+        super().__init__(f"{where}: {self.reason}; {end}; {way}: take smaller amplitudes")
+
+
+def _roots_by_seed(seeds: tuple[int, ...], squares: Numbers) -> dict[int, float]:
+    return {q: float(x) ** 0.5 for q, x in zip(seeds, squares, strict=True)}
+
+
+def _listed(name: str, values: Mapping[int, float]) -> str:
+    return ", ".join(f"{name}_{q} = {value:.6g}" for q, value in values.items())
 
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A solution: A^2, (omega - Omega) / Omega, both (s,); its derivatives by A^2 (s, s); the Broyden matrix; its series."""
+    """A solution: A^2, (omega - Omega) / Omega, both (s,).
+
+    Its derivatives by A^2 (s, s); the Broyden matrix; its series.
+    """
 
     squares: Numbers
     shifts: Numbers
@@ -75,18 +106,33 @@ class Point:
 
     def predicted(self, squares: Numbers) -> Numbers:
         """The shifts at other amplitudes, by the derivative of the solution."""
-        return np.asarray(self.shifts - self.inverse @ self.slopes @ (squares - self.squares))
+        change = squares - self.squares
+        return np.asarray(self.shifts - self.inverse @ self.slopes @ change)
 
 
 class Frequencies:
-    """The frequencies that belong to amplitudes, for one chain, its seeds (ascending) and a frequency order."""
+    """The frequencies that belong to amplitudes.
 
-    def __init__(self, chain: Chain, seeds: tuple[int, ...], frequency_order: int, digits: int | None = None) -> None:
-        self.chain, self.seeds, self.frequency_order, self.digits = chain, seeds, frequency_order, digits
-        self.linear = chain.frequencies()[np.array(seeds) - 1]
-        columns = [frequency_shift(chain, {q: float(q == n) for q in seeds}) for n in seeds]
-        slopes = np.array([[column[q] for column in columns] for q in seeds]) / self.linear[:, None]
-        self.rest = Point(np.zeros(len(seeds)), np.zeros(len(seeds)), slopes, -np.eye(len(seeds)))
+    For one chain, its seeds (ascending) and a frequency order.
+    """
+
+    def __init__(
+        self, chain: Chain, seeds: tuple[int, ...], frequency_order: int, digits: int | None = None
+    ) -> None:
+        self.chain = chain
+        self.seeds = seeds
+        self.frequency_order = frequency_order
+        self.digits = digits
+        self.modes = np.array(seeds) - 1
+        self.linear = chain.frequencies()[self.modes]
+        columns = []
+        for n in seeds:
+            unit_square = {q: float(q == n) for q in seeds}
+            columns.append(frequency_shift(chain, unit_square))
+        by_seed_and_square = np.array([[column[q] for column in columns] for q in seeds])
+        slopes = by_seed_and_square / self.linear[:, None]
+        s = len(seeds)
+        self.rest = Point(np.zeros(s), np.zeros(s), slopes, -np.eye(s))
 
     @property
     def numbers(self) -> Arithmetic:
@@ -94,15 +140,19 @@ class Frequencies:
         return DOUBLES if self.digits is None else MULTIPRECISION
 
     def at(self, squares: Numbers, start: Point | None = None) -> Point:
-        """The solution at A^2 = squares (s,), positive, by continuation from `start` or from rest, in doubles.
+        """The solution at A^2 = squares (s,), positive, in doubles.
+
+        By continuation from `start` or from rest.
 
         Raises NoSelfConsistentFrequencies.
         """
         start = start or self.rest
 
         def reach(point: Point, part: float) -> Point:
-            wanted = start.squares + part * (squares - start.squares) if part < 1 else squares
-            return self.near(point, wanted)
+            if part < 1:
+                change = squares - start.squares
+                return self.near(point, start.squares + part * change)
+            return self.near(point, squares)
 
         end, failure = walk(start, reach)
         if failure is not None:
@@ -112,31 +162,57 @@ class Frequencies:
     def near(self, point: Point, squares: Numbers) -> Point:
         """The solution at other amplitudes near a solution; raises NotFound."""
         guess = point.predicted(squares)
-        found: Found[tuple[LindstedtSeries, Numbers]] = solve(
-            lambda y: self._equations(y, squares), guess, point.inverse, *self._tolerances()
-        )
-        size = max(float(np.max(np.abs(guess))), float(np.max(np.abs(found.x))))
-        if float(np.max(np.abs(found.x - guess))) > REACH * size:
+
+        def equations(y: Numbers) -> tuple[Numbers, float, tuple[LindstedtSeries, Numbers]]:
+            return self._equations(y, squares)
+
+        tolerances = self._tolerances()
+        found: Found[tuple[LindstedtSeries, Numbers]]
+        found = solve(equations, guess, point.inverse, *tolerances)
+        expected_size = float(np.max(np.abs(guess)))
+        found_size = float(np.max(np.abs(found.x)))
+        size = max(expected_size, found_size)
+        distance = float(np.max(np.abs(found.x - guess)))
+        if distance > LARGEST_DEVIATION * size:
             raise NotFound(found.x, found.residual, "the solution found is far from its prediction")
         series, slopes = found.value
         return Point(squares, found.x, slopes, found.inverse, series)
 
     def _tolerances(self) -> tuple[float, float]:
-        return (LEAST, ROUNDING) if self.digits is None else (10.0 ** -(self.digits + SPARE),) * 2
+        if self.digits is None:
+            return LEAST_RESIDUAL, ROUNDING
+        last_place = 10.0 ** -(self.digits + SPARE_DIGITS)
+        return last_place, last_place
 
-    def _equations(self, y: Numbers, squares: Numbers) -> tuple[Numbers, float, tuple[LindstedtSeries, Numbers]]:
-        """(Series - shift) / Omega at trial shifts, its size relative to the terms, the series and its slopes by A^2."""
-        try:
-            series = lindstedt(self.chain, self.seeds, self.exact(y), self.frequency_order, digits=self.digits)
-        except InputError as error:  # also ResonantDivisor
-            raise NotFound(y, float("nan"), str(error).split(";")[0]) from error
+    def _equations(
+        self, y: Numbers, squares: Numbers
+    ) -> tuple[Numbers, float, tuple[LindstedtSeries, Numbers]]:
+        """(Series - shift) / Omega at trial shifts, its relative size, the series and its slopes.
+
+        The size is relative to the terms; the slopes are by A^2.
+        """
+        series = self._series_at(y)
         with np.errstate(over="ignore", invalid="ignore"), self.numbers.context(self.digits):
             terms, slopes = series.frequency_terms(squares, self.frequency_order)
-            linear = self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1]
-            left = terms[1:].sum(axis=0) / linear - y
-            scale = np.abs(terms[1:]).sum(axis=0) / linear + np.abs(y)
-            size = float(np.max(np.abs(left)) / np.max(scale)) if np.any(scale != 0) else 0.0
-            return left, size, (series, slopes[1:].sum(axis=0) / linear[:, None])
+            linear = self.chain.frequencies(self.numbers)[self.modes]
+            corrections = terms[1:]
+            left = corrections.sum(axis=0) / linear - y
+            scale = np.abs(corrections).sum(axis=0) / linear + np.abs(y)
+            size = 0.0
+            if np.any(scale != 0):
+                size = float(np.max(np.abs(left)) / np.max(scale))
+            relative_slopes = slopes[1:].sum(axis=0) / linear[:, None]
+            return left, size, (series, relative_slopes)
+
+    def _series_at(self, y: Numbers) -> LindstedtSeries:
+        """The series at trial shifts; raises NotFound where there is none."""
+        K = self.frequency_order
+        try:
+            frequencies = self.exact(y)
+            return lindstedt(self.chain, self.seeds, frequencies, K, digits=self.digits)
+        except InputError as error:  # also ResonantDivisor
+            reason = str(error).split(";")[0]
+            raise NotFound(y, float("nan"), reason) from error
 
     def exact(self, y: Numbers) -> tuple[Fraction, ...]:
         """Omega (1 + y) as exact decimals in which the shift Omega y has all its digits."""
@@ -145,11 +221,13 @@ class Frequencies:
         with mpmath.workdps(2 * significant + PLACES):
             for q, part in zip(self.seeds, y, strict=True):
                 linear = self.chain.linear_frequency(q)
-                shift = linear * (part if isinstance(part, mpmath.mpf) else mpmath.mpf(float(part)))
+                relative = part if isinstance(part, mpmath.mpf) else mpmath.mpf(float(part))
+                shift = linear * relative
                 if not mpmath.isfinite(shift):
                     raise NotFound(y, float("nan"), "the iteration runs away")
-                lost = min(PLACES, max(0, -int(mpmath.floor(mpmath.log10(abs(shift)))))) if shift else PLACES
-                values.append(Fraction(int(mpmath.nint((linear + shift) * 10 ** (significant + lost))), 10 ** (significant + lost)))
+                places = significant + _leading_zeros(shift)
+                whole = mpmath.nint((linear + shift) * 10**places)
+                values.append(Fraction(int(whole), 10**places))
         return tuple(values)
 
     def polished(self, point: Point, squares: Numbers, digits: int) -> tuple[Frequencies, Point]:
@@ -157,16 +235,32 @@ class Frequencies:
         search = Frequencies(self.chain, self.seeds, self.frequency_order, digits)
         with search.numbers.context(digits):
             array = search.numbers.array
-            start = Point(array(point.squares), array(point.shifts), array(point.slopes), array(point.inverse))
+            amplitudes = array(point.squares)
+            guess = array(point.shifts)
+            slopes = array(point.slopes)
+            inverse = array(point.inverse)
+            start = Point(amplitudes, guess, slopes, inverse)
             try:
                 return search, search.near(start, squares)
             except NotFound as failure:
-                raise NoSelfConsistentFrequencies(search, squares, point.squares, failure) from failure
+                ended = NoSelfConsistentFrequencies(search, squares, point.squares, failure)
+                raise ended from failure
+
+
+def _leading_zeros(shift: Any) -> int:
+    """Zeros of an mpf below 1 after its point, at most PLACES."""
+    if not shift:
+        return PLACES
+    magnitude = int(mpmath.floor(mpmath.log10(abs(shift))))
+    return min(PLACES, max(0, -magnitude))
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What is asked of a torus: the orders of its series, frequencies and coordinates, its phases and digits."""
+    """What is asked of a torus: its three orders, its phases and digits.
+
+    The orders are of its series, frequencies and coordinates.
+    """
 
     order: int
     frequency_order: int
@@ -176,7 +270,8 @@ class Plan:
 
     def check_size(self, chain: Chain, seeds: tuple[int, ...]) -> None:
         """TooLarge before anything is computed."""
-        check_size(chain, seeds, self.order, "fixedpoint" if self.digits else "float64", self.digits or 0)
+        ring = "fixedpoint" if self.digits else "float64"
+        check_size(chain, seeds, self.order, ring, self.digits or 0)
 
 
 def checked_plan(
@@ -190,15 +285,19 @@ def checked_plan(
     """The arguments checked."""
     if not isinstance(chain, Chain):
         raise InputError("chain", chain, "a Chain", "make one: Chain(N=32, alpha='0.33')")
-    order, first = integer(order, "order", 0), 2 // chain.degree_step
-    orders = {"frequency_order": frequency_order, "coordinate_order": coordinate_order}
-    K, coordinates = (integer(order if k is None else k, name, 0) for name, k in orders.items())
+    order = integer(order, "order", 0)
+    K = integer(order if frequency_order is None else frequency_order, "frequency_order", 0)
+    coordinates = order if coordinate_order is None else coordinate_order
+    coordinates = integer(coordinates, "coordinate_order", 0)
+    first = 2 // chain.degree_step
     for name, k in (("order", order), ("frequency_order", K)):
         if k < first:
-            raise InputError(name, k, f"{first} or more, the order of the first frequency correction", f"take {first} or more")
+            allowed = f"{first} or more, the order of the first frequency correction"
+            raise InputError(name, k, allowed, f"take {first} or more")
     for name, k in (("frequency_order", K), ("coordinate_order", coordinates)):
         if k > order:
-            raise InputError(name, k, f"0..{order}, the order of the series", "compute a longer series or lower it")
+            allowed = f"0..{order}, the order of the series"
+            raise InputError(name, k, allowed, "compute a longer series or lower it")
     if digits is not None:
         integer(digits, "digits", 1)
     return Plan(order, K, coordinates, phases, digits)
@@ -219,20 +318,20 @@ def torus_at_amplitudes(
     Solves omega = Omega + sum mu^k omega^(k)(A; omega).
 
     chain : the model; all quantities are dimensionless, phases in radians.
-    amplitudes : A_q by seed, positive exact numbers (a phase of pi changes the sign); A_q multiplies
-        cos(omega_q t + phi_q) in Q_q and is not Q_q(0).
+    amplitudes : A_q by seed, positive exact numbers (a phase of pi changes the sign); A_q
+        multiplies cos(omega_q t + phi_q) in Q_q and is not Q_q(0).
     order : of the series.
     frequency_order : K of the frequency series, up to order; default the whole.
     coordinate_order : where Q_q(t) is cut, up to order; default order.
     phases : by seed, radians; default 0.
     digits : of all results; None for doubles.
 
-    The paper chooses the frequencies and solves for the amplitudes. Here the divisors are those of the
-    frequencies found, so that `solve_amplitudes` at them gives the amplitudes back. Of several solutions it
-    is the one that continues the linear modes as the amplitudes grow.
-    Raises InputError for arguments out of range, TooLarge as `lindstedt` does, NoSelfConsistentFrequencies
-    where the family from rest ends or turns before, as it does at a strong resonance. The warnings of the
-    torus are those of `solve_amplitudes`.
+    The paper chooses the frequencies and solves for the amplitudes. Here the divisors are those
+    of the frequencies found, so that `solve_amplitudes` at them gives the amplitudes back. Of
+    several solutions it is the one that continues the linear modes as the amplitudes grow.
+    Raises InputError for arguments out of range, TooLarge as `lindstedt` does,
+    NoSelfConsistentFrequencies where the family from rest ends or turns before, as it does at a
+    strong resonance. The warnings of the torus are those of `solve_amplitudes`.
 
     >>> torus = torus_at_amplitudes(Chain(N=16, alpha="0.33"), {1: "0.58", 2: "0.41"}, order=8)
     >>> [round(float(w), 9) for w in torus.frequencies]
@@ -240,74 +339,103 @@ def torus_at_amplitudes(
     """
     plan = checked_plan(chain, order, frequency_order, coordinate_order, phases, digits)
     numbers = positive_by_seed(chain, "amplitudes", amplitudes)
-    plan.check_size(chain, tuple(numbers))
-    search = Frequencies(chain, tuple(numbers), plan.frequency_order)
+    seeds = tuple(numbers)
+    plan.check_size(chain, seeds)
+    search = Frequencies(chain, seeds, plan.frequency_order)
     squares = np.array([float(a) ** 2 for a in numbers.values()])
     refuse_tiny(search, squares, "amplitudes", amplitudes)
     point = search.at(squares)
     if digits is not None:
         with MULTIPRECISION.context(digits):
-            search, point = search.polished(point, np.array([MULTIPRECISION.number(a) ** 2 for a in numbers.values()]), digits)
-    return doubted(assembled(search, point, plan, numbers))
+            exact_squares = np.array([MULTIPRECISION.number(a) ** 2 for a in numbers.values()])
+            search, point = search.polished(point, exact_squares, digits)
+    torus = assembled(search, point, plan, numbers)
+    return doubted(torus)
 
 
-def positive_by_seed(chain: Chain, argument: str, values: Mapping[int, Number]) -> dict[int, Fraction]:
+def positive_by_seed(
+    chain: Chain, argument: str, values: Mapping[int, Number]
+) -> dict[int, Fraction]:
     """Exact positive numbers by seed, seeds ascending."""
     if not isinstance(values, Mapping):
-        raise InputError(argument, values, "a mapping from seed modes to positive numbers", "write it as {seed: number}")
-    seeds = tuple(sorted(seed_modes(values, chain.N)))
-    numbers = {q: exact(values[q], f"{argument}, seed {q}") for q in seeds}
+        allowed = "a mapping from seed modes to positive numbers"
+        raise InputError(argument, values, allowed, "write it as {seed: number}")
+    modes = seed_modes(values, chain.N)
+    numbers = {q: exact(values[q], f"{argument}, seed {q}") for q in sorted(modes)}
     for q, value in numbers.items():
-        if not 1 / EXTREME <= value <= EXTREME:
-            raise InputError(
-                f"{argument}, seed {q}", values[q], "a positive number, 1e-60 to 1e60", "leave out modes at rest; signs are phases"
-            )
+        if not 1 / LARGEST_NUMBER <= value <= LARGEST_NUMBER:
+            entry = f"{argument}, seed {q}"
+            allowed = "a positive number, 1e-60 to 1e60"
+            advice = "leave out modes at rest; signs are phases"
+            raise InputError(entry, values[q], allowed, advice)
     return numbers
 
 
 def refuse_tiny(search: Frequencies, squares: Numbers, argument: str, typed: object) -> None:
     """InputError where the lowest corrections are too small for exact frequencies to show them."""
-    shift = float(np.max(np.abs(search.rest.slopes @ squares)))
+    lowest = search.rest.slopes @ squares
+    shift = float(np.max(np.abs(lowest)))
     if 0 < shift < SMALLEST_SHIFT:
         allowed = f"what changes a frequency by {SMALLEST_SHIFT:g} of itself or more"
         raise InputError(argument, typed, allowed, "take more, or the linear chain")
 
 
-def assembled(search: Frequencies, point: Point, plan: Plan, amplitudes: Mapping[int, Any]) -> QTorus:
-    """The torus of a solution, without warnings; amplitudes as exact numbers or in the arithmetic of the search."""
+def assembled(
+    search: Frequencies, point: Point, plan: Plan, amplitudes: Mapping[int, Any]
+) -> QTorus:
+    """The torus of a solution, without warnings.
+
+    Amplitudes as exact numbers or in the arithmetic of the search.
+    """
+    digits = search.digits
     series = point.series
     if series is None or series.order != plan.order:
-        series = lindstedt(search.chain, search.seeds, search.exact(point.shifts), plan.order, digits=search.digits)
-    with search.numbers.context(search.digits):
+        frequencies = search.exact(point.shifts)
+        series = lindstedt(search.chain, search.seeds, frequencies, plan.order, digits=digits)
+    with search.numbers.context(digits):
         terms, _ = series.frequency_terms(point.squares, plan.frequency_order)
-        left = float(np.max(np.abs(terms[1:].sum(axis=0) - shifts(series))))
-        given = {q: search.numbers.number(a) if isinstance(a, Fraction) else a for q, a in amplitudes.items()}
+        left = terms[1:].sum(axis=0) - shifts(series)
+        residual = float(np.max(np.abs(left)))
+        given = {}
+        for q, a in amplitudes.items():
+            given[q] = search.numbers.number(a) if isinstance(a, Fraction) else a
+    at_rest = dict.fromkeys(series.seeds, 0.0)
+    phases = at_rest | by_seed("phases", plan.phases, series)
     return QTorus(
         series=series,
         amplitudes=given,
-        phases=dict.fromkeys(series.seeds, 0.0) | by_seed("phases", plan.phases, series),
+        phases=phases,
         frequency_order=plan.frequency_order,
         order=plan.coordinate_order,
-        root_residual=left,
+        root_residual=residual,
     )
 
 
 def doubted(torus: QTorus) -> QTorus:
-    """The same torus with its amplitude history, certificate and reasons to doubt it, as `solve_amplitudes` gives them."""
+    """The same torus with its amplitude history, certificate and doubts.
+
+    As `solve_amplitudes` gives them.
+    """
     series, K = torus.series, torus.frequency_order
     orders = [k for k in frequency_orders(series) if k <= K]
     try:
         history = amplitude_history(series)
     except UndeterminedAmplitudes as failure:
-        return torus.doubted((str(failure).split(";")[0], *residual_doubts(torus)))
+        undetermined = str(failure).split(";")[0]
+        return torus.doubted((undetermined, *residual_doubts(torus)))
     amplitudes = tuple(torus.amplitudes.values())
     other = history.amplitudes.get(orders[-1], amplitudes)
     doubts = [*order_doubts(amplitudes, orders, history), *residual_doubts(torus)]
-    if max(abs(float(a / b - 1)) for a, b in zip(amplitudes, other, strict=True)) > SAME:
-        found = ", ".join(f"A_{q} = {float(a):.6g}" for q, a in zip(series.seeds, other, strict=True))
+    distances = [abs(float(a / b - 1)) for a, b in zip(amplitudes, other, strict=True)]
+    if max(distances) > SAME_ROOT:
+        by_name = dict(zip(series.seeds, map(float, other), strict=True))
+        found = _listed("A", by_name)
         doubts.append(f"these frequencies have other amplitudes as well: {found}")
     certificate = None
     if series.digits:
         with series.numbers.context(series.digits):
-            certificate = certify_root(series, [a**2 for a in amplitudes], K)
-    return replace(torus, history=dict(history.amplitudes), certificate=certificate).doubted(tuple(doubts))
+            squares = [a**2 for a in amplitudes]
+            certificate = certify_root(series, squares, K)
+    known = dict(history.amplitudes)
+    judged = replace(torus, history=known, certificate=certificate)
+    return judged.doubted(tuple(doubts))
