@@ -1,9 +1,9 @@
-"""The propagation rule proved or refuted by exact arithmetic, with a certificate that others can check.
+"""The propagation rule proved or refuted by exact arithmetic, with a certificate for others.
 
-A mode is excited at an order if its term is not identically zero for generic frequencies (Definition 1).
-That it is excited is shown by one coefficient with a nonzero residue modulo a prime. That it is not excited
-is shown by the couplings, which leave it nothing, or by an identity between integer polynomials in the
-L_q(nu); what neither shows is reported as undecided.
+A mode is excited at an order if its term is not identically zero for generic frequencies
+(Definition 1). That it is excited is shown by one coefficient with a nonzero residue modulo a
+prime. That it is not excited is shown by the couplings, which leave it nothing, or by an identity
+between integer polynomials in the L_q(nu); what neither shows is reported as undecided.
 """
 
 from __future__ import annotations
@@ -39,7 +39,10 @@ IDENTITY_ORDER = 4
 
 @dataclass(frozen=True)
 class Witness:
-    """A coefficient that is not zero: mode, order, monomial (p_1, n_1, ..., p_s, n_s), and its residue at a point."""
+    """A coefficient that is not zero: mode, order, monomial, and its residue at a point.
+
+    The monomial is (p_1, n_1, ..., p_s, n_s).
+    """
 
     mode: int
     order: int
@@ -47,36 +50,65 @@ class Witness:
     monomial: tuple[int, ...]
     residue: int
 
+    def record(self) -> dict[str, Any]:
+        """As a certificate holds it."""
+        return {
+            "mode": self.mode,
+            "order": self.order,
+            "point": self.point,
+            "monomial": list(self.monomial),
+            "residue": self.residue,
+        }
+
 
 @dataclass(frozen=True)
 class Vanishing:
-    """Orders at which the term of a mode is identically zero, and by what: 'couplings' or 'identity'."""
+    """Orders at which the term of a mode is identically zero, and by what.
+
+    By 'couplings' or 'identity'.
+    """
 
     mode: int
     orders: tuple[int, ...]
     by: str
+
+    def record(self) -> dict[str, Any]:
+        """As a certificate holds it."""
+        return {"mode": self.mode, "orders": list(self.orders), "by": self.by}
 
 
 @dataclass(frozen=True)
 class Undecided:
     """Orders at which the term of a mode was zero at every point and no proof was found.
 
-    error_probability : bound on the probability that a term of generic frequencies vanishes at all points, if the primes
-    do not divide all its coefficients.
+    error_probability : bound on the probability that a term of generic frequencies vanishes at
+    all points, if the primes do not divide all its coefficients.
     """
 
     mode: int
     orders: tuple[int, ...]
     error_probability: float
 
+    def record(self) -> dict[str, Any]:
+        """As a certificate holds it."""
+        bound = f"{self.error_probability:.1e}"
+        return {"mode": self.mode, "orders": list(self.orders), "error_probability": bound}
+
 
 @dataclass(frozen=True)
 class RuleException:
-    """A mode whose order is not the predicted one; None where it is excited at no order up to the last."""
+    """A mode whose order is not the predicted one.
+
+    None where it is excited at no order up to the last.
+    """
 
     mode: int
     predicted: int | None
     actual: int | None
+
+    def record(self) -> dict[str, Any]:
+        """As a certificate holds it."""
+        return {"mode": self.mode, "predicted": self.predicted, "actual": self.actual}
 
 
 @dataclass(frozen=True)
@@ -87,11 +119,12 @@ class PropagationProof:
 
     N, model, seeds, order : the case. rule, actual : modes by order, 0 .. order.
     verdict : 'proved', 'refuted' (some exception is decided) or 'undecided'.
-    exceptions : modes whose order is not the predicted one. undecided : modes and orders that nothing
-        decides.
-    points : primes, roots and frequencies of the runs. excited : a coefficient that is not zero, for every
-        excited mode.
-    vanishing : modes and orders that are identically zero, and by what. All dimensionless integers, exact.
+    exceptions : modes whose order is not the predicted one. undecided : modes and orders that
+        nothing decides.
+    points : primes, roots and frequencies of the runs. excited : a coefficient that is not zero,
+        for every excited mode.
+    vanishing : modes and orders that are identically zero, and by what. All dimensionless
+        integers, exact.
 
     >>> from symfpu import prove_propagation
     >>> prove_propagation(8, (1, 4), 3, model="beta")
@@ -113,12 +146,21 @@ class PropagationProof:
 
     def __repr__(self) -> str:
         seeds = ",".join(map(str, self.seeds))
-        detail = "".join(f"; mode {e.mode} predicted at {e.predicted}, actually {e.actual}" for e in self.exceptions[:3])
-        more = f"; {len(self.exceptions) - 3} more" if len(self.exceptions) > 3 else ""
-        return f"PropagationProof(N={self.N}, {self.model}, seeds={seeds}, order {self.order}: {self.verdict}{detail}{more})"
+        verdict = self.verdict
+        for e in self.exceptions[:3]:
+            verdict += f"; mode {e.mode} predicted at {e.predicted}, actually {e.actual}"
+        if len(self.exceptions) > 3:
+            verdict += f"; {len(self.exceptions) - 3} more"
+        case = f"N={self.N}, {self.model}, seeds={seeds}, order {self.order}"
+        return f"PropagationProof({case}: {verdict})"
 
     def certificate(self) -> dict[str, Any]:
-        """The certificate as plain integers, strings, lists and dictionaries; symfpu.proofs.verify checks it by another route."""
+        """The certificate as plain integers, strings, lists and dictionaries.
+
+        `symfpu.proofs.verify` checks it by another route.
+        """
+        rule = [list(modes) for modes in self.rule]
+        actual = [list(modes) for modes in self.actual]
         body: dict[str, Any] = {
             "format": FORMAT,
             "schema": SCHEMA,
@@ -126,29 +168,31 @@ class PropagationProof:
             "model": self.model,
             "seeds": list(self.seeds),
             "order": self.order,
-            "rule": [list(modes) for modes in self.rule],
-            "actual": [list(modes) for modes in self.actual],
+            "rule": rule,
+            "actual": actual,
             "verdict": self.verdict,
-            "exceptions": [{"mode": e.mode, "predicted": e.predicted, "actual": e.actual} for e in self.exceptions],
-            "undecided": [
-                {"mode": u.mode, "orders": list(u.orders), "error_probability": f"{u.error_probability:.1e}"} for u in self.undecided
-            ],
-            "points": [{"prime": p.prime, "root": p.root, "frequencies": list(p.frequencies)} for p in self.points],
-            "excited": [
-                {"mode": w.mode, "order": w.order, "point": w.point, "monomial": list(w.monomial), "residue": w.residue}
-                for w in self.excited
-            ],
-            "vanishing": [{"mode": v.mode, "orders": list(v.orders), "by": v.by} for v in self.vanishing],
+            "exceptions": [e.record() for e in self.exceptions],
+            "undecided": [u.record() for u in self.undecided],
+            "points": [_point_record(p) for p in self.points],
+            "excited": [w.record() for w in self.excited],
+            "vanishing": [v.record() for v in self.vanishing],
         }
         text = json.dumps(body, sort_keys=True, separators=(",", ":"))
-        return body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
+        digest = hashlib.sha256(text.encode()).hexdigest()
+        return body | {"digest": digest}
 
     def write(self, path: Path | str) -> None:
         """Write the certificate to a path as JSON, whole or not at all.
 
         Raises InputError if the file cannot be written.
         """
-        write_text(Path(path), json.dumps(self.certificate(), indent=1) + "\n")
+        text = json.dumps(self.certificate(), indent=1)
+        write_text(Path(path), text + "\n")
+
+
+def _point_record(point: ResiduePoint) -> dict[str, Any]:
+    frequencies = list(point.frequencies)
+    return {"prime": point.prime, "root": point.root, "frequencies": frequencies}
 
 
 def prove_propagation(
@@ -164,27 +208,30 @@ def prove_propagation(
 ) -> PropagationProof:
     """Prove or refute the Proposition (Eqs. app, dk) for given N, seeds and model, up to an order.
 
-    N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k. model : 'alpha', 'beta'
-        or 'alpha+beta'. All are dimensionless integers, exact.
-    points : independent primes and random frequencies, each a run of the recursion; with 0 nothing can be
-        shown excited.
+    N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k.
+        model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers, exact.
+    points : independent primes and random frequencies, each a run of the recursion; with 0
+        nothing can be shown excited.
     random_seed : the same seed gives the same points.
     workers : threads of the recursion; default as many as there are processors.
     progress : called as (orders done, orders in all).
 
-    Appendix B proves the Proposition in general; here each case is decided exactly, and some of beta are
-    refuted.
+    Appendix B proves the Proposition in general; here each case is decided exactly, and some of
+    beta are refuted.
     Raises InputError for arguments out of range, TooLarge before allocating what does not fit.
 
     >>> prove_propagation(8, (1, 4), 3, model="beta")
     PropagationProof(N=8, beta, seeds=1,4, order 3: refuted; mode 7 predicted at 1, actually 2)
     """
-    N, points = integer(N, "N", 2), integer(points, "points", 0)
+    N = integer(N, "N", 2)
+    points = integer(points, "points", 0)
     if model not in ("alpha", "beta"):
         raise InputError("model", model, "'alpha' or 'beta'", "the rule is stated for these")
-    seeds = tuple(sorted(seed_modes(seeds, N)))
+    modes = seed_modes(seeds, N)
+    seeds = tuple(sorted(modes))
     order = integer(order, "order", 0)
-    chain = Chain(N, alpha=int(model == "alpha"), beta=int(model == "beta"))
+    alpha, beta = int(model == "alpha"), int(model == "beta")
+    chain = Chain(N, alpha=alpha, beta=beta)
     check_size(chain, seeds, order, "residue")
     if workers is not None:
         integer(workers, "workers", 1)
@@ -197,26 +244,48 @@ def prove_propagation(
         point, series = _run_at_random_point(chain, seeds, order, source, done, workers)
         used.append(point)
         for witness in _witnesses(series, number, point.prime):
-            if witness.mode not in found or witness.order < found[witness.mode].order:
+            known = found.get(witness.mode)
+            if known is None or witness.order < known.order:
                 found[witness.mode] = witness
-    actual = dict.fromkeys(seeds, 0) | {q: w.order for q, w in found.items()}
-    vanishing, undecided = _zero_terms(chain, seeds, order, model, actual, used)
-    predicted = {q: k for k, modes in enumerate(rule) for q in modes}
-    exceptions = tuple(RuleException(q, predicted.get(q), actual.get(q)) for q in range(1, N) if predicted.get(q) != actual.get(q))
+    first = dict.fromkeys(seeds, 0)
+    for q, witness in found.items():
+        first[q] = witness.order
+    vanishing, undecided = _zero_terms(chain, seeds, order, model, first, used)
+    exceptions = _exceptions(N, rule, first)
+    actual = [_modes_of_order(first, k) for k in range(order + 1)]
+    verdict = _verdict(exceptions, undecided)
+    excited = tuple(found[q] for q in sorted(found))
     return PropagationProof(
         N=N,
         model=model,
         seeds=seeds,
         order=order,
         rule=tuple(rule),
-        actual=tuple(tuple(sorted(q for q, k in actual.items() if k == j)) for j in range(order + 1)),
-        verdict=_verdict(exceptions, undecided),
+        actual=tuple(actual),
+        verdict=verdict,
         exceptions=exceptions,
         undecided=undecided,
         points=tuple(used),
-        excited=tuple(found[q] for q in sorted(found)),
+        excited=excited,
         vanishing=vanishing,
     )
+
+
+def _modes_of_order(first: dict[int, int], order: int) -> tuple[int, ...]:
+    return tuple(q for q in sorted(first) if first[q] == order)
+
+
+def _exceptions(
+    N: int, rule: Sequence[Sequence[int]], first: dict[int, int]
+) -> tuple[RuleException, ...]:
+    """The modes whose first order is not that of the rule."""
+    predicted = {q: k for k, modes in enumerate(rule) for q in modes}
+    exceptions = []
+    for q in range(1, N):
+        by_rule, actual = predicted.get(q), first.get(q)
+        if by_rule != actual:
+            exceptions.append(RuleException(q, by_rule, actual))
+    return tuple(exceptions)
 
 
 def _verdict(exceptions: Iterable[RuleException], undecided: Sequence[Undecided]) -> str:
@@ -234,80 +303,133 @@ def _shifted(progress: Progress | None, before: int, total: int) -> Progress | N
 
 
 def random_point(N: int, seeds: int, degree: int, source: random.Random) -> ResiduePoint:
-    """A random prime p = 1 mod 4N that keeps sums of this degree exact, an element of order 4N, and random frequencies."""
+    """A random prime p = 1 mod 4N, an element of order 4N, and random frequencies.
+
+    The prime keeps sums of this degree exact.
+    """
     from sympy import isprime, primefactors
 
-    top = largest_modulus(seeds, degree) // (4 * N)
+    period = 4 * N
+    top = largest_modulus(seeds, degree) // period
     if top < 2**12:
-        raise SymfpuError(f"no primes 1 mod {4 * N} are left for order {degree - 1} with {seeds} seeds; take a lower order")
+        none_left = f"no primes 1 mod {period} are left for order {degree - 1} with {seeds} seeds"
+        raise SymfpuError(f"{none_left}; take a lower order")
     prime = 4
     while not isprime(prime):
-        prime = 4 * N * source.randrange(top // 2, top) + 1
+        prime = period * source.randrange(top // 2, top) + 1
+    factors = primefactors(period)
     root = 1
-    while any(pow(root, 4 * N // f, prime) == 1 for f in primefactors(4 * N)):  # until its order is 4N, no less
-        root = pow(source.randrange(2, prime), (prime - 1) // (4 * N), prime)
-    return ResiduePoint(prime, root, tuple(source.randrange(1, prime) for _ in range(seeds)))
+    # until its order is 4N, no less
+    while any(pow(root, period // f, prime) == 1 for f in factors):
+        root = pow(source.randrange(2, prime), (prime - 1) // period, prime)
+    frequencies = tuple(source.randrange(1, prime) for _ in range(seeds))
+    return ResiduePoint(prime, root, frequencies)
 
 
 def _run_at_random_point(
-    chain: Chain, seeds: tuple[int, ...], order: int, source: random.Random, progress: Progress | None, workers: int | None
+    chain: Chain,
+    seeds: tuple[int, ...],
+    order: int,
+    source: random.Random,
+    progress: Progress | None,
+    workers: int | None,
 ) -> tuple[ResiduePoint, LindstedtSeries]:
+    degree = 1 + chain.degree_step * order
     for _ in range(ATTEMPTS):
-        point = random_point(chain.N, len(seeds), 1 + chain.degree_step * order, source)
+        point = random_point(chain.N, len(seeds), degree, source)
         try:
-            return point, residue_series(chain, seeds, point, order, workers=workers, progress=progress)
+            series = residue_series(chain, seeds, point, order, workers=workers, progress=progress)
         except VanishingResidue:
             continue
-    raise SymfpuError(f"a divisor vanished at each of {ATTEMPTS} random points; the seeds {seeds} may be resonant for every frequency")
+        return point, series
+    vanished = f"a divisor vanished at each of {ATTEMPTS} random points"
+    raise SymfpuError(f"{vanished}; the seeds {seeds} may be resonant for every frequency")
 
 
 def _witnesses(series: LindstedtSeries, point: int, prime: int) -> Iterable[Witness]:
-    """For every mode outside the seeds, its first nonzero order and there the monomial with the fewest divisors."""
-    seen = set(series.seeds)
+    """For every mode outside the seeds, its first nonzero order and a monomial there.
+
+    It is the monomial with the fewest divisors.
+    """
+    shown = set(series.seeds)
     for k in range(1, series.order + 1):
         table = series.coordinates[k]
+        excited = np.flatnonzero(table.any(axis=0)) + 1
+        new = [int(q) for q in excited if int(q) not in shown]
+        if not new:
+            continue
         degree = series.degree(k)
-        new = [int(c) for c in np.flatnonzero(table.any(axis=0)) if int(c) + 1 not in seen]
-        exponents = series.grading.exponents(degree)[series.grading.canonical(degree)]
-        simplest = np.argsort(np.prod(exponents + 1, axis=1), kind="stable") if new else ()
-        for column in new:
-            row = next(int(r) for r in simplest if table[r, column] != 0)
-            yield Witness(column + 1, k, point, tuple(map(int, exponents[row])), int(table[row, column]) % prime)
-            seen.add(column + 1)
+        canonical = series.grading.canonical(degree)
+        exponents = series.grading.exponents(degree)[canonical]
+        divisors = np.prod(exponents + 1, axis=1)
+        simplest = np.argsort(divisors, kind="stable")
+        for q in new:
+            column = table[:, q - 1]
+            row = next(int(r) for r in simplest if column[r] != 0)
+            monomial = tuple(map(int, exponents[row]))
+            residue = int(column[row]) % prime
+            yield Witness(q, k, point, monomial, residue)
+            shown.add(q)
 
 
 def _zero_terms(
-    chain: Chain, seeds: tuple[int, ...], order: int, model: str, actual: dict[int, int], points: Sequence[ResiduePoint]
+    chain: Chain,
+    seeds: tuple[int, ...],
+    order: int,
+    model: str,
+    actual: dict[int, int],
+    points: Sequence[ResiduePoint],
 ) -> tuple[tuple[Vanishing, ...], tuple[Undecided, ...]]:
     """Why every term below the actual order of its mode is zero; what is left is undecided."""
     coupled = [set(modes) for modes in coupled_modes(chain.N, seeds, order, model=model)]
     vanishing, undecided = [], []
     for q in range(1, chain.N):
-        orders = [] if q in seeds else list(range(1, actual.get(q, order + 1)))
+        first = actual.get(q, order + 1)
+        orders = [] if q in seeds else list(range(1, first))
         by_couplings = tuple(j for j in orders if q not in coupled[j])
         rest = [j for j in orders if q in coupled[j]]
         by_identity = tuple(j for j in rest if _is_identity(chain, seeds, q, j))
         left = tuple(j for j in rest if j not in by_identity)
-        for shown, by in ((by_couplings, "couplings"), (by_identity, "identity")):
-            if shown:
-                vanishing.append(Vanishing(q, shown, by))
+        if by_couplings:
+            vanishing.append(Vanishing(q, by_couplings, "couplings"))
+        if by_identity:
+            vanishing.append(Vanishing(q, by_identity, "identity"))
         if left:
-            undecided.append(Undecided(q, left, _error_probability(chain, len(seeds), max(left), points)))
+            probability = _error_probability(chain, len(seeds), max(left), points)
+            undecided.append(Undecided(q, left, probability))
     return tuple(vanishing), tuple(undecided)
 
 
 def _is_identity(chain: Chain, seeds: tuple[int, ...], q: int, order: int) -> bool:
-    """Whether the term of q is the zero polynomial in independent symbols L_q(nu); False also where that is too large."""
+    """Whether the term of q is the zero polynomial in independent symbols L_q(nu).
+
+    False also where that is too large.
+    """
     degree = 1 + chain.degree_step * order
-    if order > IDENTITY_ORDER or monomial_count(len(seeds), degree) * chain.N > IDENTITY_TERMS:
+    terms = monomial_count(len(seeds), degree) * chain.N
+    if order > IDENTITY_ORDER or terms > IDENTITY_TERMS:
         return False
-    return all(value == 0 for value in lindstedt(chain, seeds, order=order).coordinates[order][:, q - 1])
+    series = lindstedt(chain, seeds, order=order)
+    column = series.coordinates[order][:, q - 1]
+    return all(value == 0 for value in column)
 
 
-def _error_probability(chain: Chain, seeds: int, order: int, points: Sequence[ResiduePoint]) -> float:
-    """Schwartz-Zippel: a term is a quotient of polynomials in the frequencies over a product of divisors, each at most
-    `order` times and of degree 2; its numerator vanishes at a random point with probability at most degree / p."""
+def _error_probability(
+    chain: Chain, seeds: int, order: int, points: Sequence[ResiduePoint]
+) -> float:
+    """Bound of the probability that an excited term vanishes at every point (Schwartz-Zippel).
+
+    A term is a quotient of polynomials in the frequencies over a product of divisors, each at
+    most `order` times and of degree 2; its numerator vanishes at a random point with probability
+    at most degree / p.
+    """
+    if not points:
+        return 1.0
     grading = shared_grading(seeds, 1 + chain.degree_step * order)
-    harmonics = {tuple(nu) for d in range(1, grading.degree + 1) for nu in grading.harmonics(d)[0].tolist()}
+    harmonics: set[tuple[int, ...]] = set()
+    for d in range(1, grading.degree + 1):
+        rows, *_ = grading.harmonics(d)
+        harmonics |= {tuple(nu) for nu in rows.tolist()}
     degree = 2 * order * len(harmonics) * (chain.N - 1)
-    return float(np.prod([min(1.0, degree / point.prime) for point in points])) if points else 1.0
+    at_each_point = [min(1.0, degree / point.prime) for point in points]
+    return float(np.prod(at_each_point))

@@ -1,13 +1,16 @@
-"""The Lemma of Appendix C: leading-order terms in closed form, as exact expressions in the symbols L_q(nu).
+"""The Lemma of Appendix C: leading terms in closed form, exact expressions in L_q(nu).
 
-For q first excited at order k (q in D_k), Q_q^(k) = sum over n in D_0^r and sigma in {-1,1}^r of R_q^(k) K_q^(k)
-exp(i sigma.(omega_n t + phi_n)) (Eq. Qqkr), r = k+1 (alpha) or 2k+1 (beta); R and K depend on n and sigma. Read here:
-K_m^(0)(n) = delta_{m,n}, L^(0) = 1 also in R, and D_k the modes that are in fact excited first at order k.
+For q first excited at order k (q in D_k), Q_q^(k) = sum over n in D_0^r and sigma in {-1,1}^r of
+R_q^(k) K_q^(k) exp(i sigma.(omega_n t + phi_n)) (Eq. Qqkr), r = k+1 (alpha) or 2k+1 (beta); R and
+K depend on n and sigma. Read here: K_m^(0)(n) = delta_{m,n}, L^(0) = 1 also in R, and D_k the
+modes that are in fact excited first at order k.
 
-The sums over m_i in D_{l_i} need leading terms only. Let c(q) be the first order at which the couplings admit q, so that
-c(q) <= c(l) + c(m) + 1 wherever B_qlm is not zero. A product of terms of orders n_1 >= c(l), n_2 >= c(m) enters at order
-n_1 + n_2 + 1, so at order c(q) both are equalities; and q, no seed, has no frequency correction. Likewise for C. So the Lemma
-holds for every mode whose term of order c(q) is not identically zero. `lemma_holds` compares it with the recursion.
+The sums over m_i in D_{l_i} need leading terms only. Let c(q) be the first order at which the
+couplings admit q, so that c(q) <= c(l) + c(m) + 1 wherever B_qlm is not zero. A product of terms
+of orders n_1 >= c(l), n_2 >= c(m) enters at order n_1 + n_2 + 1, so at order c(q) both are
+equalities; and q, no seed, has no frequency correction. Likewise for C. So the Lemma holds for
+every mode whose term of order c(q) is not identically zero. `lemma_holds` compares it with the
+recursion.
 """
 
 from __future__ import annotations
@@ -28,19 +31,22 @@ from symfpu.errors import InputError
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.series.divisors import multiplier_symbol
 from symfpu.series.lindstedt import lindstedt
+from symfpu.series.series import LindstedtSeries
 
-Monomial = tuple[int, ...]  # exponents (p_1, n_1, ..., p_s, n_s) of w_i = Omega_i (A_i/2) exp(i theta_i) and its conjugate
+# exponents (p_1, n_1, ..., p_s, n_s) of w_i = Omega_i (A_i/2) exp(i theta_i) and its conjugate
+Monomial = tuple[int, ...]
 Polynomial = dict[Monomial, Any]
 Block = tuple[tuple[int, int], ...]  # pairs (n_i, sigma_i)
-Tree = tuple[Any, ...]  # the shape of a product in K: () is a seed, else a tuple of two or three smaller shapes
+# the shape of a product in K: () is a seed, else a tuple of two or three smaller shapes
+Tree = tuple[Any, ...]
 
 
 @dataclass(frozen=True)
 class LeadingTerm:
     """Q_q^(k) of a mode first excited at order k, without mu^k.
 
-    kernels : by monomial, the sum of K_q^(k) over all arrangements of (n, sigma) in which seed i stands p_i times with
-    sigma = +1 and n_i times with -1. Zero sums are left out.
+    kernels : by monomial, the sum of K_q^(k) over all arrangements of (n, sigma) in which seed i
+    stands p_i times with sigma = +1 and n_i times with -1. Zero sums are left out.
     """
 
     mode: int
@@ -53,10 +59,18 @@ class LeadingTerm:
         terms = []
         for monomial, kernel in self.kernels.items():
             nu = _harmonic(monomial)
-            if nu >= tuple(-n for n in nu):  # the conjugate monomial has the same kernel and makes the cosine
-                modes = [self.seeds[i // 2] for i, e in enumerate(monomial) for _ in range(e)]
-                angle = se.Add(*(n * se.Symbol(f"theta{q}") for n, q in zip(nu, self.seeds, strict=True)))
-                terms.append((2 if any(nu) else 1) * _factor(self.mode, self.order, modes, nu) * kernel * se.cos(angle))
+            # the conjugate monomial has the same kernel and makes the cosine
+            conjugate = tuple(-n for n in nu)
+            if nu < conjugate:
+                continue
+            modes = []
+            for i, exponent in enumerate(monomial):
+                modes += [self.seeds[i // 2]] * exponent
+            phases = [n * se.Symbol(f"theta{q}") for n, q in zip(nu, self.seeds, strict=True)]
+            angle = se.Add(*phases)
+            factor = _factor(self.mode, self.order, modes, nu)
+            pair = 2 if any(nu) else 1
+            terms.append(pair * factor * kernel * se.cos(angle))
         return se.Add(*terms)
 
 
@@ -65,24 +79,27 @@ def leading_terms(chain: Chain, seeds: Sequence[int], order: int) -> dict[int, L
 
     Eqs. Qqkr, Rqr, Kkga, Kk, Lm; at order 1 this is Eq. Qq1cora.
 
-    The (2s)^r summands are grouped by monomial: K factorises over its blocks, so their sum is a product of polynomials.
-    Raises InputError for seeds or an order out of range, and for a chain with both couplings.
+    The (2s)^r summands are grouped by monomial: K factorises over its blocks, so their sum is a
+    product of polynomials. Raises InputError for seeds or an order out of range, and for a chain
+    with both couplings.
 
     >>> leading_terms(Chain(N=6, beta=1), (2, 3), 2)[4]
     LeadingTerm(mode=4, order=2, seeds=(2, 3))
     """
-    return dict(_leading(chain, _seeds(chain, seeds), integer(order, "order", 0)))
+    modes = _seeds(chain, seeds)
+    last = integer(order, "order", 0)
+    return dict(_leading(chain, modes, last))
 
 
 def leading_term(chain: Chain, seeds: Sequence[int], q: int) -> Any:
     """Q_q^(k) at the order k of its first excitation (Lemma, Eq. Qqkr), without mu^k, in symbols.
 
-    chain : one coupling or both. seeds : distinct modes D_0. q : a mode that they excite. All dimensionless,
-        phases theta in radians.
+    chain : one coupling or both. seeds : distinct modes D_0. q : a mode that they excite. All
+        dimensionless, phases theta in radians.
 
-    A SymEngine expression in A_i, theta_i, Omega_q and L_q(nu), as of a series in universal form. The work
-    grows exponentially with k. The Lemma is read with K_m^(0)(n) = delta_{m,n}, which it needs and does not
-    print.
+    A SymEngine expression in A_i, theta_i, Omega_q and L_q(nu), as of a series in universal form.
+    The work grows exponentially with k. The Lemma is read with K_m^(0)(n) = delta_{m,n}, which it
+    needs and does not print.
     Raises InputError for a seed, a mode that the seeds never excite, and as `leading_terms`.
 
     >>> sorted(map(str, leading_term(Chain(N=8, alpha=1), (1,), 2).free_symbols))
@@ -91,134 +108,246 @@ def leading_term(chain: Chain, seeds: Sequence[int], q: int) -> Any:
     modes = _seeds(chain, seeds)
     if integer(q, "q", 1) not in modes and q in _closure(chain, set(modes)):
         for k in range(1, 2 * chain.N):
-            if q in (terms := _leading(chain, modes, k)):
+            terms = _leading(chain, modes, k)
+            if q in terms:
                 return terms[q].expression()
-    raise InputError("q", q, f"a mode, no seed, that the seeds {modes} excite", "other terms are zero, or A_q cos(theta_q) for a seed")
+    allowed = f"a mode, no seed, that the seeds {modes} excite"
+    raise InputError("q", q, allowed, "other terms are zero, or A_q cos(theta_q) for a seed")
 
 
-def leading_factor(chain: Chain, seeds: Sequence[int], q: int, modes: Sequence[int], signs: Sequence[int]) -> Any:
-    """R_q^(k)(n, sigma) (Eq. Rqr), its divisor written as L_q(nu) = Omega_q^2 / (Omega_q^2 - (sigma.omega_n)^2).
+def leading_factor(
+    chain: Chain, seeds: Sequence[int], q: int, modes: Sequence[int], signs: Sequence[int]
+) -> Any:
+    """R_q^(k)(n, sigma) (Eq. Rqr).
 
-    modes, signs : n in D_0^r and sigma in {-1,1}^r, which give k. At k = 0, L is 1 as in Eq. Lm. Raises InputError.
+    Its divisor is written as L_q(nu) = Omega_q^2 / (Omega_q^2 - (sigma.omega_n)^2).
+
+    modes, signs : n in D_0^r and sigma in {-1,1}^r, which give k. At k = 0, L is 1 as in Eq. Lm.
+    Raises InputError.
 
     >>> leading_factor(Chain(N=8, alpha=1), (1,), 2, (1, 1), (1, 1))
     (-1/4)*A1**2*Omega_1**2*L_{2}(2)/Omega_2
     """
     ordered, block = _block(chain, seeds, q, modes, signs)
-    return _factor(q, (len(block) - 1) // chain.degree_step, modes, _harmonic(_monomial(ordered, block)))
+    order = (len(block) - 1) // chain.degree_step
+    nu = _harmonic(_monomial(ordered, block))
+    return _factor(q, order, modes, nu)
 
 
-def leading_kernel(chain: Chain, seeds: Sequence[int], q: int, modes: Sequence[int], signs: Sequence[int]) -> Any:
-    """K_q^(k)(n, sigma) by Eqs. Kkga and Kk as they stand, a polynomial of degree k-1 in the symbols L_m(nu).
+def leading_kernel(
+    chain: Chain, seeds: Sequence[int], q: int, modes: Sequence[int], signs: Sequence[int]
+) -> Any:
+    """K_q^(k)(n, sigma) by Eqs. Kkga and Kk as they stand.
 
-    modes, signs as in `leading_factor`. At k = 0 it is delta_{q,n}. Not symmetric in the pairs (n_i, sigma_i). Raises InputError.
+    A polynomial of degree k-1 in the symbols L_m(nu).
+
+    modes, signs as in `leading_factor`. At k = 0 it is delta_{q,n}. Not symmetric in the pairs
+    (n_i, sigma_i). Raises InputError.
 
     >>> leading_kernel(Chain(N=8, alpha=1), (1,), 3, (1, 1, 1), (1, 1, 1))
     2*L_{2}(2)
     """
-    return se.expand(_kernels(chain, *_block(chain, seeds, q, modes, signs)).get(q, se.Integer(0)))
+    ordered, block = _block(chain, seeds, q, modes, signs)
+    kernels = _kernels(chain, ordered, block)
+    return se.expand(kernels.get(q, se.Integer(0)))
 
 
 def lemma_holds(chain: Chain, seeds: Sequence[int], order: int) -> dict[int, bool]:
-    """For every mode excited first at 1 .. order: is the Lemma's term that of the recursion, as an identity?
+    """For every mode excited at 1 .. order: is the Lemma's term that of the recursion?
 
-    chain : one coupling or both. seeds : distinct modes D_0. order : the last k, a dimensionless integer from
-        0 up.
+    It is asked as an identity.
 
-    Returns truth by mode. Excited means here: not identically zero in independent symbols L_q(nu). True: the
-    same order, and the expanded difference of the two terms (Eq. Qqkr) is 0. Raises InputError, TooLarge.
+    chain : one coupling or both. seeds : distinct modes D_0. order : the last k, a dimensionless
+        integer from 0 up.
+
+    Returns truth by mode. Excited means here: not identically zero in independent symbols
+    L_q(nu). True: the same order, and the expanded difference of the two terms (Eq. Qqkr) is 0.
+    Raises InputError, TooLarge.
 
     >>> lemma_holds(Chain(N=6, beta=1), (2, 3), 2)
     {1: True, 4: True, 5: True}
     """
     series = lindstedt(chain, seeds, order=order)
-    terms = leading_terms(chain, seeds, order)
-    first = {q: k for k in range(order, -1, -1) for q in range(1, chain.N) if (series.coordinates[k][:, q - 1] != 0).any()}
-    same = {q for q, term in terms.items() if first.get(q) == term.order and se.expand(term.expression() - series.term(q, first[q])) == 0}
-    return {q: q in same for q in sorted({q for q, k in first.items() if k > 0} | terms.keys())}
+    predicted = leading_terms(chain, seeds, order)
+    first = _first_orders(series)
+    excited = {q for q, k in first.items() if k > 0}
+    verdicts = {}
+    for q in sorted(excited | predicted.keys()):
+        term = predicted.get(q)
+        verdicts[q] = term is not None and _agree(term, series, first.get(q))
+    return verdicts
+
+
+def _first_orders(series: LindstedtSeries) -> dict[int, int]:
+    """By mode, the first order at which the recursion gives it a term."""
+    first: dict[int, int] = {}
+    for k, table in enumerate(series.coordinates):
+        excited = (table != 0).any(axis=0)
+        for q in range(1, series.chain.N):
+            if excited[q - 1]:
+                first.setdefault(q, k)
+    return first
+
+
+def _agree(term: LeadingTerm, series: LindstedtSeries, order: int | None) -> bool:
+    """The same order, and the same polynomial in the symbols L."""
+    if order != term.order:
+        return False
+    difference = term.expression() - series.term(term.mode, order)
+    return bool(se.expand(difference) == 0)
 
 
 @lru_cache(maxsize=16)
 def _leading(chain: Chain, seeds: tuple[int, ...], order: int) -> dict[int, LeadingTerm]:
-    """The Lemma order by order: D_k are the modes whose sum of products of earlier leading terms is not zero."""
+    """The Lemma order by order.
+
+    D_k are the modes whose sum of products of earlier leading terms is not zero.
+    """
     if order == 0:
         return {}
     terms = dict(_leading(chain, seeds, order - 1))
-    weights: dict[int, Polynomial] = {q: {_monomial(seeds, ((q, sign),)): se.Integer(1) for sign in (1, -1)} for q in seeds}
-    weights |= {q: {m: _multiplier(q, _harmonic(m)) * k for m, k in term.kernels.items()} for q, term in terms.items()}
-    levels = [seeds, *([q for q, term in terms.items() if term.order == k] for k in range(1, order))]
+    weights = _weights(seeds, terms)
+    levels = [seeds, *(_first_excited(terms, k) for k in range(1, order))]
     sums: dict[int, Polynomial] = defaultdict(lambda: defaultdict(int))
     for modes in _products(levels, chain.degree_step + 1):
-        if targets := product_modes(chain.N, modes) - weights.keys():
-            polynomial = reduce(_times, [weights[m] for m in modes])
-            arrangements = factorial(len(modes)) // prod(map(factorial, Counter(modes).values()))
-            for q in targets:
-                number = arrangements * _coupling(chain, q, modes)
-                for monomial, value in polynomial.items():
-                    sums[q][monomial] += number * value
+        targets = product_modes(chain.N, modes) - weights.keys()
+        if not targets:
+            continue
+        polynomial = reduce(_times, [weights[m] for m in modes])
+        arrangements = _arrangements(modes)
+        for q in targets:
+            number = arrangements * _coupling(chain, q, modes)
+            for monomial, value in polynomial.items():
+                sums[q][monomial] += number * value
     for q in sorted(sums):
-        if kernels := {m: total for m, value in sorted(sums[q].items()) if (total := se.expand(value)) != 0}:
+        kernels = _nonzero(sums[q])
+        if kernels:
             terms[q] = LeadingTerm(q, order, seeds, kernels)
     return terms
 
 
+def _first_excited(terms: Mapping[int, LeadingTerm], order: int) -> tuple[int, ...]:
+    return tuple(q for q, term in terms.items() if term.order == order)
+
+
+def _weights(seeds: tuple[int, ...], terms: Mapping[int, LeadingTerm]) -> dict[int, Polynomial]:
+    """What a mode brings into a product: of seeds L K = 1, of excited modes L_q K_q (Eq. Lm)."""
+    weights: dict[int, Polynomial] = {}
+    for q in seeds:
+        weights[q] = {_monomial(seeds, ((q, sign),)): se.Integer(1) for sign in (1, -1)}
+    for q, term in terms.items():
+        polynomial = {}
+        for monomial, kernel in term.kernels.items():
+            polynomial[monomial] = _multiplier(q, _harmonic(monomial)) * kernel
+        weights[q] = polynomial
+    return weights
+
+
+def _arrangements(modes: Sequence[int]) -> int:
+    """In how many orders the factors of a product can stand."""
+    repeated = Counter(modes).values()
+    return factorial(len(modes)) // prod(map(factorial, repeated))
+
+
+def _nonzero(polynomial: Polynomial) -> Polynomial:
+    """Its expanded coefficients that are not zero, by ascending monomial."""
+    expanded = {}
+    for monomial, value in sorted(polynomial.items()):
+        coefficient = se.expand(value)
+        if coefficient != 0:
+            expanded[monomial] = coefficient
+    return expanded
+
+
 def _products(levels: Sequence[Sequence[int]], factors: int) -> Iterator[tuple[int, ...]]:
-    """Ascending (m_1, m_2) or (m_1, m_2, m_3) with m_i in D_{l_i} and sum l_i = k-1, for the given D_0 .. D_(k-1)."""
-    for orders in (o for o in combinations_with_replacement(range(len(levels)), factors) if sum(o) == len(levels) - 1):
-        yield from sorted({tuple(sorted(modes)) for modes in product(*(levels[l] for l in orders))})
+    """Ascending (m_1, m_2) or (m_1, m_2, m_3) with m_i in D_{l_i} and sum l_i = k-1.
+
+    The sets D_0 .. D_(k-1) are given.
+    """
+    last = len(levels) - 1
+    for orders in combinations_with_replacement(range(len(levels)), factors):
+        if sum(orders) == last:
+            chosen = product(*(levels[l] for l in orders))
+            yield from sorted({tuple(sorted(modes)) for modes in chosen})
 
 
 def _times(left: Polynomial, right: Polynomial) -> Polynomial:
     result: Polynomial = defaultdict(int)
     for (a, x), (b, y) in product(left.items(), right.items()):
-        result[tuple(i + j for i, j in zip(a, b, strict=True))] += x * y
+        exponents = tuple(i + j for i, j in zip(a, b, strict=True))
+        result[exponents] += x * y
     return result
 
 
 def _closure(chain: Chain, modes: set[int]) -> set[int]:
     """All modes that the couplings let in at some order."""
-    products = combinations_with_replacement(sorted(modes), chain.degree_step + 1)
-    larger = modes.union(*(product_modes(chain.N, chosen) for chosen in products))
+    larger = set(modes)
+    for chosen in combinations_with_replacement(sorted(modes), chain.degree_step + 1):
+        larger |= product_modes(chain.N, chosen)
     return modes if larger == modes else _closure(chain, larger)
 
 
 @lru_cache(maxsize=1 << 14)
 def _kernels(chain: Chain, seeds: tuple[int, ...], block: Block) -> dict[int, Any]:
-    """K_q by mode: the sum of Eqs. Kkga, Kk over l_i and m_i, the block cut into consecutive ones
-    (Eqs. nvecta, nvectb); delta_{q,n} at k = 0.
+    """K_q by mode: the sum of Eqs. Kkga, Kk over l_i and m_i; delta_{q,n} at k = 0.
+
+    The block is cut into consecutive ones (Eqs. nvecta, nvectb).
     """
     if len(block) == 1:
-        return {block[0][0]: se.Integer(1)}
+        seed, _ = block[0]
+        return {seed: se.Integer(1)}
     sums: dict[int, Any] = {}
     for ends in combinations_with_replacement(range(1, len(block)), chain.degree_step):
-        pieces = [block[a:b] for a, b in pairwise((0, *ends, len(block)))]
-        if all(piece and (len(piece) - 1) % chain.degree_step == 0 for piece in pieces):
-            weights = [_weighted(chain, seeds, piece) for piece in pieces]
-            for modes in product(*weights):
-                value = prod((w[m] for w, m in zip(weights, modes, strict=True)), start=se.Integer(1))
-                for q in product_modes(chain.N, tuple(sorted(modes))):
-                    sums[q] = sums.get(q, 0) + _coupling(chain, q, modes) * value
+        cuts = (0, *ends, len(block))
+        pieces = [block[a:b] for a, b in pairwise(cuts)]
+        if not all(_is_block(piece, chain.degree_step) for piece in pieces):
+            continue
+        weights = [_weighted(chain, seeds, piece) for piece in pieces]
+        for modes in product(*weights):
+            factors = [w[m] for w, m in zip(weights, modes, strict=True)]
+            value = prod(factors, start=se.Integer(1))
+            for q in product_modes(chain.N, tuple(sorted(modes))):
+                sums[q] = sums.get(q, 0) + _coupling(chain, q, modes) * value
     return sums
+
+
+def _is_block(piece: Block, step: int) -> bool:
+    """Whether a piece has a length k + 1 (alpha) or 2k + 1 (beta)."""
+    return bool(piece) and (len(piece) - 1) % step == 0
 
 
 def _weighted(chain: Chain, seeds: tuple[int, ...], block: Block) -> dict[int, Any]:
     """L_m K_m for m in D_l (Eq. Lm), with the sigma of the block."""
-    l, nu, kernels = (len(block) - 1) // chain.degree_step, _harmonic(_monomial(seeds, block)), _kernels(chain, seeds, block)
-    level = [m for m, term in _leading(chain, seeds, l).items() if term.order == l]
-    return {m: _multiplier(m, nu) * kernels[m] for m in level if m in kernels} if l else kernels
+    kernels = _kernels(chain, seeds, block)
+    l = (len(block) - 1) // chain.degree_step
+    if l == 0:
+        return kernels
+    nu = _harmonic(_monomial(seeds, block))
+    weighted = {}
+    for m, term in _leading(chain, seeds, l).items():
+        if term.order == l and m in kernels:
+            weighted[m] = _multiplier(m, nu) * kernels[m]
+    return weighted
 
 
 def kernel_trees(order: int, factors: int) -> Counter[Tree]:
-    """The shapes of product in K^(k), largest block first, with their numbers of arrangements: Eqs. Kkga (2 factors), Kk (3).
+    """The shapes of product in K^(k), largest block first, with their numbers of arrangements.
+
+    Eqs. Kkga (2 factors), Kk (3).
 
     >>> kernel_trees(2, 2)
     Counter({(((), ()), ()): 2})
     """
-    trees: Counter[Tree] = Counter([()] if integer(order, "order", 0) == 0 else [])
-    for orders in (o for o in product(range(order), repeat=factors) if sum(o) == order - 1):
-        for chosen in product(*(kernel_trees(l, factors).items() for l in orders)):
-            tree = tuple(sorted((t for t, _ in chosen), key=lambda t: (_leaves(t), t), reverse=True))
-            trees[tree] += prod(count for _, count in chosen)
+    if integer(order, "order", 0) == 0:
+        return Counter([()])
+    trees: Counter[Tree] = Counter()
+    for orders in product(range(order), repeat=factors):
+        if sum(orders) != order - 1:
+            continue
+        shapes = [kernel_trees(l, factors).items() for l in orders]
+        for chosen in product(*shapes):
+            parts = sorted((t for t, _ in chosen), key=lambda t: (_leaves(t), t), reverse=True)
+            trees[tuple(parts)] += prod(count for _, count in chosen)
     return trees
 
 
@@ -227,45 +356,66 @@ def appendix_d(order: int = 3, *, model: str = "alpha", one_symbol: bool = True)
 
     Equal products of Eqs. Kkga, Kk are collected (`kernel_trees`).
 
-    one_symbol : q_0 for all seeds and q_l for all modes of D_l, as in the paper; otherwise seeds n_1 .. n_r, and q_l, q_l' for two
-    modes of one D_l, sums over D_l understood. Collecting changes K(n, sigma), but not its sum over all arrangements.
-    The paper's square in K^(3) is wrong: the second block has sigma_3, sigma_4. Raises InputError.
+    one_symbol : q_0 for all seeds and q_l for all modes of D_l, as in the paper; otherwise seeds
+    n_1 .. n_r, and q_l, q_l' for two modes of one D_l, sums over D_l understood. Collecting
+    changes K(n, sigma), but not its sum over all arrangements. The paper's square in K^(3) is
+    wrong: the second block has sigma_3, sigma_4. Raises InputError.
 
     >>> print(appendix_d(1).splitlines()[1])
     &&\mathcal{K}_{q_1 ; \alpha} ^{(1)} = B_{q_1 q_0 q_0}
     """
-    if model not in (factors := {"alpha": 2, "beta": 3}):
+    factors = {"alpha": 2, "beta": 3}
+    if model not in factors:
         raise InputError("model", model, "'alpha' or 'beta'", "the Lemma is stated for these")
     lines = []
     for k in range(1, integer(order, "order", 1) + 1):
-        trees = kernel_trees(k, factors[model]).most_common()
-        terms = " + ".join((f"{count} " if count > 1 else "") + _latex(tree, one_symbol=one_symbol) for tree, count in trees)
-        lines.append(rf"&&\mathcal{{K}}_{{q_{k} ; \{model}}} ^{{({k})}} = {terms}")
-    return "\n".join([r"\begin{eqnarray}", " \\nonumber\\\\\n".join(lines), r"\end{eqnarray}"])
+        terms = []
+        for tree, count in kernel_trees(k, factors[model]).most_common():
+            number = f"{count} " if count > 1 else ""
+            terms.append(number + _latex(tree, one_symbol=one_symbol))
+        kernel = rf"\mathcal{{K}}_{{q_{k} ; \{model}}} ^{{({k})}}"
+        lines.append(rf"&&{kernel} = {' + '.join(terms)}")
+    body = " \\nonumber\\\\\n".join(lines)
+    return "\n".join([r"\begin{eqnarray}", body, r"\end{eqnarray}"])
 
 
 def _latex(tree: Tree, *, one_symbol: bool) -> str:
     """One product of K as a fraction of the L times couplings, the earliest first."""
-    couplings, squares, divisors, used = Counter[str](), Counter[str](), Counter[str](), Counter[int]()
+    couplings, squares, divisors = Counter[str](), Counter[str](), Counter[str]()
+    used = Counter[int]()
 
     def visit(node: Tree, first: int) -> str:
         """The name of the node's mode; its block begins with sigma_first."""
         if not node:
             return "q_0" if one_symbol else f"n_{first}"
         level = (_leaves(node) - 1) // (len(node) - 1)
-        name = f"q_{level}" + "'" * (0 if one_symbol else used[level])
+        primes = 0 if one_symbol else used[level]
+        name = f"q_{level}" + "'" * primes
         used[level] += 1
-        others = [visit(child, first + sum(map(_leaves, node[:i]))) for i, child in enumerate(node)]
-        couplings[f"{'B' if len(node) == 2 else 'C'}_{{{' '.join([name, *others])}}}"] += 1
+        names = [name]
+        start = first
+        for child in node:
+            names.append(visit(child, start))
+            start += _leaves(child)
+        letter = "B" if len(node) == 2 else "C"
+        couplings[f"{letter}_{{{' '.join(names)}}}"] += 1
         if node is not tree:
-            drive = "+".join(rf"\sigma_{i} \omega_{{{visit((), i)}}}" for i in range(first, first + _leaves(node)))
+            block = range(first, first + _leaves(node))
+            rates = [rf"\sigma_{i} \omega_{{{visit((), i)}}}" for i in block]
             squares[rf"\Omega_{{{name}}}"] += 2
-            divisors[rf"[\Omega_{{{name}}}^2 - ({drive})^2]"] += 1
+            divisors[rf"[\Omega_{{{name}}}^2 - ({'+'.join(rates)})^2]"] += 1
         return name
 
     visit(tree, 1)
-    top, bottom, last = (" ".join(f"{x}^{e}" if e > 1 else x for x, e in c.items()) for c in (squares, divisors, couplings))
-    return (rf"\frac{{{top}}}{{{bottom}}} " if divisors else "") + last
+    product_of_couplings = _latex_product(couplings)
+    if not divisors:
+        return product_of_couplings
+    top, bottom = _latex_product(squares), _latex_product(divisors)
+    return rf"\frac{{{top}}}{{{bottom}}} " + product_of_couplings
+
+
+def _latex_product(powers: Counter[str]) -> str:
+    return " ".join(f"{factor}^{e}" if e > 1 else factor for factor, e in powers.items())
 
 
 def _leaves(tree: Tree) -> int:
@@ -274,14 +424,17 @@ def _leaves(tree: Tree) -> int:
 
 def _factor(q: int, order: int, modes: Sequence[int], nu: tuple[int, ...]) -> Any:
     """R_q^(k) of Eq. Rqr."""
-    amplitudes = se.Mul(*(se.Symbol(f"Omega_{n}") * se.Symbol(f"A{n}") for n in modes))
+    amplitudes = [se.Symbol(f"Omega_{n}") * se.Symbol(f"A{n}") for n in modes]
     multiplier = _multiplier(q, nu) if order else se.Integer(1)
-    return se.Integer((-1) ** order) / se.Integer(2) ** len(modes) * amplitudes * multiplier / se.Symbol(f"Omega_{q}")
+    sign = se.Integer((-1) ** order)
+    number = sign / se.Integer(2) ** len(modes)
+    return number * se.Mul(*amplitudes) * multiplier / se.Symbol(f"Omega_{q}")
 
 
 def _multiplier(q: int, nu: tuple[int, ...]) -> Any:
     """L_q(nu) = L_q(-nu), named by the harmonic whose first nonzero entry is positive."""
-    return multiplier_symbol(q, max(nu, tuple(-n for n in nu)))
+    opposite = tuple(-n for n in nu)
+    return multiplier_symbol(q, max(nu, opposite))
 
 
 def _harmonic(monomial: Monomial) -> tuple[int, ...]:
@@ -298,17 +451,24 @@ def _coupling(chain: Chain, q: int, modes: Sequence[int]) -> int:
 
 def _seeds(chain: Chain, seeds: Sequence[int]) -> tuple[int, ...]:
     if chain.model not in ("alpha", "beta"):
-        raise InputError("chain", chain, "one coupling, alpha or beta", "the Lemma is stated for each model alone")
+        allowed = "one coupling, alpha or beta"
+        raise InputError("chain", chain, allowed, "the Lemma is stated for each model alone")
     return tuple(sorted(seed_modes(seeds, chain.N)))
 
 
-def _block(chain: Chain, seeds: Sequence[int], q: int, modes: Sequence[int], signs: Sequence[int]) -> tuple[tuple[int, ...], Block]:
-    """Seeds in ascending order, and the pairs (n_i, sigma_i) of the arguments, sigma in Sigma^r (Eq. set)."""
+def _block(
+    chain: Chain, seeds: Sequence[int], q: int, modes: Sequence[int], signs: Sequence[int]
+) -> tuple[tuple[int, ...], Block]:
+    """Seeds in ascending order, and the pairs (n_i, sigma_i), sigma in Sigma^r (Eq. set)."""
     ordered = _seeds(chain, seeds)
     if integer(q, "q", 1) >= chain.N:
         raise InputError("q", q, f"1..{chain.N - 1}", "name a mode of the chain")
-    if not modes or (len(modes) - 1) % chain.degree_step or not set(modes) <= set(ordered):
-        raise InputError("modes", tuple(modes), f"r = k+1 (alpha) or 2k+1 (beta) of the seeds {ordered}", "take n in D_0^r")
+    whole_orders = modes and (len(modes) - 1) % chain.degree_step == 0
+    if not whole_orders or not set(modes) <= set(ordered):
+        allowed = f"r = k+1 (alpha) or 2k+1 (beta) of the seeds {ordered}"
+        raise InputError("modes", tuple(modes), allowed, "take n in D_0^r")
     if len(signs) != len(modes) or not set(signs) <= {1, -1}:
-        raise InputError("signs", tuple(signs), f"{len(modes)} numbers 1 or -1", "take sigma in {-1,1}^r")
-    return ordered, tuple(zip(map(int, modes), map(int, signs), strict=True))
+        allowed = f"{len(modes)} numbers 1 or -1"
+        raise InputError("signs", tuple(signs), allowed, "take sigma in {-1,1}^r")
+    pairs = zip(map(int, modes), map(int, signs), strict=True)
+    return ordered, tuple(pairs)

@@ -1,7 +1,7 @@
-"""Sweeps of the propagation rule over all seed sets: how often the Proposition holds, and every exception.
+"""Sweeps of the propagation rule over all seed sets: how often it holds, and every exception.
 
-Cases run through the standard Executor interface, and each finished case is one line of a file, from which an interrupted
-sweep goes on. A case that raises an error loses no other.
+Cases run through the standard Executor interface, and each finished case is one line of a file,
+from which an interrupted sweep goes on. A case that raises an error loses no other.
 """
 
 from __future__ import annotations
@@ -28,12 +28,16 @@ GUARD = "call sweep_propagation under `if __name__ == '__main__':`, or pass exec
 DEAD_WORKERS = f"the worker processes died: in a script, {GUARD}"
 
 Key = tuple[int, tuple[int, ...]]  # N and the seeds
-Decided = tuple[list[dict[str, Any]], dict[Key, Exception]]  # records of decided cases, errors of others
+# records of decided cases, errors of others
+Decided = tuple[list[dict[str, Any]], dict[Key, Exception]]
 
 
 @dataclass(frozen=True)
 class SweepCase:
-    """One seed set: verdict, exceptions (mode, predicted order, actual order or None), and whether the corrected rule holds."""
+    """One seed set: its verdict, its exceptions, and whether the corrected rule holds.
+
+    An exception is (mode, predicted order, actual order or None).
+    """
 
     N: int
     seeds: tuple[int, ...]
@@ -46,9 +50,9 @@ class SweepCase:
 class Sweep:
     """All cases of a sweep of the Proposition. Made by `sweep_propagation`.
 
-    model, order : of every case. cases : sorted by N, number of seeds and seeds; each with its verdict, its
-        exceptions (mode, predicted order, actual order or None) and whether the corrected rule holds.
-        Dimensionless integers, exact.
+    model, order : of every case. cases : sorted by N, number of seeds and seeds; each with its
+        verdict, its exceptions (mode, predicted order, actual order or None) and whether the
+        corrected rule holds. Dimensionless integers, exact.
 
     >>> from concurrent.futures import ThreadPoolExecutor
     >>> from symfpu import sweep_propagation
@@ -65,7 +69,8 @@ class Sweep:
         count = Counter(case.verdict for case in self.cases)
         verdicts = ", ".join(f"{n} {verdict}" for verdict, n in sorted(count.items()))
         holds = sum(case.corrected_rule_holds for case in self.cases)
-        return f"Sweep({self.model}, order {self.order}: {len(self.cases)} seed sets: {verdicts}; corrected rule holds in {holds})"
+        what = f"{self.model}, order {self.order}: {len(self.cases)} seed sets"
+        return f"Sweep({what}: {verdicts}; corrected rule holds in {holds})"
 
     @property
     def exceptions(self) -> tuple[SweepCase, ...]:
@@ -74,29 +79,37 @@ class Sweep:
 
 
 class SweepIncomplete(SymfpuError):
-    """Some cases of a sweep raised errors: raised by `sweep_propagation` when all others are decided.
+    """Some cases of a sweep raised errors: raised by `sweep_propagation` at its end.
+
+    All other cases are then decided.
 
     sweep : of all other cases. failures : the errors by (N, seeds). Ours.
     """
 
     def __init__(self, sweep: Sweep, failures: Mapping[Key, Exception]) -> None:
-        self.sweep, self.failures = sweep, dict(failures)
+        self.sweep = sweep
+        self.failures = dict(failures)
         (N, seeds), error = next(iter(self.failures.items()))
-        reason = DEAD_WORKERS if isinstance(error, BrokenExecutor) else f"{type(error).__name__}: {error}"
-        super().__init__(
-            f"{len(self.failures)} seed sets were not decided, the first N = {N}, seeds {seeds} ({reason}); "
-            f"the {len(sweep.cases)} others are in the attribute sweep, and in the file if there is one: "
-            f"call again to go on from it"
-        )
+        dead = isinstance(error, BrokenExecutor)
+        reason = DEAD_WORKERS if dead else f"{type(error).__name__}: {error}"
+        first = f"the first N = {N}, seeds {seeds} ({reason})"
+        undecided = f"{len(self.failures)} seed sets were not decided, {first}"
+        others = f"the {len(sweep.cases)} others are in the attribute sweep"
+        advice = "and in the file if there is one: call again to go on from it"
+        super().__init__(f"{undecided}; {others}, {advice}")
 
 
 def decide(cases: Sequence[Key], model: str, order: int) -> Decided:
-    """Decide some seed sets on one core; plain data and errors out, so that any executor can carry it."""
+    """Decide some seed sets on one core.
+
+    Plain data and errors out, so that any executor can carry it.
+    """
     records, failures = [], {}
     for N, seeds in cases:
         try:
             records.append(asdict(_decided(N, seeds, model, order)))
-        except Exception as error:  # whatever it is, it is reported at the end and costs no other case
+        # whatever it is, it is reported at the end and costs no other case
+        except Exception as error:
             failures[N, seeds] = error
     return records, failures
 
@@ -118,35 +131,44 @@ def sweep_propagation(
     file: Path | str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Sweep:
-    """Decide the Proposition for all seed sets of up to `largest_set` modes and every N in `lengths`.
+    """Decide the Proposition for all seed sets of up to `largest_set` modes, all N in `lengths`.
 
-    lengths : numbers of bonds N. largest_set : most seeds. order : the last k. model : 'alpha', 'beta' or
-        'alpha+beta'. All are dimensionless integers.
-    executor : any concurrent.futures.Executor, such as dask.distributed's client.get_executor(); default a
-        pool of processes, which a script must start under `if __name__ == "__main__":`.
-    file : JSON lines, one for each decided case; an existing file of the same sweep is continued, its last
-        line dropped if it was cut.
+    lengths : numbers of bonds N. largest_set : most seeds. order : the last k. model : 'alpha',
+        'beta' or 'alpha+beta'. All are dimensionless integers.
+    executor : any concurrent.futures.Executor, such as dask.distributed's client.get_executor();
+        default a pool of processes, which a script must start under `if __name__ == "__main__":`.
+    file : JSON lines, one for each decided case; an existing file of the same sweep is continued,
+        its last line dropped if it was cut.
     progress : called as (cases done, cases in all).
 
-    Every case is decided as by `prove_propagation` (Eqs. app, dk). Raises InputError, also for a file of
-    another sweep; SweepIncomplete, after all other cases, if one raised an error or its process died.
+    Every case is decided as by `prove_propagation` (Eqs. app, dk). Raises InputError, also for a
+    file of another sweep; SweepIncomplete, after all other cases, if one raised an error or its
+    process died.
 
     >>> from concurrent.futures import ThreadPoolExecutor
     >>> with ThreadPoolExecutor(1) as pool:
-    ...     [(case.seeds, case.verdict) for case in sweep_propagation((4,), 1, 2, executor=pool).cases]
+    ...     sweep = sweep_propagation((4,), 1, 2, executor=pool)
+    >>> [(case.seeds, case.verdict) for case in sweep.cases]
     [((1,), 'proved'), ((2,), 'proved'), ((3,), 'proved')]
     """
     lengths = sorted({integer(N, "N", 2) for N in lengths})
     largest_set, order = integer(largest_set, "largest_set", 1), integer(order, "order", 0)
     if model not in ("alpha", "beta"):
         raise InputError("model", model, "'alpha' or 'beta'", "the rule is stated for these")
-    cases = [(N, seeds) for N in lengths for s in range(1, largest_set + 1) for seeds in combinations(range(1, N), s)]
+    cases = [
+        (N, seeds)
+        for N in lengths
+        for s in range(1, largest_set + 1)
+        for seeds in combinations(range(1, N), s)
+    ]
     log = SweepLog(Path(file), model, order) if file is not None else None
     decided = {key: case for key, case in (log.read() if log else {}).items() if key in set(cases)}
     todo = [case for case in cases if case not in decided]
     failures: dict[Key, Exception] = {}
     with ExitStack() as stack:
-        pool = executor or stack.enter_context(ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn")))
+        pool = executor or stack.enter_context(
+            ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn"))
+        )
         for records, failed in _results(pool, _batches(todo), model, order):
             failures |= failed
             for record in records:
@@ -163,7 +185,9 @@ def sweep_propagation(
     return sweep
 
 
-def _results(pool: Executor, batches: Sequence[Sequence[Key]], model: str, order: int) -> Iterator[Decided]:
+def _results(
+    pool: Executor, batches: Sequence[Sequence[Key]], model: str, order: int
+) -> Iterator[Decided]:
     """What became of every batch, as it ends; the others are cancelled if the caller stops."""
     batch_of: dict[Future[Decided], Sequence[Key]] = {}
     try:
@@ -173,7 +197,8 @@ def _results(pool: Executor, batches: Sequence[Sequence[Key]], model: str, order
             error = task.exception()
             if error is None:
                 yield task.result()
-            elif isinstance(error, Exception):  # the worker died, or what it decided could not be carried
+            # the worker died, or what it decided could not be carried
+            elif isinstance(error, Exception):
                 yield [], dict.fromkeys(batch_of[task], error)
             else:
                 raise error
@@ -183,7 +208,10 @@ def _results(pool: Executor, batches: Sequence[Sequence[Key]], model: str, order
 
 
 def _submitted(pool: Executor, batch: Sequence[Key], model: str, order: int) -> Future[Decided]:
-    """The task of a batch; one that has failed already in a pool whose workers died while it was filled."""
+    """The task of a batch, submitted.
+
+    One that has failed already in a pool whose workers died while it was filled.
+    """
     try:
         return pool.submit(decide, batch, model, order)
     except BrokenExecutor as error:
@@ -198,7 +226,13 @@ def _batches(cases: Sequence[Key]) -> list[list[Key]]:
 
 def _case(record: dict[str, Any]) -> SweepCase:
     exceptions = tuple((int(m), p, a) for m, p, a in record["exceptions"])
-    return SweepCase(record["N"], tuple(record["seeds"]), record["verdict"], exceptions, record["corrected_rule_holds"])
+    return SweepCase(
+        record["N"],
+        tuple(record["seeds"]),
+        record["verdict"],
+        exceptions,
+        record["corrected_rule_holds"],
+    )
 
 
 class SweepLog:
@@ -206,25 +240,45 @@ class SweepLog:
 
     def __init__(self, path: Path, model: str, order: int) -> None:
         self.path = path
-        self.header = json.dumps({"format": HEADER, "schema": SCHEMA, "model": model, "order": order})
+        self.header = json.dumps(
+            {"format": HEADER, "schema": SCHEMA, "model": model, "order": order}
+        )
 
     def read(self) -> dict[Key, SweepCase]:
-        """The cases decided so far; starts the file if there is none, and cuts off a last line that was not finished."""
+        """The cases decided so far.
+
+        Starts the file if there is none, and cuts off a last line that was not finished.
+        """
         try:
             text = self.path.read_text() if self.path.exists() else ""
             start = self.header + "\n"
             if not text.startswith(start) and not start.startswith(text):
-                raise InputError("file", str(self.path), f"a new file, or a sweep with header {self.header}", "name another file")
+                raise InputError(
+                    "file",
+                    str(self.path),
+                    f"a new file, or a sweep with header {self.header}",
+                    "name another file",
+                )
             complete = text[: text.rfind("\n") + 1] or start
             cases = [_case(json.loads(line)) for line in complete.splitlines()[1:]]
             if complete != text:
                 self.path.write_text(complete)
         except OSError as error:
-            raise InputError("file", str(self.path), "a file that can be read and written", f"name another ({error.strerror})") from error
+            raise InputError(
+                "file",
+                str(self.path),
+                "a file that can be read and written",
+                f"name another ({error.strerror})",
+            ) from error
         except (ValueError, KeyError, TypeError) as error:
             if isinstance(error, InputError):
                 raise
-            raise InputError("file", str(self.path), "lines of a sweep", "it is damaged: remove it or name another") from error
+            raise InputError(
+                "file",
+                str(self.path),
+                "lines of a sweep",
+                "it is damaged: remove it or name another",
+            ) from error
         return {(case.N, case.seeds): case for case in cases}
 
     def append(self, record: dict[str, Any]) -> None:

@@ -1,13 +1,15 @@
-"""Independent checker of propagation certificates: mode space, the tensors B and C summed directly, Python integers only.
+"""Independent checker of propagation certificates: mode space, the tensors B and C summed directly,
+Python integers only.
 
-m = (p_1, n_1, ..) are the exponents of w_i = Omega_i z_i and conj w_i, nu = p - n, u_q = Omega_q Q_q, S = sum B u u
-or sum C u u u (Eqs. moda, modb):
+m = (p_1, n_1, ..) are the exponents of w_i = Omega_i z_i and conj w_i, nu = p - n, u_q = Omega_q
+Q_q, S = sum B u u or sum C u u u (Eqs. moda, modb):
 
     u_q^(k)[m] = L_q(nu) (sum_n W_q^(n) u_q^(k-n) - S_q^(k))[m],    W_q^(n)[f] = S_q^(n)[f w_q].
 
-A coefficient that is not 0 modulo p proves a mode excited for generic frequencies; with symbols for the L_q(nu), a
-polynomial that is 0 proves a zero. Written to be audited: one claim a function, in the order in which `verify` calls them.
-The file shares no code with the prover and imports nothing but the standard library.
+A coefficient that is not 0 modulo p proves a mode excited for generic frequencies; with symbols
+for the L_q(nu), a polynomial that is 0 proves a zero. Written to be audited: one claim a
+function, in the order in which `verify` calls them. The file shares no code with the prover and
+imports nothing but the standard library.
 """
 
 import hashlib
@@ -25,8 +27,10 @@ MOST_STEPS = 2 * 10**6
 MOST_SEEDS = 64
 MOST_POINTS = 256
 LARGEST_N = 4096
-PROBABILITY = re.compile(r"1(\.0+)?(e[+-]?0+)?|0\.0*[1-9][0-9]*|[1-9](\.[0-9]+)?e-0*[1-9][0-9]*")  # above 0, up to 1
-BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41)  # with these Miller-Rabin is a proof below 3.3e24
+# above 0, up to 1
+PROBABILITY = re.compile(r"1(\.0+)?(e[+-]?0+)?|0\.0*[1-9][0-9]*|[1-9](\.[0-9]+)?e-0*[1-9][0-9]*")
+# with these Miller-Rabin is a proof below 3.3e24
+BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41)
 UNREADABLE = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError)
 
 Json = dict[str, Any]
@@ -108,7 +112,9 @@ def check_keys(data: Json, colons: int) -> None:
 
 
 class Case(NamedTuple):
-    """N, the last order, the seeds, and the number of factors of the force: 2 (alpha) or 3 (beta)."""
+    """N, the last order, the seeds, and the number of factors of the force: 2 (alpha) or 3
+    (beta).
+    """
 
     N: int
     order: int
@@ -150,7 +156,9 @@ class Budget:
 
 
 def couplings(N: int, *modes: int) -> list[tuple[int, int]]:
-    """Each q with B_qlm or C_qlmn, where that is not zero: Eq. transa, with the sums -2N that it leaves out."""
+    """Each q with B_qlm or C_qlmn, where that is not zero: Eq. transa, with the sums -2N that it
+    leaves out.
+    """
     signs = product((1, -1), repeat=len(modes))
     sums = [sum(map(mul, modes, chosen)) for chosen in signs]
     found = []
@@ -165,7 +173,10 @@ def couplings(N: int, *modes: int) -> list[tuple[int, int]]:
 
 
 class Point(NamedTuple):
-    """A prime, an element of order 4N and frequencies modulo it; prime 0 stands for symbols instead of residues."""
+    """A prime, an element of order 4N and frequencies modulo it.
+
+    Prime 0 stands for symbols instead of residues.
+    """
 
     prime: int
     root: int
@@ -204,7 +215,9 @@ class Recursion:
         self.add_forces(m, bracket)
         self.add_corrections(m, bracket)
         nu = harmonic(m)
-        secular = {q for q, e in zip(self.case.seeds, nu, strict=True) if abs(e) == 1 == sum(map(abs, nu))}
+        secular = {
+            q for q, e in zip(self.case.seeds, nu, strict=True) if abs(e) == 1 == sum(map(abs, nu))
+        }
         for q in bracket.keys() - secular:
             self.add(u, q, self.multiplier(q, nu), bracket[q])
 
@@ -227,7 +240,10 @@ class Recursion:
                     self.add(bracket, q, secular, rest[q], -1)
 
     def products(self, factors: int, m: Monomial) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
-        """Modes l1 .. lr and value of each u_l1 .. u_lr at monomial m; its degree fixes the sum of the orders."""
+        """Modes l1 .. lr and value of each product u_l1 .. u_lr at monomial m.
+
+        Its degree fixes the sum of the orders.
+        """
         if factors == 1:
             for q, value in self.coefficients(m).items():
                 yield (q,), value
@@ -249,7 +265,10 @@ class Recursion:
         return value
 
     def multiplier(self, q: int, nu: tuple[int, ...]) -> Polynomial:
-        """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2), as a residue or as a symbol; L_q(-nu) is the same."""
+        """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2), as a residue or as a symbol.
+
+        L_q(-nu) is the same.
+        """
         p, g, omega = self.point
         if not p:
             opposite = tuple(-n for n in nu)
@@ -302,7 +321,10 @@ def check_certificate(data: Json) -> list[str]:
 
 
 def check_names(data: Json) -> None:
-    """Each mode is named once in a list, in ascending order; of zeros, once for each way to show them."""
+    """Each mode is named once in a list, in ascending order.
+
+    Of zeros, once for each way to show them.
+    """
     check_ascending([(e["mode"], e["by"]) for e in data["vanishing"]])
     check_ascending([e["mode"] for e in data["undecided"]])
     check_ascending([e["mode"] for e in data["excited"]])
@@ -320,7 +342,10 @@ def excitation_orders(data: Json, case: Case) -> dict[int, int]:
 
 
 def check_zeros_are_complete(data: Json, case: Case, orders: dict[int, int]) -> int:
-    """At each order before its own, a mode is said to vanish or to be undecided; returns how many zeros that are."""
+    """At each order before its own, a mode is said to vanish or to be undecided.
+
+    Returns how many zeros that are.
+    """
     claimed = []
     for e in data["vanishing"] + data["undecided"]:
         if e["orders"] == sorted(e["orders"]):
@@ -370,7 +395,10 @@ def check_conclusions(data: Json, case: Case, rule: list[list[int]], orders: dic
     for key, value in conclusions.items():
         need(data[key] == value, f"{key} is not {value!r:.200}")
     named = len(case.seeds) + len(data["excited"])
-    need(len(orders) == named == sum(map(len, actual)), "excited: a mode is a seed, or beyond the order")
+    need(
+        len(orders) == named == sum(map(len, actual)),
+        "excited: a mode is a seed, or beyond the order",
+    )
     return verdict
 
 
@@ -385,7 +413,9 @@ def find_exceptions(case: Case, predicted: dict[int, int], orders: dict[int, int
 
 
 def check_zeros_by_couplings(data: Json, case: Case, budget: Budget) -> None:
-    """Where a zero is said to follow from the couplings, they leave the mode nothing at that order."""
+    """Where a zero is said to follow from the couplings, they leave the mode nothing at that
+    order.
+    """
     zeros = [e for e in data["vanishing"] if e["by"] == "couplings"]
     last = max((k for e in zeros for k in e["orders"]), default=0)
     sets = coupled_sets(case, last, budget)
@@ -397,7 +427,10 @@ def check_zeros_by_couplings(data: Json, case: Case, budget: Budget) -> None:
 
 
 def coupled_sets(case: Case, last: int, budget: Budget) -> list[set[int]]:
-    """M_0 .. M_last: what B or C couples to the sets before; and seeds reached before, kept by frequency corrections."""
+    """M_0 .. M_last: what B or C couples to the sets before.
+
+    And seeds reached before, kept by frequency corrections.
+    """
     sets = [set(case.seeds)]
     for k in range(1, last + 1):
         reached = {q for q in case.seeds if any(q in modes for modes in sets[1:])}
@@ -418,7 +451,9 @@ def coupled_modes(case: Case, factors: list[set[int]], budget: Budget) -> set[in
 
 
 def check_zeros_by_identity(data: Json, case: Case, budget: Budget) -> None:
-    """Where a zero is said to be an identity, every coefficient is the zero polynomial in the symbols L_q(nu)."""
+    """Where a zero is said to be an identity, every coefficient is the zero polynomial in the
+    symbols L_q(nu).
+    """
     recursion = Recursion(case, SYMBOLS, budget)
     for e in data["vanishing"]:
         if e["by"] == "identity":
@@ -452,9 +487,15 @@ def check_point(case: Case, point: Point) -> None:
     useful = 2**16 < p < 2**64 and p % (4 * case.N) == 1
     need(useful and is_prime(p), f"{p} is no prime of use")
     divisors = [d for d in range(1, 4 * case.N + 1) if 4 * case.N % d == 0]
-    need(g < p and [d for d in divisors if pow(g, d, p) == 1] == [4 * case.N], f"{g} is not of order 4N")
+    need(
+        g < p and [d for d in divisors if pow(g, d, p) == 1] == [4 * case.N],
+        f"{g} is not of order 4N",
+    )
     residues = [w for w in omega if w < p]
-    need(omega == residues and len(omega) == len(case.seeds), f"frequencies are not residues modulo {p}")
+    need(
+        omega == residues and len(omega) == len(case.seeds),
+        f"frequencies are not residues modulo {p}",
+    )
 
 
 def is_prime(p: int) -> bool:
@@ -468,7 +509,9 @@ def is_prime(p: int) -> bool:
 
 
 def check_witnesses(data: Json, case: Case, budget: Budget) -> None:
-    """Each excited mode has a coefficient that is not zero modulo its prime: it is computed again."""
+    """Each excited mode has a coefficient that is not zero modulo its prime: it is computed
+    again.
+    """
     for i, e in enumerate(data["points"]):
         point = Point(e["prime"], e["root"], e["frequencies"])
         recursion = Recursion(case, point, budget)
@@ -478,7 +521,9 @@ def check_witnesses(data: Json, case: Case, budget: Budget) -> None:
 
 
 def check_witness(recursion: Recursion, witness: Json) -> None:
-    """The monomial belongs to the order, and its coefficient is the stated residue, which is not zero."""
+    """The monomial belongs to the order, and its coefficient is the stated residue, which is not
+    zero.
+    """
     q, k, residue = witness["mode"], witness["order"], witness["residue"]
     m, case = tuple(witness["monomial"]), recursion.case
     fits = len(m) == 2 * len(case.seeds) and sum(m) == case.degree(k)

@@ -1,8 +1,8 @@
-"""The small divisors lambda_q - (nu.omega)^2 of a chain and its chosen frequencies, and the multipliers L_q(nu) made of them.
+"""The small divisors lambda_q - (nu.omega)^2, and the multipliers L_q(nu) made of them.
 
-L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2) with lambda_q = omega_q^2 for a seed and Omega_q^2 otherwise:
-the L of Eq. Lm, which the paper has at leading order, for every order. Everything that depends on N and on
-the frequencies enters the series through it.
+L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2) with lambda_q = omega_q^2 for a seed and Omega_q^2
+otherwise: the L of Eq. Lm, which the paper has at leading order, for every order. Everything that
+depends on N and on the frequencies enters the series through it.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import ResonantDivisor, VanishingResidue
 
 Floats = NDArray[np.float64]
-KEPT = 10  # how many of the smallest divisors a series remembers
+SMALLEST_KEPT = 10  # how many of the smallest divisors a series remembers
 
 
 @dataclass(frozen=True)
 class SmallDivisor:
-    """|lambda_q - (nu.omega)^2| = size of one mode and harmonic, at the order where the harmonic first meets the mode."""
+    """|lambda_q - (nu.omega)^2| = size, at the order where the harmonic first meets the mode."""
 
     size: float
     mode: int
@@ -37,14 +37,18 @@ class SmallDivisor:
     order: int
 
     def __repr__(self) -> str:
-        return f"{self.size:.2g} at mode {self.mode}, harmonic ({','.join(map(str, self.harmonic))}), order {self.order}"
+        harmonic = ",".join(map(str, self.harmonic))
+        place = f"mode {self.mode}, harmonic ({harmonic})"
+        return f"{self.size:.2g} at {place}, order {self.order}"
 
 
 class Divisors(Protocol):
-    """The multipliers L_q(nu) of a chain and its chosen frequencies, as the ring of the series takes them."""
+    """The multipliers L_q(nu) of a chain and its chosen frequencies, in the ring of the series."""
 
     def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Any:
-        """L_q(nu) where the selection rules let mode q carry nu, zero elsewhere and in the gauge term nu = e_q of a seed.
+        """L_q(nu) where the selection rules let mode q carry nu.
+
+        Zero elsewhere and in the gauge term nu = e_q of a seed.
 
         harmonics : (H, s). carried : (H, N-1), as the result. Raises where a divisor vanishes.
         """
@@ -54,20 +58,28 @@ class Divisors(Protocol):
 
 
 class Float64Divisors:
-    """Multipliers as doubles, correct to a few units in the last place down to divisors of 1e-18, less beyond.
+    """Multipliers as doubles, correct to a few units in the last place.
 
-    Frequencies are split on a grid of doubles so coarse that nu.omega is summed without rounding; what the grid leaves
-    over is carried separately. So Omega_q - |nu.omega| loses no digits where the two nearly cancel.
+    That holds down to divisors of 1e-18; below they are less exact.
+
+    Frequencies are split on a grid of doubles so coarse that nu.omega is summed without rounding;
+    what the grid leaves over is carried separately. So Omega_q - |nu.omega| loses no digits where
+    the two nearly cancel.
     """
 
-    def __init__(self, chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], degree: int) -> None:
-        self.chain, self.seeds, self.frequencies = chain, tuple(seeds), tuple(frequencies)
-        largest = max(2.0, *(float(w) for w in frequencies)) * (degree + 1)
-        self._grid = 52 - int(np.frexp(largest)[1])
+    def __init__(
+        self, chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], degree: int
+    ) -> None:
+        self.chain = chain
+        self.seeds = tuple(seeds)
+        self.frequencies = tuple(frequencies)
+        largest_frequency = max(2.0, *(float(w) for w in frequencies))
+        _, exponent = np.frexp(largest_frequency * (degree + 1))
+        self._grid = 52 - int(exponent)
         with mpmath.workdps(60):
             linear = [chain.linear_frequency(q) for q in range(1, chain.N)]
             bases = list(linear)
-            chosen = [mpmath.mpf(w.numerator) / w.denominator for w in frequencies]
+            chosen = [_quotient(w) for w in frequencies]
             for q, omega in zip(seeds, chosen, strict=True):
                 bases[q - 1] = omega
             self._base = self._split(bases)
@@ -76,43 +88,66 @@ class Float64Divisors:
         self._smallest: dict[tuple[int, tuple[int, ...]], SmallDivisor] = {}
 
     def _split(self, values: Sequence[Any]) -> tuple[Floats, Floats]:
-        coarse = [mpmath.nint(mpmath.ldexp(v, self._grid)) for v in values]
-        fine = [v - mpmath.ldexp(c, -self._grid) for v, c in zip(values, coarse, strict=True)]
-        return np.array([float(mpmath.ldexp(c, -self._grid)) for c in coarse]), np.array([float(f) for f in fine])
+        coarse, fine = [], []
+        for value in values:
+            whole = mpmath.nint(mpmath.ldexp(value, self._grid))
+            on_grid = mpmath.ldexp(whole, -self._grid)
+            coarse.append(float(on_grid))
+            fine.append(float(value - on_grid))
+        return np.array(coarse), np.array(fine)
 
     def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Floats:
-        """L_q(nu) where the selection rules let mode q carry nu, zero elsewhere and in the gauge term nu = e_q of a seed.
+        """L_q(nu) where the selection rules let mode q carry nu.
 
-        harmonics : (H, s). carried : (H, N-1). Raises ResonantDivisor where a divisor is exactly zero, or so small that
-        doubles cannot tell it from zero.
+        Zero elsewhere and in the gauge term nu = e_q of a seed.
+
+        harmonics : (H, s). carried : (H, N-1). Raises ResonantDivisor where a divisor is exactly
+        zero, or so small that doubles cannot tell it from zero.
         """
-        wanted = carried & ~gauge_terms(harmonics, self.seeds, self.chain.N)
-        coarse, fine = harmonics @ self._chosen[0], harmonics @ self._chosen[1]
+        gauge = gauge_terms(harmonics, self.seeds, self.chain.N)
+        wanted = carried & ~gauge
+        chosen, chosen_rest = self._chosen
+        coarse = harmonics @ chosen
+        fine = harmonics @ chosen_rest
         sign = np.where(coarse < 0, -1.0, 1.0)
-        difference = (self._base[0] - (sign * coarse)[:, None]) + (self._base[1] - (sign * fine)[:, None])
-        divisors = difference * ((self._base[0] + (sign * coarse)[:, None]) + (self._base[1] + (sign * fine)[:, None]))
+        drive = (sign * coarse)[:, None]
+        drive_rest = (sign * fine)[:, None]
+        base, base_rest = self._base
+        difference = (base - drive) + (base_rest - drive_rest)
+        divisors = difference * ((base + drive) + (base_rest + drive_rest))
         self._refuse_zero(harmonics, wanted, difference, order)
         self._remember(harmonics, wanted, np.abs(divisors), order)
-        return np.asarray(np.divide(self._numerators, divisors, out=np.zeros_like(divisors), where=wanted))
+        table = np.zeros_like(divisors)
+        return np.asarray(np.divide(self._numerators, divisors, out=table, where=wanted))
 
-    def _refuse_zero(self, harmonics: Ints, wanted: NDArray[np.bool_], difference: Floats, order: int) -> None:
+    def _refuse_zero(
+        self, harmonics: Ints, wanted: NDArray[np.bool_], difference: Floats, order: int
+    ) -> None:
         resolution = 2.0 ** -(self._grid + 40)
-        for row, column in np.argwhere(wanted & (np.abs(difference) < 2.0 ** (4 - self._grid))):
-            mode, harmonic = int(column) + 1, tuple(map(int, harmonics[row]))
+        near_zero = np.abs(difference) < 2.0 ** (4 - self._grid)
+        for row, column in np.argwhere(wanted & near_zero):
+            mode = int(column) + 1
+            harmonic = tuple(map(int, harmonics[row]))
             exact = vanishes(self.chain.N, self.seeds, self.frequencies, mode, harmonic)
             if exact or abs(difference[row, column]) < resolution:
                 raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
 
-    def _remember(self, harmonics: Ints, wanted: NDArray[np.bool_], sizes: Floats, order: int) -> None:
+    def _remember(
+        self, harmonics: Ints, wanted: NDArray[np.bool_], sizes: Floats, order: int
+    ) -> None:
         candidates = np.where(wanted, sizes, np.inf).ravel()
-        count = min(len(candidates), KEPT + len(self._smallest))  # some may be there already
-        for at in np.argpartition(candidates, count - 1)[:count] if count else ():
+        # some may be there already
+        count = min(len(candidates), SMALLEST_KEPT + len(self._smallest))
+        smallest = np.argpartition(candidates, count - 1)[:count] if count else ()
+        for at in smallest:
             if np.isfinite(candidates[at]):
                 row, column = divmod(int(at), self.chain.N - 1)
-                key = (column + 1, tuple(map(int, harmonics[row])))
-                self._smallest.setdefault(key, SmallDivisor(float(candidates[at]), *key, order))
-        kept = sorted(self._smallest.items(), key=lambda item: item[1].size)[:KEPT]
-        self._smallest = dict(kept)
+                mode = column + 1
+                harmonic = tuple(map(int, harmonics[row]))
+                found = SmallDivisor(float(candidates[at]), mode, harmonic, order)
+                self._smallest.setdefault((mode, harmonic), found)
+        by_size = sorted(self._smallest.items(), key=lambda item: item[1].size)
+        self._smallest = dict(by_size[:SMALLEST_KEPT])
 
     def smallest(self) -> tuple[SmallDivisor, ...]:
         """The smallest divisors met so far, smallest first."""
@@ -120,36 +155,58 @@ class Float64Divisors:
 
 
 class FixedPointDivisors:
-    """Multipliers as integers, 2^bits L rounded down, from exact frequencies and linear frequencies of four times the bits."""
+    """Multipliers as integers, 2^bits L rounded down.
 
-    def __init__(self, chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], bits: int) -> None:
-        self.chain, self.seeds, self.frequencies, self.bits = chain, tuple(seeds), tuple(frequencies), bits
+    They come from exact frequencies and linear frequencies of four times the bits.
+    """
+
+    def __init__(
+        self, chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], bits: int
+    ) -> None:
+        self.chain = chain
+        self.seeds = tuple(seeds)
+        self.frequencies = tuple(frequencies)
+        self.bits = bits
         self._places = 4 * bits + 64
         self._common = lcm(*(w.denominator for w in frequencies))
-        self._omega = np.array([int(w * self._common) for w in frequencies], dtype=object)
+        whole_frequencies = [int(w * self._common) for w in frequencies]
+        self._omega = np.array(whole_frequencies, dtype=object)
+        linear = []
         with mpmath.workprec(self._places + 32):
-            linear = [int(mpmath.nint(mpmath.ldexp(chain.linear_frequency(q) ** 2, self._places))) for q in range(1, chain.N)]
+            for q in range(1, chain.N):
+                square = mpmath.ldexp(chain.linear_frequency(q) ** 2, self._places)
+                linear.append(int(mpmath.nint(square)))
         self._numerators = np.array(linear, dtype=object)
         self._lambda = self._numerators.copy()
         for q, whole in zip(seeds, self._omega, strict=True):
             self._lambda[q - 1] = self._squared(whole)
 
     def _squared(self, whole: Any) -> Any:
-        return ((whole * whole) << self._places) // self._common**2
+        square = whole * whole
+        return (square << self._places) // self._common**2
 
-    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> NDArray[np.object_]:
-        """2^bits L_q(nu) where the selection rules let mode q carry nu, zero elsewhere and in the gauge term; shape (H, N-1).
+    def multipliers(
+        self, harmonics: Ints, carried: NDArray[np.bool_], order: int
+    ) -> NDArray[np.object_]:
+        """2^bits L_q(nu) where the selection rules let mode q carry nu; shape (H, N-1).
+
+        Zero elsewhere and in the gauge term.
 
         Raises ResonantDivisor where a divisor is zero or below 2^-bits.
         """
-        rows, columns = np.nonzero(carried & ~gauge_terms(harmonics, self.seeds, self.chain.N))
-        divisors = self._lambda[columns] - self._squared(harmonics.astype(object) @ self._omega)[rows]
-        for at in np.flatnonzero(np.abs(divisors) < 1 << (self._places - self.bits)):
-            mode, harmonic = int(columns[at]) + 1, tuple(map(int, harmonics[rows[at]]))
+        gauge = gauge_terms(harmonics, self.seeds, self.chain.N)
+        rows, columns = np.nonzero(carried & ~gauge)
+        drives = harmonics.astype(object) @ self._omega
+        divisors = self._lambda[columns] - self._squared(drives)[rows]
+        smallest_allowed = 1 << (self._places - self.bits)
+        for at in np.flatnonzero(np.abs(divisors) < smallest_allowed):
+            mode = int(columns[at]) + 1
+            harmonic = tuple(map(int, harmonics[rows[at]]))
             exact = vanishes(self.chain.N, self.seeds, self.frequencies, mode, harmonic)
             raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
         table = np.full(carried.shape, 0, dtype=object)
-        table[rows, columns] = (self._numerators[columns] << self.bits) // divisors
+        numerators = self._numerators[columns] << self.bits
+        table[rows, columns] = numerators // divisors
         return table
 
     def moduli(self) -> MultiplierModuli:
@@ -170,7 +227,8 @@ class MultiplierModuli:
     def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Floats:
         """|L_q(nu)|, enlarged by more than the rounding to a double; shape (H, N-1)."""
         whole = self._divisors.multipliers(harmonics, carried, order)
-        return np.asarray(np.abs((whole / 2**self._divisors.bits).astype(np.float64)) * (1 + 1e-12))
+        doubles = (whole / 2**self._divisors.bits).astype(np.float64)
+        return np.asarray(np.abs(doubles) * (1 + 1e-12))
 
     def smallest(self) -> tuple[SmallDivisor, ...]:
         """None: bounds are not divisors."""
@@ -180,26 +238,43 @@ class MultiplierModuli:
 class ResidueDivisors:
     """Multipliers modulo a prime, at a point where the chosen frequencies are residues.
 
-    Raises VanishingResidue where a divisor is zero modulo the prime: nothing follows from such a point, take another.
+    Raises VanishingResidue where a divisor is zero modulo the prime: nothing follows from such a
+    point, take another.
     """
 
-    def __init__(self, chain: Chain, seeds: Sequence[int], ring: ResidueRing, frequencies: Sequence[int]) -> None:
-        self.chain, self.seeds, self.ring = chain, tuple(seeds), ring
+    def __init__(
+        self, chain: Chain, seeds: Sequence[int], ring: ResidueRing, frequencies: Sequence[int]
+    ) -> None:
+        self.chain = chain
+        self.seeds = tuple(seeds)
+        self.ring = ring
         cosines = cosine_table(chain.N, ring.prime, ring.root)
-        self._numerators = np.array([ring.element(2 - 2 * cosines[2 * q]) for q in range(1, chain.N)])
+        squares = [ring.element(2 - 2 * cosines[2 * q]) for q in range(1, chain.N)]
+        self._numerators = np.array(squares)
         self._lambda = self._numerators.copy()
         for q, omega in zip(seeds, frequencies, strict=True):
             self._lambda[q - 1] = ring.element(omega * omega)
         self._omega = [int(w) for w in frequencies]
 
     def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Floats:
-        """L_q(nu) modulo the prime where the selection rules let mode q carry nu, zero elsewhere and in the gauge term."""
-        wanted = carried & ~gauge_terms(harmonics, self.seeds, self.chain.N)
-        drives = np.array([self.ring.element(sum(int(n) * w for n, w in zip(nu, self._omega, strict=True))) for nu in harmonics])
-        divisors = self.ring.reduced(self._lambda - self.ring.products(drives, drives)[:, None])
+        """L_q(nu) modulo the prime.
+
+        Zero where the selection rules keep nu from mode q, and in the gauge term.
+        """
+        ring = self.ring
+        gauge = gauge_terms(harmonics, self.seeds, self.chain.N)
+        wanted = carried & ~gauge
+        residues = []
+        for nu in harmonics:
+            drive = sum(int(n) * w for n, w in zip(nu, self._omega, strict=True))
+            residues.append(ring.element(drive))
+        drives = np.array(residues)
+        squares = ring.products(drives, drives)[:, None]
+        divisors = ring.reduced(self._lambda - squares)
         if np.any(wanted & (divisors == 0)):
-            raise VanishingResidue(self.ring.prime, order)
-        return np.where(wanted, self.ring.products(self.ring.inverses(divisors), self._numerators), 0.0)
+            raise VanishingResidue(ring.prime, order)
+        quotients = ring.products(ring.inverses(divisors), self._numerators)
+        return np.where(wanted, quotients, 0.0)
 
     def smallest(self) -> tuple[SmallDivisor, ...]:
         """None: residues have no size."""
@@ -207,16 +282,27 @@ class ResidueDivisors:
 
 
 class UniversalDivisors:
-    """Multipliers as symbols L_q(nu): the universal form, for every chain and all generic frequencies at once."""
+    """Multipliers as symbols L_q(nu): the universal form.
+
+    It holds for every chain and all generic frequencies at once.
+    """
 
     def __init__(self, chain: Chain, seeds: Sequence[int]) -> None:
-        self.chain, self.seeds = chain, tuple(seeds)
+        self.chain = chain
+        self.seeds = tuple(seeds)
 
-    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> NDArray[np.object_]:
-        """Symbols L_q(nu), zero where the selection rules or the gauge leave nothing; shape (H, N-1)."""
+    def multipliers(
+        self, harmonics: Ints, carried: NDArray[np.bool_], order: int
+    ) -> NDArray[np.object_]:
+        """Symbols L_q(nu), zero where the selection rules or the gauge leave nothing.
+
+        Shape (H, N-1).
+        """
+        gauge = gauge_terms(harmonics, self.seeds, self.chain.N)
         table = np.full(carried.shape, se.Integer(0), dtype=object)
-        for row, column in np.argwhere(carried & ~gauge_terms(harmonics, self.seeds, self.chain.N)):
-            table[row, column] = multiplier_symbol(int(column) + 1, [int(n) for n in harmonics[row]])
+        for row, column in np.argwhere(carried & ~gauge):
+            nu = [int(n) for n in harmonics[row]]
+            table[row, column] = multiplier_symbol(int(column) + 1, nu)
         return table
 
     def smallest(self) -> tuple[SmallDivisor, ...]:
@@ -224,34 +310,65 @@ class UniversalDivisors:
         return ()
 
 
-def vanishes(N: int, seeds: Sequence[int], frequencies: Sequence[Fraction], mode: int, harmonic: Sequence[int]) -> bool:
+def vanishes(
+    N: int,
+    seeds: Sequence[int],
+    frequencies: Sequence[Fraction],
+    mode: int,
+    harmonic: Sequence[int],
+) -> bool:
     """Whether lambda_mode = (nu.omega)^2 for the exact rational frequencies.
 
     A linear frequency 2 sin(q pi / 2N) is rational only if it is 1, for q = N/3 (Niven).
     """
-    drive = sum((n * w for n, w in zip(harmonic, frequencies, strict=True)), start=Fraction(0))
+    drive = _drive(harmonic, frequencies)
     if mode in seeds:
-        return abs(drive) == frequencies[list(seeds).index(mode)]
+        own = frequencies[list(seeds).index(mode)]
+        return abs(drive) == own
     return 3 * mode == N and abs(drive) == 1
 
 
-def divisor(chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], mode: int, harmonic: Sequence[int]) -> float:
+def divisor(
+    chain: Chain,
+    seeds: Sequence[int],
+    frequencies: Sequence[Fraction],
+    mode: int,
+    harmonic: Sequence[int],
+) -> float:
     """lambda_q - (nu.omega)^2 of one mode and harmonic, correctly rounded."""
-    drive = sum((n * w for n, w in zip(harmonic, frequencies, strict=True)), start=Fraction(0))
+    drive = _drive(harmonic, frequencies)
     with mpmath.workdps(60):
-        own = frequencies[list(seeds).index(mode)] if mode in seeds else None
-        base = chain.linear_frequency(mode) if own is None else mpmath.mpf(own.numerator) / own.denominator
-        return float(base**2 - (mpmath.mpf(drive.numerator) / drive.denominator) ** 2)
+        base = chain.linear_frequency(mode)
+        if mode in seeds:
+            base = _quotient(frequencies[list(seeds).index(mode)])
+        return float(base**2 - _quotient(drive) ** 2)
+
+
+def _drive(harmonic: Sequence[int], frequencies: Sequence[Fraction]) -> Fraction:
+    """nu.omega, exactly."""
+    parts = [n * w for n, w in zip(harmonic, frequencies, strict=True)]
+    return sum(parts, start=Fraction(0))
+
+
+def _quotient(value: Fraction) -> Any:
+    """A fraction as mpf at the precision of the context."""
+    return mpmath.mpf(value.numerator) / value.denominator
 
 
 def gauge_terms(harmonics: Ints, seeds: Sequence[int], N: int) -> NDArray[np.bool_]:
-    """Where a harmonic is +-e_q in the seed mode q itself: the gauge leaves no term there; shape (H, N-1)."""
+    """Where a harmonic is +-e_q in the seed mode q itself; shape (H, N-1).
+
+    The gauge leaves no term there.
+    """
     gauge = np.zeros((len(harmonics), N - 1), dtype=np.bool_)
-    for unit, q in zip(np.eye(len(seeds), dtype=np.int64), seeds, strict=True):
-        gauge[:, q - 1] = (np.abs(harmonics) == unit).all(axis=1)
+    moduli = np.abs(harmonics)
+    units = np.eye(len(seeds), dtype=np.int64)
+    for unit, q in zip(units, seeds, strict=True):
+        gauge[:, q - 1] = (moduli == unit).all(axis=1)
     return gauge
 
 
 def multiplier_symbol(mode: int, harmonic: Sequence[int]) -> Any:
     """The symbol L_q(nu); its name reads as LaTeX."""
-    return se.Symbol(f"L_{{{mode}}}({','.join(map(str, harmonic))})")
+    nu = ",".join(map(str, harmonic))
+    return se.Symbol(f"L_{{{mode}}}({nu})")

@@ -1,4 +1,7 @@
-"""Tables of SymEngine expressions as a list of nodes, each after its parts and each once; and back without executing anything."""
+"""Tables of SymEngine expressions as a list of nodes, each after its parts and each once.
+
+And back without executing anything.
+"""
 
 from __future__ import annotations
 

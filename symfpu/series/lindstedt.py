@@ -27,24 +27,25 @@ def lindstedt(
     digits: int | None = None,
     progress: Progress | None = None,
 ) -> LindstedtSeries:
-    """The Poincare-Lindstedt series of a q-torus with free seed amplitudes (section 3.1; Eqs. qser, omeser).
+    """The Poincare-Lindstedt series of a q-torus with free seed amplitudes (Eqs. qser, omeser).
 
     chain : the model; frequencies, amplitudes and times are in its units, dimensionless.
     seeds : distinct modes D_0.
-    frequencies : omega_q of each seed, exact numbers, shape (s,); a float is read by its shortest decimal, so
-        0.33 is exactly 33/100. None gives the universal form with symbols L_q(nu).
-    order : K of the coordinates and of the frequency corrections, from 0 up; order k has degree k+1 in the
-        amplitudes (2k+1 if alpha = 0, and with both couplings beta enters two orders up).
-    ring : 'float64', or in universal form 'symbolic' (expanded) or 'nested'; default by whether frequencies
-        are given.
-    digits : every coefficient to so many digits of the largest one of its order, proved (fixed-point
-        numbers); None for doubles.
+    frequencies : omega_q of each seed, exact numbers, shape (s,); a float is read by its shortest
+        decimal, so 0.33 is exactly 33/100. None gives the universal form with symbols L_q(nu).
+    order : K of the coordinates and of the frequency corrections, from 0 up; order k has degree
+        k+1 in the amplitudes (2k+1 if alpha = 0, and with both couplings beta enters two orders
+        up).
+    ring : 'float64', or in universal form 'symbolic' (expanded) or 'nested'; default by whether
+        frequencies are given.
+    digits : every coefficient to so many digits of the largest one of its order, proved
+        (fixed-point numbers); None for doubles.
     progress : called as (steps done, steps).
 
-    Differs from the paper: both couplings may act, mu is then alpha/sqrt(2N), and omega^(k) has degree k
-    (alpha), 2k (beta) in the amplitudes, one less than printed.
-    Raises InputError for arguments out of range, TooLarge before allocating what would not fit into memory,
-    ResonantDivisor at the first divisor that is zero.
+    Differs from the paper: both couplings may act, mu is then alpha/sqrt(2N), and omega^(k) has
+    degree k (alpha), 2k (beta) in the amplitudes, one less than printed.
+    Raises InputError for arguments out of range, TooLarge before allocating what would not fit
+    into memory, ResonantDivisor at the first divisor that is zero.
 
     >>> series = lindstedt(Chain(N=8, alpha="0.25"), seeds=(1,), order=1)
     >>> series.coordinates[1][-1, 1], series.coordinates[1][-1, 0]
@@ -55,10 +56,14 @@ def lindstedt(
     exact_frequencies = None if frequencies is None else _frequencies(frequencies, seeds)
     seeds, exact_frequencies = _ascending(seeds, exact_frequencies)
     if digits is not None:
-        return fixed_point_series(chain, seeds, exact_frequencies, order, _digits(digits, ring), progress)
+        return fixed_point_series(
+            chain, seeds, exact_frequencies, order, _digits(digits, ring), progress
+        )
     ring = ring or ("symbolic" if frequencies is None else "float64")
     if ring not in BY_NAME:
-        raise InputError("ring", ring, f"one of {', '.join(BY_NAME)}", "name a ring or leave it out")
+        raise InputError(
+            "ring", ring, f"one of {', '.join(BY_NAME)}", "name a ring or leave it out"
+        )
     check_size(chain, seeds, order, ring)
     space = monomial_space(chain, seeds, order)
     return named_series(RINGS[ring], chain, space, exact_frequencies, order, progress)
@@ -68,25 +73,46 @@ def _digits(digits: int, ring: str | None) -> int:
     if integer(digits, "digits", 1) > MOST_DIGITS:
         raise InputError("digits", digits, f"1..{MOST_DIGITS}", "take fewer")
     if ring is not None:
-        raise InputError("ring", ring, "none where digits are given: they have their own, of fixed-point numbers", "leave one of them out")
+        raise InputError(
+            "ring",
+            ring,
+            "none where digits are given: they have their own, of fixed-point numbers",
+            "leave one of them out",
+        )
     return int(digits)
 
 
 def _frequencies(frequencies: Sequence[Number], seeds: tuple[int, ...]) -> tuple[Fraction, ...]:
     if isinstance(frequencies, (str, Mapping)) or not isinstance(frequencies, Iterable):
-        raise InputError("frequencies", frequencies, "a sequence, one positive number for each seed", "list them in the order of the seeds")
+        raise InputError(
+            "frequencies",
+            frequencies,
+            "a sequence, one positive number for each seed",
+            "list them in the order of the seeds",
+        )
     frequencies = list(frequencies)
     values = tuple(exact(w, "frequencies") for w in frequencies)
     if len(values) != len(seeds):
-        raise InputError("frequencies", tuple(map(str, frequencies)), f"one number for each of the seeds {seeds}", "add or drop some")
+        raise InputError(
+            "frequencies",
+            tuple(map(str, frequencies)),
+            f"one number for each of the seeds {seeds}",
+            "add or drop some",
+        )
     for q, w, typed in zip(seeds, values, frequencies, strict=True):
         if not Fraction(1, 10**6) <= w <= 10**6:
             allowed = "a positive finite number (1e-6 to 1e6)"
-            raise InputError(f"frequencies, omega_{q}", str(typed), allowed, "take one near the linear frequency")
+            raise InputError(
+                f"frequencies, omega_{q}", str(typed), allowed, "take one near the linear frequency"
+            )
     return values
 
 
-def _ascending(seeds: tuple[int, ...], frequencies: Frequencies) -> tuple[tuple[int, ...], Frequencies]:
+def _ascending(
+    seeds: tuple[int, ...], frequencies: Frequencies
+) -> tuple[tuple[int, ...], Frequencies]:
     """Seeds in ascending order, each with its own frequency."""
     order = sorted(range(len(seeds)), key=lambda i: seeds[i])
-    return tuple(seeds[i] for i in order), None if frequencies is None else tuple(frequencies[i] for i in order)
+    return tuple(seeds[i] for i in order), None if frequencies is None else tuple(
+        frequencies[i] for i in order
+    )

@@ -13,26 +13,33 @@ from symfpu.errors import TooLarge
 from symfpu.series.rings import RINGS
 from symfpu.series.tables import LOG10_2
 
-EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60  # digits, an order and at most, for the prediction of memory only
-OTHER_STAGES = 6  # series in doubles that the stages before and after a fixed-point series hold, with their radii
+# digits, an order and at most, for the prediction of memory only
+EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60
+# series in doubles that the stages before and after a fixed-point series hold, with their radii
+OTHER_STAGES = 6
 CONSTANT_BYTES = 2**24
 
 
-def check_size(chain: Chain, seeds: tuple[int, ...], order: int, ring: str, digits: int = 0) -> None:
+def check_size(
+    chain: Chain, seeds: tuple[int, ...], order: int, ring: str, digits: int = 0
+) -> None:
     """Refuse an order whose arrays would not fit, before anything is allocated."""
     free = psutil.virtual_memory().available
-    if _needed(chain, len(seeds), order, ring, digits) <= free:
+    needed = _needed(chain, len(seeds), order, ring, digits)
+    if needed <= free:
         return
     largest = -1
     while _needed(chain, len(seeds), largest + 1, ring, digits) <= free:
         largest += 1
-    raise TooLarge(order, _needed(chain, len(seeds), order, ring, digits), free, largest)
+    raise TooLarge(order, needed, free, largest)
 
 
 def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int:
-    size = predicted_bytes(chain.N, seeds, 1 + chain.degree_step * order, cubic=chain.beta != 0)
+    degree = 1 + chain.degree_step * order
+    size = predicted_bytes(chain.N, seeds, degree, cubic=chain.beta != 0)
     if ring == "fixedpoint":
         guard = EXPECTED_GUARD + min(EXPECTED_LOSS * order, MOST_EXPECTED)
-        primes = math.ceil((digits + guard) / LOG10_2 * 2 / (PRIME_BITS - 2))
+        bits_of_products = (digits + guard) / LOG10_2 * 2
+        primes = math.ceil(bits_of_products / (PRIME_BITS - 2))
         return CONSTANT_BYTES + size * (primes + OTHER_STAGES)
     return int(size * RINGS[ring].growth ** min(order, 100))

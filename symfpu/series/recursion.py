@@ -1,8 +1,9 @@
-"""The recursion of the Poincare-Lindstedt series (Eqs. moda, modb), written once for every ring and both models.
+"""The recursion of the Poincare-Lindstedt series (Eqs. moda, modb), once for all rings and models.
 
 With u_q = Omega_q Q_q and multipliers L_q(nu), degree by degree in the seed amplitudes:
     u_q[nu] = L_q(nu) (sum_n W_q^(n) u_q^(k-n) - a sum B u u - b sum C u u u)[nu],
-and W_q^(k) makes the bracket vanish at the secular harmonic nu = e_q of a seed, where u_q gets no term (the gauge of A_q).
+and W_q^(k) makes the bracket vanish at the secular harmonic nu = e_q of a seed, where u_q gets no
+term (the gauge of A_q).
 """
 
 from __future__ import annotations
@@ -23,38 +24,56 @@ from symfpu.series.series import LindstedtSeries
 Progress = Callable[[int, int], None]
 
 
-def run_recursion(ring: Ring, divisors: Divisors, chain: Chain, order: int, progress: Progress | None) -> None:
-    """The recursion itself (Eqs. moda, modb): fills the ring degree by degree, from the seeds (Eq. qq0)."""
-    couplings = {power: ring.number(coupling) for power, coupling in chain.relative_couplings.items()}
+def run_recursion(
+    ring: Ring, divisors: Divisors, chain: Chain, order: int, progress: Progress | None
+) -> None:
+    """The recursion itself (Eqs. moda, modb), from the seeds (Eq. qq0).
+
+    It fills the ring degree by degree.
+    """
+    couplings = {}
+    for power, coupling in chain.relative_couplings.items():
+        couplings[power] = ring.number(coupling)
     ring.put(1, ring.seed_terms())
     for k in range(1, order + 1):
         degree = 1 + chain.degree_step * k
-        parts = [(coupling, ring.power(power, degree)) for power, coupling in couplings.items() if power <= degree]
+        parts = []
+        for power, number in couplings.items():
+            if power <= degree:
+                parts.append((number, ring.power(power, degree)))
         force = ring.project(degree, parts)
-        ring.correct(degree - 1, ring.secular(degree, force))
+        secular = ring.secular(degree, force)
+        ring.correct(degree - 1, secular)
         harmonics, _ = ring.space.grading.harmonics(degree)
-        multipliers = divisors.multipliers(harmonics, ring.space.mask_by_harmonic(degree), k)
+        carried = ring.space.mask_by_harmonic(degree)
+        multipliers = divisors.multipliers(harmonics, carried, k)
         ring.put(degree, ring.solve(degree, ring.corrected(degree), force, multipliers))
         if progress:
             progress(k, order)
 
 
 def ring_series(
-    chain: Chain, frequencies: Frequencies, order: int, arithmetic: Ring, divisors: Divisors, progress: Progress | None
+    chain: Chain,
+    frequencies: Frequencies,
+    order: int,
+    arithmetic: Ring,
+    divisors: Divisors,
+    progress: Progress | None,
 ) -> LindstedtSeries:
     """Run the recursion and collect what the ring holds."""
     run_recursion(arithmetic, divisors, chain, order, progress)
     modes, corrections, unit = arithmetic.results()
-    seeds = arithmetic.space.seeds
+    space = arithmetic.space
+    none = np.zeros((0, len(space.seeds)))
     return LindstedtSeries(
         chain=chain,
-        seeds=seeds,
+        seeds=space.seeds,
         frequencies=frequencies,
         order=order,
         ring=arithmetic.name,
-        grading=arithmetic.space.grading,
+        grading=space.grading,
         coordinates=tuple(modes),
-        corrections=(np.zeros((0, len(seeds))), *corrections),
+        corrections=(none, *corrections),
         unit=unit,
         smallest_divisors=divisors.smallest(),
         multiply_adds=arithmetic.multiply_adds,
@@ -62,7 +81,12 @@ def ring_series(
 
 
 def named_series(
-    kind: RingKind, chain: Chain, space: CosineModes, frequencies: Frequencies, order: int, progress: Progress | None
+    kind: RingKind,
+    chain: Chain,
+    space: CosineModes,
+    frequencies: Frequencies,
+    order: int,
+    progress: Progress | None,
 ) -> LindstedtSeries:
     """The series over a ring that a name is enough for."""
     assert kind.ring is not None
@@ -74,7 +98,10 @@ def named_series(
 
 def monomial_space(chain: Chain, seeds: tuple[int, ...], order: int) -> CosineModes:
     """Modes and monomials of a series; its first order is a plain product of the seeds."""
-    return CosineModes(chain.N, seeds, shared_grading(len(seeds), 1 + chain.degree_step * order), 1 + chain.degree_step)
+    factors = 1 + chain.degree_step
+    degree = 1 + chain.degree_step * order
+    grading = shared_grading(len(seeds), degree)
+    return CosineModes(chain.N, seeds, grading, factors)
 
 
 @lru_cache(maxsize=4)

@@ -15,16 +15,25 @@ from symfpu.series.series import LindstedtSeries, ResiduePoint
 
 
 def residue_series(
-    chain: Chain, seeds: Sequence[int], point: ResiduePoint, order: int, *, workers: int | None = None, progress: Progress | None = None
+    chain: Chain,
+    seeds: Sequence[int],
+    point: ResiduePoint,
+    order: int,
+    *,
+    workers: int | None = None,
+    progress: Progress | None = None,
 ) -> LindstedtSeries:
-    """The same series modulo a prime: `coordinates` and `corrections` hold residues in -p/2 .. p/2, as doubles.
+    """The same series modulo a prime.
 
-    workers : threads; default one for each core. Raises VanishingResidue where a divisor vanishes modulo the prime,
-    TooLarge as `lindstedt` does.
+    `coordinates` and `corrections` hold residues in -p/2 .. p/2, as doubles.
+
+    workers : threads; default one for each core. Raises VanishingResidue where a divisor vanishes
+    modulo the prime, TooLarge as `lindstedt` does.
     """
     seeds = tuple(sorted(seed_modes(seeds, chain.N)))
     check_size(chain, seeds, integer(order, "order", 0), "residue")
     space = monomial_space(chain, seeds, order)
     ring = ResidueRing(space, point.prime, point.root, workers=workers)
-    series = ring_series(chain, None, order, ring, ResidueDivisors(chain, seeds, ring, point.frequencies), progress)
+    divisors = ResidueDivisors(chain, seeds, ring, point.frequencies)
+    series = ring_series(chain, None, order, ring, divisors, progress)
     return replace(series, point=point)

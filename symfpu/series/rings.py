@@ -1,6 +1,7 @@
 """The rings of a series in one list: each with its divisors, its tables, and how it grows.
 
-A new ring is a file in symfpu/algebra with the methods of `Ring`, its divisors and its tables, and one line here.
+A new ring is a file in symfpu/algebra with the methods of `Ring`, its divisors and its tables,
+and one line here.
 """
 
 from __future__ import annotations
@@ -27,9 +28,11 @@ SYMBOLIC_GROWTH = 4  # factor by which an expanded coefficient grows with the or
 class RingKind:
     """A ring that series are made over.
 
-    tables : of its coefficients, from digits and bits. ring, divisors : how they are made; None where that takes more than a
-    name: residues want a point, fixed-point numbers their precision. growth : factor of memory by order, beside doubles.
-    numeric, exact_point : whether a series has frequencies, or a point where its residues were taken.
+    tables : of its coefficients, from digits and bits. ring, divisors : how they are made; None
+    where that takes more than a name: residues want a point, fixed-point numbers their precision.
+    growth : factor of memory by order, beside doubles.
+    numeric, exact_point : whether a series has frequencies, or a point where its residues were
+        taken.
     """
 
     name: str
@@ -77,12 +80,15 @@ FIXED_POINT = RingKind("fixedpoint", FixedPointTables, numeric=True)
 RESIDUE = RingKind("residue", _double_tables, exact_point=True)
 
 RINGS = {kind.name: kind for kind in (FLOAT64, SYMBOLIC, NESTED, FIXED_POINT, RESIDUE)}
-BY_NAME = tuple(name for name, kind in RINGS.items() if kind.ring)  # those that a series can be asked for by name
+# those that a series can be asked for by name
+BY_NAME = tuple(name for name, kind in RINGS.items() if kind.ring)
 
 
 def chosen_frequencies(frequencies: Frequencies, ring: str) -> tuple[Fraction, ...]:
     """The frequencies; InputError where there are none."""
     if frequencies is None:
         advice = "give frequencies=, or ring='symbolic'"
-        raise InputError("frequencies", None, f"one number for each seed in the {ring} ring", advice)
+        raise InputError(
+            "frequencies", None, f"one number for each seed in the {ring} ring", advice
+        )
     return frequencies

@@ -1,4 +1,4 @@
-"""A Poincare-Lindstedt series: coordinates and frequency corrections as arrays and as SymEngine expressions."""
+"""A Poincare-Lindstedt series: its arrays, read as numbers and as SymEngine expressions."""
 
 from __future__ import annotations
 
@@ -44,37 +44,44 @@ class ResiduePoint:
 
 @dataclass(frozen=True, eq=False)
 class LindstedtSeries:
-    """The series Q_q = sum mu^k Q_q^(k), omega_q = Omega_q + sum mu^k omega_q^(k), with free amplitudes.
+    """The series Q_q = sum mu^k Q_q^(k) and omega_q = Omega_q + sum mu^k omega_q^(k).
 
-    Made by `lindstedt` (Eqs. qser, omeser); all quantities dimensionless, phases in radians. The tables are
-    in the ring's variables w_i = Omega_i z_i, z_i = (A_i/2) exp(i theta_i), and in u_q = Omega_q Q_q,
-    [omega_q^2]^(k) = Omega_q^2 W_q^(k), without mu; degree d carries the factor unit^-(d-1).
+    The amplitudes are free.
 
-    chain, seeds, order : as given. frequencies : omega of every seed, exact, shape (s,); None in universal
-        form.
-    ring : 'float64', 'fixedpoint', 'residue', 'symbolic' or 'nested'. grading : which monomials stand in
-        which row.
+    Made by `lindstedt` (Eqs. qser, omeser); all quantities dimensionless, phases in radians. The
+    tables are in the ring's variables w_i = Omega_i z_i, z_i = (A_i/2) exp(i theta_i), and in
+    u_q = Omega_q Q_q, [omega_q^2]^(k) = Omega_q^2 W_q^(k), without mu; degree d carries the
+    factor unit^-(d-1).
+
+    chain, seeds, order : as given. frequencies : omega of every seed, exact, shape (s,); None in
+        universal form.
+    ring : 'float64', 'fixedpoint', 'residue', 'symbolic' or 'nested'. grading : which monomials
+        stand in which row.
     coordinates : for each order 0 .. order, u_q^(k); shape (canonical monomials, N-1).
-    corrections : for each order 0 .. order, W_q^(k); shape (diagonal monomials, s); no rows where none exist.
+    corrections : for each order 0 .. order, W_q^(k); shape (diagonal monomials, s); no rows where
+        none exist.
     unit : the exact unit of amplitudes, which keeps coefficients in the range of doubles.
-    smallest_divisors : the smallest |lambda_q - (nu.omega)^2|, ascending, with mode, harmonic and order.
+    smallest_divisors : the smallest |lambda_q - (nu.omega)^2|, ascending, with mode, harmonic and
+        order.
     multiply_adds : operations on coefficients that the recursion took.
-    digits, bits : with digits, both tables are IntegerTables in units of 2^-bits, and results are mpf: every
-        entry of these tables is correct to `digits` digits of the largest one of its order, proved; sums at
-        given amplitudes keep the absolute error of their order. None and 0 otherwise.
-    radii : for each order, the largest error of u_q^(k), and the errors of W_q^(k) by monomial and seed, in
-        the same units.
-    point : where a series of residues was taken. Its methods raise InputError for orders and modes it does
-        not have.
+    digits, bits : with digits, both tables are IntegerTables in units of 2^-bits, and results are
+        mpf: every entry of these tables is correct to `digits` digits of the largest one of its
+        order, proved; sums at given amplitudes keep the absolute error of their order. None and 0
+        otherwise.
+    radii : for each order, the largest error of u_q^(k), and the errors of W_q^(k) by monomial
+        and seed, in the same units.
+    point : where a series of residues was taken. Its methods raise InputError for orders and
+        modes it does not have.
 
     >>> from symfpu.chain.chain import Chain
     >>> from symfpu.series.lindstedt import lindstedt
     >>> lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)
-    LindstedtSeries(N=8, alpha=0.3, seeds=1, order 6, 133 coefficients (float64), smallest divisor 0.024 at
-    mode 2, harmonic (2), order 1)
+    LindstedtSeries(N=8, alpha=0.3, seeds=1, order 6, 133 coefficients (float64),
+    smallest divisor 0.024 at mode 2, harmonic (2), order 1)
     >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), order=1)
     >>> series.term(q=2, order=1)
-    (-1/2)*A1**2*Omega_1**2*L_{2}(0)/Omega_2 + (-1/2)*A1**2*Omega_1**2*cos(2*theta1)*L_{2}(2)/Omega_2
+    (-1/2)*A1**2*Omega_1**2*L_{2}(0)/Omega_2
+    + (-1/2)*A1**2*Omega_1**2*cos(2*theta1)*L_{2}(2)/Omega_2
     """
 
     chain: Chain
@@ -95,7 +102,9 @@ class LindstedtSeries:
 
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        smallest = f", smallest divisor {self.smallest_divisors[0]}" if self.smallest_divisors else ""
+        smallest = (
+            f", smallest divisor {self.smallest_divisors[0]}" if self.smallest_divisors else ""
+        )
         return (
             f"LindstedtSeries({chain}, seeds={','.join(map(str, self.seeds))}, order {self.order}, "
             f"{self.coefficient_count:,} coefficients ({self.precision}){smallest})"
@@ -120,7 +129,10 @@ class LindstedtSeries:
 
     @property
     def guard_digits(self) -> int:
-        """Decimal places carried beyond the promised ones: what the recursion can lose, from its divisors and order."""
+        """Decimal places carried beyond the promised ones, from divisors and order.
+
+        As many as the recursion can lose.
+        """
         return int(self.bits * LOG10_2) - (self.digits or 0)
 
     @property
@@ -142,7 +154,9 @@ class LindstedtSeries:
 
     def _order(self, order: int) -> int:
         if integer(order, "order", 0) > self.order:
-            raise InputError("order", order, f"0..{self.order}, the series' order", "compute a longer series")
+            raise InputError(
+                "order", order, f"0..{self.order}, the series' order", "compute a longer series"
+            )
         return int(order)
 
     def _mode(self, q: int) -> int:
@@ -152,49 +166,68 @@ class LindstedtSeries:
 
     def _seed(self, q: int) -> int:
         if q not in self.seeds:
-            raise InputError("q", q, f"a seed, one of {self.seeds}", "only seeds have frequency corrections")
+            raise InputError(
+                "q", q, f"a seed, one of {self.seeds}", "only seeds have frequency corrections"
+            )
         return self.seeds.index(q)
 
     def _linear(self, q: int) -> Any:
         return self.tables.linear(self.chain, q)
 
-    def _scaled(self, values: NDArray[Any], powers: Ints, units: int, halves: int = 0) -> NDArray[Any]:
+    def _scaled(
+        self, values: NDArray[Any], powers: Ints, units: int, halves: int = 0
+    ) -> NDArray[Any]:
         """values times prod Omega_i^powers unit^units 2^-halves, in numbers or in symbols."""
         linear = [self._linear(q) for q in self.seeds]
         return self.tables.scaled(values, linear, powers, Exponents(self.unit, units, halves))
 
     def coefficients(self, q: int, order: int) -> tuple[Ints, NDArray[Any]]:
-        """Q_q^(k), without mu^k, as a polynomial in z_i = (A_i/2) exp(i theta_i) and conj z_i (Eq. qser).
+        """Q_q^(k) without mu^k, a polynomial in z_i = (A_i/2) exp(i theta_i), conj z_i.
 
-        Returns exponents (count, 2s) = (p_1, n_1, ..., p_s, n_s) and coefficients (count,) of its canonical monomials, zero
-        coefficients left out. The conjugate of a monomial has the same coefficient and is not listed again.
-        Raises InputError for a mode or an order outside the series, SymfpuError where a coefficient exceeds doubles.
+        Eq. qser.
+
+        Returns exponents (count, 2s) = (p_1, n_1, ..., p_s, n_s) and coefficients (count,) of its
+        canonical monomials, zero coefficients left out. The conjugate of a monomial has the same
+        coefficient and is not listed again. Raises InputError for a mode or an order outside the
+        series, SymfpuError where a coefficient exceeds doubles.
         """
-        degree, column = self.degree(order), self._mode(q) - 1
+        degree = self.degree(order)
+        column = self._mode(q) - 1
         with self._context():
             values = self.tables.entries(self.coordinates[order], [column])[:, 0]
             at = np.flatnonzero(values != 0)
-            exponents = self.grading.exponents(degree)[self.grading.canonical(degree)[at]]
-            result = self._scaled(values[at] / self._linear(q), self.grading.powers(degree)[at], degree - 1)
+            rows = self.grading.canonical(degree)[at]
+            exponents = self.grading.exponents(degree)[rows]
+            powers = self.grading.powers(degree)[at]
+            coordinates = values[at] / self._linear(q)
+            result = self._scaled(coordinates, powers, degree - 1)
             found = self.tables.finite(result, f"Q_{q}^({order})")
             return exponents, with_digits(found, self.digits)
 
-    def frequency_coefficients(self, q: int, order: int, *, squared: bool = False) -> tuple[Ints, NDArray[Any]]:
-        """omega_q^(k), or [omega_q^2]^(k) if squared, without mu^k, as a polynomial in the amplitudes (Eq. omeser).
+    def frequency_coefficients(
+        self, q: int, order: int, *, squared: bool = False
+    ) -> tuple[Ints, NDArray[Any]]:
+        """omega_q^(k) without mu^k, as a polynomial in the amplitudes (Eq. omeser).
 
-        Returns exponents (count, s) of A_1 .. A_s and coefficients (count,), zero coefficients left out. Order 0 is Omega_q
-        (its square). omega^(k) = ([omega^2]^(k) - sum_{0<j<k} omega^(j) omega^(k-j)) / (2 Omega).
+        If squared, [omega_q^2]^(k).
+
+        Returns exponents (count, s) of A_1 .. A_s and coefficients (count,), zero coefficients
+        left out. Order 0 is Omega_q (its square). omega^(k) = ([omega^2]^(k) - sum_{0<j<k}
+        omega^(j) omega^(k-j)) / (2 Omega).
         """
-        i, order = self._seed(q), self._order(order)
+        i = self._seed(q)
+        order = self._order(order)
         degree = self.chain.degree_step * order
         with self._context():
             polynomials = [self.squared_polynomial(i, k) for k in range(order + 1)]
             if not squared:
                 polynomials = square_root(polynomials, self._linear(q))
             chosen = {e: c for e, c in polynomials[order].items() if c != 0}
-            exponents = np.array(list(chosen), dtype=np.int64).reshape(len(chosen), len(self.seeds)) * 2
+            by_square = np.array(list(chosen), dtype=np.int64)
+            exponents = by_square.reshape(len(chosen), len(self.seeds)) * 2
             values = np.array(list(chosen.values()), dtype=self.tables.kind)
-            result = self._scaled(self.tables.simplified(values), exponents, degree, degree)
+            simplified = self.tables.simplified(values)
+            result = self._scaled(simplified, exponents, degree, degree)
             found = self.tables.finite(result, f"omega_{q}^({order})")
             return exponents, with_digits(found, self.digits)
 
@@ -202,56 +235,75 @@ class LindstedtSeries:
         """[omega_q^2]^(k) as {powers of w_i^2: coefficient}, scaled as the tables are."""
         linear = self._linear(self.seeds[i])
         if order == 0:
-            return {(0,) * len(self.seeds): linear**2}
+            constant = (0,) * len(self.seeds)
+            return {constant: linear**2}
         diagonal = self.grading.diagonal(self.chain.degree_step * order)
-        column = self.tables.entries(self.corrections[order], [i])[:, 0] if len(diagonal) else ()
-        return {tuple(map(int, e)): linear**2 * c for e, c in zip(diagonal, column, strict=True)}
+        if len(diagonal) == 0:
+            return {}
+        column = self.tables.entries(self.corrections[order], [i])[:, 0]
+        polynomial = {}
+        for monomial, coefficient in zip(diagonal, column, strict=True):
+            exponents = tuple(map(int, monomial))
+            polynomial[exponents] = linear**2 * coefficient
+        return polynomial
 
     def term(self, q: int, order: int) -> Any:
-        """Q_q^(k), without mu^k, as a SymEngine expression in A_i and theta_i (Eq. qser); it prints as LaTeX in a notebook.
+        """Q_q^(k), without mu^k, as a SymEngine expression in A_i and theta_i (Eq. qser).
 
-        Coefficients are doubles, or polynomials in the symbols L_q(nu) and Omega_q for a series in universal form.
+        It prints as LaTeX in a notebook.
+
+        Coefficients are doubles, or polynomials in the symbols L_q(nu) and Omega_q for a series
+        in universal form.
         """
         exponents, values = self.coefficients(q, order)
         A, theta = self._amplitude_symbols()
         terms = []
         for row, value in zip(exponents, values, strict=True):
-            nu = [int(n) for n in row[0::2] - row[1::2]]
-            powers = [int(n) for n in row[0::2] + row[1::2]]
-            scalar = se.Integer(2 if any(nu) else 1) / se.Integer(2) ** sum(powers)
-            amplitude = se.Mul(*(a**e for a, e in zip(A, powers, strict=True)))
-            angle = se.Add(*(n * angle for n, angle in zip(nu, theta, strict=True)))
-            terms.append(scalar * self.tables.symbol(value) * amplitude * se.cos(angle))
+            plus, minus = row[0::2], row[1::2]
+            nu = [int(n) for n in plus - minus]
+            powers = [int(n) for n in plus + minus]
+            pair = se.Integer(2 if any(nu) else 1)
+            scalar = pair / se.Integer(2) ** sum(powers)
+            amplitude = _monomial(A, powers)
+            phases = [n * angle for n, angle in zip(nu, theta, strict=True)]
+            cosine = se.cos(se.Add(*phases))
+            terms.append(scalar * self.tables.symbol(value) * amplitude * cosine)
         return se.Add(*terms)
 
     def frequency_correction(self, q: int, order: int) -> Any:
         """omega_q^(k), without mu^k, as a SymEngine expression in the amplitudes (Eq. omeser)."""
-        return self._amplitude_polynomial(*self.frequency_coefficients(q, order))
+        exponents, values = self.frequency_coefficients(q, order)
+        return self._amplitude_polynomial(exponents, values)
 
     def squared_frequency_correction(self, q: int, order: int) -> Any:
         """[omega_q^2]^(k), without mu^k, as a SymEngine expression in the amplitudes."""
-        return self._amplitude_polynomial(*self.frequency_coefficients(q, order, squared=True))
+        exponents, values = self.frequency_coefficients(q, order, squared=True)
+        return self._amplitude_polynomial(exponents, values)
 
     def _amplitude_polynomial(self, exponents: Ints, values: NDArray[Any]) -> Any:
         A, _ = self._amplitude_symbols()
-        return se.Add(
-            *(
-                self.tables.symbol(value) * se.Mul(*(a ** int(e) for a, e in zip(A, row, strict=True)))
-                for row, value in zip(exponents, values, strict=True)
-            )
-        )
+        terms = []
+        for row, value in zip(exponents, values, strict=True):
+            powers = [int(e) for e in row]
+            terms.append(self.tables.symbol(value) * _monomial(A, powers))
+        return se.Add(*terms)
 
     def _amplitude_symbols(self) -> tuple[list[Any], list[Any]]:
-        return [se.Symbol(f"A{q}") for q in self.seeds], [se.Symbol(f"theta{q}") for q in self.seeds]
+        amplitudes = [se.Symbol(f"A{q}") for q in self.seeds]
+        phases = [se.Symbol(f"theta{q}") for q in self.seeds]
+        return amplitudes, phases
 
     def _numeric(self) -> None:
         if self.frequencies is None:
-            raise InputError("series", "universal form", "a series with chosen frequencies", "give frequencies= to lindstedt")
+            allowed = "a series with chosen frequencies"
+            raise InputError("series", "universal form", allowed, "give frequencies= to lindstedt")
 
     @cached_property
     def _kappa(self) -> Any:
-        """|mu|^(1/step) unit: what the variables w_i are multiplied by before the scaled tables apply."""
-        return abs(self.chain.small_parameter(self.numbers)) ** (1 / self.chain.degree_step) * self.numbers.number(self.unit)
+        """The factor |mu|^(1/step) unit of the variables w_i, before the scaled tables apply."""
+        mu = abs(self.chain.small_parameter(self.numbers))
+        root = mu ** (1 / self.chain.degree_step)
+        return root * self.numbers.number(self.unit)
 
     def _sign(self, order: int) -> float:
         return -1.0 if self.chain.mu < 0 and order % 2 else 1.0
@@ -259,7 +311,8 @@ class LindstedtSeries:
     @cached_property
     def seed_factors(self) -> Numbers:
         """kappa Omega_i / 2: the scaled variables x_i at unit amplitudes; shape (s,)."""
-        factors = self._kappa / 2 * self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1]
+        linear = self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1]
+        factors = self._kappa / 2 * linear
         return with_digits(np.asarray(factors), self.digits)
 
     def scaled_seeds(self, amplitudes: ArrayLike) -> Numbers:
@@ -269,70 +322,97 @@ class LindstedtSeries:
             return with_digits(np.asarray(scaled), self.digits)
 
     def amplitude_terms(self, order: int) -> tuple[Ints, Ints, Numbers]:
-        """mu^k Q_q^(k) with free amplitudes: sum over rows of value[., q] x^e cos(nu.theta), x = scaled_seeds(A).
+        """mu^k Q_q^(k) with free amplitudes, by canonical monomials.
 
-        The summands of Eq. serabs1, for any seeds. Returns harmonics nu (R, s), exponents e (R, s) and
-        values (R, N-1), one row for each canonical monomial.
+        The sum over rows of value[., q] x^e cos(nu.theta), x = scaled_seeds(A).
+
+        The summands of Eq. serabs1, for any seeds. Returns harmonics nu (R, s), exponents e (R,
+        s) and values (R, N-1), one row for each canonical monomial.
         """
         self._numeric()
         degree = self.degree(order)
         nu, index = self.grading.harmonics(degree)
         with self._context():
-            values = self.tables.entries(self.coordinates[order]) * (self._sign(order) / self._kappa) / self.chain.frequencies(self.numbers)
-            values[(nu != 0).any(axis=1)[index]] *= 2
+            factor = self._sign(order) / self._kappa
+            linear = self.chain.frequencies(self.numbers)
+            values = self.tables.entries(self.coordinates[order]) * factor / linear
+            oscillates = (nu != 0).any(axis=1)
+            values[oscillates[index]] *= 2
         return nu[index], self.grading.powers(degree), with_digits(values, self.digits)
 
-    def harmonic_terms(self, amplitudes: ArrayLike, order: int, *, absolute: bool = False) -> tuple[Ints, Numbers]:
-        """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients: sum over rows of value[., q] cos(nu.theta).
+    def harmonic_terms(
+        self, amplitudes: ArrayLike, order: int, *, absolute: bool = False
+    ) -> tuple[Ints, Numbers]:
+        """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients.
 
-        The sums in brackets of Eq. serabs1, for any seeds. amplitudes : (s,) in the order of the seeds.
+        The sum over rows of value[., q] cos(nu.theta).
+
+        The sums in brackets of Eq. serabs1, for any seeds. amplitudes : (s,) in the order of the
+        seeds.
         Returns harmonics (H, s), one of each pair +-nu, and values (H, N-1).
-        absolute : take the modulus of every monomial before they are summed (for S_1 of Eq. serabs2); always doubles.
+        absolute : take the modulus of every monomial before they are summed (for S_1 of Eq.
+        serabs2); always doubles.
         """
         self._numeric()
-        if np.shape(amplitudes) != (len(self.seeds),):
-            raise InputError(
-                "amplitudes", np.shape(amplitudes), f"one for each of the seeds {self.seeds}", "pass a sequence in their order"
-            )
+        shape = np.shape(amplitudes)
+        if shape != (len(self.seeds),):
+            allowed = f"one for each of the seeds {self.seeds}"
+            raise InputError("amplitudes", shape, allowed, "pass a sequence in their order")
         nu, index = self.grading.harmonics(self.degree(order))
         by_harmonic = np.argsort(index, kind="stable")
         starts = np.searchsorted(index[by_harmonic], np.arange(len(nu)))
         doubles = absolute or self.digits is None
         with self._context():
-            table: NDArray[Any] = np.zeros(0)
-            exponent = np.zeros(1, dtype=np.int64)
-            if doubles:
-                table = self._doubles(amplitudes, order)
-            else:
-                table, exponent = self._integers(amplitudes, order)
-            values = np.add.reduceat(np.abs(table[by_harmonic]) if absolute else table[by_harmonic], starts, axis=0)
-            numbers = DOUBLES if doubles else MULTIPRECISION
             factor = self._sign(order) / self._kappa
-            values = values * float(factor) if doubles else from_integers(values, exponent) * factor
+            if doubles:
+                table = self._doubles(amplitudes, order)[by_harmonic]
+                summands = np.abs(table) if absolute else table
+                sums = np.add.reduceat(summands, starts, axis=0)
+                values = sums * float(factor)
+            else:
+                whole, exponent = self._integers(amplitudes, order)
+                sums = np.add.reduceat(whole[by_harmonic], starts, axis=0)
+                values = from_integers(sums, exponent) * factor
+            numbers = DOUBLES if doubles else MULTIPRECISION
             values = values / self.chain.frequencies(numbers)
-            values[(nu != 0).any(axis=1)] *= 2
+            oscillates = (nu != 0).any(axis=1)
+            values[oscillates] *= 2
         return nu, np.abs(values) if absolute else with_digits(values, self.digits)
 
     def _doubles(self, amplitudes: ArrayLike, order: int) -> Floats:
         """Every coefficient of an order times its monomial, as doubles."""
         values = self.tables.doubles(self.coordinates[order])
         seeds = self.scaled_seeds(amplitudes).astype(float)
-        return np.asarray(values * np.prod(seeds ** self.grading.powers(self.degree(order)), axis=1)[:, None])
+        powers = self.grading.powers(self.degree(order))
+        monomials = np.prod(seeds**powers, axis=1)
+        return np.asarray(values * monomials[:, None])
 
-    def _integers(self, amplitudes: ArrayLike, order: int) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+    def _integers(
+        self, amplitudes: ArrayLike, order: int
+    ) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
         """The same as integers, and the power of two of their unit."""
-        powers, seeds = self.grading.powers(self.degree(order)), self.scaled_seeds(amplitudes)
-        table = powers_of(list(seeds), int(powers.max()), mpmath.mpf(1))
-        monomials = np.array(table[0], dtype=object)[powers[:, 0]]
+        powers = self.grading.powers(self.degree(order))
+        seeds = self.scaled_seeds(amplitudes)
+        highest = int(powers.max())
+        table = powers_of(list(seeds), highest, mpmath.mpf(1))
+        first = np.array(table[0], dtype=object)
+        monomials = first[powers[:, 0]]
         for i in range(1, len(seeds)):
-            monomials = monomials * np.array(table[i], dtype=object)[powers[:, i]]
+            powers_of_seed = np.array(table[i], dtype=object)
+            monomials = monomials * powers_of_seed[powers[:, i]]
         whole, exponent = integers(monomials[:, None])
-        return self.coordinates[order].integers() * whole, exponent - self.bits
+        products = self.coordinates[order].integers() * whole
+        return products, exponent - self.bits
 
-    def absolute_sums(self, q: int, amplitudes: ArrayLike, *, with_mu: bool = False) -> tuple[Floats, Floats]:
-        """S_1(k) and S_2(k) of Eqs. serabs2 and serabs3 for Q_q^(k), k = 0 .. order, as doubles; shapes (order + 1,) each.
+    def absolute_sums(
+        self, q: int, amplitudes: ArrayLike, *, with_mu: bool = False
+    ) -> tuple[Floats, Floats]:
+        """S_1(k) and S_2(k) of Eqs. serabs2 and serabs3 for Q_q^(k), as doubles.
 
-        S_1 adds the moduli of all coefficients, S_2 those of the cosines after the monomials of one harmonic are summed.
+        k = 0 .. order; shapes (order + 1,) each.
+
+        S_1 adds the moduli of all coefficients, S_2 those of the cosines after the monomials of
+        one harmonic are summed.
         with_mu : sums of mu^k Q_q^(k) instead, which cannot leave the range of doubles.
         """
         column = self._mode(q) - 1
@@ -340,25 +420,35 @@ class LindstedtSeries:
         for k in range(self.order + 1):
             unit = 1.0 if with_mu else abs(self.chain.mu) ** -float(k)
             for row, absolute in enumerate((True, False)):
-                sums[row, k] = unit * float(np.abs(self.harmonic_terms(amplitudes, k, absolute=absolute)[1][:, column]).sum())
+                _, values = self.harmonic_terms(amplitudes, k, absolute=absolute)
+                moduli = np.abs(values[:, column])
+                sums[row, k] = unit * float(moduli.sum())
         return sums[0], sums[1]
 
-    def frequency_terms(self, squared_amplitudes: ArrayLike, order: int | None = None) -> tuple[Numbers, Numbers]:
-        """mu^k omega_q^(k) for k = 0 .. order (default all) at these values of A^2, and the derivatives by A^2.
+    def frequency_terms(
+        self, squared_amplitudes: ArrayLike, order: int | None = None
+    ) -> tuple[Numbers, Numbers]:
+        """mu^k omega_q^(k) for k = 0 .. order (default all) at A^2, and the derivatives by A^2.
 
-        squared_amplitudes : (s,). Returns terms (order + 1, s), order 0 being Omega_q, and derivatives (order + 1, s, s)
-        with the last axis for the variable.
+        squared_amplitudes : (s,). Returns terms (order + 1, s), order 0 being Omega_q, and
+        derivatives (order + 1, s, s) with the last axis for the variable.
         """
         self._numeric()
         top = self.order if order is None else self._order(order)
         if self.digits is None:
-            return self._frequency_doubles(np.asarray(squared_amplitudes, dtype=float), top)
+            squares = np.asarray(squared_amplitudes, dtype=float)
+            return self._frequency_doubles(squares, top)
         with self._context():
             point = list(self.numbers.array(squared_amplitudes))
-            powers = powers_of(point, self.chain.degree_step * top // 2, mpmath.mpf(1))
-            parts = [[evaluate(p, powers) for p in polynomials] for polynomials in self._frequency_polynomials[: top + 1]]
-            terms = np.array([[mpmath.mpf(value) for value, _ in row] for row in parts], dtype=object)
-            slopes = np.array([[[mpmath.mpf(x) for x in gradient] for _, gradient in row] for row in parts], dtype=object)
+            highest = self.chain.degree_step * top // 2
+            powers = powers_of(point, highest, mpmath.mpf(1))
+            values, gradients = [], []
+            for polynomials in self._frequency_polynomials[: top + 1]:
+                parts = [evaluate(p, powers) for p in polynomials]
+                values.append([mpmath.mpf(value) for value, _ in parts])
+                gradients.append([list(map(mpmath.mpf, gradient)) for _, gradient in parts])
+            terms = np.array(values, dtype=object)
+            slopes = np.array(gradients, dtype=object)
         return with_digits(terms, self.digits), with_digits(slopes, self.digits)
 
     @cached_property
@@ -367,7 +457,8 @@ class LindstedtSeries:
         slopes = [f**2 for f in self.seed_factors]
         by_seed = []
         for i, q in enumerate(self.seeds):
-            roots = square_root([self.squared_polynomial(i, k) for k in range(self.order + 1)], self._linear(q))
+            squares = [self.squared_polynomial(i, k) for k in range(self.order + 1)]
+            roots = square_root(squares, self._linear(q))
             by_seed.append([rescaled(p, slopes, self._sign(k)) for k, p in enumerate(roots)])
         return [list(row) for row in zip(*by_seed, strict=True)]
 
@@ -376,7 +467,8 @@ class LindstedtSeries:
         linear = self.chain.frequencies()[np.array(self.seeds) - 1]
         slope = self.seed_factors**2
         y = slope * squares
-        terms, jacobian = np.zeros((top + 1, s)), np.zeros((top + 1, s, s))
+        terms = np.zeros((top + 1, s))
+        jacobian = np.zeros((top + 1, s, s))
         terms[0] = linear
         for k in range(1, top + 1):
             e = self.grading.diagonal(self.chain.degree_step * k)
@@ -384,11 +476,19 @@ class LindstedtSeries:
                 continue
             table = self._sign(k) * self.corrections[k] * linear**2
             square, square_slope = _polynomial(y, e, table)
-            square -= np.einsum("jq,jq->q", terms[1:k], terms[k - 1 : 0 : -1])
-            square_slope = square_slope * slope - 2 * np.einsum("jq,jqi->qi", terms[1:k], jacobian[k - 1 : 0 : -1])
+            # [omega^2]^(k) = 2 Omega omega^(k) + sum of omega^(j) omega^(k-j), 0 < j < k
+            earlier = terms[1:k]
+            square -= np.einsum("jq,jq->q", earlier, terms[k - 1 : 0 : -1])
+            products = np.einsum("jq,jqi->qi", earlier, jacobian[k - 1 : 0 : -1])
+            square_slope = square_slope * slope - 2 * products
             terms[k] = square / (2 * linear)
             jacobian[k] = square_slope / (2 * linear)[:, None]
         return terms, jacobian
+
+
+def _monomial(variables: list[Any], powers: list[int]) -> Any:
+    """A product of powers of symbols."""
+    return se.Mul(*(x**e for x, e in zip(variables, powers, strict=True)))
 
 
 def _polynomial(y: Floats, exponents: Ints, table: Floats) -> tuple[Floats, Floats]:
@@ -397,7 +497,8 @@ def _polynomial(y: Floats, exponents: Ints, table: Floats) -> tuple[Floats, Floa
     square = np.prod(powers, axis=1) @ table
     slopes = []
     for j in range(len(y)):
+        exponent = exponents[:, j]
         lowered = powers.copy()
-        lowered[:, j] = exponents[:, j] * y[j] ** np.maximum(exponents[:, j] - 1, 0)
+        lowered[:, j] = exponent * y[j] ** np.maximum(exponent - 1, 0)
         slopes.append(np.prod(lowered, axis=1) @ table)
     return square, np.stack(slopes, axis=1)

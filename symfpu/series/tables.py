@@ -1,4 +1,7 @@
-"""What the tables of a series hold, by ring: the numbers they denote, in which arithmetic, and how a file keeps them."""
+"""What the tables of a series hold, by ring.
+
+The numbers they denote, in which arithmetic, and how a file keeps them.
+"""
 
 from __future__ import annotations
 
@@ -31,9 +34,12 @@ SYMBOL_DIGITS = 2  # of a number in an expression, beyond the promised ones
 
 
 class Tables(Protocol):
-    """The arithmetic of the tables of one series. digits : promised; None for doubles and symbols. bits : binary places.
+    """The arithmetic of the tables of one series.
 
-    symbolic : whether coefficients are expressions in the symbols L_q(nu). dtype : of the array that a file keeps.
+    digits : promised; None for doubles and symbols. bits : binary places.
+
+    symbolic : whether coefficients are expressions in the symbols L_q(nu). dtype : of the array
+    that a file keeps.
     """
 
     @property
@@ -62,7 +68,9 @@ class Tables(Protocol):
     def doubles(self, table: Any) -> Floats:
         """Entries of a table as doubles."""
 
-    def scaled(self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents) -> Array:
+    def scaled(
+        self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
+    ) -> Array:
         """values times prod linear^powers, unit and halves; powers (count, s)."""
 
     def simplified(self, values: Array) -> Array:
@@ -86,7 +94,7 @@ class Tables(Protocol):
 
 @dataclass(frozen=True)
 class Exponents:
-    """The power of the unit of a table, and how many halvings, that belong to all its coefficients."""
+    """The power of a table's unit, and how many halvings, that all its coefficients share."""
 
     unit: Fraction
     units: int
@@ -124,7 +132,9 @@ class DoubleTables:
         """As they are."""
         return np.asarray(table)
 
-    def scaled(self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents) -> Array:
+    def scaled(
+        self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
+    ) -> Array:
         """By logarithms to base two, whose whole part cannot overflow."""
         logarithm = powers @ np.log2(np.array(linear))
         logarithm = logarithm + exponents.units * np.log2(float(exponents.unit)) - exponents.halves
@@ -191,7 +201,9 @@ class FixedPointTables:
         """Rounded; the corrections of order 0 are an array without rows."""
         return table.floats(-self.bits) if isinstance(table, IntegerTable) else np.asarray(table)
 
-    def scaled(self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents) -> Array:
+    def scaled(
+        self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
+    ) -> Array:
         """In mpf."""
         scale = MULTIPRECISION.number(exponents.unit) ** exponents.units / 2**exponents.halves
         return multiplied(values, linear, powers, scale)
@@ -228,7 +240,10 @@ class FixedPointTables:
 
 @dataclass(frozen=True)
 class ExpressionTables:
-    """Tables of SymEngine expressions in the symbols L_q(nu). expanded : whether every coefficient is an expanded polynomial."""
+    """Tables of SymEngine expressions in the symbols L_q(nu).
+
+    Expanded : whether every coefficient is an expanded polynomial.
+    """
 
     expanded: bool
     digits: int | None = None
@@ -255,10 +270,15 @@ class ExpressionTables:
         return np.asarray(table[:, columns])
 
     def doubles(self, table: Any) -> Floats:
-        """Numbers only: what is left without symbols. Raises SymEngine's RuntimeError for others."""
+        """Numbers only: what is left without symbols.
+
+        Raises SymEngine's RuntimeError for others.
+        """
         return np.asarray(table, dtype=np.float64)
 
-    def scaled(self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents) -> Array:
+    def scaled(
+        self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
+    ) -> Array:
         """In symbols; their unit is one."""
         return multiplied(values, linear, powers, se.Integer(1) / se.Integer(2) ** exponents.halves)
 
@@ -277,7 +297,9 @@ class ExpressionTables:
     def pack(self, parts: Parts) -> tuple[Parts, Json]:
         """Places in a list of expressions, and the list."""
         nodes = ExpressionNodes()
-        places = {name: tuple(nodes.places(table) for table in tables) for name, tables in parts.items()}
+        places = {
+            name: tuple(nodes.places(table) for table in tables) for name, tables in parts.items()
+        }
         return places, {"expressions": nodes.nodes}
 
     def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
