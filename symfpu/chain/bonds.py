@@ -1,8 +1,11 @@
-"""The law of one bond: V(r) = r^2/2 + c_3 r^3/3 + c_4 r^4/4 + ..., its tension V' and its stiffness V''.
+"""The law of one bond: V(r) = r^2/2 + c_3 r^3/3 + c_4 r^4/4 + ..., its V' and its V''.
 
-Eq. fpuham has c_3 = alpha and c_4 = beta. `law` is always the tuple (c_3, c_4, ...) in the arithmetic of r:
-floats, long doubles or mpf. The functions take numbers and arrays alike. `tension` and `stiffness` call
-nothing, so that loops compile the very same functions (numba.njit(tension)).
+V' is the tension, V'' the stiffness.
+
+Eq. fpuham has c_3 = alpha and c_4 = beta. `law` is always the tuple (c_3, c_4, ...) in the
+arithmetic of r: floats, long doubles or mpf. The functions take numbers and arrays alike.
+`tension` and `stiffness` call nothing, so that loops compile the very same functions
+(numba.njit(tension)).
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""The FPU chain with fixed ends: modes, couplings, energies, and the Hamiltonian as an expression (section 2 of the paper)."""
+"""The FPU chain with fixed ends: its modes, couplings and energies (section 2 of the paper).
+
+The Hamiltonian is also an expression.
+"""
 
 from __future__ import annotations
 
@@ -26,11 +29,12 @@ LARGEST_EXPRESSION = 40  # bonds; the cubic coupling has about N^3 terms
 
 @dataclass(frozen=True)
 class Chain:
-    """FPU chain of N bonds (N - 1 moving particles, fixed ends), Eq. fpuham; all quantities dimensionless.
+    """FPU chain of N bonds (N - 1 moving particles, fixed ends), Eq. fpuham; dimensionless.
 
     N : number of bonds, at least 2; modes are q = 1 .. N-1.
-    alpha, beta : cubic and quartic coupling, exact numbers (see symfpu.numbers.typed); at least one is not
-        zero. "0.33" and Fraction(33, 100) are what they say, a float is read by its shortest decimal.
+    alpha, beta : cubic and quartic coupling, exact numbers (see symfpu.numbers.typed); at least
+        one is not zero. "0.33" and Fraction(33, 100) are what they say, a float is read by its
+        shortest decimal.
 
     The paper has one coupling at a time; here both may act. A changed chain is
     dataclasses.replace(chain, beta="1/10"). Raises InputError for an argument outside its range.
@@ -49,30 +53,45 @@ class Chain:
         object.__setattr__(self, "N", integer(N, "N", 2))
         object.__setattr__(self, "alpha", exact(alpha, "alpha"))
         object.__setattr__(self, "beta", exact(beta, "beta"))
+        largest = 1 / SMALLEST_COUPLING
         for name, typed, value in (("alpha", alpha, self.alpha), ("beta", beta, self.beta)):
-            if value and not SMALLEST_COUPLING <= abs(value) <= 1 / SMALLEST_COUPLING:
-                raise InputError(name, typed, "0, or a number of size 1e-50 to 1e50", "rescale the amplitudes")
+            if value and not SMALLEST_COUPLING <= abs(value) <= largest:
+                allowed = "0, or a number of size 1e-50 to 1e50"
+                raise InputError(name, typed, allowed, "rescale the amplitudes")
         if self.alpha == 0 and self.beta == 0:
-            raise InputError("alpha, beta", (0, 0), "at least one of them not zero", "give alpha=, beta= or both")
+            allowed = "at least one of them not zero"
+            raise InputError("alpha, beta", (0, 0), allowed, "give alpha=, beta= or both")
 
     def __repr__(self) -> str:
-        couplings = [f"{name}={decimal(value)}" for name, value in (("alpha", self.alpha), ("beta", self.beta)) if value]
+        couplings = []
+        if self.alpha:
+            couplings.append(f"alpha={decimal(self.alpha)}")
+        if self.beta:
+            couplings.append(f"beta={decimal(self.beta)}")
         return f"Chain(N={self.N}, {', '.join(couplings)})"
 
     @property
     def model(self) -> str:
         """'alpha', 'beta' or 'alpha+beta'."""
-        return "+".join(name for name, value in (("alpha", self.alpha), ("beta", self.beta)) if value)
+        if self.alpha and self.beta:
+            return "alpha+beta"
+        return "alpha" if self.alpha else "beta"
 
     @property
     def degree_step(self) -> int:
-        """How much the degree in the amplitudes grows with the order: 1 if alpha is not zero (r = k+1), else 2 (r = 2k+1)."""
+        """How much the degree in the amplitudes grows with the order.
+
+        1 if alpha is not zero (r = k+1), else 2 (r = 2k+1).
+        """
         return 1 if self.alpha else 2
 
     @property
     def mu(self) -> float:
         """The small parameter: alpha/sqrt(2N) if alpha is not zero, else beta/(2N)."""
-        return float(self.alpha) / (2 * self.N) ** 0.5 if self.alpha else float(self.beta / (2 * self.N))
+        if self.alpha:
+            root: float = (2 * self.N) ** 0.5
+            return float(self.alpha) / root
+        return float(self.beta / (2 * self.N))
 
     @property
     def couplings(self) -> tuple[Fraction, ...]:
@@ -85,7 +104,10 @@ class Chain:
 
     @property
     def relative_couplings(self) -> dict[int, Fraction]:
-        """By power n of the force r^n, the coupling in units of mu^(n-1) (alpha in the chain) or mu^((n-1)/2) (beta alone)."""
+        """By power n of the force r^n, the coupling in units of mu.
+
+        Those units are mu^(n-1) (alpha in the chain) or mu^((n-1)/2) (beta alone).
+        """
         if not self.alpha:
             return {3: Fraction(1)}
         relative = {2: Fraction(1), 3: self.beta / self.alpha**2}
@@ -93,7 +115,8 @@ class Chain:
 
     def linear_frequency(self, q: int) -> mpmath.mpf:
         """Omega_q = 2 sin(q pi / 2N) (Eq. fpuspec) at the working precision of mpmath."""
-        return 2 * mpmath.sinpi(mpmath.mpf(q) / (2 * self.N))
+        half_turns = mpmath.mpf(q) / (2 * self.N)
+        return 2 * mpmath.sinpi(half_turns)
 
     def small_parameter(self, numbers: Arithmetic = DOUBLES) -> Any:
         """mu in the given arithmetic."""
@@ -104,16 +127,22 @@ class Chain:
         return numbers.number(self.beta / (2 * self.N))
 
     def frequencies(self, numbers: Arithmetic = DOUBLES) -> Numbers:
-        """Linear frequencies Omega_q (Eq. fpuspec), correctly rounded, or in another arithmetic; shape (N-1,)."""
+        """Linear frequencies Omega_q (Eq. fpuspec), correctly rounded; shape (N-1,).
+
+        In another arithmetic at the working precision of mpmath.
+        """
         if numbers is DOUBLES:
             return linear_frequencies(self.N)
-        return np.array([self.linear_frequency(q) for q in range(1, self.N)], dtype=object)
+        frequencies = [self.linear_frequency(q) for q in range(1, self.N)]
+        return np.array(frequencies, dtype=object)
 
     def positions(self, Q: ArrayLike) -> Numbers:
-        """Particle displacements x_1 .. x_(N-1) of mode coordinates Q (Eq. lintra); shapes (..., N-1).
+        """Particle displacements x_1 .. x_(N-1) of mode coordinates Q (Eq. lintra).
 
-        The transform is orthogonal and its own inverse: it also takes momenta, and positions to modes. Here and below arrays
-        of mpf give arrays of mpf at mpmath's working precision.
+        Shapes (..., N-1).
+
+        The transform is orthogonal and its own inverse: it also takes momenta, and positions to
+        modes. Here and below arrays of mpf give arrays of mpf at mpmath's working precision.
         """
         from scipy.fft import dst
 
@@ -123,27 +152,42 @@ class Chain:
         return np.asarray(dst(state, type=1, norm="ortho", axis=-1))
 
     def modes(self, x: ArrayLike) -> Numbers:
-        """Mode coordinates Q_1 .. Q_(N-1) of displacements x (Eq. lintra inverted); shapes (..., N-1)."""
+        """Mode coordinates Q_1 .. Q_(N-1) of displacements x (Eq. lintra inverted).
+
+        Shapes (..., N-1).
+        """
         return self.positions(x)
 
     def stretches(self, Q: ArrayLike) -> Numbers:
-        """Bond stretches r_j = x_(j+1) - x_j, j = 0 .. N-1, of modes Q; shape (..., N-1) to (..., N)."""
+        """Bond stretches r_j = x_(j+1) - x_j, j = 0 .. N-1, of modes Q.
+
+        Shape (..., N-1) to (..., N).
+        """
         x = self.positions(Q)
-        return np.diff(np.concatenate([np.zeros_like(x[..., :1]), x, np.zeros_like(x[..., :1])], axis=-1), axis=-1)
+        fixed_end = np.zeros_like(x[..., :1])
+        with_ends = np.concatenate([fixed_end, x, fixed_end], axis=-1)
+        return np.diff(with_ends, axis=-1)
 
     def energy(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
-        """Total energy H (Eq. fpuham) of mode coordinates Q and momenta P; shapes (..., N-1) to (...)."""
-        r, (P, numbers) = self.stretches(Q), self._state(P, "P")
+        """Total energy H (Eq. fpuham) of mode coordinates Q and momenta P.
+
+        Shapes (..., N-1) to (...).
+        """
+        r = self.stretches(Q)
+        P, numbers = self._state(P, "P")
         potential = bonds.potential(self.law(numbers), r)
-        return np.asarray(0.5 * np.sum(P**2, axis=-1) + np.sum(potential, axis=-1))
+        twice_kinetic = np.sum(P**2, axis=-1)
+        return np.asarray(0.5 * twice_kinetic + np.sum(potential, axis=-1))
 
     def harmonic_energies(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
         """Harmonic energy E_q = (P_q^2 + Omega_q^2 Q_q^2)/2 of every mode (Eq. harmonicene).
 
         Q, P : mode coordinates and momenta, shapes (..., N-1), as that of the result.
         """
-        (Q, numbers), (P, _) = self._state(Q, "Q"), self._state(P, "P")
-        return np.asarray(0.5 * (P**2 + (self.frequencies(numbers) * Q) ** 2))
+        Q, numbers = self._state(Q, "Q")
+        P, _ = self._state(P, "P")
+        velocities = self.frequencies(numbers) * Q
+        return np.asarray(0.5 * (P**2 + velocities**2))
 
     def accelerations(self, Q: ArrayLike) -> Numbers:
         """Second time derivative of every mode coordinate Q (Eq. eqmo); shapes (..., N-1)."""
@@ -157,17 +201,25 @@ class Chain:
         try:
             array = numbers.array(values)
         except (TypeError, ValueError) as error:
-            raise InputError(argument, values, "an array of real numbers", "pass numbers") from error
+            allowed = "an array of real numbers"
+            raise InputError(argument, values, allowed, "pass numbers") from error
         if array.ndim == 0 or array.shape[-1] != self.N - 1:
-            raise InputError(argument, array.shape, f"an array whose last axis has length N-1 = {self.N - 1}", "put the modes last")
+            allowed = f"an array whose last axis has length N-1 = {self.N - 1}"
+            raise InputError(argument, array.shape, allowed, "put the modes last")
         return array, numbers
 
     def B(self, q: int, l: int, m: int) -> int:
-        """Coupling of three modes q, l, m (Eq. transa): -1, 0 or 1 for distinct sums, by selection rule."""
+        """Coupling of three modes q, l, m (Eq. transa), by selection rule.
+
+        -1, 0 or 1 for distinct sums.
+        """
         return self._coupling(q, l, m)
 
     def C(self, q: int, l: int, m: int, n: int) -> int:
-        """Coupling of four modes q, l, m, n (Eq. transa, with the sums of -2N that the paper leaves out)."""
+        """Coupling of four modes q, l, m, n (Eq. transa).
+
+        With the sums of -2N that the paper leaves out.
+        """
         return self._coupling(q, l, m, n)
 
     def _coupling(self, *modes: int) -> int:
@@ -175,17 +227,26 @@ class Chain:
             if integer(mode, "mode", 1) >= self.N:
                 raise InputError("mode", mode, f"1..{self.N - 1}", "name a mode of the chain")
         first, *others = modes
-        sums = [first + sum(s * m for s, m in zip(signs, others, strict=True)) for signs in product((1, -1), repeat=len(others))]
-        return sum((total == 0) - (abs(total) == 2 * self.N) for total in sums)
+        coupling = 0
+        for signs in product((1, -1), repeat=len(others)):
+            total = first + sum(s * m for s, m in zip(signs, others, strict=True))
+            if total == 0:
+                coupling += 1
+            elif abs(total) == 2 * self.N:
+                coupling -= 1
+        return coupling
 
     def coupled(self, *modes: int) -> Iterator[tuple[int, int]]:
         """The modes q with a coupling to the given two or three, each with its B or C."""
         for q in range(1, self.N):
-            if coupling := self._coupling(q, *modes):
+            coupling = self._coupling(q, *modes)
+            if coupling:
                 yield q, coupling
 
     def hamiltonian(self) -> Any:
-        """H of Eq. fpuham2 as a SymEngine expression in Q1 .. Q(N-1), P1 .. P(N-1), with exact numbers.
+        """H of Eq. fpuham2 as a SymEngine expression with exact numbers.
+
+        In Q1 .. Q(N-1), P1 .. P(N-1).
 
         Raises InputError for N above LARGEST_EXPRESSION, where it would have millions of terms.
         """
@@ -194,33 +255,48 @@ class Chain:
         H = sum(P[q] ** 2 + Omega[q] ** 2 * Q[q] ** 2 for q in modes) / 2
         u = {q: Omega[q] * Q[q] for q in modes}
         if self.alpha:
-            cubic = sum(b * u[q] * u[l] * u[m] for l, m in product(modes, repeat=2) for q, b in self.coupled(l, m))
+            cubic = 0
+            for l, m in product(modes, repeat=2):
+                for q, b in self.coupled(l, m):
+                    cubic += b * u[q] * u[l] * u[m]
             H += rational(self.alpha) / (3 * se.sqrt(2 * self.N)) * cubic
         if self.beta:
-            quartic = sum(c * u[q] * u[l] * u[m] * u[n] for l, m, n in product(modes, repeat=3) for q, c in self.coupled(l, m, n))
+            quartic = 0
+            for l, m, n in product(modes, repeat=3):
+                for q, c in self.coupled(l, m, n):
+                    quartic += c * u[q] * u[l] * u[m] * u[n]
             H += rational(self.beta) / (8 * self.N) * quartic
         return H
 
     def equations_of_motion(self) -> dict[int, Any]:
-        """Right-hand sides of d^2 Q_q / dt^2 = -dH/dQ_q (Eq. eqmo) as SymEngine expressions, by mode."""
-        H, Q = self.hamiltonian(), self._symbols()[0]
+        """Right-hand sides of d^2 Q_q / dt^2 = -dH/dQ_q (Eq. eqmo) by mode.
+
+        As SymEngine expressions.
+        """
+        H = self.hamiltonian()
+        Q, *_ = self._symbols()
         return {q: -se.diff(H, Q[q]) for q in range(1, self.N)}
 
     def _symbols(self) -> tuple[dict[int, Any], dict[int, Any], dict[int, Any]]:
         if self.N > LARGEST_EXPRESSION:
-            raise InputError(
-                "N", self.N, f"at most {LARGEST_EXPRESSION} for an expression", "use energy() and accelerations() with numbers"
-            )
+            allowed = f"at most {LARGEST_EXPRESSION} for an expression"
+            raise InputError("N", self.N, allowed, "use energy() and accelerations() with numbers")
         modes = range(1, self.N)
+        Q = {q: se.Symbol(f"Q{q}") for q in modes}
+        P = {q: se.Symbol(f"P{q}") for q in modes}
         Omega = {q: 2 * se.sin(se.pi * q / (2 * self.N)) for q in modes}
-        return {q: se.Symbol(f"Q{q}") for q in modes}, {q: se.Symbol(f"P{q}") for q in modes}, Omega
+        return Q, P, Omega
 
 
 @lru_cache(maxsize=64)
 def linear_frequencies(N: int) -> Floats:
     """Omega_1 .. Omega_(N-1), correctly rounded, as a read-only array."""
+    frequencies = []
     with mpmath.workdps(30):
-        values = np.array([float(2 * mpmath.sinpi(mpmath.mpf(q) / (2 * N))) for q in range(1, N)])
+        for q in range(1, N):
+            half_turns = mpmath.mpf(q) / (2 * N)
+            frequencies.append(float(2 * mpmath.sinpi(half_turns)))
+    values = np.array(frequencies)
     values.flags.writeable = False
     return values
 
@@ -228,4 +304,6 @@ def linear_frequencies(N: int) -> Floats:
 def require_chain(chain: object) -> None:
     """InputError for what is no Chain."""
     if not isinstance(chain, Chain):
-        raise InputError("chain", type(chain).__name__, "a Chain", "make one with Chain(N, alpha=..., beta=...)")
+        raise InputError(
+            "chain", type(chain).__name__, "a Chain", "make one with Chain(N, alpha=..., beta=...)"
+        )

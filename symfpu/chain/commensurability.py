@@ -6,14 +6,14 @@ from symfpu.numbers.typed import integer
 
 
 def frequency_rank(N: int) -> int:
-    """Rank over the rationals of Omega_1 .. Omega_(N-1); N - 1 if no commensurability relation holds.
+    """Rank over the rationals of Omega_1 .. Omega_(N-1); N - 1 if they are incommensurable.
 
     N : number of bonds, at least 2. The rank is a dimensionless integer, exact.
 
-    Omega_q = -i (x^q - x^-q) with x a primitive 4N-th root of unity; dropping the common factor, each
-    frequency is an integer vector of powers of x modulo the cyclotomic polynomial of 4N. The paper states
-    that no relation holds where N - 1 is prime (section 3.1); it is N that must be: N = 6 has rank 4, N = 7
-    rank 6.
+    Omega_q = -i (x^q - x^-q) with x a primitive 4N-th root of unity; dropping the common factor,
+    each frequency is an integer vector of powers of x modulo the cyclotomic polynomial of 4N. The
+    paper states that no relation holds where N - 1 is prime (section 3.1); it is N that must be:
+    N = 6 has rank 4, N = 7 rank 6.
     Raises InputError.
 
     >>> frequency_rank(7), frequency_rank(8), frequency_rank(6)
@@ -25,8 +25,11 @@ def frequency_rank(N: int) -> int:
     N = integer(N, "N", 2)
     x = Symbol("x")
     modulus = Poly(cyclotomic_poly(4 * N, x), x, domain=QQ)
+    degree = modulus.degree()
     rows = []
     for q in range(1, N):
-        remainder = Poly.from_dict({(q,): 1, (4 * N - q,): -1}, x, domain=QQ).rem(modulus)
-        rows.append([remainder.nth(k) for k in range(modulus.degree())])
-    return int(DomainMatrix([[QQ(int(v)) for v in row] for row in rows], (N - 1, modulus.degree()), QQ).rank())
+        sine = Poly.from_dict({(q,): 1, (4 * N - q,): -1}, x, domain=QQ)
+        remainder = sine.rem(modulus)
+        rows.append([QQ(int(remainder.nth(k))) for k in range(degree)])
+    matrix = DomainMatrix(rows, (N - 1, degree), QQ)
+    return int(matrix.rank())

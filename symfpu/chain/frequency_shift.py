@@ -1,15 +1,15 @@
-"""The lowest frequency correction with every divisor at the linear frequencies, in closed form (Appendix A).
+"""The lowest frequency correction at the linear frequencies, in closed form (Appendix A).
 
 This is Eq. omamid with the right bracket, and Eq. omebguess where only beta acts.
 
-For generic modes, mu^2 omega_q^(2) = (alpha^2/2N) Omega_q [(1 - 3/4 Omega_q^2) A_q^2 - sum_n Omega_n^2 A_n^2] and
-mu omega_q^(1) = (beta/2N) Omega_q [9/8 Omega_q^2 A_q^2 + 3/2 sum_n Omega_n^2 A_n^2], n running over the other seeds. Special
-modes: for q = N/2 the first bracket of alpha is 0 and 9/8 becomes 3/4; for q + n = N the term of n is halved in both.
-N/3 and 2N/3 are not special.
+For generic modes, mu^2 omega_q^(2) = (alpha^2/2N) Omega_q [(1 - 3/4 Omega_q^2) A_q^2 - sum_n
+Omega_n^2 A_n^2] and mu omega_q^(1) = (beta/2N) Omega_q [9/8 Omega_q^2 A_q^2 + 3/2 sum_n Omega_n^2
+A_n^2], n running over the other seeds. Special modes: for q = N/2 the first bracket of alpha is 0
+and 9/8 becomes 3/4; for q + n = N the term of n is halved in both. N/3 and 2N/3 are not special.
 
-At beta = 2 alpha^2/3 both add up to (alpha^2/2N) Omega_q A_q^2, for every mode and without any other seed: there the FPU
-chain agrees with the Toda lattice to fourth order, whose Birkhoff normal form of this order is a sum of squares of the
-single actions.
+At beta = 2 alpha^2/3 both add up to (alpha^2/2N) Omega_q A_q^2, for every mode and without any
+other seed: there the FPU chain agrees with the Toda lattice to fourth order, whose Birkhoff
+normal form of this order is a sum of squares of the single actions.
 """
 
 from __future__ import annotations
@@ -43,51 +43,59 @@ def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, 
     chain : alpha, beta or both; alpha counts with alpha^2, beta with its first power.
     amplitudes : A_q by seed, of cos(omega_q t + phi_q) in Q_q.
 
-    Returns the shifts by seed, the lowest terms of Eq. omeser with the linear frequencies in the divisors. In
-    closed form, ours: the sums over modes of the recursion are done. Raises InputError for modes outside the
-    chain or amplitudes that are not finite numbers.
+    Returns the shifts by seed, the lowest terms of Eq. omeser with the linear frequencies in the
+    divisors. In closed form, ours: the sums over modes of the recursion are done. Raises
+    InputError for modes outside the chain or amplitudes that are not finite numbers.
 
     >>> round(frequency_shift(Chain(N=2, beta=1), {1: 0.1})[1], 12)  # sqrt(2)/4 3/4 2 0.01
     0.005303300859
     """
     if not isinstance(amplitudes, Mapping):
-        raise InputError("amplitudes", amplitudes, "a mapping from modes to numbers", "write it as {mode: amplitude}")
+        allowed = "a mapping from modes to numbers"
+        raise InputError("amplitudes", amplitudes, allowed, "write it as {mode: amplitude}")
     seeds = seed_modes(amplitudes, chain.N)
     numbers = {q: float(exact(amplitudes[q], f"amplitudes, A_{q}")) for q in seeds}
     linear = chain.frequencies()
-    quadratic, cubic = float(chain.alpha**2) / (2 * chain.N), float(chain.beta) / (2 * chain.N)
+    quadratic = float(chain.alpha**2) / (2 * chain.N)
+    cubic = float(chain.beta) / (2 * chain.N)
     shifts = {}
     for q in seeds:
         total = 0.0
         for n in seeds:
             (a, b), c = shift_coefficients(chain.N, q, n)
             square = float(linear[n - 1]) ** 2
-            total += numbers[n] ** 2 * (quadratic * (float(a) + float(b) * square) + cubic * float(c) * square)
+            by_alpha = quadratic * (float(a) + float(b) * square)
+            by_beta = cubic * float(c) * square
+            total += numbers[n] ** 2 * (by_alpha + by_beta)
         shifts[q] = float(linear[q - 1]) * total
     return shifts
 
 
 def frequency_shift_formula(chain: Chain, seeds: Sequence[int]) -> dict[int, Any]:
-    """omega_q - Omega_q of every seed to lowest order, as SymEngine expressions in Omega_q and A{q}.
+    """omega_q - Omega_q of every seed to lowest order, as expressions in Omega_q, A{q}.
 
     chain : its exact couplings stand in the formulas.
     seeds : distinct modes, whose amplitudes A{q} are symbols; all is dimensionless.
 
-    Returns expressions by seed, the closed form (ours) of the lowest terms of Eq. omeser, whose numbers
-    `frequency_shift` gives. Raises InputError for modes outside the chain or repeated.
+    Returns expressions by seed, the closed form (ours) of the lowest terms of Eq. omeser, whose
+    numbers `frequency_shift` gives. Raises InputError for modes outside the chain or repeated.
 
     >>> frequency_shift_formula(Chain(N=12, alpha=1, beta="2/3"), (1, 5))
     {1: (1/24)*A1**2*Omega_1, 5: (1/24)*A5**2*Omega_5}
     """
     modes = seed_modes(seeds, chain.N)
-    quadratic, cubic = rational(chain.alpha**2) / (2 * chain.N), rational(chain.beta) / (2 * chain.N)
+    quadratic = rational(chain.alpha**2) / (2 * chain.N)
+    cubic = rational(chain.beta) / (2 * chain.N)
     formulas = {}
     for q in modes:
         terms = []
         for n in modes:
             (a, b), c = shift_coefficients(chain.N, q, n)
             square = se.Symbol(f"Omega_{n}") ** 2
-            bracket = quadratic * (rational(a) + rational(b) * square) + cubic * rational(c) * square
-            terms.append(se.expand(bracket * se.Symbol(f"A{n}") ** 2 * se.Symbol(f"Omega_{q}")))
+            by_alpha = quadratic * (rational(a) + rational(b) * square)
+            by_beta = cubic * rational(c) * square
+            amplitude = se.Symbol(f"A{n}")
+            frequency = se.Symbol(f"Omega_{q}")
+            terms.append(se.expand((by_alpha + by_beta) * amplitude**2 * frequency))
         formulas[q] = se.Add(*terms)
     return formulas

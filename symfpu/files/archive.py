@@ -1,4 +1,7 @@
-"""A ZIP archive of one JSON document and of flat .npy arrays, with digests: written whole or not at all, read without trust."""
+"""A ZIP archive of one JSON document and of flat .npy arrays, with digests.
+
+It is written whole or not at all, and read without trust.
+"""
 
 from __future__ import annotations
 
@@ -29,6 +32,7 @@ COMPRESSION = 1  # mantissas are noise; the zeros between them are gone at the f
 CHUNK = 1 << 22
 DEFLATE_RATIO = 1032  # no deflated byte stands for more
 DOCUMENT_GROWTH = 20  # bytes of memory for a byte of JSON, about
+SAVED_ADVICE = "give a file that symfpu.save wrote"
 
 
 class BundleError(SymfpuError):
@@ -40,19 +44,24 @@ class BundleError(SymfpuError):
     """
 
     def __init__(self, path: Path, problem: str, advice: str) -> None:
-        self.path, self.problem, self.advice = path, problem, advice
+        self.path = path
+        self.problem = problem
+        self.advice = advice
         super().__init__(f"{path} {problem}; {advice}")
 
 
 def digest_of(body: Json) -> str:
-    return hashlib.sha256(json.dumps(body, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+    text = json.dumps(body, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _header(dtype: str, count: int) -> bytes:
     """What an .npy file of version 1.0 begins with; a multiple of 64 bytes."""
     header = f"{{'descr': '{dtype}', 'fortran_order': False, 'shape': ({count},), }}"
-    padded = header + " " * (-(len(header) + 11) % 64) + "\n"
-    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(padded)) + padded.encode("ascii")
+    spaces = -(len(header) + 11) % 64
+    padded = header + " " * spaces + "\n"
+    length = struct.pack("<H", len(padded))
+    return b"\x93NUMPY\x01\x00" + length + padded.encode("ascii")
 
 
 def member_digest(values: Array) -> str:
@@ -66,45 +75,58 @@ def write_archive(path: Path, body: Json, members: Mapping[str, Array]) -> None:
     draft = path.parent / f".symfpu-{secrets.token_hex(8)}"
     try:
         with draft.open("xb") as stream:
-            with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=COMPRESSION) as archive:
-                archive.writestr(zipfile.ZipInfo(DOCUMENT), json.dumps(body), zipfile.ZIP_DEFLATED, COMPRESSION)
-                for name, values in members.items():
-                    with archive.open(f"{name}.npy", "w", force_zip64=values.nbytes >= 1 << 30) as member:
-                        member.write(_header(values.dtype.str, values.size))
-                        for start in range(0, values.size, CHUNK):
-                            member.write(values[start : start + CHUNK].data)
+            _write_members(stream, body, members)
             stream.flush()
             os.fsync(stream.fileno())
         os.replace(draft, path)
     except OSError as error:
-        raise InputError("path", str(path), "a file that can be written", f"choose another ({error.strerror})") from error
+        advice = f"choose another ({error.strerror})"
+        raise InputError("path", str(path), "a file that can be written", advice) from error
     finally:
         with contextlib.suppress(OSError):
             draft.unlink(missing_ok=True)
 
 
+def _write_members(stream: BinaryIO, body: Json, members: Mapping[str, Array]) -> None:
+    method = zipfile.ZIP_DEFLATED
+    with zipfile.ZipFile(stream, "w", method, compresslevel=COMPRESSION) as archive:
+        document = zipfile.ZipInfo(DOCUMENT)
+        archive.writestr(document, json.dumps(body), method, COMPRESSION)
+        for name, values in members.items():
+            large = values.nbytes >= 1 << 30
+            with archive.open(f"{name}.npy", "w", force_zip64=large) as member:
+                member.write(_header(values.dtype.str, values.size))
+                for start in range(0, values.size, CHUNK):
+                    member.write(values[start : start + CHUNK].data)
+
+
 class Archive:
-    """The members of a file: the document, checked against its digest, and the arrays, checked before they are allocated."""
+    """The document and the arrays of a file, checked.
+
+    The document against its digest, the arrays before they are allocated.
+    """
 
     def __init__(self, path: Path, stream: BinaryIO) -> None:
         self._zip = zipfile.ZipFile(stream)
-        members = {info.filename: info for info in self._zip.infolist()}
+        entries = self._zip.infolist()
+        members = {info.filename: info for info in entries}
         if DOCUMENT not in members:
-            raise BundleError(path, f"is not a symfpu bundle (no {DOCUMENT} in it)", "give a file that symfpu.save wrote")
-        if len(members) < len(self._zip.infolist()):
+            raise BundleError(path, f"is not a symfpu bundle (no {DOCUMENT} in it)", SAVED_ADVICE)
+        if len(members) < len(entries):
             raise ValueError("a member occurs twice")
-        size, free = os.fstat(stream.fileno()).st_size, psutil.virtual_memory().available
-        for info in members.values():
-            if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):  # others inflate without a bound
-                raise ValueError(f"{info.filename} is compressed by method {info.compress_type}")
-            if info.compress_size > size or info.file_size > DEFLATE_RATIO * info.compress_size:
-                raise ValueError(f"{info.filename} claims {info.file_size} bytes")
-        needed = sum(info.file_size for info in members.values()) + DOCUMENT_GROWTH * members[DOCUMENT].file_size
+        size = os.fstat(stream.fileno()).st_size
+        free = psutil.virtual_memory().available
+        for info in entries:
+            _refuse_claims(info, size)
+        document = DOCUMENT_GROWTH * members[DOCUMENT].file_size
+        needed = sum(info.file_size for info in entries) + document
         if needed > free:
-            raise BundleError(path, f"needs {needed:,} bytes of memory, {free:,} are free", "close other programs")
+            problem = f"needs {needed:,} bytes of memory, {free:,} are free"
+            raise BundleError(path, problem, "close other programs")
         self.body = self._document(path)
         self.digests: dict[str, str] = self.body["arrays"]
-        if set(members) != {DOCUMENT, *(f"{name}.npy" for name in self.digests)}:
+        named = {f"{name}.npy" for name in self.digests}
+        if set(members) != {DOCUMENT, *named}:
             raise ValueError(f"it holds {sorted(members)}, not the arrays {sorted(self.digests)}")
 
     def _document(self, path: Path) -> Json:
@@ -112,10 +134,12 @@ class Archive:
         with self._zip.open(info) as member:
             body = json.loads(member.read(info.file_size))
         if not isinstance(body, dict) or body.get("format") != FORMAT:
-            raise BundleError(path, f"is not a symfpu bundle (its format is not {FORMAT!r})", "give a file that symfpu.save wrote")
+            problem = f"is not a symfpu bundle (its format is not {FORMAT!r})"
+            raise BundleError(path, problem, SAVED_ADVICE)
         schema = integer(body["schema"], "schema", 1)
         if schema > SCHEMA:
-            raise BundleError(path, f"was written by a newer symfpu (schema {schema}; this one reads {SCHEMA})", "update symfpu")
+            newer = f"was written by a newer symfpu (schema {schema}; this one reads {SCHEMA})"
+            raise BundleError(path, newer, "update symfpu")
         if body.pop("digest") != digest_of(body):
             raise ValueError(f"{DOCUMENT} does not match its digest")
         return body
@@ -125,17 +149,33 @@ class Archive:
         return self._zip.getinfo(f"{name}.npy").file_size // 8
 
     def array(self, name: str, dtype: str, count: int) -> Array:
-        """An array of so many numbers of eight bytes; ValueError where the file holds another, or its digest differs."""
-        info, header, nbytes = self._zip.getinfo(f"{name}.npy"), _header(dtype, count), 8 * count
-        if info.file_size != len(header) + nbytes:
-            raise ValueError(f"{info.filename} holds {info.file_size} bytes where {len(header) + nbytes} are due")
+        """An array of so many numbers of eight bytes.
+
+        ValueError where the file holds another, or its digest differs.
+        """
+        info = self._zip.getinfo(f"{name}.npy")
+        header = _header(dtype, count)
+        nbytes = 8 * count
+        due = len(header) + nbytes
+        if info.file_size != due:
+            raise ValueError(f"{info.filename} holds {info.file_size} bytes where {due} are due")
         values: Array = np.empty(count, dtype)
         flat = values.view(np.uint8)
         with self._zip.open(info) as member:
             if member.read(len(header)) != header:
                 raise ValueError(f"{info.filename} is not an array of {count} numbers {dtype}")
             for start in range(0, nbytes, CHUNK):
-                flat[start : start + CHUNK] = np.frombuffer(member.read(min(CHUNK, nbytes - start)), np.uint8)
+                part = member.read(min(CHUNK, nbytes - start))
+                flat[start : start + CHUNK] = np.frombuffer(part, np.uint8)
         if member_digest(values) != self.digests[name]:
             raise ValueError(f"{info.filename} does not match its digest")
         return values
+
+
+def _refuse_claims(info: zipfile.ZipInfo, size: int) -> None:
+    """ValueError for a member that a file of this size cannot hold, or of an unknown method."""
+    # others inflate without a bound
+    if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise ValueError(f"{info.filename} is compressed by method {info.compress_type}")
+    if info.compress_size > size or info.file_size > DEFLATE_RATIO * info.compress_size:
+        raise ValueError(f"{info.filename} claims {info.file_size} bytes")

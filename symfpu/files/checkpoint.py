@@ -1,4 +1,7 @@
-"""A long run on disk, unfinished or finished: one archive, replaced whole, read without trust and only for the same parameters."""
+"""A long run on disk, unfinished or finished: one archive, replaced whole.
+
+It is read without trust and only for the same parameters.
+"""
 
 from __future__ import annotations
 
@@ -12,14 +15,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import InputError
-from symfpu.files.archive import FORMAT, SCHEMA, Archive, BundleError, Json, digest_of, member_digest, write_archive
+from symfpu.files.archive import (
+    FORMAT,
+    SCHEMA,
+    Archive,
+    BundleError,
+    Json,
+    digest_of,
+    member_digest,
+    write_archive,
+)
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ADVICE = "name another file, or remove this one"
-LENGTH = ("steps", "sampled steps")  # parameters that a longer run, which goes on from a shorter one, has otherwise
+# parameters that a longer run, which goes on from a shorter one, has otherwise
+LENGTH = ("steps", "sampled steps")
 
 
 class Kind(NamedTuple):
@@ -31,21 +44,31 @@ class Kind(NamedTuple):
 
 
 ORBIT = Kind("orbit", "an orbit", "integrate(..., file=...) or symfpu orbit --checkpoint")
-ALIGNMENT = Kind("alignment indices", "alignment indices", "alignment_indices(..., file=...) or symfpu gali --checkpoint")
+ALIGNMENT = Kind(
+    "alignment indices",
+    "alignment indices",
+    "alignment_indices(..., file=...) or symfpu gali --checkpoint",
+)
 KINDS = {kind.name: kind for kind in (ORBIT, ALIGNMENT)}
 
 
 def digest(values: NDArray[Any]) -> str:
-    return hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()
+    contiguous = np.ascontiguousarray(values)
+    return hashlib.sha256(contiguous.tobytes()).hexdigest()
 
 
 def checkpoint_path(file: object) -> Path:
-    """The path, if a file can be written there; InputError before anything is computed otherwise."""
+    """The path, if a file can be written there.
+
+    InputError before anything is computed otherwise.
+    """
     if not isinstance(file, (str, os.PathLike)):
         raise InputError("file", file, "the name of a file", "pass a string or a Path")
     path = Path(os.fsdecode(file))
-    if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise InputError("file", str(path), "a file in a folder that exists and can be written", "choose another")
+    folder = path.parent
+    if path.is_dir() or not folder.is_dir() or not os.access(folder, os.W_OK):
+        allowed = "a file in a folder that exists and can be written"
+        raise InputError("file", str(path), allowed, "choose another")
     return path
 
 
@@ -56,23 +79,33 @@ def seconds_between(every: object) -> float:
     return float(every)
 
 
-def write_checkpoint(path: Path, parameters: Json, steps: int, arrays: dict[str, Floats], kind: Kind = ORBIT) -> None:
+def write_checkpoint(
+    path: Path, parameters: Json, steps: int, arrays: dict[str, Floats], kind: Kind = ORBIT
+) -> None:
     """Replaces the file whole: on a full disk InputError, and what it held is still there."""
-    members = {name: np.ascontiguousarray(values, dtype="<f8").reshape(-1) for name, values in arrays.items()}
+    members, shapes, digests = {}, {}, {}
+    for name, values in arrays.items():
+        shapes[name] = list(values.shape)
+        members[name] = np.ascontiguousarray(values, dtype="<f8").reshape(-1)
+        digests[name] = member_digest(members[name])
     body: Json = {
         "format": FORMAT,
         "schema": SCHEMA,
         "kind": kind.name,
         "parameters": parameters,
         "steps": steps,
-        "shapes": {name: list(values.shape) for name, values in arrays.items()},
-        "arrays": {name: member_digest(values) for name, values in members.items()},
+        "shapes": shapes,
+        "arrays": digests,
     }
     write_archive(path, body | {"digest": digest_of(body)}, members)
 
 
-def read_checkpoint(path: Path, parameters: Json, kind: Kind = ORBIT) -> tuple[int, dict[str, Floats]] | None:
-    """Steps done and the arrays, or None where there is no file. The checkpoint may be one of fewer steps in all.
+def read_checkpoint(
+    path: Path, parameters: Json, kind: Kind = ORBIT
+) -> tuple[int, dict[str, Floats]] | None:
+    """Steps done and the arrays, or None where there is no file.
+
+    The checkpoint may be one of fewer steps in all.
 
     Raises InputError for a checkpoint of other parameters, BundleError for a file that is none.
     """
@@ -86,13 +119,27 @@ def read_checkpoint(path: Path, parameters: Json, kind: Kind = ORBIT) -> tuple[i
             if archive.body.get("kind") != kind.name:
                 raise BundleError(path, f"is not a checkpoint of {kind.of}", ADVICE)
             _require_same(path, archive.body["parameters"], parameters, kind)
-            shapes = {name: [integer(n, "shape", 0) for n in shape] for name, shape in archive.body["shapes"].items()}
-            arrays = {name: archive.array(name, "<f8", int(np.prod(shape))).reshape(shape) for name, shape in shapes.items()}
+            arrays = _arrays(archive)
             return integer(archive.body["steps"], "steps", 0), arrays
         except (BundleError, Refused):
             raise
-        except Exception as error:  # whatever zipfile, zlib, json and our own checks say to a damaged or hostile file
-            raise BundleError(path, f"is not a checkpoint of {kind.of}, or is damaged ({type(error).__name__} {error})", ADVICE) from None
+        # whatever zipfile, zlib, json and our own checks say to a damaged or hostile file
+        except Exception as error:
+            damage = f"is damaged ({type(error).__name__} {error})"
+            problem = f"is not a checkpoint of {kind.of}, or {damage}"
+            raise BundleError(path, problem, ADVICE) from None
+
+
+def _arrays(archive: Archive) -> dict[str, Floats]:
+    """The arrays in their shapes; all shapes are read before an array is."""
+    shapes = {}
+    for name, typed in archive.body["shapes"].items():
+        shapes[name] = [integer(n, "shape", 0) for n in typed]
+    arrays = {}
+    for name, shape in shapes.items():
+        count = int(np.prod(shape))
+        arrays[name] = archive.array(name, "<f8", count).reshape(shape)
+    return arrays
 
 
 class Refused(InputError):
@@ -102,16 +149,22 @@ class Refused(InputError):
 def marks_of(path: Path, known: Floats, done: int, asked: Ints, *, exact: bool) -> Ints:
     """Where a run that goes on has its samples: those it has, and after them those asked for.
 
-    known : numbers of steps at which there are samples, up to `done`. exact : whether those asked for before `done`
-    must be among them. Raises InputError if they are not, BundleError if known are none.
+    known : numbers of steps at which there are samples, up to `done`.
+    exact : whether those asked for before `done` must be among them.
+
+    Raises InputError if they are not, BundleError if known are none.
     """
     marks = known.astype(np.int64)
-    rising = bool(np.all(np.diff(marks) > 0)) and bool(np.all(marks == known))
-    if known.ndim != 1 or not rising or (marks.size and not 0 <= marks[0] <= marks[-1] <= done):
+    rising = bool(np.all(np.diff(marks) > 0))
+    whole = bool(np.all(marks == known))
+    ordered = known.ndim == 1 and rising and whole
+    if not ordered or (marks.size and not 0 <= marks[0] <= marks[-1] <= done):
         raise BundleError(path, "is damaged (its samples are in no order)", ADVICE)
-    missing = np.setdiff1d(asked[asked <= done], marks)
+    past = asked[asked <= done]
+    missing = np.setdiff1d(past, marks)
     if exact and missing.size:
-        allowed = f"samples that the run in the file has, or later ones (there is none after {missing[0]} steps)"
+        none = f"there is none after {missing[0]} steps"
+        allowed = f"samples that the run in the file has, or later ones ({none})"
         raise Refused("samples", f"{asked.size} times", allowed, ADVICE)
     return np.concatenate([marks, asked[asked > done]])
 
@@ -119,6 +172,10 @@ def marks_of(path: Path, known: Floats, done: int, asked: Ints, *, exact: bool) 
 def _require_same(path: Path, found: Json, parameters: Json, kind: Kind) -> None:
     longer = integer(found["steps"], "steps", 0) < parameters["steps"]
     for name, value in parameters.items():
-        if found.get(name) != value and not (longer and name in LENGTH):
-            was, now = (f"{str(v)[:40]}" for v in (found.get(name), value))
-            raise Refused("file", str(path), f"a checkpoint of the same {kind.name} ({name} is {was} in it, {now} here)", ADVICE)
+        goes_on = longer and name in LENGTH
+        if found.get(name) != value and not goes_on:
+            was = str(found.get(name))[:40]
+            now = str(value)[:40]
+            same = f"a checkpoint of the same {kind.name}"
+            allowed = f"{same} ({name} is {was} in it, {now} here)"
+            raise Refused("file", str(path), allowed, ADVICE)

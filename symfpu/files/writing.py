@@ -18,7 +18,9 @@ def write_text(path: Path, text: str) -> None:
         draft.replace(path)
     except OSError as error:
         draft.unlink(missing_ok=True)
-        raise InputError("output", str(path), "a file that can be written", f"choose another ({error.strerror})") from error
+        raise InputError(
+            "output", str(path), "a file that can be written", f"choose another ({error.strerror})"
+        ) from error
 
 
 def output_folder(path: Path) -> Path:
@@ -29,14 +31,24 @@ def output_folder(path: Path) -> Path:
             raise PermissionError("no permission to write")
     except OSError as error:
         raise InputError(
-            "output", str(path), "a folder that can be written", f"choose another with -o ({error.strerror or error})"
+            "output",
+            str(path),
+            "a folder that can be written",
+            f"choose another with -o ({error.strerror or error})",
         ) from error
     return path
 
 
-def output_file(path: Path, argument: str = "output", advice: str = "choose another with -o") -> Path:
-    """The path, if a file can be written there; InputError before anything is computed otherwise."""
-    parent = path.parent
-    if not path.name or path.is_dir() or not parent.is_dir() or not os.access(parent, os.W_OK):
-        raise InputError(argument, str(path), "a file in a folder that exists and can be written", advice)
+def output_file(
+    path: Path, argument: str = "output", advice: str = "choose another with -o"
+) -> Path:
+    """The path, if a file can be written there.
+
+    InputError before anything is computed otherwise.
+    """
+    folder = path.parent
+    writable = folder.is_dir() and os.access(folder, os.W_OK)
+    if not path.name or path.is_dir() or not writable:
+        allowed = "a file in a folder that exists and can be written"
+        raise InputError(argument, str(path), allowed, advice)
     return path

@@ -1,8 +1,11 @@
-"""Arrays of numbers in two precisions under one set of names: doubles, or mpmath's numbers at the precision of the context.
+"""Arrays of numbers in two precisions under one set of names.
 
-Functions of a torus and of the chain are written once and take their cosines and dot products from here. Multiprecision
-arrays are object arrays of mpf. A float in them is read by its shortest decimal: 0.1 means one tenth.
-What is handed to users are mpf that print their digits (`with_digits`); they compute as any others.
+They are doubles, or mpmath's numbers at the precision of the context.
+
+Functions of a torus and of the chain are written once and take their cosines and dot products
+from here. Multiprecision arrays are object arrays of mpf. A float in them is read by its shortest
+decimal: 0.1 means one tenth. What is handed to users are mpf that print their digits
+(`with_digits`); they compute as any others.
 """
 
 from __future__ import annotations
@@ -91,13 +94,20 @@ class Multiprecision(Arithmetic):
         return np.asarray(_SQRT(values), dtype=object)
 
     def dot(self, left: NDArray[Any], right: NDArray[Any]) -> NDArray[Any]:
-        """By integers: every row of left and every column of right has its own power of two, so small ones keep their digits."""
+        """The product of matrices by integers.
+
+        Every row of left and every column of right has its own power of two, so small ones keep
+        their digits.
+        """
+        shape = (*left.shape[:-1], right.shape[1])
         if left.size == 0 or right.size == 0:
-            return np.full((*left.shape[:-1], right.shape[1]), mpmath.mpf(0), dtype=object)
-        rows, below = integers(left.reshape(-1, left.shape[-1]).T)
-        columns, scale = integers(right)
+            return np.full(shape, mpmath.mpf(0), dtype=object)
+        matrix = left.reshape(-1, left.shape[-1])
+        rows, row_exponents = integers(matrix.T)
+        columns, column_exponents = integers(right)
         sums = rows.T.dot(columns)
-        return from_integers(sums, below[:, None] + scale[None, :]).reshape(*left.shape[:-1], right.shape[1])
+        exponents = row_exponents[:, None] + column_exponents[None, :]
+        return from_integers(sums, exponents).reshape(shape)
 
     def finite(self, values: NDArray[Any]) -> bool:
         return all(mpmath.isfinite(x) for x in values.flat)
@@ -113,7 +123,8 @@ DOUBLES, MULTIPRECISION = Arithmetic(), Multiprecision()
 class NumberWithDigits(mpmath.mpf):  # type: ignore[misc]
     """An mpf that prints all digits it was asked for, whatever the precision of mpmath's context.
 
-    In arithmetic it is an mpf like any other: results are plain mpf, rounded to the precision of the context.
+    In arithmetic it is an mpf like any other: results are plain mpf, rounded to the precision of
+    the context.
     """
 
     __slots__ = ("digits",)
@@ -125,10 +136,14 @@ class NumberWithDigits(mpmath.mpf):  # type: ignore[misc]
         return f"mpf('{self}')"
 
     def __format__(self, form: str) -> str:
-        """By the format specifications of Python's decimal numbers, from as many digits as are carried."""
+        """By the format specifications of Python's decimal numbers.
+
+        From as many digits as are carried.
+        """
         if not form:
             return str(self)
-        return format(Decimal(libmp.to_str(self._mpf_, self.digits + GUARD_DIGITS)), form)
+        carried = libmp.to_str(self._mpf_, self.digits + GUARD_DIGITS)
+        return format(Decimal(carried), form)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (libmp.to_pickable(self._mpf_), self.digits)
@@ -141,12 +156,15 @@ def _restored(number: Any, digits: int) -> NumberWithDigits:
 def _number_with_digits(parts: Any, digits: int) -> NumberWithDigits:
     """The mpf of these parts, unrounded."""
     number: NumberWithDigits = object.__new__(NumberWithDigits)
-    number._mpf_, number.digits = parts, digits
+    number._mpf_ = parts
+    number.digits = digits
     return number
 
 
 def with_digits(values: Value, digits: int | None) -> Value:
-    """Results as users see them: every mpf in a number, array, tuple or mapping prints so many digits.
+    """Results as users see them: every mpf in them prints so many digits.
+
+    In a number, array, tuple or mapping.
 
     All else is as it was; None leaves everything.
     """
@@ -169,11 +187,17 @@ def _dressed(values: Any, digits: int) -> Any:
 def arithmetic_of(values: Any) -> Arithmetic:
     """Multiprecision for arrays with an mpf in them, else doubles."""
     array = np.asarray(values)
-    return MULTIPRECISION if array.dtype == object and any(isinstance(x, mpmath.mpf) for x in array.flat) else DOUBLES
+    if array.dtype != object:
+        return DOUBLES
+    has_mpf = any(isinstance(x, mpmath.mpf) for x in array.flat)
+    return MULTIPRECISION if has_mpf else DOUBLES
 
 
 def integers(values: NDArray[Any]) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
-    """Columns of mpf as integers times 2^exponent: (n, m) and exponents (m,), at the working precision of each column's largest."""
+    """Columns of mpf as integers times 2^exponent: (n, m) and exponents (m,).
+
+    Each at the working precision of its largest entry.
+    """
     precision = int(mpmath.mp.prec)
     table = np.empty(values.shape, dtype=object)
     exponents = np.zeros(values.shape[1], dtype=np.int64)
@@ -186,12 +210,19 @@ def integers(values: NDArray[Any]) -> tuple[NDArray[np.object_], NDArray[np.int6
 
 
 def from_integers(values: NDArray[np.object_], exponents: NDArray[Any]) -> NDArray[np.object_]:
-    """Integers times 2^exponents as mpf, rounded to the working precision; shapes that broadcast."""
-    return np.asarray(_LDEXP(values, np.asarray(exponents).astype(object)), dtype=object)
+    """Integers times 2^exponents as mpf, rounded to the working precision.
+
+    Shapes that broadcast.
+    """
+    whole_exponents = np.asarray(exponents).astype(object)
+    return np.asarray(_LDEXP(values, whole_exponents), dtype=object)
 
 
 def mpf(value: Any) -> Any:
-    """One number as mpf at the working precision; floats by their shortest decimal, fractions exactly."""
+    """One number as mpf at the working precision.
+
+    Floats by their shortest decimal, fractions exactly.
+    """
     if isinstance(value, Fraction):
         return mpmath.mpf(value.numerator) / value.denominator
     if isinstance(value, (float, np.floating)):
@@ -201,19 +232,24 @@ def mpf(value: Any) -> Any:
 
 def text(value: Any, digits: int) -> str:
     """A double or an mpf with so many significant digits."""
-    return str(mpmath.nstr(value, digits)) if isinstance(value, mpmath.mpf) else f"{float(value):.{digits}g}"
+    if isinstance(value, mpmath.mpf):
+        return str(mpmath.nstr(value, digits))
+    return f"{float(value):.{digits}g}"
 
 
 def _from_integer(value: int, exponent: int) -> Any:
-    return mpmath.mp.make_mpf(libmp.from_man_exp(value, exponent, mpmath.mp.prec, "n"))
+    rounded = libmp.from_man_exp(value, exponent, mpmath.mp.prec, "n")
+    return mpmath.mp.make_mpf(rounded)
 
 
 @lru_cache(maxsize=8)
 def _sines(N: int, precision: int) -> NDArray[np.object_]:
     root = mpmath.sqrt(mpmath.mpf(2) / N)
-    table = [root * mpmath.sinpi(mpmath.mpf(n) / N) for n in range(2 * N)]
+    one_period = [root * mpmath.sinpi(mpmath.mpf(n) / N) for n in range(2 * N)]
+    table = np.array(one_period, dtype=object)
     q = np.arange(1, N)
-    return np.array(table, dtype=object)[np.outer(q, q) % (2 * N)]
+    phases = np.outer(q, q) % (2 * N)
+    return table[phases]
 
 
 def sine_matrix(N: int) -> NDArray[np.object_]:
@@ -221,5 +257,7 @@ def sine_matrix(N: int) -> NDArray[np.object_]:
     return _sines(N, int(mpmath.mp.prec))
 
 
-_MPF, _COS, _SIN, _SQRT = (np.frompyfunc(f, 1, 1) for f in (mpf, mpmath.cos, mpmath.sin, mpmath.sqrt))
+_MPF, _COS, _SIN, _SQRT = (
+    np.frompyfunc(f, 1, 1) for f in (mpf, mpmath.cos, mpmath.sin, mpmath.sqrt)
+)
 _LDEXP = np.frompyfunc(_from_integer, 2, 1)

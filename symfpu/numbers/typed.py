@@ -1,4 +1,7 @@
-"""Numbers are what was typed: "0.33" and Fraction(33, 100) are exact, a float is read by its shortest decimal."""
+"""Numbers are what was typed.
+
+"0.33" and Fraction(33, 100) are exact, a float is read by its shortest decimal.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,8 @@ import symengine as se
 
 from symfpu.errors import InputError
 
-LONGEST_DECIMAL = 3000  # bits; longer fractions are written in hexadecimal, which no limit of Python concerns
+# bits; longer fractions are written in hexadecimal, which no limit of Python concerns
+LONGEST_DECIMAL = 3000
 LONGEST = 1000  # characters of a number, and the largest power of ten in it
 Number = int | float | str | Fraction | Decimal
 
@@ -44,7 +48,10 @@ def exact(value: object, argument: str) -> Fraction:
         raise TypeError("not a real number")
     except (TypeError, ValueError, OverflowError, ZeroDivisionError, InvalidOperation) as error:
         raise InputError(
-            argument, value, "a finite number such as 0.33, '1/3' or Fraction(1, 3)", "write it as a decimal or a fraction"
+            argument,
+            value,
+            "a finite number such as 0.33, '1/3' or Fraction(1, 3)",
+            "write it as a decimal or a fraction",
         ) from error
 
 
@@ -69,7 +76,10 @@ def integer(value: object, argument: str, least: int) -> int:
 
 
 def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
-    """The seeds as integers in 1 .. N-1, in the given order; InputError if empty, repeated, outside or not integers."""
+    """The seeds as integers in 1 .. N-1, in the given order.
+
+    InputError if empty, repeated, outside or not integers.
+    """
     allowed = f"distinct integers in 1..{N - 1} (N = {N})"
     modes: list[int] = []
     try:
@@ -81,7 +91,9 @@ def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
             raise InputError("seeds", seed, allowed, "pass whole numbers")
         modes.append(int(seed))
         if not 1 <= modes[-1] <= N - 1:
-            raise InputError("seeds", modes[-1], allowed, "name a mode of the chain or take a longer one")
+            raise InputError(
+                "seeds", modes[-1], allowed, "name a mode of the chain or take a longer one"
+            )
     if not modes:
         raise InputError("seeds", (), allowed, "name at least one seed mode")
     if len(set(modes)) < len(modes):
@@ -117,11 +129,16 @@ def double(value: Number, name: str) -> float:
     try:
         return float(exact(value, name))
     except OverflowError as error:
-        raise InputError(name, value, "a number within the range of doubles", "take a smaller one") from error
+        raise InputError(
+            name, value, "a number within the range of doubles", "take a smaller one"
+        ) from error
 
 
 def fraction_text(value: Fraction) -> str:
-    """The exact number as text that `fraction` reads: a decimal or p/q, in hexadecimal where it is long."""
+    """The exact number as text that `fraction` reads: a decimal or p/q.
+
+    It is hexadecimal where it is long.
+    """
     if value.numerator.bit_length() + value.denominator.bit_length() <= LONGEST_DECIMAL:
         return decimal(value)
     return f"{value.numerator:#x}/{value.denominator:#x}"
