@@ -20,23 +20,41 @@ from symfpu.files.writing import output_file
 def export(
     context: typer.Context,
     file: Annotated[str, typer.Argument(help="A file written by symfpu solve -o.", metavar="FILE")],
-    language: Annotated[str, typer.Option("--lang", help=f"{', '.join(LANGUAGES)}.", metavar="LANGUAGE")],
+    language: Annotated[
+        str, typer.Option("--lang", help=f"{', '.join(LANGUAGES)}.", metavar="LANGUAGE")
+    ],
     output: Annotated[
         str,
-        typer.Option("-o", "--output", help="The source file; its name names the functions.", metavar="FILE"),
+        typer.Option(
+            "-o", "--output", help="The source file; its name names the functions.", metavar="FILE"
+        ),
     ],
-    series: Annotated[bool, typer.Option("--series", help="The series with free amplitudes instead of the torus.")] = False,
-    order: Annotated[str | None, typer.Option(help="With --series: order of the coordinates.  Default: all.", metavar="K")] = None,
-    frequency_order: Annotated[str | None, typer.Option(help="With --series: order of omega(A).  Default: all.", metavar="K")] = None,
+    series: Annotated[
+        bool, typer.Option("--series", help="The series with free amplitudes instead of the torus.")
+    ] = False,
+    order: Annotated[
+        str | None,
+        typer.Option(help="With --series: order of the coordinates.  Default: all.", metavar="K"),
+    ] = None,
+    frequency_order: Annotated[
+        str | None,
+        typer.Option(help="With --series: order of omega(A).  Default: all.", metavar="K"),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
-    """Source code that needs nothing of symfpu and tests itself: a torus or a series with free amplitudes."""
+    """Source code that needs nothing of symfpu and tests itself: a torus or a series with free
+    amplitudes.
+    """
     target = output_file(path_named("output", output))
     bundle = load(path_named("FILE", file))
     solution = bundle.series if series else bundle.torus
     if solution is None:
         wanted = "series" if series else "torus"
-        advice = "leave out --series" if series else "write one with symfpu solve -o, or export the --series"
+        advice = (
+            "leave out --series"
+            if series
+            else "write one with symfpu solve -o, or export the --series"
+        )
         raise InputError("FILE", file, f"a file with a {wanted} in it", advice)
     with progress_bar("source code"):
         written = export_source(

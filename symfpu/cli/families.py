@@ -30,7 +30,13 @@ from symfpu.families.family import METHODS, Family, family
 from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_file, output_folder
 from symfpu.refinement.tori import RefinedTorus, refine, refine_at_amplitudes, refine_at_energy
-from symfpu.reports.family import family_record, family_table, family_text, refined_record, refined_text
+from symfpu.reports.family import (
+    family_record,
+    family_table,
+    family_text,
+    refined_record,
+    refined_text,
+)
 
 
 @app.command("refine", epilog="Example: symfpu refine torus.symfpu -o refined.symfpu")
@@ -38,7 +44,9 @@ def refine_file(
     context: typer.Context,
     file: Annotated[
         str,
-        typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE"),
+        typer.Argument(
+            help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE"
+        ),
     ],
     output: Annotated[
         str | None,
@@ -48,19 +56,38 @@ def refine_file(
         str | None,
         typer.Option(help="The torus of this energy H, amplitudes in the same ratio.", metavar="E"),
     ] = None,
-    harmonic: Annotated[bool, typer.Option("--harmonic", help="With --energy: the harmonic energy sum E_q instead of H.")] = False,
-    amplitudes: Annotated[str | None, typer.Option(help="The torus of these amplitudes, one for each seed.", metavar="A,A,...")] = None,
-    tolerance: Annotated[str, typer.Option(help="Relative residual of the equations of motion to be reached.", metavar="X")] = "1e-13",
+    harmonic: Annotated[
+        bool,
+        typer.Option("--harmonic", help="With --energy: the harmonic energy sum E_q instead of H."),
+    ] = False,
+    amplitudes: Annotated[
+        str | None,
+        typer.Option(help="The torus of these amplitudes, one for each seed.", metavar="A,A,..."),
+    ] = None,
+    tolerance: Annotated[
+        str,
+        typer.Option(
+            help="Relative residual of the equations of motion to be reached.", metavar="X"
+        ),
+    ] = "1e-13",
     as_json: JsonOption = False,
 ) -> None:
-    """The torus that solves the equations of motion, by Newton's method: same frequencies, or a given energy or amplitudes."""
+    """The torus that solves the equations of motion, by Newton's method: same frequencies, or a
+    given energy or amplitudes.
+    """
     torus = load(path_named("FILE", file)).torus
     if torus is None:
-        raise InputError("FILE", file, "a file with a torus in it", "write one with symfpu solve -o")
+        raise InputError(
+            "FILE", file, "a file with a torus in it", "write one with symfpu solve -o"
+        )
     if energy is not None and amplitudes is not None:
-        raise InputError("amplitudes", amplitudes, "only one of --energy and --amplitudes", "leave one out")
+        raise InputError(
+            "amplitudes", amplitudes, "only one of --energy and --amplitudes", "leave one out"
+        )
     if harmonic and energy is None:
-        raise InputError("harmonic", True, "an --energy that it says something about", "give --energy E")
+        raise InputError(
+            "harmonic", True, "an --energy that it says something about", "give --energy E"
+        )
     kept = None if output is None else output_file(path_named("output", output))
     goal = number("tolerance", tolerance)
     with progress_bar("Newton's method") as advance:
@@ -69,13 +96,22 @@ def refine_file(
             advance(line)
 
         if energy is not None:
-            refined = refine_at_energy(torus, energy, harmonic=harmonic, tolerance=goal, report=report)
+            refined = refine_at_energy(
+                torus, energy, harmonic=harmonic, tolerance=goal, report=report
+            )
         elif amplitudes is not None:
-            refined = refine_at_amplitudes(torus, by_seed("amplitudes", amplitudes, torus.seeds), tolerance=goal, report=report)
+            refined = refine_at_amplitudes(
+                torus, by_seed("amplitudes", amplitudes, torus.seeds), tolerance=goal, report=report
+            )
         else:
             refined = refine(torus, tolerance=goal, report=report)
         if kept:
-            save(kept, refined, verdict=verdict_of(refined), command=shlex.join(["symfpu", *context.obj]))
+            save(
+                kept,
+                refined,
+                verdict=verdict_of(refined),
+                command=shlex.join(["symfpu", *context.obj]),
+            )
     if as_json:
         print_json(refined_record(refined))
     else:
@@ -101,28 +137,48 @@ def by_seed(argument: str, text: str, seeds: tuple[int, ...]) -> dict[int, str]:
     """Numbers with commas between them, one for each seed."""
     parts = text.split(",")
     if len(parts) != len(seeds):
-        raise InputError(argument, text, f"a number for each of the seeds {seeds}", "separate them by commas")
+        raise InputError(
+            argument, text, f"a number for each of the seeds {seeds}", "separate them by commas"
+        )
     return dict(zip(seeds, parts, strict=True))
 
 
-@app.command("family", epilog="Example: symfpu family -N 32 --alpha 0.33 --seeds 1 --to-energy 0.05 -o out")
+@app.command(
+    "family", epilog="Example: symfpu family -N 32 --alpha 0.33 --seeds 1 --to-energy 0.05 -o out"
+)
 def follow_family(
     bonds: BondsOption,
     seeds: SeedsOption,
-    to_energy: Annotated[str, typer.Option(help="Energy H up to which the family is followed.", metavar="E")],
+    to_energy: Annotated[
+        str, typer.Option(help="Energy H up to which the family is followed.", metavar="E")
+    ],
     alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
     beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
-    harmonic: Annotated[bool, typer.Option("--harmonic", help="Energies are the harmonic energy sum E_q instead of H.")] = False,
-    amplitude_ratio: Annotated[str | None, typer.Option(help="Ratio of the amplitudes, such as 1,0.5.", metavar="R,R,...")] = None,
+    harmonic: Annotated[
+        bool,
+        typer.Option("--harmonic", help="Energies are the harmonic energy sum E_q instead of H."),
+    ] = False,
+    amplitude_ratio: Annotated[
+        str | None, typer.Option(help="Ratio of the amplitudes, such as 1,0.5.", metavar="R,R,...")
+    ] = None,
     energy_ratio: Annotated[
         str | None,
-        typer.Option(help="Ratio of the averaged mode energies.  Default: equal.", metavar="R,R,..."),
+        typer.Option(
+            help="Ratio of the averaged mode energies.  Default: equal.", metavar="R,R,..."
+        ),
     ] = None,
-    from_energy: Annotated[str | None, typer.Option(help="Energy where it begins.  Default: a thousandth.", metavar="E")] = None,
+    from_energy: Annotated[
+        str | None,
+        typer.Option(help="Energy where it begins.  Default: a thousandth.", metavar="E"),
+    ] = None,
     members: Annotated[str, typer.Option(help="The most members.")] = "200",
-    multipliers: Annotated[bool, typer.Option("--multipliers", help="Floquet multipliers (one seed).")] = False,
+    multipliers: Annotated[
+        bool, typer.Option("--multipliers", help="Floquet multipliers (one seed).")
+    ] = False,
     method: Annotated[str, typer.Option(help=f"{' or '.join(METHODS)}.")] = "arclength",
-    order: Annotated[str | None, typer.Option(help="With appendix-a: order of the series.", metavar="K")] = None,
+    order: Annotated[
+        str | None, typer.Option(help="With appendix-a: order of the series.", metavar="K")
+    ] = None,
     output: Annotated[
         str | None,
         typer.Option(
@@ -135,7 +191,10 @@ def follow_family(
     as_json: JsonOption = False,
 ) -> None:
     """A family of tori from small energy on, past folds and past the end of its series."""
-    chain, chosen = Chain(whole("N", bonds), alpha=alpha, beta=beta), tuple(whole_numbers("seeds", seeds))
+    chain, chosen = (
+        Chain(whole("N", bonds), alpha=alpha, beta=beta),
+        tuple(whole_numbers("seeds", seeds)),
+    )
     folder = None if output is None else output_folder(path_named("output", output))
     with progress_bar("first member", lambda: _kept(folder)) as advance:
         found = family(
@@ -143,8 +202,12 @@ def follow_family(
             chosen,
             to_energy,
             harmonic=harmonic,
-            amplitude_ratio=None if amplitude_ratio is None else by_seed("amplitude-ratio", amplitude_ratio, chosen),
-            energy_ratio=None if energy_ratio is None else by_seed("energy-ratio", energy_ratio, chosen),
+            amplitude_ratio=None
+            if amplitude_ratio is None
+            else by_seed("amplitude-ratio", amplitude_ratio, chosen),
+            energy_ratio=None
+            if energy_ratio is None
+            else by_seed("energy-ratio", energy_ratio, chosen),
             from_energy=from_energy,
             members=whole("members", members),
             multipliers=multipliers,
@@ -161,7 +224,9 @@ def follow_family(
     else:
         say("\n".join(family_text(found)))
         if folder is not None:
-            print(f"written: {folder}: family.csv, {len(found.members)} members, {len(pictures)} pictures")
+            print(
+                f"written: {folder}: family.csv, {len(found.members)} members, {len(pictures)} pictures"
+            )
     raise typer.Exit(0 if found.ending.startswith("reached") else 1)
 
 

@@ -40,9 +40,13 @@ from symfpu.reports.tables import fifteen_digits
 def gali(
     file: Annotated[
         str,
-        typer.Argument(help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE"),
+        typer.Argument(
+            help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE"
+        ),
     ],
-    time: Annotated[str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")],
+    time: Annotated[
+        str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")
+    ],
     vectors: Annotated[
         str | None,
         typer.Option(
@@ -51,23 +55,38 @@ def gali(
         ),
     ] = None,
     step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(STEP),
-    samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(SAMPLES),
+    samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(
+        SAMPLES
+    ),
     seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
     output: Annotated[
         str | None,
-        typer.Option("-o", "--output", help="Folder for gali.csv and the pictures.", metavar="FOLDER"),
+        typer.Option(
+            "-o", "--output", help="Folder for gali.csv and the pictures.", metavar="FOLDER"
+        ),
     ] = None,
     checkpoint: Annotated[
         str | None,
-        typer.Option(help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE"),
+        typer.Option(
+            help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE"
+        ),
     ] = None,
-    estimate: Annotated[bool, typer.Option("--estimate", help="Only say how long it would take, from a trial of a second.")] = False,
+    estimate: Annotated[
+        bool,
+        typer.Option(
+            "--estimate", help="Only say how long it would take, from a trial of a second."
+        ),
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Alignment indices of the orbit that starts on a torus, its Lyapunov exponent, and the dimension they show."""
+    """Alignment indices of the orbit that starts on a torus, its Lyapunov exponent, and the
+    dimension they show.
+    """
     torus = load(path_named("FILE", file)).torus
     if torus is None:
-        raise InputError("FILE", file, "a file with a torus in it", "write one with symfpu solve -o")
+        raise InputError(
+            "FILE", file, "a file with a torus in it", "write one with symfpu solve -o"
+        )
     T, h, count = number("time", time), number("step", step), optional("vectors", vectors)
     if estimate:
         _print_estimate(seconds_needed(torus.chain, T, vectors=count, step=h), as_json)
@@ -95,7 +114,9 @@ def gali(
     else:
         say("\n".join(_text(found, torus.seeds)))
         if folder is not None:
-            print(f"written: {folder}: gali.csv, gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf")
+            print(
+                f"written: {folder}: gali.csv, gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf"
+            )
 
 
 def _print_estimate(seconds: float, as_json: bool) -> None:
@@ -116,8 +137,13 @@ def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
         "seeds": list(seeds),
         "time": fifteen_digits(float(found.times[-1])),
         "step": fifteen_digits(found.step),
-        "slopes": {str(s.k): {"value": fifteen_digits(s.value), "error": fifteen_digits(s.error)} for s in found.slopes()},
-        "log10_gali": {str(k): fifteen_digits(float(g)) for k, g in enumerate(found.log10_gali[-1], start=2)},
+        "slopes": {
+            str(s.k): {"value": fifteen_digits(s.value), "error": fifteen_digits(s.error)}
+            for s in found.slopes()
+        },
+        "log10_gali": {
+            str(k): fifteen_digits(float(g)) for k, g in enumerate(found.log10_gali[-1], start=2)
+        },
         "dimension": dimension.value,
         "dimension_error": None if dimension.value is None else fifteen_digits(dimension.error),
         "verdict": dimension.verdict,
@@ -148,6 +174,8 @@ def _write_table(found: AlignmentIndices, path: Path) -> None:
     """Time, log10 GALI_k and the Lyapunov estimate of every sample."""
     with path.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
-        writer.writerow(["t", *(f"log10 GALI_{k}" for k in range(2, found.vectors + 1)), "lyapunov"])
+        writer.writerow(
+            ["t", *(f"log10 GALI_{k}" for k in range(2, found.vectors + 1)), "lyapunov"]
+        )
         for t, values, exponent in zip(found.times, found.log10_gali, found.lyapunov, strict=True):
             writer.writerow([repr(float(v)) for v in (t, *values, exponent)])

@@ -19,7 +19,8 @@ from symfpu.errors import InputError, SymfpuError
 
 INTERRUPTED = "interrupted: nothing is kept but what was already written"
 
-UsageProblem: Any = typer.BadParameter.__mro__[2]  # click's ClickException, which typer may carry inside itself
+# click's ClickException, which typer may carry inside itself
+UsageProblem: Any = typer.BadParameter.__mro__[2]
 
 
 def _print_version(wanted: bool) -> None:
@@ -34,7 +35,9 @@ def _print_version(wanted: bool) -> None:
 def options(
     version: Annotated[
         bool,
-        typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop."),
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version and stop."
+        ),
     ] = False,
 ) -> None:
     """Options that come before the verb."""

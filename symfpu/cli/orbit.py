@@ -12,7 +12,16 @@ import typer
 from numpy.typing import NDArray
 
 from symfpu.bundles.bundle import load
-from symfpu.cli.terminal import JsonOption, kept_run, number, path_named, print_json, progress_bar, say, whole
+from symfpu.cli.terminal import (
+    JsonOption,
+    kept_run,
+    number,
+    path_named,
+    print_json,
+    progress_bar,
+    say,
+    whole,
+)
 from symfpu.cli.verbs import app
 from symfpu.dynamics.orbits import SCHEMES, Orbit, integrate
 from symfpu.errors import InputError
@@ -27,11 +36,19 @@ SHOWN = 8  # modes of the largest average harmonic energy
 
 @app.command(epilog="Example: symfpu orbit torus.symfpu --time 1e5 -o orbit.csv")
 def orbit(
-    file: Annotated[str, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")],
-    time: Annotated[str, typer.Option("--time", help="How long to follow it, such as 1e6.", metavar="T")],
+    file: Annotated[
+        str, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")
+    ],
+    time: Annotated[
+        str, typer.Option("--time", help="How long to follow it, such as 1e6.", metavar="T")
+    ],
     step: Annotated[str, typer.Option(help="Length of a step.", metavar="H")] = "0.2",
-    scheme: Annotated[str, typer.Option(help=f"{', '.join(SCHEMES)}.", metavar="SCHEME")] = "kahan_li8",
-    samples: Annotated[str, typer.Option(help="How many times to look, log-spaced.", metavar="S")] = "200",
+    scheme: Annotated[
+        str, typer.Option(help=f"{', '.join(SCHEMES)}.", metavar="SCHEME")
+    ] = "kahan_li8",
+    samples: Annotated[
+        str, typer.Option(help="How many times to look, log-spaced.", metavar="S")
+    ] = "200",
     output: Annotated[
         str | None,
         typer.Option(
@@ -43,17 +60,23 @@ def orbit(
     ] = None,
     checkpoint: Annotated[
         str | None,
-        typer.Option(help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE"),
+        typer.Option(
+            help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE"
+        ),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Integrates the orbit that starts on a torus at t = 0, and says how far it stays from the torus."""
+    """Integrates the orbit that starts on a torus at t = 0, and says how far it stays from the
+    torus.
+    """
     target = None if output is None else _output(path_named("output", output))
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     T, h, count = number("time", time), number("step", step), whole("samples", samples)
     torus = load(path_named("FILE", file)).torus
     if torus is None:
-        raise InputError("FILE", file, "a file with a torus in it", "write one with symfpu solve -o")
+        raise InputError(
+            "FILE", file, "a file with a torus in it", "write one with symfpu solve -o"
+        )
     exact = torus.in_doubles()
     with progress_bar("orbit", lambda: kept_run(kept)) as advance:
         made = integrate(
@@ -82,12 +105,17 @@ def orbit(
 
 def _output(path: Path) -> Path:
     if path.suffix not in (".csv", ".npz"):
-        raise InputError("output", str(path), "a name that ends in .csv or .npz", "choose another with -o")
+        raise InputError(
+            "output", str(path), "a name that ends in .csv or .npz", "choose another with -o"
+        )
     return output_file(path)
 
 
 def _record(made: Orbit, torus: QuasiPeriodic) -> dict[str, Any]:
-    """What the verb prints; deviations relative to the largest coordinate of the torus at the samples."""
+    """What the verb prints.
+
+    Deviations relative to the largest coordinate of the torus at the samples.
+    """
     there = torus.positions(made.times)
     distances = np.max(np.abs(made.Q - there), axis=1) / np.max(np.abs(there))
     worst = int(np.argmax(distances))
@@ -110,7 +138,9 @@ def _record(made: Orbit, torus: QuasiPeriodic) -> dict[str, Any]:
 
 
 def _print(record: dict[str, Any]) -> None:
-    say(f"energy error       {record['energy_error']:.3g}   (largest |H(t)/H(0) - 1| of the samples)")
+    say(
+        f"energy error       {record['energy_error']:.3g}   (largest |H(t)/H(0) - 1| of the samples)"
+    )
     say(
         f"off the torus      {record['largest_deviation']:.3g}   (largest at t = {record['largest_deviation_time']:.10g}, "
         f"relative to the largest coordinate)"
@@ -130,7 +160,12 @@ def _write(path: Path, made: Orbit) -> None:
         text = io.StringIO()
         rows = csv.writer(text)
         rows.writerow(["t", "H", *(f"E{q}" for q in range(1, made.chain.N))])
-        rows.writerows([[repr(float(v)) for v in (t, H, *E)] for t, H, E in zip(made.times, made.energies, spectrum, strict=True)])
+        rows.writerows(
+            [
+                [repr(float(v)) for v in (t, H, *E)]
+                for t, H, E in zip(made.times, made.energies, spectrum, strict=True)
+            ]
+        )
         write_text(path, text.getvalue())
         return
     draft = path.with_name(f".{path.name}")
@@ -140,4 +175,6 @@ def _write(path: Path, made: Orbit) -> None:
         draft.replace(path)
     except OSError as error:
         draft.unlink(missing_ok=True)
-        raise InputError("output", str(path), "a file that can be written", f"choose another ({error.strerror})") from error
+        raise InputError(
+            "output", str(path), "a file that can be written", f"choose another ({error.strerror})"
+        ) from error

@@ -63,11 +63,21 @@ def prove(
     order: OrderOption,
     model: Annotated[str, typer.Option(help="alpha or beta.")] = "alpha",
     points: Annotated[str, typer.Option(help="Independent primes and random frequencies.")] = "1",
-    output: Annotated[str | None, typer.Option("-o", "--output", help="Write the certificate to this file.", metavar="FILE")] = None,
+    output: Annotated[
+        str | None,
+        typer.Option("-o", "--output", help="Write the certificate to this file.", metavar="FILE"),
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Prove or refute the propagation rule by exact arithmetic; exit code 1 where it stays undecided."""
-    number, chosen, highest = whole("N", bonds), whole_numbers("seeds", seeds), whole("order", order)
+    """Prove or refute the propagation rule by exact arithmetic.
+
+    Exit code 1 where it stays undecided.
+    """
+    number, chosen, highest = (
+        whole("N", bonds),
+        whole_numbers("seeds", seeds),
+        whole("order", order),
+    )
     file = None if output is None else output_file(path_named("output", output))
     with progress_bar("recursion modulo a prime") as advance:
         proof = prove_propagation(
@@ -81,7 +91,13 @@ def prove(
         if file is not None:
             proof.write(file)
     if as_json:
-        print_json({key: value for key, value in proof.certificate().items() if key not in ("excited", "vanishing", "points", "digest")})
+        print_json(
+            {
+                key: value
+                for key, value in proof.certificate().items()
+                if key not in ("excited", "vanishing", "points", "digest")
+            }
+        )
     else:
         _print_proof(proof)
         if file is not None:
@@ -95,7 +111,11 @@ def _print_proof(proof: PropagationProof) -> None:
         same = "" if rule == actual else f"   actually {{{', '.join(map(str, actual))}}}"
         say(f"D_{k} = {{{', '.join(map(str, rule))}}}{same}")
     for e in proof.exceptions:
-        doubt = f" (undecided, error probability {open_modes[e.mode].error_probability:.1e})" if e.mode in open_modes else ""
+        doubt = (
+            f" (undecided, error probability {open_modes[e.mode].error_probability:.1e})"
+            if e.mode in open_modes
+            else ""
+        )
         found = "at no order" if e.actual is None else e.actual
         say(f"mode {e.mode}: predicted at order {e.predicted}, actually {found}{doubt}")
     say(f"verdict: {proof.verdict}")
@@ -103,15 +123,21 @@ def _print_proof(proof: PropagationProof) -> None:
 
 @app.command(epilog="Example: symfpu verify proof.json")
 def verify(
-    file: Annotated[str, typer.Argument(help="A certificate written by symfpu prove.", metavar="FILE")],
+    file: Annotated[
+        str, typer.Argument(help="A certificate written by symfpu prove.", metavar="FILE")
+    ],
     as_json: JsonOption = False,
 ) -> None:
-    """Check a certificate by another route: mode space, the tensors B and C, Python's integers, nothing of the prover."""
+    """Check a certificate by another route: mode space, the tensors B and C, Python's integers,
+    nothing of the prover.
+    """
     path = path_named("certificate", file)
     try:
         checked = verify_certificate(path)
     except CertificateError as error:
-        raise InputError("certificate", str(path), "one written by symfpu prove, unaltered", str(error)) from error
+        raise InputError(
+            "certificate", str(path), "one written by symfpu prove, unaltered", str(error)
+        ) from error
     if as_json:
         print_json({"file": str(path), "valid": True, "checked": checked})
         return
@@ -122,15 +148,23 @@ def verify(
 def sweep(
     order: OrderOption,
     model: Annotated[str, typer.Option(help="alpha or beta.")] = "alpha",
-    longest: Annotated[str, typer.Option(help="All chains with 2 up to this many bonds.", metavar="N")] = "12",
-    largest: Annotated[str, typer.Option(help="All seed sets with up to this many modes.", metavar="S")] = "3",
+    longest: Annotated[
+        str, typer.Option(help="All chains with 2 up to this many bonds.", metavar="N")
+    ] = "12",
+    largest: Annotated[
+        str, typer.Option(help="All seed sets with up to this many modes.", metavar="S")
+    ] = "3",
     file: Annotated[
         str | None,
-        typer.Option(help="Keep decided cases here; an interrupted sweep goes on from it.", metavar="FILE"),
+        typer.Option(
+            help="Keep decided cases here; an interrupted sweep goes on from it.", metavar="FILE"
+        ),
     ] = None,
     markdown: Annotated[
         str | None,
-        typer.Option("-o", "--output", help="Write the summary to this Markdown file.", metavar="FILE"),
+        typer.Option(
+            "-o", "--output", help="Write the summary to this Markdown file.", metavar="FILE"
+        ),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -138,7 +172,11 @@ def sweep(
     lengths = range(2, whole("longest", longest) + 1)
     if not lengths:
         raise InputError("longest", longest, "2 or more", "take a longer chain")
-    log = None if file is None else output_file(path_named("file", file), "file", "choose another with --file")
+    log = (
+        None
+        if file is None
+        else output_file(path_named("file", file), "file", "choose another with --file")
+    )
     summary = None if markdown is None else output_file(path_named("output", markdown))
     with progress_bar("seed sets", lambda: _kept(log)) as advance:
         result = sweep_propagation(

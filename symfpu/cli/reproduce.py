@@ -9,7 +9,15 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.cli.terminal import NOTHING_KEPT, JsonOption, console, path_named, print_json, progress_bar, say
+from symfpu.cli.terminal import (
+    NOTHING_KEPT,
+    JsonOption,
+    console,
+    path_named,
+    print_json,
+    progress_bar,
+    say,
+)
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_folder, write_text
@@ -20,10 +28,14 @@ from symfpu.paper.targets import FULL, TARGETS, Page, full_estimate
 
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
 def reproduce(
-    targets: Annotated[list[str], typer.Argument(help=f"{', '.join(TARGETS)}, or all.", metavar="TARGET...")],
+    targets: Annotated[
+        list[str], typer.Argument(help=f"{', '.join(TARGETS)}, or all.", metavar="TARGET...")
+    ],
     output: Annotated[
         str,
-        typer.Option("-o", "--output", help="Folder for the report, pictures and data.", metavar="FOLDER"),
+        typer.Option(
+            "-o", "--output", help="Folder for the report, pictures and data.", metavar="FOLDER"
+        ),
     ] = "out",
     full: Annotated[
         bool,
@@ -34,15 +46,20 @@ def reproduce(
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """The paper's table and figures from its printed frequencies, beside the printed numbers, with a verdict on every claim.
+    """The paper's table and figures from its printed frequencies, beside the printed numbers, with a
+    verdict on every claim.
 
     report.md and report.json hold the targets of this run alone.
     """
     for target in targets:
         if target not in (*TARGETS, "all"):
-            raise InputError("target", target, f"{', '.join(TARGETS)} or all", "name one or more of these")
+            raise InputError(
+                "target", target, f"{', '.join(TARGETS)} or all", "name one or more of these"
+            )
     if full and not {*FULL, "all"} & set(targets):
-        raise InputError("full", " ".join(targets), f"--full with {', '.join(FULL)} or all", "leave out --full")
+        raise InputError(
+            "full", " ".join(targets), f"--full with {', '.join(FULL)} or all", "leave out --full"
+        )
     folder = output_folder(path_named("output", output))
     chosen = [target for target in TARGETS if target in targets or "all" in targets]
     if full:
@@ -51,16 +68,22 @@ def reproduce(
     with progress_bar(chosen[0], lambda: _kept(pages, folder)) as advance:
         for target in chosen:
             pages[target] = TARGETS[target](folder, advance, full=full)
-            record = _write(pages, folder)  # at once: a run that is stopped, or a later target that fails, loses nothing
+            # at once: a run that is stopped, or a later target that fails, loses nothing
+            record = _write(pages, folder)
     if as_json:
         print_json(record)
         return
     _print_rows(record.get("table", []), pages["table"].lines if "table" in pages else ())
     for key, claim in record.get("fig1", {}).get("claims", {}).items():
-        say(f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}")
+        say(
+            f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}"
+        )
     _print_claims(page.figure for page in pages.values() if page.figure is not None)
     pictures = [page.files for page in pages.values() if page.files]
-    print(f"written: {folder / 'report.md'}, report.json" + (f", {', '.join(pictures)} as PNG, PDF and CSV" if pictures else ""))
+    print(
+        f"written: {folder / 'report.md'}, report.json"
+        + (f", {', '.join(pictures)} as PNG, PDF and CSV" if pictures else "")
+    )
 
 
 def _kept(pages: dict[str, Page], folder: Path) -> str:
@@ -77,7 +100,9 @@ def _write(pages: dict[str, Page], folder: Path) -> dict[str, Any]:
     figures = [page.figure for page in pages.values() if page.figure is not None]
     parts = ["# The paper's numbers, computed from its printed frequencies"]
     parts += [claims_markdown(figures)] if figures else []
-    write_text(folder / "report.md", "\n\n".join([*parts, *(page.markdown for page in pages.values())]))
+    write_text(
+        folder / "report.md", "\n\n".join([*parts, *(page.markdown for page in pages.values())])
+    )
     write_text(folder / "report.json", json.dumps(record, indent=1) + "\n")
     return record
 
@@ -87,7 +112,9 @@ def _print_rows(rows: Sequence[dict[str, Any]], corrected: Sequence[str]) -> Non
         say(f"{row['label']}  (Appendix F: {row['printed_label']})")
         for q, printed in row["printed_amplitudes"].items():
             say(f"  A_{q:<3} printed {printed:<24} computed {row['torus']['amplitudes'][q]}")
-        energies = ", ".join(f"{name} {float(value):.9g}" for name, value in row["energies"].items())
+        energies = ", ".join(
+            f"{name} {float(value):.9g}" for name, value in row["energies"].items()
+        )
         say(f"  E    printed {row['printed_energy']:<24} computed {energies}")
         say(f"  {row['verdict']}\n{exact}\n")
 
@@ -97,4 +124,6 @@ def _print_claims(figures: Iterable[PaperFigure]) -> None:
         say(figure.title)
         for claim in figure.claims:
             printed = f" (printed {claim.printed})" if claim.printed else ""
-            say(f"  {claim.verdict}: section {claim.section}, {claim.text}{printed}\n    {claim.ours}")
+            say(
+                f"  {claim.verdict}: section {claim.section}, {claim.text}{printed}\n    {claim.ours}"
+            )

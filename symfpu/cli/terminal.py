@@ -1,4 +1,6 @@
-"""What all verbs share: options, numbers and paths, lines for a reader, JSON, progress, the interrupt key."""
+"""What all verbs share: options, numbers and paths, lines for a reader, JSON, progress, the
+interrupt key.
+"""
 
 from __future__ import annotations
 
@@ -32,16 +34,24 @@ from rich.text import Text
 
 from symfpu.errors import InputError, SymfpuError
 
-BondsOption = Annotated[str, typer.Option("-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N")]
-SeedsOption = Annotated[str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")]
+BondsOption = Annotated[
+    str,
+    typer.Option("-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"),
+]
+SeedsOption = Annotated[
+    str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")
+]
 OrderOption = Annotated[str, typer.Option("--order", help="Order k of the series.", metavar="K")]
-JsonOption = Annotated[bool, typer.Option("--json", help="Machine-readable result on standard output.")]
+JsonOption = Annotated[
+    bool, typer.Option("--json", help="Machine-readable result on standard output.")
+]
 
 NOTHING_KEPT = "nothing is kept"
 BAR_WIDTH = 20
 INDENT = 4  # of what follows on the next line
 PATIENCE = 2.0  # seconds before the first line of progress
-PAUSE, SHARE = 1.0, 0.01  # least seconds between two lines, and least share of the time that has passed
+# least seconds between two lines, and least share of the time that has passed
+PAUSE, SHARE = 1.0, 0.01
 SILENCE = 30.0  # seconds after which a line comes although nothing has changed
 
 
@@ -79,9 +89,14 @@ def optional(argument: str, text: str | None) -> int | None:
 
 
 def path_named(argument: str, text: str) -> Path:
-    """A path of the command line; InputError for an empty name, which would be the working folder."""
+    """A path of the command line.
+
+    InputError for an empty name, which would be the working folder.
+    """
     if not text.strip():
-        raise InputError(argument, text, "the name of a file or folder", "write . for the folder you are in")
+        raise InputError(
+            argument, text, "the name of a file or folder", "write . for the folder you are in"
+        )
     return Path(text)
 
 
@@ -109,7 +124,10 @@ def warn(text: str) -> None:
 
 
 def width_of(stream: TextIO) -> int | None:
-    """Columns of a terminal, or those that COLUMNS asks for; None for a pipe or a file: lines stay whole."""
+    """Columns of a terminal, or those that COLUMNS asks for.
+
+    None for a pipe or a file: lines stay whole.
+    """
     if not os.environ.get("COLUMNS") and not stream.isatty():
         return None
     return shutil.get_terminal_size().columns
@@ -178,10 +196,15 @@ class Bar:
 
     def __init__(self, terminal: Console, label: str) -> None:
         rest_of_line = Column(ratio=1, no_wrap=True, overflow="ellipsis")
-        what = SpinnerColumn(), TextColumn("{task.description}", markup=False, table_column=rest_of_line)
+        what = (
+            SpinnerColumn(),
+            TextColumn("{task.description}", markup=False, table_column=rest_of_line),
+        )
         much = BarColumn(BAR_WIDTH), TaskProgressColumn()
         when = TimeElapsedColumn(), TimeLeft(compact=True)
-        self._progress = Progress(*what, *much, *when, console=terminal, transient=True, expand=True)
+        self._progress = Progress(
+            *what, *much, *when, console=terminal, transient=True, expand=True
+        )
         self._begun = self._progress.get_time()
         self._task = self._progress.add_task(label, total=None)
         self._done: float | None = None

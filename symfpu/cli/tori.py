@@ -42,26 +42,43 @@ def solve(
     context: typer.Context,
     bonds: BondsOption,
     seeds: SeedsOption,
-    omega: Annotated[str, typer.Option(help="Frequencies, one for each seed, such as 0.19626,0.39046.", metavar="W,W,...")],
+    omega: Annotated[
+        str,
+        typer.Option(
+            help="Frequencies, one for each seed, such as 0.19626,0.39046.", metavar="W,W,..."
+        ),
+    ],
     order: OrderOption,
     alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
     beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
     frequency_order: Annotated[
         str | None,
-        typer.Option(help="Order of the frequency series that gives the amplitudes.  Default: --order.", metavar="K"),
+        typer.Option(
+            help="Order of the frequency series that gives the amplitudes.  Default: --order.",
+            metavar="K",
+        ),
     ] = None,
     coordinate_order: Annotated[
         str | None,
-        typer.Option(help="Order at which the coordinates Q(t) are cut.  Default: --order.", metavar="K"),
+        typer.Option(
+            help="Order at which the coordinates Q(t) are cut.  Default: --order.", metavar="K"
+        ),
     ] = None,
-    digits: Annotated[str | None, typer.Option(help="Any number of digits, proved.  Default: doubles.", metavar="D")] = None,
+    digits: Annotated[
+        str | None,
+        typer.Option(help="Any number of digits, proved.  Default: doubles.", metavar="D"),
+    ] = None,
     output: Annotated[
         str | None,
-        typer.Option("-o", "--output", help="Keep series, torus and verdict in this file.", metavar="FILE"),
+        typer.Option(
+            "-o", "--output", help="Keep series, torus and verdict in this file.", metavar="FILE"
+        ),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Amplitudes and energies of the q-torus with the given frequencies, and a verdict on its series."""
+    """Amplitudes and energies of the q-torus with the given frequencies, and a verdict on its
+    series.
+    """
     chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
     chosen = whole_numbers("seeds", seeds)
     highest, cut = (
@@ -81,11 +98,18 @@ def solve(
         )
         advance("amplitudes")
         torus = solve_amplitudes(series, frequency_order=highest, order=cut)
-        assessment = assess(series, torus, progress=lambda done, total: advance("verdict", done / total))
+        assessment = assess(
+            series, torus, progress=lambda done, total: advance("verdict", done / total)
+        )
         record = torus_record(torus, assessment)
         if file:
             advance("writing")
-            save(file, torus, verdict=assessment.record(), command=shlex.join(["symfpu", *context.obj]))
+            save(
+                file,
+                torus,
+                verdict=assessment.record(),
+                command=shlex.join(["symfpu", *context.obj]),
+            )
     if as_json:
         print_json(record)
     else:
@@ -112,14 +136,18 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
     average = record["average_harmonic_energy"]
     say(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {average})")
     residual = f"{record['residual']:.2g}"
-    say(f"residual           {residual}   (equations of motion, relative to the largest acceleration)")
+    say(
+        f"residual           {residual}   (equations of motion, relative to the largest acceleration)"
+    )
     for warning in torus.warnings:
         warn(warning)
 
 
 @app.command(epilog="Example: symfpu show torus.symfpu")
 def show(
-    file: Annotated[str, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")],
+    file: Annotated[
+        str, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")
+    ],
     as_json: JsonOption = False,
 ) -> None:
     """What a result file holds: series, torus, verdict, and what made it."""

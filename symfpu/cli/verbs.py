@@ -1,4 +1,7 @@
-"""The verbs by name, and the command they belong to; a verb's module is imported when it is asked for."""
+"""The verbs by name, and the command they belong to.
+
+A verb's module is imported when it is asked for.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +46,8 @@ class Verbs(TyperGroup):
         if cmd_name not in VERBS:
             raise InputError("verb", cmd_name, ", ".join(VERBS), "see symfpu --help")
         if cmd_name not in self.commands:
-            import_module(f"symfpu.cli.{VERBS[cmd_name]}")  # registers its verbs with the application
+            # registers its verbs with the application
+            import_module(f"symfpu.cli.{VERBS[cmd_name]}")
             self.commands.update(get_group(app).commands)
         return self.commands[cmd_name]
 

@@ -16,8 +16,11 @@ from symfpu.numbers.typed import double, seed_modes
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-RISE = 0.25  # of its last value, up to which a running average follows its power law: 1 - sinc(x) has the slope 1.84 there, and not 2
-SATURATED = 0.9  # of its last value: a running average that has reached it early has stopped growing
+# of its last value, up to which a running average follows its power law: 1 - sinc(x) has the
+# slope 1.84 there, and not 2
+RISE = 0.25
+# of its last value: a running average that has reached it early has stopped growing
+SATURATED = 0.9
 EARLY = 0.25  # of the whole time
 SHORTEST = 2.0  # ratio of the ends of a window
 FEWEST = 4  # samples of a window: two in each half
@@ -44,7 +47,11 @@ class GroupGrowth:
     def __repr__(self) -> str:
         first, last = self.saturation
         times = "not saturated" if math.isnan(first) else f"saturated at {first:.3g} .. {last:.3g}"
-        exponents = "no stage of growth" if math.isnan(self.mean) else f"c = {self.mean:.3g}, spread {self.spread:.2g}"
+        exponents = (
+            "no stage of growth"
+            if math.isnan(self.mean)
+            else f"c = {self.mean:.3g}, spread {self.spread:.2g}"
+        )
         return f"D_{self.order} ({len(self.modes)} modes): {exponents}, {times}"
 
 
@@ -123,37 +130,62 @@ def growth_exponents(
     array([2.])
     """
     if averages is None:
-        raise InputError("averages", None, "those of an orbit that has them", "integrate with averages=True")
+        raise InputError(
+            "averages", None, "those of an orbit that has them", "integrate with averages=True"
+        )
     require_chain(chain)
     t, Ebar = energy_record(times, averages, "averages")
     if Ebar.shape[1] != chain.N - 1:
-        raise InputError("averages", Ebar.shape, f"the {chain.N - 1} modes of {chain} on the last axis", "pass those of one orbit")
+        raise InputError(
+            "averages",
+            Ebar.shape,
+            f"the {chain.N - 1} modes of {chain} on the last axis",
+            "pass those of one orbit",
+        )
     seeds, modes, orders = _ordered(chain, groups)
     start = math.pi / chain.frequencies()[min(seeds) - 1]
     if window is None:
         windows = np.array([_window(t, Ebar[:, q - 1], start) for q in modes])
     else:
         windows = np.array([_checked(window, t)] * len(modes))
-    fits = np.array([_growth(t, Ebar[:, q - 1], *ends) for q, ends in zip(modes, windows, strict=True)])
+    fits = np.array(
+        [_growth(t, Ebar[:, q - 1], *ends) for q, ends in zip(modes, windows, strict=True)]
+    )
     saturation = np.array([_saturation(t, Ebar[:, q - 1]) for q in modes])
-    return GrowthExponents(np.array(modes), np.array(orders), fits[:, 0], fits[:, 1], windows, fits[:, 2:], saturation)
+    return GrowthExponents(
+        np.array(modes), np.array(orders), fits[:, 0], fits[:, 1], windows, fits[:, 2:], saturation
+    )
 
 
-def _ordered(chain: Chain, groups: Sequence[Sequence[int]]) -> tuple[tuple[int, ...], list[int], list[int]]:
+def _ordered(
+    chain: Chain, groups: Sequence[Sequence[int]]
+) -> tuple[tuple[int, ...], list[int], list[int]]:
     """The seeds; the other modes and the order of each."""
     try:
         first, *others = [tuple(group) for group in groups]
     except (TypeError, ValueError) as error:
-        raise InputError("groups", groups, "D_0, D_1, ..., each a sequence of modes", "take those of excitation_sequence") from error
+        raise InputError(
+            "groups",
+            groups,
+            "D_0, D_1, ..., each a sequence of modes",
+            "take those of excitation_sequence",
+        ) from error
     seeds, modes = seed_modes(first, chain.N), [q for group in others for q in group]
     seed_modes(modes, chain.N)
     if common := set(seeds) & set(modes):
-        raise InputError("groups", groups, "D_0, D_1, ... without common modes", f"leave out {min(common)} where it comes again")
+        raise InputError(
+            "groups",
+            groups,
+            "D_0, D_1, ... without common modes",
+            f"leave out {min(common)} where it comes again",
+        )
     return seeds, modes, [k for k, group in enumerate(others, 1) for _ in group]
 
 
 def _checked(window: tuple[float, float], t: Floats) -> tuple[float, float]:
-    allowed = f"from and to, a factor {SHORTEST:g} apart or more, with {FEWEST} of the times between them"
+    allowed = (
+        f"from and to, a factor {SHORTEST:g} apart or more, with {FEWEST} of the times between them"
+    )
     try:
         first, last = (double(end, "window") for end in window)
     except (TypeError, ValueError) as error:
@@ -175,7 +207,9 @@ def _growth(t: Floats, values: Floats, first: float, last: float) -> list[float]
     x, y = np.log(t[inside]), np.log(values[inside])
     exponent, scatter = _slope(x, y)
     early = x <= (x[0] + x[-1]) / 2
-    halves = [_slope(x[half], y[half])[0] if half.sum() > 1 else math.nan for half in (early, ~early)]
+    halves = [
+        _slope(x[half], y[half])[0] if half.sum() > 1 else math.nan for half in (early, ~early)
+    ]
     return [exponent, scatter, *halves]
 
 

@@ -1,4 +1,5 @@
-"""How the energy of low-frequency packets falls off along the spectrum: the paper's laws, and lines fitted to profiles.
+"""How the energy of low-frequency packets falls off along the spectrum: the paper's laws, and lines
+fitted to profiles.
 
 The laws are those of section 6.1 and, for their derivation, Appendix E.
 """
@@ -22,8 +23,11 @@ from symfpu.numbers.typed import integer, seed_modes
 
 Floats = NDArray[np.float64]
 
-FLOOR = 1e-22  # of the largest energy: ten times the rounding of an orbit on T + V with N = 512 to T = 1e6 (docs/localization.md)
-LAST_BIT = 0.045 * 2.0**-104  # mean square of one rounding, relative: EPS^2/12 times the mean of 1/m^2 over mantissas m
+# of the largest energy: ten times the rounding of an orbit on T + V with N = 512 to T = 1e6
+# (docs/localization.md)
+FLOOR = 1e-22
+# mean square of one rounding, relative: EPS^2/12 times the mean of 1/m^2 over mantissas m
+LAST_BIT = 0.045 * 2.0**-104
 BLOCKS = 2  # groups of modes, at least, for a line with an error bar
 
 
@@ -47,10 +51,18 @@ class ProfileLine:
 
     def __call__(self, kappa: ArrayLike) -> Floats:
         kappa = np.asarray(kappa, dtype=np.float64)
-        return np.asarray(self.slope * kappa + self.intercept + (self.power * np.log10(kappa) if self.power else 0.0))
+        return np.asarray(
+            self.slope * kappa
+            + self.intercept
+            + (self.power * np.log10(kappa) if self.power else 0.0)
+        )
 
     def __repr__(self) -> str:
-        power = f" {'-' if self.power < 0 else '+'} {abs(self.power):.6g} log10 kappa" if self.power else ""
+        power = (
+            f" {'-' if self.power < 0 else '+'} {abs(self.power):.6g} log10 kappa"
+            if self.power
+            else ""
+        )
         return f"log10 e = {self.slope:.6g} kappa {'-' if self.intercept < 0 else '+'} {abs(self.intercept):.6g}{power}"
 
 
@@ -67,7 +79,11 @@ def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
     """
     s, epsilon = _packet(chain, s, specific_energy)
     width = math.pi * s / chain.N
-    return float(chain.alpha) ** 2 * epsilon / width**4 if chain.alpha else abs(float(chain.beta)) * epsilon / width**2
+    return (
+        float(chain.alpha) ** 2 * epsilon / width**4
+        if chain.alpha
+        else abs(float(chain.beta)) * epsilon / width**2
+    )
 
 
 def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> Floats:
@@ -82,12 +98,20 @@ def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> 
     >>> group_energy(Chain(N=256, beta="0.3"), 16, 1.5625e-6, [0, 1])
     array([2.50000000e-05, 3.69575361e-15])
     """
-    parameter, M, k = packet_parameter(chain, s, specific_energy), s / chain.N, np.asarray(k, dtype=np.float64)
+    parameter, M, k = (
+        packet_parameter(chain, s, specific_energy),
+        s / chain.N,
+        np.asarray(k, dtype=np.float64),
+    )
     front = specific_energy / M
-    return np.asarray(front * (k + 0.5) ** 2 * parameter**k if chain.alpha else front * parameter ** (2 * k))
+    return np.asarray(
+        front * (k + 0.5) ** 2 * parameter**k if chain.alpha else front * parameter ** (2 * k)
+    )
 
 
-def profile_law(chain: Chain, s: int, specific_energy: float, *, denominator: int | None = None) -> ProfileLine:
+def profile_law(
+    chain: Chain, s: int, specific_energy: float, *, denominator: int | None = None
+) -> ProfileLine:
     """log10 e_kappa of seeds 1 .. s, Eqs. eksa2 (alpha) and eksp2 (beta) as a ProfileLine.
 
     chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N; all dimensionless.
@@ -104,7 +128,9 @@ def profile_law(chain: Chain, s: int, specific_energy: float, *, denominator: in
     inverse = (chain.N if denominator is None else integer(denominator, "denominator", 1)) / s
     if not chain.alpha:
         return ProfileLine(math.log10(parameter) * inverse, -math.log10(s))
-    return ProfileLine(math.log10(parameter) * inverse, math.log10(inverse**2 / (parameter**0.5 * s)), 2.0)
+    return ProfileLine(
+        math.log10(parameter) * inverse, math.log10(inverse**2 / (parameter**0.5 * s)), 2.0
+    )
 
 
 def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) -> Floats:
@@ -123,7 +149,11 @@ def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) 
         raise InputError("chain", chain, "the alpha model", "the law is stated for it alone")
     gamma = packet_parameter(chain, 1, positive(energy, "energy") / chain.N)
     q = np.arange(1, chain.N)
-    return np.asarray(gamma ** (q - 1.0) * q**2 * (energy if seed_energy is None else positive(seed_energy, "seed_energy")))
+    return np.asarray(
+        gamma ** (q - 1.0)
+        * q**2
+        * (energy if seed_energy is None else positive(seed_energy, "seed_energy"))
+    )
 
 
 def least_packet(chain: Chain, specific_energy: float) -> float:
@@ -154,8 +184,17 @@ def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") 
     1.83826
     """
     if chain.model != "alpha" or exponent not in ("1/4", "1/5"):
-        raise InputError("chain, exponent", (chain, exponent), "the alpha model, '1/4' or '1/5'", "the widths are stated for these")
-    return float(chain.N * (float(chain.alpha) ** 2 * positive(specific_energy, "specific_energy")) ** float(Fraction(exponent)))
+        raise InputError(
+            "chain, exponent",
+            (chain, exponent),
+            "the alpha model, '1/4' or '1/5'",
+            "the widths are stated for these",
+        )
+    return float(
+        chain.N
+        * (float(chain.alpha) ** 2 * positive(specific_energy, "specific_energy"))
+        ** float(Fraction(exponent))
+    )
 
 
 def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
@@ -192,7 +231,9 @@ def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
     return tuple(range(step + offset, chain.N, step))
 
 
-def rounding_floor(chain: Chain, spectrum: ArrayLike, T: float, *, step: float, scheme: str = "kahan_li8") -> Floats:
+def rounding_floor(
+    chain: Chain, spectrum: ArrayLike, T: float, *, step: float, scheme: str = "kahan_li8"
+) -> Floats:
     """Energy that rounding is expected to put into the running average of every mode until T; shape (N-1,).
 
     chain : the model. spectrum : mean E_q of the orbit, (N-1,). T : the time, step : of the integrator; all
@@ -214,7 +255,9 @@ def rounding_floor(chain: Chain, spectrum: ArrayLike, T: float, *, step: float, 
         return np.zeros(chain.N - 1)
     squared = chain.frequencies() ** 2
     positions, momenta = np.sum(E / squared) / (chain.N - 1), np.sum(E) / (chain.N - 1)
-    return np.asarray(0.25 * LAST_BIT * SCHEMES[scheme].stages * T / step * (squared * positions + momenta))
+    return np.asarray(
+        0.25 * LAST_BIT * SCHEMES[scheme].stages * T / step * (squared * positions + momenta)
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,7 +327,10 @@ def fit_profile(
     if len(names) < BLOCKS or len(chosen) - sizes.max() < 2 + (power is None):
         expected = "modes above the floor in several groups D_k, more than the line needs without any one of them"
         raise InputError(
-            "modes", tuple(chosen.tolist()), expected, "name more, take fewer seeds, or the scheme aba864_modes for lower tails"
+            "modes",
+            tuple(chosen.tolist()),
+            expected,
+            "name more, take fewer seeds, or the scheme aba864_modes for lower tails",
         )
     kappa, e = chosen / chain.N, np.log10(E[chosen - 1]) - math.log10(E.sum())
     columns = [kappa, np.ones_like(kappa)] + ([np.log10(kappa)] if power is None else [])
@@ -294,7 +340,9 @@ def fit_profile(
     spread = np.sqrt((len(without) - 1) * np.mean((without - without.mean(axis=0)) ** 2, axis=0))
     residuals = y - X @ fitted
     scatter = float(np.sqrt(residuals @ residuals / max(1, len(y) - X.shape[1])))
-    line = ProfileLine(float(fitted[0]), float(fitted[1]), float(fitted[2]) if power is None else power)
+    line = ProfileLine(
+        float(fitted[0]), float(fitted[1]), float(fitted[2]) if power is None else power
+    )
     errors = float(spread[0]), float(spread[1]), float(spread[2]) if power is None else 0.0
     return ProfileFit(line, errors, scatter, tuple(chosen.tolist()), residuals)
 
@@ -306,14 +354,21 @@ def _solved(X: Floats, y: Floats) -> Floats:
 def _packet(chain: Chain, s: int, specific_energy: float) -> tuple[int, float]:
     require_chain(chain)
     if chain.model == "alpha+beta":
-        raise InputError("chain", chain, "one coupling, alpha or beta", "the laws are stated for each model alone")
+        raise InputError(
+            "chain",
+            chain,
+            "one coupling, alpha or beta",
+            "the laws are stated for each model alone",
+        )
     return packet_width(chain, s), positive(specific_energy, "specific_energy")
 
 
 def packet_width(chain: Chain, s: int) -> int:
     require_chain(chain)
     if integer(s, "s", 1) >= chain.N:
-        raise InputError("s", s, f"1..{chain.N - 1} (N = {chain.N})", "take fewer seeds or a longer chain")
+        raise InputError(
+            "s", s, f"1..{chain.N - 1} (N = {chain.N})", "take fewer seeds or a longer chain"
+        )
     return int(s)
 
 
@@ -334,17 +389,28 @@ def _spectrum(chain: Chain, spectrum: ArrayLike) -> Floats:
     try:
         E = np.asarray(spectrum, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError("spectrum", spectrum, "an array of numbers", "pass mean mode energies") from error
+        raise InputError(
+            "spectrum", spectrum, "an array of numbers", "pass mean mode energies"
+        ) from error
     if E.shape != (chain.N - 1,) or not (np.isfinite(E) & (E >= 0)).all() or not E.sum() > 0:
-        raise InputError("spectrum", E.shape, f"{chain.N - 1} finite energies, 0 or more, not all 0", "pass mean mode energies, (N-1,)")
+        raise InputError(
+            "spectrum",
+            E.shape,
+            f"{chain.N - 1} finite energies, 0 or more, not all 0",
+            "pass mean mode energies, (N-1,)",
+        )
     return E
 
 
 def _modes(chain: Chain, s: int, modes: str | Sequence[int]) -> tuple[int, ...]:
-    """The modes of a fit; tail : all of D_1, D_2, ... of the packet 1 .. s (Definition 3 with k_0 = 1)."""
+    """The modes of a fit; tail : all of D_1, D_2, ... of the packet 1 .. s (Definition 3 with k_0
+    = 1).
+    """
     if isinstance(modes, str):
         if modes not in ("tail", "middle"):
-            raise InputError("modes", modes, "tail, middle or a list of modes", "choose one of them")
+            raise InputError(
+                "modes", modes, "tail, middle or a list of modes", "choose one of them"
+            )
         return tuple(range(s + 1, chain.N)) if modes == "tail" else middle_modes(chain, s)
     listed = seed_modes(modes, chain.N)
     if min(listed) <= s:
@@ -357,8 +423,18 @@ def _floor(chain: Chain, floor: float | ArrayLike, E: Floats) -> Floats:
     try:
         least = np.asarray(floor, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError("floor", floor, f"a number, or {chain.N - 1} of them", "pass 0 for spectra in closed form") from error
+        raise InputError(
+            "floor",
+            floor,
+            f"a number, or {chain.N - 1} of them",
+            "pass 0 for spectra in closed form",
+        ) from error
     least = least * E.max() if least.ndim == 0 else least
     if least.shape not in ((), (chain.N - 1,)) or not (np.isfinite(least) & (least >= 0)).all():
-        raise InputError("floor", floor, f"a number, 0 or more, or {chain.N - 1} of them", "pass 0 for spectra in closed form")
+        raise InputError(
+            "floor",
+            floor,
+            f"a number, 0 or more, or {chain.N - 1} of them",
+            "pass 0 for spectra in closed form",
+        )
     return np.asarray(np.broadcast_to(least, E.shape))

@@ -1,7 +1,8 @@
 """Energy profiles of orbits: FPU-trajectories, packets, normalised spectra, distances (sections 3.2, 4.1).
 
-An `Orbit` integrated with averages=True is a running spectrum: its `averages` are Ebar_q(t), its `harmonic_energies()` E_q(t). The closed
-form of a torus is `torus.average_spectrum(T)`; PLn is the orbit from `torus.positions(0)` and `torus.momenta(0)`.
+An `Orbit` integrated with averages=True is a running spectrum: its `averages` are Ebar_q(t), its
+`harmonic_energies()` E_q(t). The closed form of a torus is `torus.average_spectrum(T)`; PLn is
+the orbit from `torus.positions(0)` and `torus.momenta(0)`.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ Floats = NDArray[np.float64]
 SHARES = ("energy", "amplitude")
 
 
-def fpu_trajectory(chain: Chain, amplitudes: Mapping[int, Number], phases: Mapping[int, Number] | None = None) -> tuple[Floats, Floats]:
+def fpu_trajectory(
+    chain: Chain, amplitudes: Mapping[int, Number], phases: Mapping[int, Number] | None = None
+) -> tuple[Floats, Floats]:
     """Initial conditions (Q, P) of the FPU-trajectory with these seeds, each of shape (N-1,) (Definition 4).
 
     chain : the model. amplitudes, phases : by seed, dimensionless and in radians; phases left out are 0.
@@ -38,7 +41,12 @@ def fpu_trajectory(chain: Chain, amplitudes: Mapping[int, Number], phases: Mappi
     angles = _mapping({} if phases is None else phases, "phases")
     for key in angles:
         if key not in amplitudes:
-            raise InputError("phases", key, f"phases of the seeds {seeds}", "give that mode an amplitude, or leave its phase out")
+            raise InputError(
+                "phases",
+                key,
+                f"phases of the seeds {seeds}",
+                "give that mode an amplitude, or leave its phase out",
+            )
     Q, P = np.zeros(chain.N - 1), np.zeros(chain.N - 1)
     for q in seeds:
         A, phi = double(amplitudes[q], f"amplitudes[{q}]"), double(angles.get(q, 0), f"phases[{q}]")
@@ -46,7 +54,9 @@ def fpu_trajectory(chain: Chain, amplitudes: Mapping[int, Number], phases: Mappi
     return Q, P
 
 
-def packet_amplitudes(chain: Chain, seeds: Sequence[int], energy: Number, *, share: str = "energy") -> dict[int, float]:
+def packet_amplitudes(
+    chain: Chain, seeds: Sequence[int], energy: Number, *, share: str = "energy"
+) -> dict[int, float]:
     """Amplitudes by seed of a given harmonic energy, the sum of A_q^2 Omega_q^2 / 2; for `fpu_trajectory`.
 
     chain, seeds : the model and distinct modes. energy : positive, dimensionless.
@@ -62,11 +72,17 @@ def packet_amplitudes(chain: Chain, seeds: Sequence[int], energy: Number, *, sha
     modes = seed_modes(seeds, chain.N)
     total = double(energy, "energy")
     if not total > 0:
-        raise InputError("energy", energy, "a positive number", "pass the harmonic energy of the packet")
+        raise InputError(
+            "energy", energy, "a positive number", "pass the harmonic energy of the packet"
+        )
     if share not in SHARES:
         raise InputError("share", share, ", ".join(SHARES), "choose one of them")
     linear = chain.frequencies()[np.array(modes) - 1]
-    squared = 2 * total / len(modes) / linear**2 if share == "energy" else np.full(len(modes), 2 * total / np.sum(linear**2))
+    squared = (
+        2 * total / len(modes) / linear**2
+        if share == "energy"
+        else np.full(len(modes), 2 * total / np.sum(linear**2))
+    )
     return {q: float(A) for q, A in zip(modes, np.sqrt(squared), strict=True)}
 
 
@@ -85,9 +101,16 @@ def normalised_averages(orbit: Orbit) -> Floats:
     array([1., 0., 0.])
     """
     if getattr(orbit, "averages", None) is None:
-        raise InputError("orbit", repr(orbit), "an orbit with running averages", "integrate with averages=True")
+        raise InputError(
+            "orbit", repr(orbit), "an orbit with running averages", "integrate with averages=True"
+        )
     if not (orbit.energies[0] > 0).all():
-        raise InputError("orbit", repr(orbit), "an orbit of positive energy", "divide its averages by another number")
+        raise InputError(
+            "orbit",
+            repr(orbit),
+            "an orbit of positive energy",
+            "divide its averages by another number",
+        )
     return np.asarray(orbit.averages / orbit.energies[0][..., None])
 
 
@@ -124,12 +147,24 @@ def profile_distance(a: ArrayLike, b: ArrayLike, floor: float) -> ProfileDistanc
     """
     first, second, least = mode_energies(a, "a"), mode_energies(b, "b"), double(floor, "floor")
     if first.ndim != 1 or first.shape != second.shape or not first.size:
-        raise InputError("a, b", (first.shape, second.shape), "two spectra of the same modes, (N-1,)", "pass one row of each")
+        raise InputError(
+            "a, b",
+            (first.shape, second.shape),
+            "two spectra of the same modes, (N-1,)",
+            "pass one row of each",
+        )
     if not least > 0:
-        raise InputError("floor", floor, "a positive energy", "pass what rounding leaves, such as 1e-30 of the whole")
+        raise InputError(
+            "floor",
+            floor,
+            "a positive energy",
+            "pass what rounding leaves, such as 1e-30 of the whole",
+        )
     ratios = np.abs(np.log10(np.maximum(first, least)) - np.log10(np.maximum(second, least)))
     mode = int(np.argmax(ratios))
-    return ProfileDistance(float(ratios[mode]), mode + 1, int(np.sum(np.maximum(first, second) > least)))
+    return ProfileDistance(
+        float(ratios[mode]), mode + 1, int(np.sum(np.maximum(first, second) > least))
+    )
 
 
 def energy_record(times: ArrayLike, values: ArrayLike, name: str) -> tuple[Floats, Floats]:
@@ -137,9 +172,16 @@ def energy_record(times: ArrayLike, values: ArrayLike, name: str) -> tuple[Float
     array = mode_energies(values, name)
     t = mode_energies(times, "times")
     if t.ndim != 1 or len(t) < 3 or not (np.diff(t) > 0).all():
-        raise InputError("times", t.shape, "three increasing times or more, (S,)", "pass orbit.times")
+        raise InputError(
+            "times", t.shape, "three increasing times or more, (S,)", "pass orbit.times"
+        )
     if array.ndim != 2 or len(array) != len(t):
-        raise InputError(name, array.shape, f"one row for each of the {len(t)} times, (S, N-1)", "pass those of one orbit")
+        raise InputError(
+            name,
+            array.shape,
+            f"one row for each of the {len(t)} times, (S, N-1)",
+            "pass those of one orbit",
+        )
     return t, array
 
 
@@ -149,11 +191,18 @@ def mode_energies(values: ArrayLike, name: str) -> Floats:
     except (TypeError, ValueError) as error:
         raise InputError(name, values, "an array of numbers", "pass those of an orbit") from error
     if not (np.isfinite(array) & (array >= 0)).all():
-        raise InputError(name, "an array with nan, infinity or negative numbers", "finite numbers, 0 or more", "pass those of an orbit")
+        raise InputError(
+            name,
+            "an array with nan, infinity or negative numbers",
+            "finite numbers, 0 or more",
+            "pass those of an orbit",
+        )
     return array
 
 
 def _mapping(values: object, name: str) -> Mapping[int, Number]:
     if not isinstance(values, Mapping):
-        raise InputError(name, values, "a mapping from mode to number, such as {1: 0.5}", "pass a dict")
+        raise InputError(
+            name, values, "a mapping from mode to number, such as {1: 0.5}", "pass a dict"
+        )
     return values

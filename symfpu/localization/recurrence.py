@@ -83,10 +83,16 @@ def recurrence(times: ArrayLike, energies: ArrayLike) -> Recurrence:
     t, E = energy_record(times, energies, "energies")
     whole = E[0].sum()
     if not whole > 0:
-        raise InputError("energies", float(whole), "a positive energy at the first time", "pass those of an orbit that moves")
+        raise InputError(
+            "energies",
+            float(whole),
+            "a positive energy at the first time",
+            "pass those of an orbit that moves",
+        )
     d = np.abs(E - E[0]).sum(axis=1) / (2 * whole)
     far, near = np.flatnonzero(d > FAR * d.max()), np.flatnonzero(d < NEAR * d.max())
-    # the visits: groups of near samples with a far one between them, without the stay at the beginning
+    # the visits: groups of near samples with a far one between them, without the stay at the
+    # beginning
     passed = np.searchsorted(far, near)
     visits = [near[passed == count] for count in np.unique(passed) if count]
     deepest = [int(visit[np.argmin(d[visit])]) for visit in visits]
@@ -98,7 +104,10 @@ def recurrence(times: ArrayLike, energies: ArrayLike) -> Recurrence:
 
 
 def _vertex(t: Floats, d: Floats) -> tuple[float, float]:
-    """The lowest point of the parabola through three points, the middle one lowest; not below 0, which d cannot be."""
+    """The lowest point of the parabola through three points, the middle one lowest.
+
+    Not below 0, which d cannot be.
+    """
     (a, b), (f, g) = np.diff(t), np.diff(d) / np.diff(t)
     curvature = (g - f) / (a + b)
     if not curvature > 0:
