@@ -18,12 +18,12 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 # of its last value, up to which a running average follows its power law: 1 - sinc(x) has the
 # slope 1.84 there, and not 2
-RISE = 0.25
+GROWTH_SHARE = 0.25
 # of its last value: a running average that has reached it early has stopped growing
-SATURATED = 0.9
-EARLY = 0.25  # of the whole time
-SHORTEST = 2.0  # ratio of the ends of a window
-FEWEST = 4  # samples of a window: two in each half
+SATURATION_SHARE = 0.9
+EARLY_SHARE = 0.25  # of the whole time
+LEAST_RATIO = 2.0  # of the ends of a window
+LEAST_SAMPLES = 4  # of a window: two in each half
 
 
 @dataclass(frozen=True)
@@ -45,14 +45,21 @@ class GroupGrowth:
     saturation: tuple[float, float]
 
     def __repr__(self) -> str:
+        name = f"D_{self.order} ({len(self.modes)} modes)"
+        return f"{name}: {self._exponents}, {self._times}"
+
+    @property
+    def _exponents(self) -> str:
+        if math.isnan(self.mean):
+            return "no stage of growth"
+        return f"c = {self.mean:.3g}, spread {self.spread:.2g}"
+
+    @property
+    def _times(self) -> str:
         first, last = self.saturation
-        times = "not saturated" if math.isnan(first) else f"saturated at {first:.3g} .. {last:.3g}"
-        exponents = (
-            "no stage of growth"
-            if math.isnan(self.mean)
-            else f"c = {self.mean:.3g}, spread {self.spread:.2g}"
-        )
-        return f"D_{self.order} ({len(self.modes)} modes): {exponents}, {times}"
+        if math.isnan(first):
+            return "not saturated"
+        return f"saturated at {first:.3g} .. {last:.3g}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,21 +90,27 @@ class GrowthExponents:
     saturation: Floats = field(repr=False)
 
     def __repr__(self) -> str:
-        return f"GrowthExponents({'; '.join(map(repr, self.groups))})"
+        groups = "; ".join(map(repr, self.groups))
+        return f"GrowthExponents({groups})"
 
     @property
     def groups(self) -> tuple[GroupGrowth, ...]:
         """By order, from D_1 on."""
-        found = []
-        for k in map(int, np.unique(self.orders)):
-            members = self.orders == k
-            known = self.exponents[members][np.isfinite(self.exponents[members])]
-            ended = self.saturation[members][np.isfinite(self.saturation[members])]
-            mean = float(known.mean()) if known.size else math.nan
-            spread = float(np.abs(known - mean).max()) if known.size else math.nan
-            times = (float(ended.min()), float(ended.max())) if ended.size else (math.nan, math.nan)
-            found.append(GroupGrowth(k, tuple(map(int, self.modes[members])), mean, spread, times))
-        return tuple(found)
+        return tuple(self._group(int(k)) for k in np.unique(self.orders))
+
+    def _group(self, k: int) -> GroupGrowth:
+        members = self.orders == k
+        modes = tuple(map(int, self.modes[members]))
+        exponents = _finite(self.exponents[members])
+        times = _finite(self.saturation[members])
+        mean = spread = first = last = math.nan
+        if exponents.size:
+            mean = float(exponents.mean())
+            spread = float(np.abs(exponents - mean).max())
+        if times.size:
+            first = float(times.min())
+            last = float(times.max())
+        return GroupGrowth(k, modes, mean, spread, (first, last))
 
 
 def growth_exponents(
@@ -143,18 +156,31 @@ def growth_exponents(
             "pass those of one orbit",
         )
     seeds, modes, orders = _ordered(chain, groups)
-    start = math.pi / chain.frequencies()[min(seeds) - 1]
+    columns = [Ebar[:, q - 1] for q in modes]
     if window is None:
-        windows = np.array([_window(t, Ebar[:, q - 1], start) for q in modes])
+        slowest = chain.frequencies()[min(seeds) - 1]
+        start = math.pi / slowest
+        windows = [_window(t, values, start) for values in columns]
     else:
-        windows = np.array([_checked(window, t)] * len(modes))
-    fits = np.array(
-        [_growth(t, Ebar[:, q - 1], *ends) for q, ends in zip(modes, windows, strict=True)]
-    )
-    saturation = np.array([_saturation(t, Ebar[:, q - 1]) for q in modes])
+        windows = [_checked(window, t)] * len(modes)
+    fits = []
+    for values, (first, last) in zip(columns, windows, strict=True):
+        fits.append(_growth(t, values, first, last))
+    fitted = np.array(fits)
+    saturation = [_saturation(t, values) for values in columns]
     return GrowthExponents(
-        np.array(modes), np.array(orders), fits[:, 0], fits[:, 1], windows, fits[:, 2:], saturation
+        modes=np.array(modes),
+        orders=np.array(orders),
+        exponents=fitted[:, 0],
+        errors=fitted[:, 1],
+        windows=np.array(windows),
+        halves=fitted[:, 2:],
+        saturation=np.array(saturation),
     )
+
+
+def _finite(values: Floats) -> Floats:
+    return values[np.isfinite(values)]
 
 
 def _ordered(
@@ -170,57 +196,77 @@ def _ordered(
             "D_0, D_1, ..., each a sequence of modes",
             "take those of excitation_sequence",
         ) from error
-    seeds, modes = seed_modes(first, chain.N), [q for group in others for q in group]
-    seed_modes(modes, chain.N)
-    if common := set(seeds) & set(modes):
+    seeds = seed_modes(first, chain.N)
+    modes = [q for group in others for q in group]
+    orders = [k for k, group in enumerate(others, 1) for _ in group]
+    seed_modes(modes, chain.N)  # raises for modes that are none
+    common = set(seeds) & set(modes)
+    if common:
         raise InputError(
             "groups",
             groups,
             "D_0, D_1, ... without common modes",
             f"leave out {min(common)} where it comes again",
         )
-    return seeds, modes, [k for k, group in enumerate(others, 1) for _ in group]
+    return seeds, modes, orders
 
 
 def _checked(window: tuple[float, float], t: Floats) -> tuple[float, float]:
-    allowed = (
-        f"from and to, a factor {SHORTEST:g} apart or more, with {FEWEST} of the times between them"
-    )
+    apart = f"a factor {LEAST_RATIO:g} apart or more"
+    allowed = f"from and to, {apart}, with {LEAST_SAMPLES} of the times between them"
     try:
         first, last = (double(end, "window") for end in window)
     except (TypeError, ValueError) as error:
         raise InputError("window", window, allowed, "pass two times") from error
-    if not 0 < first * SHORTEST <= last or np.sum((t >= first) & (t <= last)) < FEWEST:
+    long = 0 < first * LEAST_RATIO <= last
+    inside = (t >= first) & (t <= last)
+    if not long or inside.sum() < LEAST_SAMPLES:
         raise InputError("window", window, allowed, "take a longer one, or more samples")
     return first, last
 
 
 def _window(t: Floats, values: Floats, start: float) -> tuple[float, float]:
-    return start, float(t[np.argmax(values >= RISE * values[-1])])
+    """From the start to where the average leaves its power law."""
+    risen = values >= GROWTH_SHARE * values[-1]
+    end = t[np.argmax(risen)]
+    return start, float(end)
 
 
 def _growth(t: Floats, values: Floats, first: float, last: float) -> list[float]:
     """Exponent, error, exponents of both halves of the window."""
     inside = (t >= first) & (t <= last) & (values > 0)
-    if not last >= SHORTEST * first or inside.sum() < FEWEST:
+    if not last >= LEAST_RATIO * first or inside.sum() < LEAST_SAMPLES:
         return [math.nan] * 4
-    x, y = np.log(t[inside]), np.log(values[inside])
-    exponent, scatter = _slope(x, y)
-    early = x <= (x[0] + x[-1]) / 2
-    halves = [
-        _slope(x[half], y[half])[0] if half.sum() > 1 else math.nan for half in (early, ~early)
-    ]
-    return [exponent, scatter, *halves]
+    x = np.log(t[inside])
+    y = np.log(values[inside])
+    exponent, error = _slope(x, y)
+    middle = (x[0] + x[-1]) / 2
+    early = x <= middle
+    late = ~early
+    halves = []
+    for half in (early, late):
+        part, _ = _slope(x[half], y[half]) if half.sum() > 1 else (math.nan, math.nan)
+        halves.append(part)
+    return [exponent, error, *halves]
 
 
 def _slope(x: Floats, y: Floats) -> tuple[float, float]:
     """Of the regression line, and its standard error (nan for two points)."""
     dx = x - x.mean()
-    slope = float(dx @ y / (dx @ dx))
+    square = dx @ dx
+    slope = float(dx @ y / square)
+    if len(x) <= 2:
+        return slope, math.nan
     left = y - y.mean() - slope * dx
-    return slope, float(np.sqrt(left @ left / (len(x) - 2) / (dx @ dx))) if len(x) > 2 else math.nan
+    variance = left @ left / (len(x) - 2)
+    return slope, float(np.sqrt(variance / square))
 
 
 def _saturation(t: Floats, values: Floats) -> float:
-    reached = float(t[np.argmax(values >= SATURATED * values[-1])])
-    return reached if values[-1] > 0 and reached <= EARLY * t[-1] else math.nan
+    """When the average stopped growing; nan where it did so late, or is 0."""
+    saturated = values >= SATURATION_SHARE * values[-1]
+    reached = float(t[np.argmax(saturated)])
+    early = reached <= EARLY_SHARE * t[-1]
+    if values[-1] > 0 and early:
+        return reached
+    return math.nan

@@ -47,10 +47,14 @@ def fpu_trajectory(
                 f"phases of the seeds {seeds}",
                 "give that mode an amplitude, or leave its phase out",
             )
-    Q, P = np.zeros(chain.N - 1), np.zeros(chain.N - 1)
+    linear = chain.frequencies()
+    Q = np.zeros(chain.N - 1)
+    P = np.zeros(chain.N - 1)
     for q in seeds:
-        A, phi = double(amplitudes[q], f"amplitudes[{q}]"), double(angles.get(q, 0), f"phases[{q}]")
-        Q[q - 1], P[q - 1] = A * math.cos(phi), 0.0 - A * chain.frequencies()[q - 1] * math.sin(phi)
+        A = double(amplitudes[q], f"amplitudes[{q}]")
+        phi = double(angles.get(q, 0), f"phases[{q}]")
+        Q[q - 1] = A * math.cos(phi)
+        P[q - 1] = 0.0 - A * linear[q - 1] * math.sin(phi)  # 0, not -0, for phi = 0
     return Q, P
 
 
@@ -77,13 +81,15 @@ def packet_amplitudes(
         )
     if share not in SHARES:
         raise InputError("share", share, ", ".join(SHARES), "choose one of them")
-    linear = chain.frequencies()[np.array(modes) - 1]
-    squared = (
-        2 * total / len(modes) / linear**2
-        if share == "energy"
-        else np.full(len(modes), 2 * total / np.sum(linear**2))
-    )
-    return {q: float(A) for q, A in zip(modes, np.sqrt(squared), strict=True)}
+    places = np.array(modes) - 1
+    squared_frequencies = chain.frequencies()[places] ** 2
+    if share == "energy":
+        squared = 2 * total / len(modes) / squared_frequencies
+    else:
+        of_each = 2 * total / np.sum(squared_frequencies)
+        squared = np.full(len(modes), of_each)
+    amplitudes = np.sqrt(squared).tolist()
+    return dict(zip(modes, amplitudes, strict=True))
 
 
 def normalised_averages(orbit: Orbit) -> Floats:
@@ -130,7 +136,8 @@ class ProfileDistance:
     modes: int
 
     def __repr__(self) -> str:
-        return f"ProfileDistance({self.distance:.4g} decades at mode {self.mode}, {self.modes} modes above the floor)"
+        largest = f"{self.distance:.4g} decades at mode {self.mode}"
+        return f"ProfileDistance({largest}, {self.modes} modes above the floor)"
 
 
 def profile_distance(a: ArrayLike, b: ArrayLike, floor: float) -> ProfileDistance:
@@ -145,7 +152,9 @@ def profile_distance(a: ArrayLike, b: ArrayLike, floor: float) -> ProfileDistanc
     >>> profile_distance([1, 1e-2, 1e-20], [1, 1e-3, 1e-25], 1e-12)
     ProfileDistance(1 decades at mode 2, 2 modes above the floor)
     """
-    first, second, least = mode_energies(a, "a"), mode_energies(b, "b"), double(floor, "floor")
+    first = mode_energies(a, "a")
+    second = mode_energies(b, "b")
+    least = double(floor, "floor")
     if first.ndim != 1 or first.shape != second.shape or not first.size:
         raise InputError(
             "a, b",
@@ -160,18 +169,19 @@ def profile_distance(a: ArrayLike, b: ArrayLike, floor: float) -> ProfileDistanc
             "a positive energy",
             "pass what rounding leaves, such as 1e-30 of the whole",
         )
-    ratios = np.abs(np.log10(np.maximum(first, least)) - np.log10(np.maximum(second, least)))
-    mode = int(np.argmax(ratios))
-    return ProfileDistance(
-        float(ratios[mode]), mode + 1, int(np.sum(np.maximum(first, second) > least))
-    )
+    logs = [np.log10(np.maximum(spectrum, least)) for spectrum in (first, second)]
+    ratios = np.abs(logs[0] - logs[1])
+    worst = int(np.argmax(ratios))
+    above = np.maximum(first, second) > least
+    return ProfileDistance(float(ratios[worst]), worst + 1, int(np.sum(above)))
 
 
 def energy_record(times: ArrayLike, values: ArrayLike, name: str) -> tuple[Floats, Floats]:
     """Times and what was sampled at them, as arrays; raises InputError."""
     array = mode_energies(values, name)
     t = mode_energies(times, "times")
-    if t.ndim != 1 or len(t) < 3 or not (np.diff(t) > 0).all():
+    enough = t.ndim == 1 and len(t) >= 3
+    if not enough or not (np.diff(t) > 0).all():
         raise InputError(
             "times", t.shape, "three increasing times or more, (S,)", "pass orbit.times"
         )
@@ -202,7 +212,6 @@ def mode_energies(values: ArrayLike, name: str) -> Floats:
 
 def _mapping(values: object, name: str) -> Mapping[int, Number]:
     if not isinstance(values, Mapping):
-        raise InputError(
-            name, values, "a mapping from mode to number, such as {1: 0.5}", "pass a dict"
-        )
+        allowed = "a mapping from mode to number, such as {1: 0.5}"
+        raise InputError(name, values, allowed, "pass a dict")
     return values

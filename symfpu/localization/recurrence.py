@@ -11,7 +11,9 @@ from symfpu.errors import InputError, SymfpuError
 from symfpu.localization.profiles import energy_record
 
 Floats = NDArray[np.float64]
-NEAR, FAR = 1 / 3, 2 / 3  # of the largest distance: apart, so that wiggles do not cross both
+# of the largest distance: apart, so that wiggles do not cross both
+NEAR_SHARE = 1 / 3
+FAR_SHARE = 2 / 3
 
 
 class NoRecurrence(SymfpuError):
@@ -22,10 +24,12 @@ class NoRecurrence(SymfpuError):
     """
 
     def __init__(self, T: float, excursion: float) -> None:
-        self.T, self.excursion = T, excursion
+        self.T = T
+        self.excursion = excursion
+        moved = f"the energies move {excursion:.3g} of the whole away"
         super().__init__(
-            f"no recurrence until t = {T:.6g}: the energies move {excursion:.3g} of the whole away and do not come back by two thirds; "
-            f"record a longer orbit"
+            f"no recurrence until t = {T:.6g}: {moved} and do not come back by two thirds; "
+            "record a longer orbit"
         )
 
 
@@ -58,11 +62,12 @@ class Recurrence:
         return float(self.times[place]), float(self.returned[place])
 
     def __repr__(self) -> str:
-        (t, part), (T, most) = self.first, self.best
-        return (
-            f"Recurrence({len(self.times)} returns, first at t={t:.6g} of {part:.4%}, best at t={T:.6g} of {most:.4%}, "
-            f"up to {self.excursion:.3g} of the energy away)"
-        )
+        time, part = self.first
+        first = f"first at t={time:.6g} of {part:.4%}"
+        time, part = self.best
+        best = f"best at t={time:.6g} of {part:.4%}"
+        away = f"up to {self.excursion:.3g} of the energy away"
+        return f"Recurrence({len(self.times)} returns, {first}, {best}, {away})"
 
 
 def recurrence(times: ArrayLike, energies: ArrayLike) -> Recurrence:
@@ -89,18 +94,32 @@ def recurrence(times: ArrayLike, energies: ArrayLike) -> Recurrence:
             "a positive energy at the first time",
             "pass those of an orbit that moves",
         )
-    d = np.abs(E - E[0]).sum(axis=1) / (2 * whole)
-    far, near = np.flatnonzero(d > FAR * d.max()), np.flatnonzero(d < NEAR * d.max())
-    # the visits: groups of near samples with a far one between them, without the stay at the
-    # beginning
-    passed = np.searchsorted(far, near)
-    visits = [near[passed == count] for count in np.unique(passed) if count]
-    deepest = [int(visit[np.argmin(d[visit])]) for visit in visits]
-    found = [place for place in deepest if place < len(d) - 1]
-    if not found:
-        raise NoRecurrence(float(t[-1]), float(d.max()))
-    minima = np.array([_vertex(t[i - 1 : i + 2], d[i - 1 : i + 2]) for i in found])
-    return Recurrence(minima[:, 0], 1 - minima[:, 1], float(d.max()))
+    elsewhere = np.abs(E - E[0]).sum(axis=1)
+    d = elsewhere / (2 * whole)
+    excursion = float(d.max())
+    minima = []
+    for deepest in _deepest(d):
+        around = slice(deepest - 1, deepest + 2)
+        minima.append(_vertex(t[around], d[around]))
+    if not minima:
+        raise NoRecurrence(float(t[-1]), excursion)
+    returns, depths = np.array(minima).T
+    return Recurrence(returns, 1 - depths, excursion)
+
+
+def _deepest(d: Floats) -> list[int]:
+    """The sample of the least d of every visit, unless it is the last of the record."""
+    far = np.flatnonzero(d > FAR_SHARE * d.max())
+    near = np.flatnonzero(d < NEAR_SHARE * d.max())
+    # a visit: near samples without a far one between them; none before is the stay at the beginning
+    far_before = np.searchsorted(far, near)
+    found = []
+    for count in np.unique(far_before[far_before > 0]):
+        visit = near[far_before == count]
+        deepest = int(visit[np.argmin(d[visit])])
+        if deepest < len(d) - 1:
+            found.append(deepest)
+    return found
 
 
 def _vertex(t: Floats, d: Floats) -> tuple[float, float]:
@@ -108,9 +127,12 @@ def _vertex(t: Floats, d: Floats) -> tuple[float, float]:
 
     Not below 0, which d cannot be.
     """
-    (a, b), (f, g) = np.diff(t), np.diff(d) / np.diff(t)
-    curvature = (g - f) / (a + b)
+    steps = np.diff(t)
+    falling, rising = np.diff(d) / steps
+    curvature = (rising - falling) / (steps[0] + steps[1])
     if not curvature > 0:
         return float(t[1]), float(d[1])
-    slope = f + a * curvature
-    return float(t[1] - slope / (2 * curvature)), max(0.0, float(d[1] - slope**2 / (4 * curvature)))
+    slope = falling + steps[0] * curvature
+    time = t[1] - slope / (2 * curvature)
+    depth = d[1] - slope**2 / (4 * curvature)
+    return float(time), max(0.0, float(depth))
