@@ -1,5 +1,6 @@
-"""The laws of localization on trial: does a profile stay put as N grows, and does its slope
-follow log(energy)?
+"""The laws of localization on trial.
+
+Does a profile stay put as N grows, and does its slope follow log(energy)?
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ from symfpu.numbers.typed import Number, exact, integer
 
 Floats = NDArray[np.float64]
 # times the expected rounding noise: what noise adds to log10 e is 0.04 there
-ABOVE_ROUNDING = 10.0
-POINTS = 3  # of a trend with an error bar
+ROUNDING_MARGIN = 10.0
+LEAST_POINTS = 3  # of a trend with an error bar
 PHASES = ("equal", "random")
 
 
@@ -57,11 +58,15 @@ class Trend:
 
 
 def _trend(x: ArrayLike, y: ArrayLike) -> Trend:
-    x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
-    dx, dy = x - x.mean(), y - y.mean()
-    rate = float(dx @ dy / (dx @ dx))
+    x = np.asarray(x, dtype=np.float64)
+    y = np.asarray(y, dtype=np.float64)
+    dx = x - x.mean()
+    dy = y - y.mean()
+    square = dx @ dx
+    rate = float(dx @ dy / square)
     left = dy - rate * dx
-    return Trend(x, y, rate, float(np.sqrt(left @ left / (len(x) - 2) / (dx @ dx))))
+    variance = left @ left / (len(x) - 2)
+    return Trend(x, y, rate, float(np.sqrt(variance / square)))
 
 
 def slope_by_energy(
@@ -98,20 +103,26 @@ def slope_by_energy(
         raise InputError(
             "spectra", type(spectra).__name__, "numbers, (n, N-1)", "pass one row for each energy"
         ) from error
-    if (
-        len(energies) < POINTS
-        or rows.shape != (len(energies), chain.N - 1)
-        or len(set(energies.tolist())) < POINTS
-    ):
+    different = len(set(energies.tolist()))
+    if different < LEAST_POINTS or rows.shape != (len(energies), chain.N - 1):
         raise InputError(
             "spectra",
             rows.shape,
             f"one of {chain.N - 1} modes for each of three energies or more",
             "pass (n, N-1)",
         )
-    power = (2.0 if chain.alpha else 0.0) if power is None else power
-    fits = [fit_profile(chain, row, s, modes=modes, power=power, floor=floor) for row in rows]
-    return _trend(np.log10(energies), [fit.line.slope for fit in fits])
+    if power is None:
+        power = _power_of_the_law(chain)
+    slopes = []
+    for row in rows:
+        fit = fit_profile(chain, row, s, modes=modes, power=power, floor=floor)
+        slopes.append(fit.line.slope)
+    return _trend(np.log10(energies), slopes)
+
+
+def _power_of_the_law(chain: Chain) -> float:
+    """Of kappa: Eqs. eksa2 and eksp2."""
+    return 2.0 if chain.alpha else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,71 +152,71 @@ class ProfileInvariance:
 
     def __repr__(self) -> str:
         sizes = ", ".join(str(chain.N) for chain in self.chains)
-        growth = ", ".join(
-            f"D_{k} {trend.rate:.2f} +- {trend.error:.2g}" for k, trend in self.growth.items()
-        )
-        return (
-            f"ProfileInvariance(N={sizes}, M={self.fraction}, eps={self.specific_energy:.6g}, T={self.T:.6g}, {self.phases} phases, "
-            f"{len(self.spectra[0])} realisations: E_q/eps ~ N^c, c = {growth}; d slope/d log10 N = {self.slope_rate})"
-        )
+        packets = f"N={sizes}, M={self.fraction}, eps={self.specific_energy:.6g}"
+        phases = f"{self.phases} phases, {len(self.spectra[0])} realisations"
+        rates = []
+        for k, trend in self.growth.items():
+            rates.append(f"D_{k} {trend.rate:.2f} +- {trend.error:.2g}")
+        growth = f"E_q/eps ~ N^c, c = {', '.join(rates)}"
+        slopes = f"d slope/d log10 N = {self.slope_rate}"
+        return f"ProfileInvariance({packets}, T={self.T:.6g}, {phases}: {growth}; {slopes})"
+
+    @property
+    def _log_sizes(self) -> list[float]:
+        return [math.log10(chain.N) for chain in self.chains]
 
     @property
     def slope_rate(self) -> Trend:
         """Of the fitted slopes with log10 N; 0 by the laws."""
-        return _trend(
-            [math.log10(chain.N) for chain in self.chains], [fit.line.slope for fit in self.fits]
-        )
+        slopes = [fit.line.slope for fit in self.fits]
+        return _trend(self._log_sizes, slopes)
 
     @property
     def _coarse(self) -> Chain:
         """The chain whose kappas all others have too."""
-        return replace(self.chains[0], N=math.gcd(*(chain.N for chain in self.chains)))
+        sizes = [chain.N for chain in self.chains]
+        return replace(self.chains[0], N=math.gcd(*sizes))
 
     def levels(self) -> tuple[Floats, Floats]:
-        """log10 of E_q/eps in the middle halves of D_1, D_2, ..., mean over the kappas that all
-        sizes share, and its standard error over realisations; (sizes, groups).
+        """Levels of the middle halves of D_1, D_2, ... and their standard errors; (sizes, groups).
 
-        The laws are of middle modes; at the edges of a group small divisors take over. Only the
-        same kappas compare like with like: within a group e_kappa falls by decades. nan where a
-        mode is below the floor, or without a second realisation.
+        A level is log10 of E_q/eps, mean over the kappas that all sizes share; its error is over
+        realisations. The laws are of middle modes; at the edges of a group small divisors take
+        over. Only the same kappas compare like with like: within a group e_kappa falls by decades.
+        nan where a mode is below the floor, or without a second realisation.
         """
         coarse = self._coarse
-        s = int(self.fraction * coarse.N)
-        width = s * coarse.degree_step
-        groups = [group for group in packet_groups(coarse, s)[1:] if len(group) == width]
-        values, errors = np.full((2, len(self.chains), len(groups)), math.nan)
-        for i, (chain, e, floor) in enumerate(
-            zip(self.chains, self.spectra, self.floors, strict=True)
-        ):
-            for k, group in enumerate(groups):
-                middle = [q for q in group if width < 4 * (q - group.start + 1) <= 3 * width]
-                places = chain.N // coarse.N * np.array(middle) - 1
-                if (e.mean(axis=0)[places] > floor[places]).all():
-                    values[i, k] = np.log10(chain.N * e[:, places].mean(axis=0)).mean()
-                    if len(e) > 1:
-                        errors[i, k] = (
-                            np.log10(e[:, places]).mean(axis=1).std(ddof=1) / len(e) ** 0.5
-                        )
+        middles = _middle_halves(coarse, self.fraction)
+        values, errors = np.full((2, len(self.chains), len(middles)), math.nan)
+        by_size = zip(self.chains, self.spectra, self.floors, strict=True)
+        for i, (chain, shares, floor) in enumerate(by_size):
+            ratio = chain.N // coarse.N
+            for k, middle in enumerate(middles):
+                places = ratio * middle - 1
+                values[i, k], errors[i, k] = _level(chain.N, shares, floor, places)
         return values, errors
 
     @property
     def growth(self) -> dict[int, Trend]:
         """By k, the exponent c of E_q/eps ~ N^c in the middle half of D_k; 0 by the laws."""
-        sizes = [math.log10(chain.N) for chain in self.chains]
-        return {
-            k + 1: _trend(sizes, column)
-            for k, column in enumerate(self.levels()[0].T)
-            if np.isfinite(column).all()
-        }
+        values, _ = self.levels()
+        trends = {}
+        for k, column in enumerate(values.T, start=1):
+            if np.isfinite(column).all():
+                trends[k] = _trend(self._log_sizes, column)
+        return trends
 
     @property
     def late_growth(self) -> dict[int, float]:
-        """The same exponents between the two longest chains, where packets of few modes no longer
-        weigh.
+        """The same exponents between the two longest chains.
+
+        Packets of few modes no longer weigh there.
         """
-        first, second = self.levels()[0][-2:]
-        rates = (second - first) / math.log10(self.chains[-1].N / self.chains[-2].N)
-        return {k + 1: float(rate) for k, rate in enumerate(rates) if math.isfinite(rate)}
+        values, _ = self.levels()
+        shorter, longer = self.chains[-2:]
+        rates = (values[-1] - values[-2]) / math.log10(longer.N / shorter.N)
+        numbered = enumerate(rates.tolist(), start=1)
+        return {k: rate for k, rate in numbered if math.isfinite(rate)}
 
     def moved(self, *, per_mode: bool = False) -> tuple[float, float]:
         """Largest change of log10 e_kappa between two sizes at a common kappa beyond the packet, and that kappa.
@@ -214,18 +225,52 @@ class ProfileInvariance:
         """
         coarse = self._coarse.N
         worst = (0.0, math.nan)
-        for q in (q for q in range(1, coarse) if Fraction(q, coarse) > self.fraction):
-            places = [chain.N // coarse * q - 1 for chain in self.chains]
-            e = [float(rows[:, i].mean()) for rows, i in zip(self.spectra, places, strict=True)]
-            if all(
-                value > floor[i] for value, floor, i in zip(e, self.floors, places, strict=True)
-            ):
-                logs = [
-                    math.log10(value * (chain.N if per_mode else 1))
-                    for value, chain in zip(e, self.chains, strict=True)
-                ]
-                worst = max(worst, (max(logs) - min(logs), q / coarse))
+        for q in range(1, coarse):
+            if Fraction(q, coarse) <= self.fraction:
+                continue
+            logs = self._logs_at(q, coarse, per_mode)
+            if logs:
+                change = max(logs) - min(logs)
+                worst = max(worst, (change, q / coarse))
         return worst
+
+    def _logs_at(self, q: int, coarse: int, per_mode: bool) -> list[float]:
+        """log10 e_kappa at kappa = q/coarse by size; none if one of them is below its floor."""
+        logs = []
+        for chain, spectra, floor in zip(self.chains, self.spectra, self.floors, strict=True):
+            place = chain.N // coarse * q - 1
+            share = float(spectra[:, place].mean())
+            if not share > floor[place]:
+                return []
+            unit = chain.N if per_mode else 1
+            logs.append(math.log10(share * unit))
+        return logs
+
+
+def _middle_halves(chain: Chain, fraction: Fraction) -> list[NDArray[np.int64]]:
+    """The modes of the middle halves of D_1, D_2, ..., of those that are whole."""
+    s = int(fraction * chain.N)
+    width = s * chain.degree_step
+    middles = []
+    for group in packet_groups(chain, s)[1:]:
+        if len(group) == width:
+            middle = [q for place, q in enumerate(group, 1) if width < 4 * place <= 3 * width]
+            middles.append(np.array(middle))
+    return middles
+
+
+def _level(N: int, shares: Floats, floor: Floats, places: NDArray[np.int64]) -> tuple[float, float]:
+    """Mean of log10 E_q/eps over these places, and its standard error over realisations."""
+    if not (shares.mean(axis=0)[places] > floor[places]).all():
+        return math.nan, math.nan
+    chosen = shares[:, places]
+    level = float(np.log10(N * chosen.mean(axis=0)).mean())
+    realisations = len(shares)
+    if realisations == 1:
+        return level, math.nan
+    by_realisation = np.log10(chosen).mean(axis=1)
+    error = by_realisation.std(ddof=1) / realisations**0.5
+    return level, float(error)
 
 
 def profile_invariance(
@@ -253,64 +298,68 @@ def profile_invariance(
     scheme, step, workers : of `integrate`.
 
     Spectra are averaged over 0 .. T. Section 6.1 says of the normalised profiles that they stay as they are;
-    e_kappa falls as 1/N. Modes within ABOVE_ROUNDING of `rounding_floor` count as below the floor. Raises
+    e_kappa falls as 1/N. Modes within ROUNDING_MARGIN of `rounding_floor` count as below the floor. Raises
     InputError, OrbitStopped.
 
     >>> found = profile_invariance(Chain(N=16, beta=1), "1/8", 1e-2, (16, 32, 48), 1e4)
     >>> [spectra.shape for spectra in found.spectra]
     [(1, 15), (1, 31), (1, 47)]
     """
-    M, sizes, epsilon = (
-        exact(fraction, "fraction"),
-        [integer(N, "sizes", 2) for N in sizes],
-        positive(specific_energy, "specific_energy"),
-    )
-    if len(set(sizes)) < POINTS or not 0 < M < 1 or any((M * N).denominator != 1 for N in sizes):
-        raise InputError(
-            "fraction, sizes",
-            (str(M), sizes),
-            "three sizes N or more with M N whole",
-            "change one of them",
-        )
-    if M * math.gcd(*sizes) < 2:
-        expected = f"numbers N with a common divisor d so that M d is 2 or more (here {M * math.gcd(*sizes)})"
-        raise InputError(
-            "sizes", sizes, expected, "take sizes that share kappas in the middles of groups"
-        )
+    M = exact(fraction, "fraction")
+    sizes = [integer(N, "sizes", 2) for N in sizes]
+    epsilon = positive(specific_energy, "specific_energy")
+    _check_sizes(M, sizes)
     positive(T, "T")  # integrate would take a negative one
     if phases not in PHASES:
         raise InputError("phases", phases, ", ".join(PHASES), "choose one of them")
     if integer(realisations, "realisations", 1) > 1 and phases == "equal":
         raise InputError("realisations", realisations, "1 with equal phases", "take random phases")
     chains = tuple(replace(chain, N=N) for N in sorted(set(sizes)))
+    how = {"scheme": scheme, "step": step, "workers": workers}
+    power = _power_of_the_law(chain)
     spectra, floors, fits = [], [], []
     for longer in chains:
         s = int(M * longer.N)
-        generator = (
-            np.random.default_rng((integer(seed, "seed", 0), longer.N))
-            if phases == "random"
-            else None
-        )
-        E = _averaged(
-            longer,
-            s,
-            epsilon,
-            T,
-            realisations,
-            generator,
-            scheme=scheme,
-            step=step,
-            workers=workers,
-        )
-        floor = ABOVE_ROUNDING * rounding_floor(longer, E.mean(axis=0), T, step=step, scheme=scheme)
+        generator = None
+        if phases == "random":
+            generator = np.random.default_rng((integer(seed, "seed", 0), longer.N))
+        E = _averaged(longer, s, epsilon, T, realisations, generator, **how)
+        mean = E.mean(axis=0)
+        floor = ROUNDING_MARGIN * rounding_floor(longer, mean, T, step=step, scheme=scheme)
         spectra.append(E / E.sum(axis=1, keepdims=True))
-        floors.append(floor / E.mean(axis=0).sum())
-        fits.append(
-            fit_profile(longer, E.mean(axis=0), s, power=2.0 if chain.alpha else 0.0, floor=floor)
-        )
+        floors.append(floor / mean.sum())
+        fits.append(fit_profile(longer, mean, s, power=power, floor=floor))
     return ProfileInvariance(
-        M, epsilon, float(T), phases, chains, tuple(spectra), tuple(floors), tuple(fits)
+        fraction=M,
+        specific_energy=epsilon,
+        T=float(T),
+        phases=phases,
+        chains=chains,
+        spectra=tuple(spectra),
+        floors=tuple(floors),
+        fits=tuple(fits),
     )
+
+
+def _check_sizes(M: Fraction, sizes: list[int]) -> None:
+    """InputError unless every packet is whole, and the middles of groups have kappas in common."""
+    packets = [M * N for N in sizes]
+    whole = all(packet.denominator == 1 for packet in packets)
+    if len(set(sizes)) < LEAST_POINTS or not 0 < M < 1 or not whole:
+        raise InputError(
+            "fraction, sizes",
+            (str(M), sizes),
+            "three sizes N or more with M N whole",
+            "change one of them",
+        )
+    least = M * math.gcd(*sizes)
+    if least < 2:
+        raise InputError(
+            "sizes",
+            sizes,
+            f"numbers N with a common divisor d so that M d is 2 or more (here {least})",
+            "take sizes that share kappas in the middles of groups",
+        )
 
 
 def _averaged(
@@ -322,19 +371,15 @@ def _averaged(
     generator: np.random.Generator | None,
     **how: Any,
 ) -> Floats:
-    """Mean E_q until T of so many trajectories, integrated with the keywords `how`.
-
-    (count, N-1).
-    """
+    """Mean E_q until T of so many trajectories, integrated with the keywords `how`; (count, N-1)."""
     seeds = range(1, s + 1)
     amplitudes = packet_amplitudes(chain, seeds, epsilon * chain.N)
     states = []
     for _ in range(count):
-        angles = (
-            {}
-            if generator is None
-            else dict(zip(seeds, generator.uniform(0, 2 * math.pi, s).tolist(), strict=True))
-        )
+        angles = {}
+        if generator is not None:
+            drawn = generator.uniform(0, 2 * math.pi, s).tolist()
+            angles = dict(zip(seeds, drawn, strict=True))
         states.append(fpu_trajectory(chain, amplitudes, angles))
     Q, P = (np.array(part) for part in zip(*states, strict=True))
     averages = integrate(chain, Q, P, T, samples=1, averages=True, **how).averages
