@@ -1,7 +1,7 @@
-"""How the energy of low-frequency packets falls off along the spectrum: the paper's laws, and lines
-fitted to profiles.
+"""How the energy of low-frequency packets falls off along the spectrum.
 
-The laws are those of section 6.1 and, for their derivation, Appendix E.
+The paper's laws, those of section 6.1 and, for their derivation, Appendix E; and lines fitted to
+profiles.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ Floats = NDArray[np.float64]
 FLOOR = 1e-22
 # mean square of one rounding, relative: EPS^2/12 times the mean of 1/m^2 over mantissas m
 LAST_BIT = 0.045 * 2.0**-104
-BLOCKS = 2  # groups of modes, at least, for a line with an error bar
+FLOOR_ADVICE = "pass 0 for spectra in closed form"
+LEAST_GROUPS = 2  # of modes, for a line with an error bar
 
 
 @dataclass(frozen=True)
@@ -51,19 +52,19 @@ class ProfileLine:
 
     def __call__(self, kappa: ArrayLike) -> Floats:
         kappa = np.asarray(kappa, dtype=np.float64)
-        return np.asarray(
-            self.slope * kappa
-            + self.intercept
-            + (self.power * np.log10(kappa) if self.power else 0.0)
-        )
+        bend = self.power * np.log10(kappa) if self.power else 0.0
+        return np.asarray(self.slope * kappa + self.intercept + bend)
 
     def __repr__(self) -> str:
-        power = (
-            f" {'-' if self.power < 0 else '+'} {abs(self.power):.6g} log10 kappa"
-            if self.power
-            else ""
-        )
-        return f"log10 e = {self.slope:.6g} kappa {'-' if self.intercept < 0 else '+'} {abs(self.intercept):.6g}{power}"
+        intercept = _signed(self.intercept)
+        power = f" {_signed(self.power)} log10 kappa" if self.power else ""
+        return f"log10 e = {self.slope:.6g} kappa {intercept}{power}"
+
+
+def _signed(value: float) -> str:
+    """As a term of a sum."""
+    sign = "-" if value < 0 else "+"
+    return f"{sign} {abs(value):.6g}"
 
 
 def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
@@ -79,11 +80,9 @@ def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
     """
     s, epsilon = _packet(chain, s, specific_energy)
     width = math.pi * s / chain.N
-    return (
-        float(chain.alpha) ** 2 * epsilon / width**4
-        if chain.alpha
-        else abs(float(chain.beta)) * epsilon / width**2
-    )
+    if chain.alpha:
+        return float(chain.alpha) ** 2 * epsilon / width**4
+    return abs(float(chain.beta)) * epsilon / width**2
 
 
 def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> Floats:
@@ -98,15 +97,13 @@ def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> 
     >>> group_energy(Chain(N=256, beta="0.3"), 16, 1.5625e-6, [0, 1])
     array([2.50000000e-05, 3.69575361e-15])
     """
-    parameter, M, k = (
-        packet_parameter(chain, s, specific_energy),
-        s / chain.N,
-        np.asarray(k, dtype=np.float64),
-    )
+    parameter = packet_parameter(chain, s, specific_energy)
+    M = s / chain.N
+    k = np.asarray(k, dtype=np.float64)
     front = specific_energy / M
-    return np.asarray(
-        front * (k + 0.5) ** 2 * parameter**k if chain.alpha else front * parameter ** (2 * k)
-    )
+    if chain.alpha:
+        return np.asarray(front * (k + 0.5) ** 2 * parameter**k)
+    return np.asarray(front * parameter ** (2 * k))
 
 
 def profile_law(
@@ -125,12 +122,13 @@ def profile_law(
     log10 e = -78.6419 kappa - 1.20412
     """
     parameter = packet_parameter(chain, s, specific_energy)
-    inverse = (chain.N if denominator is None else integer(denominator, "denominator", 1)) / s
+    unit = chain.N if denominator is None else integer(denominator, "denominator", 1)
+    inverse_width = unit / s
+    slope = math.log10(parameter) * inverse_width
     if not chain.alpha:
-        return ProfileLine(math.log10(parameter) * inverse, -math.log10(s))
-    return ProfileLine(
-        math.log10(parameter) * inverse, math.log10(inverse**2 / (parameter**0.5 * s)), 2.0
-    )
+        return ProfileLine(slope, -math.log10(s))
+    intercept = math.log10(inverse_width**2 / (parameter**0.5 * s))
+    return ProfileLine(slope, intercept, 2.0)
 
 
 def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) -> Floats:
@@ -147,13 +145,11 @@ def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) 
     require_chain(chain)
     if chain.model != "alpha":
         raise InputError("chain", chain, "the alpha model", "the law is stated for it alone")
-    gamma = packet_parameter(chain, 1, positive(energy, "energy") / chain.N)
+    specific_energy = positive(energy, "energy") / chain.N
+    gamma = packet_parameter(chain, 1, specific_energy)
+    first = energy if seed_energy is None else positive(seed_energy, "seed_energy")
     q = np.arange(1, chain.N)
-    return np.asarray(
-        gamma ** (q - 1.0)
-        * q**2
-        * (energy if seed_energy is None else positive(seed_energy, "seed_energy"))
-    )
+    return np.asarray(gamma ** (q - 1.0) * q**2 * first)
 
 
 def least_packet(chain: Chain, specific_energy: float) -> float:
@@ -168,7 +164,8 @@ def least_packet(chain: Chain, specific_energy: float) -> float:
     >>> round(least_packet(Chain(N=32, alpha="0.33"), 1e-4), 6)
     0.585136
     """
-    return float(packet_parameter(chain, 1, specific_energy) ** (0.25 if chain.alpha else 0.5))
+    parameter = packet_parameter(chain, 1, specific_energy)
+    return float(parameter ** (0.25 if chain.alpha else 0.5))
 
 
 def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") -> float:
@@ -190,11 +187,10 @@ def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") 
             "the alpha model, '1/4' or '1/5'",
             "the widths are stated for these",
         )
-    return float(
-        chain.N
-        * (float(chain.alpha) ** 2 * positive(specific_energy, "specific_energy"))
-        ** float(Fraction(exponent))
-    )
+    alpha = float(chain.alpha)
+    epsilon = positive(specific_energy, "specific_energy")
+    fraction = (alpha**2 * epsilon) ** float(Fraction(exponent))
+    return float(chain.N * fraction)
 
 
 def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
@@ -248,16 +244,19 @@ def rounding_floor(
     >>> float(rounding_floor(Chain(N=4, alpha=1), [1.0, 0, 0], 1e6, step=0.1).max()) < 1e-20
     True
     """
-    E, T, step = _spectrum(chain, spectrum), positive(T, "T"), positive(step, "step")
+    E = _spectrum(chain, spectrum)
+    T = positive(T, "T")
+    step = positive(step, "step")
     if scheme not in SCHEMES:
         raise InputError("scheme", scheme, ", ".join(SCHEMES), "choose one of them")
     if SCHEMES[scheme].in_modes:
         return np.zeros(chain.N - 1)
     squared = chain.frequencies() ** 2
-    positions, momenta = np.sum(E / squared) / (chain.N - 1), np.sum(E) / (chain.N - 1)
-    return np.asarray(
-        0.25 * LAST_BIT * SCHEMES[scheme].stages * T / step * (squared * positions + momenta)
-    )
+    positions = np.sum(E / squared) / (chain.N - 1)
+    momenta = np.sum(E) / (chain.N - 1)
+    stages = SCHEMES[scheme].stages
+    roundings = 0.25 * LAST_BIT * stages * T / step
+    return np.asarray(roundings * (squared * positions + momenta))
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,13 +279,16 @@ class ProfileFit:
     residuals: Floats = field(repr=False)
 
     def __repr__(self) -> str:
-        slope, intercept, power = self.errors
-        free = f", power {self.line.power:.4g} +- {power:.2g}" if power else ""
-        fixed = f" + {self.line.power:g} log10 kappa" if self.line.power and not power else ""
-        return (
-            f"ProfileFit(log10 e = ({self.line.slope:.5g} +- {slope:.2g}) kappa + ({self.line.intercept:.5g} +- {intercept:.2g}){fixed}"
-            f"{free}, {len(self.modes)} modes {self.modes[0]}..{self.modes[-1]}, scatter {self.scatter:.2g})"
-        )
+        line = self.line
+        slope_error, intercept_error, power_error = self.errors
+        slope = f"({line.slope:.5g} +- {slope_error:.2g})"
+        intercept = f"({line.intercept:.5g} +- {intercept_error:.2g})"
+        power = f" + {line.power:g} log10 kappa" if line.power else ""
+        if power_error:
+            power = f", power {line.power:.4g} +- {power_error:.2g}"
+        modes = f"{len(self.modes)} modes {self.modes[0]}..{self.modes[-1]}"
+        fitted = f"log10 e = {slope} kappa + {intercept}{power}"
+        return f"ProfileFit({fitted}, {modes}, scatter {self.scatter:.2g})"
 
 
 def fit_profile(
@@ -316,39 +318,85 @@ def fit_profile(
     >>> round(fit.line.slope, 9), round(fit.scatter, 9)
     (-20.0, 0.0)
     """
-    E, s = _spectrum(chain, spectrum), packet_width(chain, s)
+    E = _spectrum(chain, spectrum)
+    s = packet_width(chain, s)
     power = None if power is None else finite(power, "power")
     named = _modes(chain, s, modes)
     least = _floor(chain, floor, E)
-    chosen = np.array([q for q in named if E[q - 1] > least[q - 1]], dtype=np.int64)
-    group_of = {q: k for k, group in enumerate(packet_groups(chain, s)) for q in group}
-    blocks = np.array([group_of[int(q)] for q in chosen])
-    names, sizes = np.unique(blocks, return_counts=True)
-    if len(names) < BLOCKS or len(chosen) - sizes.max() < 2 + (power is None):
-        expected = "modes above the floor in several groups D_k, more than the line needs without any one of them"
+    chosen = [q for q in named if E[q - 1] > least[q - 1]]
+    groups = _groups_of(chain, s, chosen)
+    _check_groups(chosen, groups, unknowns=3 if power is None else 2)
+    X, y = _regression(chain, E, np.array(chosen), power)
+    fitted = _solved(X, y)
+    errors = _jackknife(X, y, groups)
+    residuals = y - X @ fitted
+    freedom = max(1, len(y) - X.shape[1])
+    scatter = float(np.sqrt(residuals @ residuals / freedom))
+    if power is not None:  # as given, without an error
+        fitted = np.append(fitted, power)
+        errors = np.append(errors, 0.0)
+    slope_error, intercept_error, power_error = errors.tolist()
+    return ProfileFit(
+        line=ProfileLine(*fitted.tolist()),
+        errors=(slope_error, intercept_error, power_error),
+        scatter=scatter,
+        modes=tuple(chosen),
+        residuals=residuals,
+    )
+
+
+def _groups_of(chain: Chain, s: int, modes: Sequence[int]) -> NDArray[np.int64]:
+    """The k of the D_k of every mode."""
+    group_of = {}
+    for k, group in enumerate(packet_groups(chain, s)):
+        group_of.update(dict.fromkeys(group, k))
+    return np.array([group_of[q] for q in modes], dtype=np.int64)
+
+
+def _check_groups(modes: Sequence[int], groups: NDArray[np.int64], unknowns: int) -> None:
+    """InputError unless the line is fixed without any one of the groups."""
+    names, sizes = np.unique(groups, return_counts=True)
+    if len(names) < LEAST_GROUPS or len(modes) - sizes.max() < unknowns:
+        several = "modes above the floor in several groups D_k"
         raise InputError(
             "modes",
-            tuple(chosen.tolist()),
-            expected,
+            tuple(modes),
+            f"{several}, more than the line needs without any one of them",
             "name more, take fewer seeds, or the scheme aba864_modes for lower tails",
         )
-    kappa, e = chosen / chain.N, np.log10(E[chosen - 1]) - math.log10(E.sum())
-    columns = [kappa, np.ones_like(kappa)] + ([np.log10(kappa)] if power is None else [])
-    y, X = e - (power or 0.0) * np.log10(kappa), np.stack(columns, axis=1)
-    fitted = _solved(X, y)
-    without = np.array([_solved(X[blocks != k], y[blocks != k]) for k in names])
-    spread = np.sqrt((len(without) - 1) * np.mean((without - without.mean(axis=0)) ** 2, axis=0))
-    residuals = y - X @ fitted
-    scatter = float(np.sqrt(residuals @ residuals / max(1, len(y) - X.shape[1])))
-    line = ProfileLine(
-        float(fitted[0]), float(fitted[1]), float(fitted[2]) if power is None else power
-    )
-    errors = float(spread[0]), float(spread[1]), float(spread[2]) if power is None else 0.0
-    return ProfileFit(line, errors, scatter, tuple(chosen.tolist()), residuals)
+
+
+def _regression(
+    chain: Chain, E: Floats, modes: NDArray[np.int64], power: float | None
+) -> tuple[Floats, Floats]:
+    """Columns kappa, 1 and, if its power is to be found, log10 kappa; and what they are fitted to.
+
+    That is log10 e_kappa, less power log10 kappa where the power is given.
+    """
+    kappa = modes / chain.N
+    columns = [kappa, np.ones_like(kappa)]
+    y = np.log10(E[modes - 1]) - math.log10(E.sum())
+    if power is None:
+        columns.append(np.log10(kappa))
+    else:
+        y = y - power * np.log10(kappa)
+    return np.stack(columns, axis=1), y
 
 
 def _solved(X: Floats, y: Floats) -> Floats:
-    return np.asarray(np.linalg.lstsq(X, y, rcond=None)[0])
+    solution, *_ = np.linalg.lstsq(X, y, rcond=None)
+    return np.asarray(solution)
+
+
+def _jackknife(X: Floats, y: Floats, groups: NDArray[np.int64]) -> Floats:
+    """Standard errors of the unknowns, from fits that leave one group out."""
+    fits = []
+    for k in np.unique(groups):
+        kept = groups != k
+        fits.append(_solved(X[kept], y[kept]))
+    without = np.array(fits)
+    squares = (without - without.mean(axis=0)) ** 2
+    return np.asarray(np.sqrt((len(without) - 1) * np.mean(squares, axis=0)))
 
 
 def _packet(chain: Chain, s: int, specific_energy: float) -> tuple[int, float]:
@@ -392,7 +440,8 @@ def _spectrum(chain: Chain, spectrum: ArrayLike) -> Floats:
         raise InputError(
             "spectrum", spectrum, "an array of numbers", "pass mean mode energies"
         ) from error
-    if E.shape != (chain.N - 1,) or not (np.isfinite(E) & (E >= 0)).all() or not E.sum() > 0:
+    energies = (np.isfinite(E) & (E >= 0)).all()
+    if E.shape != (chain.N - 1,) or not energies or not E.sum() > 0:
         raise InputError(
             "spectrum",
             E.shape,
@@ -403,8 +452,9 @@ def _spectrum(chain: Chain, spectrum: ArrayLike) -> Floats:
 
 
 def _modes(chain: Chain, s: int, modes: str | Sequence[int]) -> tuple[int, ...]:
-    """The modes of a fit; tail : all of D_1, D_2, ... of the packet 1 .. s (Definition 3 with k_0
-    = 1).
+    """The modes of a fit.
+
+    tail : all of D_1, D_2, ... of the packet 1 .. s (Definition 3 with k_0 = 1).
     """
     if isinstance(modes, str):
         if modes not in ("tail", "middle"):
@@ -423,18 +473,12 @@ def _floor(chain: Chain, floor: float | ArrayLike, E: Floats) -> Floats:
     try:
         least = np.asarray(floor, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError(
-            "floor",
-            floor,
-            f"a number, or {chain.N - 1} of them",
-            "pass 0 for spectra in closed form",
-        ) from error
-    least = least * E.max() if least.ndim == 0 else least
-    if least.shape not in ((), (chain.N - 1,)) or not (np.isfinite(least) & (least >= 0)).all():
-        raise InputError(
-            "floor",
-            floor,
-            f"a number, 0 or more, or {chain.N - 1} of them",
-            "pass 0 for spectra in closed form",
-        )
+        allowed = f"a number, or {chain.N - 1} of them"
+        raise InputError("floor", floor, allowed, FLOOR_ADVICE) from error
+    if least.ndim == 0:
+        least = least * E.max()
+    fits = least.shape in ((), (chain.N - 1,))
+    if not fits or not (np.isfinite(least) & (least >= 0)).all():
+        allowed = f"a number, 0 or more, or {chain.N - 1} of them"
+        raise InputError("floor", floor, allowed, FLOOR_ADVICE)
     return np.asarray(np.broadcast_to(least, E.shape))

@@ -219,8 +219,9 @@ class ProfileInvariance:
         return {k: rate for k, rate in numbered if math.isfinite(rate)}
 
     def moved(self, *, per_mode: bool = False) -> tuple[float, float]:
-        """Largest change of log10 e_kappa between two sizes at a common kappa beyond the packet, and that kappa.
+        """Largest change of log10 e_kappa between two sizes at a common kappa, and that kappa.
 
+        Of the kappas beyond the packet.
         per_mode : of log10 E_q/eps = log10 (N e_kappa) instead, which the laws leave in place.
         """
         coarse = self._coarse.N
