@@ -42,19 +42,18 @@ def export(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
-    """Source code that needs nothing of symfpu and tests itself: a torus or a series with free
-    amplitudes.
+    """Source code of a torus, or of a series with free amplitudes.
+
+    It needs nothing of symfpu, and tests itself.
     """
     target = output_file(path_named("output", output))
     bundle = load(path_named("FILE", file))
     solution = bundle.series if series else bundle.torus
     if solution is None:
         wanted = "series" if series else "torus"
-        advice = (
-            "leave out --series"
-            if series
-            else "write one with symfpu solve -o, or export the --series"
-        )
+        advice = "write one with symfpu solve -o, or export the --series"
+        if series:
+            advice = "leave out --series"
         raise InputError("FILE", file, f"a file with a {wanted} in it", advice)
     with progress_bar("source code"):
         written = export_source(

@@ -72,8 +72,9 @@ def refine_file(
     ] = "1e-13",
     as_json: JsonOption = False,
 ) -> None:
-    """The torus that solves the equations of motion, by Newton's method: same frequencies, or a
-    given energy or amplitudes.
+    """The torus that solves the equations of motion, by Newton's method.
+
+    It has the same frequencies, or a given energy or amplitudes.
     """
     torus = load(path_named("FILE", file)).torus
     if torus is None:
@@ -100,18 +101,13 @@ def refine_file(
                 torus, energy, harmonic=harmonic, tolerance=goal, report=report
             )
         elif amplitudes is not None:
-            refined = refine_at_amplitudes(
-                torus, by_seed("amplitudes", amplitudes, torus.seeds), tolerance=goal, report=report
-            )
+            chosen = by_seed("amplitudes", amplitudes, torus.seeds)
+            refined = refine_at_amplitudes(torus, chosen, tolerance=goal, report=report)
         else:
             refined = refine(torus, tolerance=goal, report=report)
         if kept:
-            save(
-                kept,
-                refined,
-                verdict=verdict_of(refined),
-                command=shlex.join(["symfpu", *context.obj]),
-            )
+            command = shlex.join(["symfpu", *context.obj])
+            save(kept, refined, verdict=verdict_of(refined), command=command)
     if as_json:
         print_json(refined_record(refined))
     else:
@@ -122,7 +118,8 @@ def refine_file(
 
 def verdict_of(torus: RefinedTorus) -> dict[str, Any]:
     """What a file says of a refined torus."""
-    return {"verdict": "doubtful" if torus.warnings else "torus", "reasons": list(torus.warnings)}
+    verdict = "doubtful" if torus.warnings else "torus"
+    return {"verdict": verdict, "reasons": list(torus.warnings)}
 
 
 def number(argument: str, text: str) -> float:
@@ -141,6 +138,11 @@ def by_seed(argument: str, text: str, seeds: tuple[int, ...]) -> dict[int, str]:
             argument, text, f"a number for each of the seeds {seeds}", "separate them by commas"
         )
     return dict(zip(seeds, parts, strict=True))
+
+
+def ratio(argument: str, text: str | None, seeds: tuple[int, ...]) -> dict[int, str] | None:
+    """A ratio by seed, or None where the option is not given."""
+    return None if text is None else by_seed(argument, text, seeds)
 
 
 @app.command(
@@ -191,30 +193,28 @@ def follow_family(
     as_json: JsonOption = False,
 ) -> None:
     """A family of tori from small energy on, past folds and past the end of its series."""
-    chain, chosen = (
-        Chain(whole("N", bonds), alpha=alpha, beta=beta),
-        tuple(whole_numbers("seeds", seeds)),
-    )
+    chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
+    chosen = tuple(whole_numbers("seeds", seeds))
     folder = None if output is None else output_folder(path_named("output", output))
     with progress_bar("first member", lambda: _kept(folder)) as advance:
+
+        def progress(label: str, done: float) -> None:
+            advance(label, min(max(done, 0.0), 1.0))
+
         found = family(
             chain,
             chosen,
             to_energy,
             harmonic=harmonic,
-            amplitude_ratio=None
-            if amplitude_ratio is None
-            else by_seed("amplitude-ratio", amplitude_ratio, chosen),
-            energy_ratio=None
-            if energy_ratio is None
-            else by_seed("energy-ratio", energy_ratio, chosen),
+            amplitude_ratio=ratio("amplitude-ratio", amplitude_ratio, chosen),
+            energy_ratio=ratio("energy-ratio", energy_ratio, chosen),
             from_energy=from_energy,
             members=whole("members", members),
             multipliers=multipliers,
             method=method,
             order=optional("order", order),
             folder=folder,
-            progress=lambda label, done: advance(label, min(max(done, 0.0), 1.0)),
+            progress=progress,
         )
         pictures = [] if folder is None else draw_family(found, folder)
         if folder is not None:
@@ -224,9 +224,8 @@ def follow_family(
     else:
         say("\n".join(family_text(found)))
         if folder is not None:
-            print(
-                f"written: {folder}: family.csv, {len(found.members)} members, {len(pictures)} pictures"
-            )
+            counts = f"{len(found.members)} members, {len(pictures)} pictures"
+            print(f"written: {folder}: family.csv, {counts}")
     raise typer.Exit(0 if found.ending.startswith("reached") else 1)
 
 

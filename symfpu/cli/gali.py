@@ -79,17 +79,21 @@ def gali(
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Alignment indices of the orbit that starts on a torus, its Lyapunov exponent, and the
-    dimension they show.
+    """Alignment indices of the orbit that starts on a torus, and the dimension they show.
+
+    With the Lyapunov exponent of that orbit.
     """
     torus = load(path_named("FILE", file)).torus
     if torus is None:
         raise InputError(
             "FILE", file, "a file with a torus in it", "write one with symfpu solve -o"
         )
-    T, h, count = number("time", time), number("step", step), optional("vectors", vectors)
+    T = number("time", time)
+    h = number("step", step)
+    count = optional("vectors", vectors)
     if estimate:
-        _print_estimate(seconds_needed(torus.chain, T, vectors=count, step=h), as_json)
+        seconds = seconds_needed(torus.chain, T, vectors=count, step=h)
+        _print_estimate(seconds, as_json)
         return
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     folder = None if output is None else output_folder(path_named("output", output))
@@ -114,9 +118,8 @@ def gali(
     else:
         say("\n".join(_text(found, torus.seeds)))
         if folder is not None:
-            print(
-                f"written: {folder}: gali.csv, gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf"
-            )
+            pictures = "gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf"
+            print(f"written: {folder}: gali.csv, {pictures}")
 
 
 def _print_estimate(seconds: float, as_json: bool) -> None:
@@ -129,23 +132,27 @@ def _print_estimate(seconds: float, as_json: bool) -> None:
 
 def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
     """The result for JSON; `dimension` is null for a chaotic orbit, and where nothing is decided."""
+    chain = found.chain
     dimension = found.dimension()
+    decided = dimension.value is not None
+    slopes = {}
+    for slope in found.slopes():
+        value = fifteen_digits(slope.value)
+        slopes[str(slope.k)] = {"value": value, "error": fifteen_digits(slope.error)}
+    indices = {}
+    for k, index in enumerate(found.log10_gali[-1].tolist(), start=2):
+        indices[str(k)] = fifteen_digits(index)
     return {
-        "N": found.chain.N,
-        "alpha": decimal(found.chain.alpha),
-        "beta": decimal(found.chain.beta),
+        "N": chain.N,
+        "alpha": decimal(chain.alpha),
+        "beta": decimal(chain.beta),
         "seeds": list(seeds),
         "time": fifteen_digits(float(found.times[-1])),
         "step": fifteen_digits(found.step),
-        "slopes": {
-            str(s.k): {"value": fifteen_digits(s.value), "error": fifteen_digits(s.error)}
-            for s in found.slopes()
-        },
-        "log10_gali": {
-            str(k): fifteen_digits(float(g)) for k, g in enumerate(found.log10_gali[-1], start=2)
-        },
+        "slopes": slopes,
+        "log10_gali": indices,
         "dimension": dimension.value,
-        "dimension_error": None if dimension.value is None else fifteen_digits(dimension.error),
+        "dimension_error": fifteen_digits(dimension.error) if decided else None,
         "verdict": dimension.verdict,
         "reason": dimension.reason,
         "lyapunov": fifteen_digits(float(found.lyapunov[-1])),
@@ -157,25 +164,28 @@ def _text(found: AlignmentIndices, seeds: tuple[int, ...]) -> list[str]:
     """The same for a reader."""
     dimension = found.dimension()
     value = "none" if dimension.value is None else str(dimension.value)
-    return [
+    listed = ", ".join(map(str, seeds))
+    end = f"log|v| / t at t = {found.times[-1]:.6g}"
+    steps = f"steps of {found.step:g}"
+    lines = [
         f"verdict: {dimension.verdict}",
-        f"dimension          {value}   (the torus has the seeds {', '.join(map(str, seeds))})",
+        f"dimension          {value}   (the torus has the seeds {listed})",
         f"                   {dimension.reason}",
-        f"Lyapunov exponent  {found.lyapunov[-1]:.3g}   (log|v| / t at t = {found.times[-1]:.6g}; falls as log(t)/t on a torus)",
-        f"energy error       {found.energy_error:.2g}   (relative, at the end; steps of {found.step:g})",
-        *(
-            f"GALI_{s.k:<3} slope {s.value:8.3f} +- {s.error:.3f}   log10 at the end {g:.4g}"
-            for s, g in zip(found.slopes(), found.log10_gali[-1], strict=True)
-        ),
+        f"Lyapunov exponent  {found.lyapunov[-1]:.3g}   ({end}; falls as log(t)/t on a torus)",
+        f"energy error       {found.energy_error:.2g}   (relative, at the end; {steps})",
     ]
+    for slope, index in zip(found.slopes(), found.log10_gali[-1], strict=True):
+        fitted = f"slope {slope.value:8.3f} +- {slope.error:.3f}"
+        lines.append(f"GALI_{slope.k:<3} {fitted}   log10 at the end {index:.4g}")
+    return lines
 
 
 def _write_table(found: AlignmentIndices, path: Path) -> None:
     """Time, log10 GALI_k and the Lyapunov estimate of every sample."""
+    indices = [f"log10 GALI_{k}" for k in range(2, found.vectors + 1)]
+    samples = zip(found.times, found.log10_gali, found.lyapunov, strict=True)
     with path.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
-        writer.writerow(
-            ["t", *(f"log10 GALI_{k}" for k in range(2, found.vectors + 1)), "lyapunov"]
-        )
-        for t, values, exponent in zip(found.times, found.log10_gali, found.lyapunov, strict=True):
+        writer.writerow(["t", *indices, "lyapunov"])
+        for t, values, exponent in samples:
             writer.writerow([repr(float(v)) for v in (t, *values, exponent)])

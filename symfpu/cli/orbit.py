@@ -31,7 +31,7 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Floats = NDArray[np.float64]
 LOST_ENERGY = 1e-3  # relative
-SHOWN = 8  # modes of the largest average harmonic energy
+SHOWN_MODES = 8  # those of the largest average harmonic energy
 
 
 @app.command(epilog="Example: symfpu orbit torus.symfpu --time 1e5 -o orbit.csv")
@@ -66,12 +66,12 @@ def orbit(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Integrates the orbit that starts on a torus at t = 0, and says how far it stays from the
-    torus.
-    """
+    """Integrates the orbit of a torus from t = 0 on, and says how far it stays from the torus."""
     target = None if output is None else _output(path_named("output", output))
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
-    T, h, count = number("time", time), number("step", step), whole("samples", samples)
+    T = number("time", time)
+    h = number("step", step)
+    count = whole("samples", samples)
     torus = load(path_named("FILE", file)).torus
     if torus is None:
         raise InputError(
@@ -117,10 +117,12 @@ def _record(made: Orbit, torus: QuasiPeriodic) -> dict[str, Any]:
     Deviations relative to the largest coordinate of the torus at the samples.
     """
     there = torus.positions(made.times)
-    distances = np.max(np.abs(made.Q - there), axis=1) / np.max(np.abs(there))
+    largest = np.max(np.abs(there))
+    distances = np.max(np.abs(made.Q - there), axis=1) / largest
     worst = int(np.argmax(distances))
     assert made.averages is not None
-    average, expected = made.averages[-1], torus.average_spectrum()
+    average = [fifteen_digits(value) for value in made.averages[-1]]
+    expected = [fifteen_digits(value) for value in torus.average_spectrum()]
     return {
         "N": made.chain.N,
         "scheme": made.scheme.name,
@@ -131,42 +133,33 @@ def _record(made: Orbit, torus: QuasiPeriodic) -> dict[str, Any]:
         "energy_error": fifteen_digits(made.energy_error),
         "largest_deviation": fifteen_digits(distances[worst]),
         "largest_deviation_time": fifteen_digits(made.times[worst]),
-        "average_spectrum": [fifteen_digits(value) for value in average],
-        "torus_average_spectrum": [fifteen_digits(value) for value in expected],
+        "average_spectrum": average,
+        "torus_average_spectrum": expected,
         "seconds": round(made.seconds, 3),
     }
 
 
 def _print(record: dict[str, Any]) -> None:
-    say(
-        f"energy error       {record['energy_error']:.3g}   (largest |H(t)/H(0) - 1| of the samples)"
-    )
-    say(
-        f"off the torus      {record['largest_deviation']:.3g}   (largest at t = {record['largest_deviation_time']:.10g}, "
-        f"relative to the largest coordinate)"
-    )
-    if record["energy_error"] > LOST_ENERGY:
+    energy_error = record["energy_error"]
+    say(f"energy error       {energy_error:.3g}   (largest |H(t)/H(0) - 1| of the samples)")
+    deviation = f"{record['largest_deviation']:.3g}"
+    when = f"t = {record['largest_deviation_time']:.10g}"
+    say(f"off the torus      {deviation}   (largest at {when}, relative to the largest coordinate)")
+    if energy_error > LOST_ENERGY:
         say("the energy is lost: this is no orbit of the chain, take a shorter step")
     say("mode  time average of E_q      on the torus, for ever")
-    average, expected = record["average_spectrum"], record["torus_average_spectrum"]
-    for q in sorted(range(len(average)), key=lambda q: -average[q])[:SHOWN]:
-        say(f"{q + 1:<5} {average[q]:<24.6g} {expected[q]:.6g}")
+    average = record["average_spectrum"]
+    expected = record["torus_average_spectrum"]
+    by_energy = sorted(range(len(average)), key=lambda place: -average[place])
+    for place in by_energy[:SHOWN_MODES]:
+        say(f"{place + 1:<5} {average[place]:<24.6g} {expected[place]:.6g}")
 
 
 def _write(path: Path, made: Orbit) -> None:
     """The samples: t, H and E_q, and in .npz also Q and P."""
     spectrum = made.harmonic_energies()
     if path.suffix == ".csv":
-        text = io.StringIO()
-        rows = csv.writer(text)
-        rows.writerow(["t", "H", *(f"E{q}" for q in range(1, made.chain.N))])
-        rows.writerows(
-            [
-                [repr(float(v)) for v in (t, H, *E)]
-                for t, H, E in zip(made.times, made.energies, spectrum, strict=True)
-            ]
-        )
-        write_text(path, text.getvalue())
+        write_text(path, _table(made, spectrum))
         return
     draft = path.with_name(f".{path.name}")
     try:
@@ -178,3 +171,14 @@ def _write(path: Path, made: Orbit) -> None:
         raise InputError(
             "output", str(path), "a file that can be written", f"choose another ({error.strerror})"
         ) from error
+
+
+def _table(made: Orbit, spectrum: Floats) -> str:
+    """t, H and E_q of the samples, with commas between them."""
+    text = io.StringIO()
+    rows = csv.writer(text)
+    modes = [f"E{q}" for q in range(1, made.chain.N)]
+    rows.writerow(["t", "H", *modes])
+    for t, H, E in zip(made.times, made.energies, spectrum, strict=True):
+        rows.writerow([repr(float(v)) for v in (t, H, *E)])
+    return text.getvalue()

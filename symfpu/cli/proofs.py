@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -42,18 +43,26 @@ def propagate(
 ) -> None:
     """Which modes the propagation rule D_k excites at each order."""
     chosen = whole_numbers("seeds", seeds)
-    sequence = excitation_sequence(whole("N", bonds), chosen, whole("order", order), model=model)
+    N = whole("N", bonds)
+    highest = whole("order", order)
+    sequence = excitation_sequence(N, chosen, highest, model=model)
     if as_json:
         record = {
-            "N": whole("N", bonds),
+            "N": N,
             "model": model,
             "seeds": sorted(chosen),
-            "order": whole("order", order),
+            "order": highest,
+            "excitation_sequence": [list(modes) for modes in sequence],
         }
-        print_json(record | {"excitation_sequence": [list(modes) for modes in sequence]})
+        print_json(record)
         return
     for k, modes in enumerate(sequence):
-        say(f"D_{k} = {{{', '.join(map(str, modes))}}}")
+        say(f"D_{k} = {_set_of(modes)}")
+
+
+def _set_of(modes: Iterable[int]) -> str:
+    listed = ", ".join(map(str, modes))
+    return f"{{{listed}}}"
 
 
 @app.command(epilog="Example: symfpu prove -N 8 --model beta --seeds 1,4 --order 3 -o proof.json")
@@ -73,15 +82,13 @@ def prove(
 
     Exit code 1 where it stays undecided.
     """
-    number, chosen, highest = (
-        whole("N", bonds),
-        whole_numbers("seeds", seeds),
-        whole("order", order),
-    )
+    N = whole("N", bonds)
+    chosen = whole_numbers("seeds", seeds)
+    highest = whole("order", order)
     file = None if output is None else output_file(path_named("output", output))
     with progress_bar("recursion modulo a prime") as advance:
         proof = prove_propagation(
-            number,
+            N,
             chosen,
             highest,
             model=model,
@@ -91,13 +98,10 @@ def prove(
         if file is not None:
             proof.write(file)
     if as_json:
-        print_json(
-            {
-                key: value
-                for key, value in proof.certificate().items()
-                if key not in ("excited", "vanishing", "points", "digest")
-            }
-        )
+        record = proof.certificate()
+        for evidence in ("excited", "vanishing", "points", "digest"):
+            record.pop(evidence, None)
+        print_json(record)
     else:
         _print_proof(proof)
         if file is not None:
@@ -106,18 +110,17 @@ def prove(
 
 
 def _print_proof(proof: PropagationProof) -> None:
-    open_modes = {u.mode: u for u in proof.undecided}
     for k, (rule, actual) in enumerate(zip(proof.rule, proof.actual, strict=True)):
-        same = "" if rule == actual else f"   actually {{{', '.join(map(str, actual))}}}"
-        say(f"D_{k} = {{{', '.join(map(str, rule))}}}{same}")
-    for e in proof.exceptions:
-        doubt = (
-            f" (undecided, error probability {open_modes[e.mode].error_probability:.1e})"
-            if e.mode in open_modes
-            else ""
-        )
-        found = "at no order" if e.actual is None else e.actual
-        say(f"mode {e.mode}: predicted at order {e.predicted}, actually {found}{doubt}")
+        differs = "" if rule == actual else f"   actually {_set_of(actual)}"
+        say(f"D_{k} = {_set_of(rule)}{differs}")
+    doubts = {}
+    for undecided in proof.undecided:
+        probability = f"{undecided.error_probability:.1e}"
+        doubts[undecided.mode] = f" (undecided, error probability {probability})"
+    for case in proof.exceptions:
+        found = "at no order" if case.actual is None else case.actual
+        doubt = doubts.get(case.mode, "")
+        say(f"mode {case.mode}: predicted at order {case.predicted}, actually {found}{doubt}")
     say(f"verdict: {proof.verdict}")
 
 
@@ -128,8 +131,9 @@ def verify(
     ],
     as_json: JsonOption = False,
 ) -> None:
-    """Check a certificate by another route: mode space, the tensors B and C, Python's integers,
-    nothing of the prover.
+    """Check a certificate by another route.
+
+    Mode space, the tensors B and C, Python's integers, nothing of the prover.
     """
     path = path_named("certificate", file)
     try:
@@ -172,11 +176,9 @@ def sweep(
     lengths = range(2, whole("longest", longest) + 1)
     if not lengths:
         raise InputError("longest", longest, "2 or more", "take a longer chain")
-    log = (
-        None
-        if file is None
-        else output_file(path_named("file", file), "file", "choose another with --file")
-    )
+    log = None
+    if file is not None:
+        log = output_file(path_named("file", file), "file", "choose another with --file")
     summary = None if markdown is None else output_file(path_named("output", markdown))
     with progress_bar("seed sets", lambda: _kept(log)) as advance:
         result = sweep_propagation(
@@ -190,19 +192,20 @@ def sweep(
         if summary is not None:
             write_text(summary, sweep_markdown(result))
     if as_json:
-        print_json(
-            {
-                "model": model,
-                "order": result.order,
-                "cases": len(result.cases),
-                "exceptions": [asdict(c) for c in result.exceptions],
-            }
-        )
+        record = {
+            "model": model,
+            "order": result.order,
+            "cases": len(result.cases),
+            "exceptions": [asdict(case) for case in result.exceptions],
+        }
+        print_json(record)
         return
     say(result)
     for case in result.exceptions:
-        exceptions = ", ".join(f"mode {q} at {a}, predicted {p}" for q, p, a in case.exceptions)
-        say(f"N={case.N} seeds {case.seeds}: {exceptions}")
+        modes = []
+        for q, predicted, actual in case.exceptions:
+            modes.append(f"mode {q} at {actual}, predicted {predicted}")
+        say(f"N={case.N} seeds {case.seeds}: {', '.join(modes)}")
 
 
 def _kept(log: Path | None) -> str:

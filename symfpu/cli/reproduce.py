@@ -41,15 +41,15 @@ def reproduce(
         bool,
         typer.Option(
             "--full",
-            help="Alignment indices to 1e9 instead of 1e7, all exact tori: hours; goes on where it was stopped.",
+            help="Alignment indices to 1e9 instead of 1e7, all exact tori: hours; "
+            "goes on where it was stopped.",
         ),
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """The paper's table and figures from its printed frequencies, beside the printed numbers, with a
-    verdict on every claim.
+    """The paper's table and figures from its printed frequencies, beside the printed numbers.
 
-    report.md and report.json hold the targets of this run alone.
+    Every claim has a verdict. report.md and report.json hold the targets of this run alone.
     """
     for target in targets:
         if target not in (*TARGETS, "all"):
@@ -73,17 +73,17 @@ def reproduce(
     if as_json:
         print_json(record)
         return
-    _print_rows(record.get("table", []), pages["table"].lines if "table" in pages else ())
+    if "table" in pages:
+        _print_rows(record["table"], pages["table"].lines)
     for key, claim in record.get("fig1", {}).get("claims", {}).items():
-        say(
-            f"Fig. 1, {key.replace('_', ' ')}: printed {claim['printed']}; computed {claim['computed']}"
-        )
+        name = key.replace("_", " ")
+        say(f"Fig. 1, {name}: printed {claim['printed']}; computed {claim['computed']}")
     _print_claims(page.figure for page in pages.values() if page.figure is not None)
-    pictures = [page.files for page in pages.values() if page.files]
-    print(
-        f"written: {folder / 'report.md'}, report.json"
-        + (f", {', '.join(pictures)} as PNG, PDF and CSV" if pictures else "")
-    )
+    written = f"{folder / 'report.md'}, report.json"
+    pictures = ", ".join(page.files for page in pages.values() if page.files)
+    if pictures:
+        written += f", {pictures} as PNG, PDF and CSV"
+    print(f"written: {written}")
 
 
 def _kept(pages: dict[str, Page], folder: Path) -> str:
@@ -99,10 +99,10 @@ def _write(pages: dict[str, Page], folder: Path) -> dict[str, Any]:
     record = {target: page.record for target, page in pages.items()}
     figures = [page.figure for page in pages.values() if page.figure is not None]
     parts = ["# The paper's numbers, computed from its printed frequencies"]
-    parts += [claims_markdown(figures)] if figures else []
-    write_text(
-        folder / "report.md", "\n\n".join([*parts, *(page.markdown for page in pages.values())])
-    )
+    if figures:
+        parts.append(claims_markdown(figures))
+    parts += [page.markdown for page in pages.values()]
+    write_text(folder / "report.md", "\n\n".join(parts))
     write_text(folder / "report.json", json.dumps(record, indent=1) + "\n")
     return record
 
@@ -110,12 +110,14 @@ def _write(pages: dict[str, Page], folder: Path) -> dict[str, Any]:
 def _print_rows(rows: Sequence[dict[str, Any]], corrected: Sequence[str]) -> None:
     for row, exact in zip(rows, corrected, strict=True):
         say(f"{row['label']}  (Appendix F: {row['printed_label']})")
+        computed = row["torus"]["amplitudes"]
         for q, printed in row["printed_amplitudes"].items():
-            say(f"  A_{q:<3} printed {printed:<24} computed {row['torus']['amplitudes'][q]}")
-        energies = ", ".join(
-            f"{name} {float(value):.9g}" for name, value in row["energies"].items()
-        )
-        say(f"  E    printed {row['printed_energy']:<24} computed {energies}")
+            say(f"  A_{q:<3} printed {printed:<24} computed {computed[q]}")
+        energies = []
+        for name, value in row["energies"].items():
+            energies.append(f"{name} {float(value):.9g}")
+        listed = ", ".join(energies)
+        say(f"  E    printed {row['printed_energy']:<24} computed {listed}")
         say(f"  {row['verdict']}\n{exact}\n")
 
 
@@ -124,6 +126,5 @@ def _print_claims(figures: Iterable[PaperFigure]) -> None:
         say(figure.title)
         for claim in figure.claims:
             printed = f" (printed {claim.printed})" if claim.printed else ""
-            say(
-                f"  {claim.verdict}: section {claim.section}, {claim.text}{printed}\n    {claim.ours}"
-            )
+            said = f"section {claim.section}, {claim.text}{printed}"
+            say(f"  {claim.verdict}: {said}\n    {claim.ours}")

@@ -1,5 +1,6 @@
-"""What all verbs share: options, numbers and paths, lines for a reader, JSON, progress, the
-interrupt key.
+"""What all verbs share.
+
+Options, numbers and paths, lines for a reader, JSON, progress, the interrupt key.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ NOTHING_KEPT = "nothing is kept"
 BAR_WIDTH = 20
 INDENT = 4  # of what follows on the next line
 PATIENCE = 2.0  # seconds before the first line of progress
-# least seconds between two lines, and least share of the time that has passed
-PAUSE, SHARE = 1.0, 0.01
+PAUSE = 1.0  # least seconds between two lines
+SHARE = 0.01  # of the time that has passed, which the pause is at least
 SILENCE = 30.0  # seconds after which a line comes although nothing has changed
 
 
@@ -80,7 +81,9 @@ def number(argument: str, text: str) -> float:
 
 def whole_numbers(argument: str, text: str) -> list[int]:
     """Whole numbers with commas between them."""
-    return [whole(argument, part) for part in text.split(",")] if text.strip() else []
+    if not text.strip():
+        return []
+    return [whole(argument, part) for part in text.split(",")]
 
 
 def optional(argument: str, text: str | None) -> int | None:

@@ -76,15 +76,14 @@ def solve(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Amplitudes and energies of the q-torus with the given frequencies, and a verdict on its
-    series.
+    """Amplitudes and energies of the q-torus with the given frequencies.
+
+    With a verdict on its series.
     """
     chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
     chosen = whole_numbers("seeds", seeds)
-    highest, cut = (
-        optional("frequency-order", frequency_order),
-        optional("coordinate-order", coordinate_order),
-    )
+    highest = optional("frequency-order", frequency_order)
+    cut = optional("coordinate-order", coordinate_order)
     places = optional("digits", digits)
     file = None if output is None else output_file(path_named("output", output))
     with progress_bar("series") as advance:
@@ -136,9 +135,8 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
     average = record["average_harmonic_energy"]
     say(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {average})")
     residual = f"{record['residual']:.2g}"
-    say(
-        f"residual           {residual}   (equations of motion, relative to the largest acceleration)"
-    )
+    relative = "equations of motion, relative to the largest acceleration"
+    say(f"residual           {residual}   ({relative})")
     for warning in torus.warnings:
         warn(warning)
 
@@ -154,16 +152,18 @@ def show(
     bundle = load(path_named("FILE", file))
     refined = bundle.torus if isinstance(bundle.torus, RefinedTorus) else None
     torus = bundle.torus if isinstance(bundle.torus, QTorus) else None
-    record = refined_record(refined) if refined else torus_record(torus) if torus else {}
+    record: dict[str, Any] = {}
+    if refined:
+        record = refined_record(refined)
+    elif torus:
+        record = torus_record(torus)
     if as_json:
-        print_json(
-            record
-            | {
-                "provenance": dict(bundle.provenance),
-                "assessment": bundle.verdict,
-                "test_vectors": bundle.test_vectors,
-            }
-        )
+        kept = {
+            "provenance": dict(bundle.provenance),
+            "assessment": bundle.verdict,
+            "test_vectors": bundle.test_vectors,
+        }
+        print_json(record | kept)
         return
     if bundle.verdict and not refined:
         say(f"verdict: {bundle.verdict.get('verdict')}")
