@@ -13,7 +13,8 @@ Omega_q^2 A_q^2 / 2 of all seeds. Where we differ from the printed algorithm:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -23,6 +24,7 @@ from numpy.typing import NDArray
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
+from symfpu.families.continuation import Level
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.series.lindstedt import lindstedt
@@ -38,6 +40,8 @@ LOWERED = 0.5  # factor of trial amplitudes without a solution
 ATTEMPTS = 20
 HALVINGS = 12  # of Delta omega
 ASTRAY = 0.5  # change of the increment from the one asked for, relative, beyond which the root is another one
+PLACE = 1e-15  # of an energy between two tori, in their distance or in ln A
+BEYOND = 1.2  # what a step that is to pass an energy is longer than the estimate
 NO_ROOT = (NoRealAmplitude, DidNotConverge, InputError, UndeterminedAmplitudes)  # InputError: resonant or negative frequencies
 
 
@@ -183,6 +187,45 @@ def appendix_a_members(
     return family.members(np.array([float(a) for a in start.values()]), step)
 
 
+def members_between(
+    chain: Chain,
+    seeds: tuple[int, ...],
+    start_amplitudes: Mapping[int, float],
+    order: int,
+    *,
+    increment: float,
+    begin: Level,
+    goal: Level,
+    after: tuple[AppendixAMember, AppendixAMember] | None = None,
+) -> Iterator[AppendixAMember]:
+    """The tori of Appendix A from one energy to another: the first has the one, the last the other, to rounding.
+
+    start_amplitudes : of which a multiple has the first energy. The others as for `appendix_a_members`. Raises NoFurtherMember.
+    """
+    family = _Family(chain, seeds, checked_plan(chain, order, None, None, None, None))
+    if after is None:
+        trial = family.trial_at(np.array([start_amplitudes[q] for q in seeds]), begin)
+        steps = family.begun(trial, increment)
+    else:
+        steps = family.continued(*after)
+    last = after[1] if after else None
+    for found in steps:
+        energy = goal.of(found.torus)
+        if last is not None and goal.passed(energy) and not goal.met(energy):
+            found = member_at(goal, last, found)
+        yield found
+        if goal.passed(energy):
+            return
+        last = found
+
+
+def member_at(level: Level, before: AppendixAMember, last: AppendixAMember) -> AppendixAMember:
+    """The torus of an energy between two members, its frequencies on the line between theirs; raises NoFurtherMember."""
+    series = before.torus.series
+    plan = checked_plan(series.chain, series.order, before.torus.frequency_order, before.torus.order, None, None)
+    return _Family(series.chain, series.seeds, plan).between(before, last, level)
+
+
 def _last_two(family: _Family, after: object) -> tuple[AppendixAMember, AppendixAMember]:
     allowed = f"two successive members of a family of {family.chain!r}, seeds {family.seeds}"
     match after:
@@ -196,6 +239,28 @@ def _last_two(family: _Family, after: object) -> tuple[AppendixAMember, Appendix
 def _first(failure: object) -> str:
     """What a message says before its advice."""
     return str(failure).split(";")[0]
+
+
+def _bracket(excess: Callable[[float], float]) -> tuple[float, float]:
+    """Two numbers between which a function that grows about as 2x passes zero; raises the error of the last one that has no value."""
+    below, above, without = -math.inf, math.inf, math.inf
+    x, failure = 0.0, None
+    for _ in range(ATTEMPTS):
+        try:
+            value = excess(x)
+        except NO_ROOT as error:
+            failure, without = error, x
+            x = x + math.log(LOWERED) if below == -math.inf else (below + without) / 2
+            continue
+        if value < 0:
+            below = x
+        else:
+            above = x
+        if above - below < math.inf:
+            return below, above
+        step = BEYOND * value / 2 or PLACE
+        x = min(x - step, (x + without) / 2)
+    raise failure or DidNotConverge(0, {}, math.nan)
 
 
 class _Family:
@@ -223,6 +288,62 @@ class _Family:
         yield first
         yield second
         yield from self.continued(first, second)
+
+    def begun(self, trial: Floats, increment: float) -> Iterator[AppendixAMember]:
+        """The same from trial amplitudes that are not halved; the first of them is known to have a torus."""
+        first = AppendixAMember(self._torus(self.trial_shifts(trial), trial**2), increment)
+        yield first
+        raised = np.sqrt(trial**2 + self._growth(increment))
+        try:
+            second = AppendixAMember(self._torus(self.trial_shifts(raised), raised**2), increment)
+        except NO_ROOT as error:
+            tried = (self.linear + self.trial_shifts(raised)).tolist()
+            raise NoFurtherMember("no further torus", self.seeds, tried, _first(error)) from error
+        yield second
+        yield from self.continued(first, second)
+
+    def trial_at(self, trial: Floats, level: Level) -> Floats:
+        """The multiple of trial amplitudes, shape (s,), whose torus has an energy; raises NoFurtherMember."""
+
+        def torus(x: float) -> QTorus:
+            amplitudes = math.exp(x) * trial
+            return self._torus(self.trial_shifts(amplitudes), amplitudes**2)
+
+        x, _ = self._solved(torus, level, None, self.linear + self.trial_shifts(trial))
+        return math.exp(x) * trial
+
+    def between(self, before: AppendixAMember, last: AppendixAMember, level: Level) -> AppendixAMember:
+        """The torus of an energy on the line between the frequencies of two; raises NoFurtherMember."""
+        start, end = (shifts(m.torus.series) for m in (before, last))
+        near, far = (np.array([float(a) ** 2 for a in m.amplitudes.values()]) for m in (before, last))
+
+        def torus(part: float) -> QTorus:
+            return self._torus(start + part * (end - start), near + part * (far - near))
+
+        _, found = self._solved(torus, level, (0.0, 1.0), self.linear + end)
+        return AppendixAMember(found, last.increment)
+
+    def _solved(
+        self, torus: Callable[[float], QTorus], level: Level, bracket: tuple[float, float] | None, tried: Floats
+    ) -> tuple[float, QTorus]:
+        """Where a line of tori has an energy, and the torus there. bracket : on it; None looks for one, ln A along the line.
+
+        tried : frequencies to be named in NoFurtherMember.
+        """
+        from scipy.optimize import brentq
+
+        def excess(x: float) -> float:
+            return math.log(level.of(torus(x)) / level.energy)
+
+        reason = "the energy of its tori jumps"
+        try:
+            x = float(brentq(excess, *(bracket or _bracket(excess)), xtol=PLACE))
+            found = torus(x)
+            if level.met(level.of(found)):
+                return x, found
+        except NO_ROOT as error:
+            reason = _first(error)
+        raise NoFurtherMember(f"no torus of {level.name} = {level.energy:.6g}", self.seeds, tried.tolist(), reason)
 
     def continued(self, before: AppendixAMember, last: AppendixAMember) -> Iterator[AppendixAMember]:
         """The iteration, without end."""

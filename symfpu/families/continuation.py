@@ -20,7 +20,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import SymfpuError
 from symfpu.numbers.arithmetic import text
-from symfpu.refinement.conditions import Amplitude, Condition, Plane, ratio_conditions
+from symfpu.refinement.conditions import Amplitude, Condition, Energy, Plane, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, Floats
 from symfpu.refinement.newton import Report
 from symfpu.refinement.tori import TOLERANCE, NoTorus, RefinedTorus, refine_at_amplitudes, refined_torus, shifts_of
@@ -35,6 +35,43 @@ EASY, FACTOR = 4, 1.3  # Newton steps up to which the next step along the way is
 KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
 ASTRAY = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
 UNRESOLVED = 1e-6  # residual beyond which a torus is no member
+REACHED = 1e-12  # relative: what an energy asked for and that of a member may differ by
+SPARE = 1e-6  # of the distance of two tori, by which one between them may seem to lie outside
+FAR = 0.3  # relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
+
+
+@dataclass(frozen=True)
+class Level:
+    """An energy asked for: H, or with `harmonic` the harmonic energy sum E_q, at the angles zero."""
+
+    energy: float
+    harmonic: bool
+
+    @property
+    def name(self) -> str:
+        """The symbol of this energy."""
+        return "sum E_q" if self.harmonic else "H"
+
+    def of(self, torus: QuasiPeriodic) -> float:
+        """This energy of a torus."""
+        return float(torus.harmonic_energies().sum() if self.harmonic else torus.energy())
+
+    def of_member(self, found: Member) -> float:
+        """This energy of a member, which knows both."""
+        return found.harmonic_energy if self.harmonic else found.energy
+
+    def met(self, energy: float) -> bool:
+        """Whether an energy is the one asked for."""
+        return abs(energy - self.energy) <= REACHED * self.energy
+
+    def passed(self, energy: float) -> bool:
+        """Whether an energy is the one asked for, or beyond it."""
+        return energy >= self.energy or self.met(energy)
+
+    @property
+    def condition(self) -> Condition:
+        """For Newton's method."""
+        return Energy(np.longdouble(self.energy), self.harmonic)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +87,7 @@ class Member:
 
     >>> from symfpu import Chain, family
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").members[0]
-    Member(torus, H=0.0005004912021, omega_1=0.390193414744, A_1=0.081046503, residual ...)
+    Member(torus, H=0.0005, omega_1=..., A_1=..., residual ...)
     """
 
     torus: QuasiPeriodic
@@ -117,16 +154,42 @@ def first_torus(
 
     energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed is as given.
     """
-    shifts = frequency_shift(chain, amplitudes)
-    with mpmath.workdps(DIGITS):
-        omega = [Fraction(text(chain.linear_frequency(q) + mpmath.mpf(shifts[q]), 25)) for q in amplitudes]
-    series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
-    guess = QTorus(series, dict(amplitudes), dict.fromkeys(amplitudes, 0.0), 0, GUESS_ORDER)
+    guess = _short_series(chain, amplitudes)
     if energy_ratio is None:
         return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance, report=report)
     first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
     conditions = [first, *ratio_conditions(tuple(amplitudes), energy_ratio, energies=True)]
     return refined_torus(guess, conditions, tolerance=tolerance, report=report)
+
+
+def first_at(
+    level: Level,
+    chain: Chain,
+    amplitudes: Mapping[int, float],
+    ratio: Sequence[Condition],
+    *,
+    tolerance: float = TOLERANCE,
+    report: Report = lambda _: None,
+) -> RefinedTorus:
+    """The torus of an energy near the linear limit, from a short series with about its amplitudes.
+
+    ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found are far from those of the series:
+    a torus of another family may have the energy.
+    """
+    found = refined_torus(_short_series(chain, amplitudes), [level.condition, *ratio], tolerance=tolerance, report=report)
+    astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
+    if astray > FAR:
+        raise NoTorus(f"an amplitude is {astray:.0%} off the one expected", found, found.residual())
+    return found
+
+
+def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
+    """The series of lowest orders about the frequencies that these amplitudes shift."""
+    shifts = frequency_shift(chain, amplitudes)
+    with mpmath.workdps(DIGITS):
+        omega = [Fraction(text(chain.linear_frequency(q) + mpmath.mpf(shifts[q]), 25)) for q in amplitudes]
+    series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
+    return QTorus(series, dict(amplitudes), dict.fromkeys(amplitudes, 0.0), 0, GUESS_ORDER)
 
 
 def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
@@ -140,6 +203,13 @@ def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
         warnings=torus.warnings,
         multipliers=floquet(periodic(torus)) if multipliers else None,
     )
+
+
+def series_member(torus: QTorus) -> Member:
+    """A torus of a series with its energies and its residual."""
+    amplitudes = {q: float(a) for q, a in torus.amplitudes.items()}
+    energy, harmonic = float(torus.energy()), float(torus.harmonic_energies().sum())
+    return Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings)
 
 
 def periodic(torus: QuasiPeriodic) -> PeriodicOrbit:
@@ -230,20 +300,43 @@ class Way:
         found = refined_torus(
             extrapolated(before, last, distance / length), self._conditions(plane), tolerance=self.tolerance, report=self.report
         )
-        if min(found.frequencies) <= 0:  # the mirror image of the family behind a saddle
-            raise NoTorus("a frequency passes zero", found, found.residual())
-        if found.warnings and (residual := found.residual()) > UNRESOLVED:
-            raise NoTorus(f"{len(found.harmonics)} harmonics do not resolve it", found, residual)
+        _require_resolved(found)
         off = float(np.linalg.norm((self.variables(found, scales) - x).astype(float) - distance * tangent))
         if off > ASTRAY * max(abs(distance), SMALLEST_STEP):
             raise NoTorus(f"the torus found is {off / abs(distance):.2g} steps off the way", found, found.residual())
         return found
 
-    def advance(self) -> RefinedTorus:
-        """The next torus, by the longest step that succeeds; raises NoTorus when none does."""
+    def between(self, level: Level) -> RefinedTorus:
+        """The torus of an energy between the last two, one below and one beyond it; raises NoTorus."""
+        before, last = self.tori[-2:]
+        low, high = level.of(before), level.of(last)
+        part = (level.energy - low) / (high - low)
+        ratio = ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)
+        conditions = [level.condition, *ratio]
+        guess = extrapolated(before, last, part - 1)
+        found = refined_torus(guess, conditions, tolerance=self.tolerance, report=self.report)
+        _require_resolved(found)
+        along, astray = self.place(found)
+        if astray > ASTRAY or not -SPARE <= along <= 1 + SPARE:
+            raise NoTorus(f"the torus of {level.name} = {level.energy:.6g} is not between two neighbours", found, found.residual())
+        return found
+
+    def place(self, torus: RefinedTorus) -> tuple[float, float]:
+        """How far along the way from the last torus but one to the last another one is, and how far off it, in their distance."""
+        scales = self.scales()
+        start, end, here = (self.variables(x, scales).astype(float) for x in (*self.tori[-2:], torus))
+        secant = end - start
+        along = float((here - start) @ secant) / float(secant @ secant)
+        off = float(np.linalg.norm(here - start - along * secant))
+        return along, off / float(np.linalg.norm(secant))
+
+    def advance(self, goal: Level) -> RefinedTorus:
+        """The next torus, by the longest step that succeeds; that of the goal where it leads beyond. Raises NoTorus when none does."""
         while True:
             try:
                 found = self.at(self.step)
+                if goal.passed(reached := goal.of(found)) and not goal.met(reached):
+                    found = self.local(self.tori[-1], found).between(goal)
                 break
             except NoTorus:
                 if self.step < (DOUBTFUL_STEP if self.tori[-1].warnings else SMALLEST_STEP):
@@ -253,6 +346,14 @@ class Way:
             self.step = min(self.step * FACTOR, LARGEST_STEP)
         self.tori = [*self.tori[-2:], found]
         return found
+
+
+def _require_resolved(found: RefinedTorus) -> None:
+    """Raises NoTorus for what is no member of a family."""
+    if min(found.frequencies) <= 0:  # the mirror image of the family behind a saddle
+        raise NoTorus("a frequency passes zero", found, found.residual())
+    if found.warnings and (residual := found.residual()) > UNRESOLVED:
+        raise NoTorus(f"{len(found.harmonics)} harmonics do not resolve it", found, residual)
 
 
 def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> FourierTorus:

@@ -6,15 +6,14 @@ stability by halving.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import mpmath
 import numpy as np
 
 from symfpu.breathers.floquet import floquet
-from symfpu.families.continuation import ASTRAY, Event, Member, Way, extrapolated, member, periodic
+from symfpu.families.continuation import ASTRAY, Event, Level, Member, Way, extrapolated, member, periodic
 from symfpu.refinement.conditions import Crossing, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
 from symfpu.refinement.tori import NoTorus, RefinedTorus, refined_torus, shifts_of
@@ -93,13 +92,9 @@ def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
         found = refined_torus(extrapolated(first, second, sign.part - 1), conditions, tolerance=way.tolerance, report=way.report)
     except NoTorus:
         return None
-    local = way.local(first, second)
-    scales = local.scales()
-    start, here, end = (local.variables(torus, scales).astype(float) for torus in (first, found, second))
-    along = float((here - start) @ (end - start)) / float((end - start) @ (end - start))
-    astray = float(np.linalg.norm(here - start - along * (end - start))) > ASTRAY * float(np.linalg.norm(end - start))
+    along, astray = way.local(first, second).place(found)
     known = list(sign.harmonic) in found.harmonics.tolist()
-    return None if found.warnings or astray or not known or not 0 <= along <= 1 else found
+    return None if found.warnings or astray > ASTRAY or not known or not 0 <= along <= 1 else found
 
 
 def folds(way: Way, after: int) -> Iterator[Event]:
@@ -116,7 +111,19 @@ def folds(way: Way, after: int) -> Iterator[Event]:
 
 
 def _fold(way: Way, name: str, after: int) -> Event:
-    """Newton tori between the last three, at the vertex of the parabola through the best three of all."""
+    """The fold of a quantity near the middle of the last three tori."""
+    torus, place = _turn(way, lambda t: quantities(t)[name])
+    value = quantities(torus)[name]
+    if name.startswith("omega"):
+        value = float(torus.frequencies[torus.seeds.index(int(name.split("_")[1]))])
+    return Event("fold", name, after + (place > 0), float(torus.energy()), value)
+
+
+def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTorus, float]:
+    """Where a measure turns, and how far along the way from the middle one of the last three tori.
+
+    Newton tori between these, at the vertex of the parabola through the best three of all.
+    """
     first, middle, last = way.tori[-3:]
     local = way.local(first, middle)
     scales = local.scales()
@@ -126,7 +133,7 @@ def _fold(way: Way, name: str, after: int) -> Event:
     torus, place = middle, 0.0
     for _ in range(LOCATIONS):
         near = sorted(known, key=lambda s: abs(s - place))[:3]
-        vertex = _vertex(near, [quantities(known[s])[name] for s in near])
+        vertex = _vertex(near, [measure(known[s]) for s in near])
         if not min(known) <= vertex <= max(known) or abs(vertex - place) < LOCATED:
             break
         try:
@@ -134,10 +141,25 @@ def _fold(way: Way, name: str, after: int) -> Event:
         except NoTorus:
             break
         known[vertex] = torus
-    value = quantities(torus)[name]
-    if name.startswith("omega"):
-        value = float(torus.frequencies[torus.seeds.index(int(name.split("_")[1]))])
-    return Event("fold", name, after + (place > 0), float(torus.energy()), value)
+    return torus, place
+
+
+def crossing(way: Way, goal: Level) -> tuple[int, RefinedTorus] | None:
+    """The torus of the goal where the energy passes it, turns, and is below it again on all of the last three tori.
+
+    With the number of these three that come before it. None where the energy does not turn, or below the goal. Raises NoTorus.
+    """
+    three = way.tori[-3:]
+    if len(three) < 3:
+        return None
+    before, middle, after = map(goal.of, three)
+    if not before < middle > after:
+        return None
+    top, place = _turn(way, goal.of)
+    if not goal.passed(goal.of(top)):
+        return None
+    number = 1 if place <= 0 else 2
+    return number, way.local(three[number - 1], top).between(goal)
 
 
 def _vertex(s: Sequence[float], y: Sequence[float]) -> float:
@@ -174,9 +196,25 @@ def events_between(way: Way, first: Member, second: Member, after: int) -> list[
     return [*folds(way, after - 1), *resonances(way, after), *([change] if change else [])]
 
 
-def continued(way: Way, start: int, *, multipliers: bool, last: Member) -> Iterator[tuple[Member, list[Event]]]:
-    """Members and events from the end of a way on, as long as they are asked for; ends with NoTorus where the family cannot be followed."""
-    for index in itertools.count(start):
-        found = member(way.advance(), multipliers=multipliers)
-        yield found, events_between(way, last, found, index)
-        last = found
+class Found(NamedTuple):
+    """The next member of a family. kept : members before it, fewer than there are where these have passed the goal."""
+
+    kept: int
+    member: Member
+    events: list[Event]
+
+
+def continued(way: Way, members: Sequence[Member], goal: Level, *, multipliers: bool) -> Iterator[Found]:
+    """Members and events from the end of a way on, as long as they are asked for; ends with NoTorus where the family cannot be followed.
+
+    members : so far, the last of the way; it grows with what is found. The member at the goal has its energy.
+    """
+    while True:
+        way.advance(goal)
+        kept = len(members)
+        if passed := crossing(way, goal):
+            number, torus = passed
+            kept += number - 2
+            way.tori = [*way.tori[-3:][:number], torus]
+        found = member(way.tori[-1], multipliers=multipliers)
+        yield Found(kept, found, events_between(way, members[kept - 1], found, kept - 1))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
@@ -14,8 +14,8 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, RunInterrupted, SymfpuError
-from symfpu.families.appendix_a import AppendixAMember, NoFurtherMember, appendix_a_members
-from symfpu.families.continuation import Event, Member, Way, extrapolated, first_torus, member, returned
+from symfpu.families.appendix_a import AppendixAMember, NoFurtherMember, member_at, members_between
+from symfpu.families.continuation import Event, Level, Member, Way, extrapolated, first_at, member, returned, series_member
 from symfpu.families.events import continued, events_between
 from symfpu.families.folder import BEGINNING, Kept, Plan, checked_family
 from symfpu.numbers.typed import Number, exact
@@ -31,6 +31,8 @@ SECOND = 1.1  # ratio of the amplitudes of the second member and the first
 MEMBERS = 200
 APPENDIX_A = "appendix-a"
 METHODS = ("arclength", APPENDIX_A)
+ENDED_AT_GOAL = "reached the energy asked for"
+LOWER, LOWEST = 0.25, 1e-12  # factor of a first energy that no torus of the series has, and the part of it that is given up
 APPENDIX_MEMBERS = 20  # about how many steps lead with Appendix A from the beginning to the energy asked for
 
 
@@ -64,7 +66,7 @@ class Family:
 
     >>> from symfpu import Chain, family
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
-    Family(N=8, alpha=0.3, seeds=1, 4 members, H = 0.000500491 .. 0.00105223, no events; it reached the
+    Family(N=8, alpha=0.3, seeds=1, 4 members, H = 0.0005 .. 0.001, no events; it reached the
     energy asked for)
     """
 
@@ -94,9 +96,11 @@ class Family:
         Raises NotInFamily beyond the range of the members, NoTorus as `refine_at_energy` does.
         """
         value = float(exact(energy, "energy"))
-        known = np.array([m.harmonic_energy if harmonic else m.energy for m in self.members])
-        if not known.min() <= value <= known.max():
-            raise NotInFamily("sum E_q" if harmonic else "H", value, (float(known.min()), float(known.max())), self.ending)
+        level = Level(value, bool(harmonic))
+        known = np.array([level.of_member(m) for m in self.members])
+        at_an_end = level.met(float(known.min())) or level.met(float(known.max()))
+        if not at_an_end and not known.min() <= value <= known.max():
+            raise NotInFamily(level.name, value, (float(known.min()), float(known.max())), self.ending)
         nearest = self.members[int(np.argmin(np.abs(np.log(known / value))))]
         return refine_at_energy(nearest.torus, energy, harmonic=harmonic, energy_ratio=self.energy_ratio)
 
@@ -154,9 +158,9 @@ def family(
     harmonic : whether energies are sum E_q at the angles zero instead of H.
     amplitude_ratio, energy_ratio : by seed, at most one; energy_ratio is of mode energies averaged over the
         torus. Default equal mode energies.
-    from_energy : where it begins, by the linear estimate; default a thousandth of the goal, a tenth with
-        'appendix-a', or where the family in the folder began; where the series there lead to no torus it
-        begins with the last member below of a family that is followed up to it.
+    from_energy : of the first member; default a thousandth of the goal, a tenth with 'appendix-a', or where
+        the family in the folder began; where the series there lead to no torus it is reached by a family from
+        below.
     members : the most.
     multipliers : of breathers, with changes of stability. tolerance : as for `refine`. Both only with
         'arclength'.
@@ -168,15 +172,17 @@ def family(
         goals too.
     progress : called as (label, fraction done).
 
-    The last member is the first one beyond the goal; `Family.at_energy` gives the torus at it. A family that
-    cannot be followed to its goal is returned as far as it went; `ending` says why it ended. One that comes
-    back to the linear limit ends there.
+    The last member of a family that reaches its goal has this energy, to 1e-12. Of a folder with members beyond
+    the goal these are left out, and the member at the goal is not kept. Members of a folder that version 0.1
+    wrote stay as they are: the first one has about from_energy. A family that cannot be followed to its goal is
+    returned as far as it went; `ending` says where and why it ended. One that comes back to the linear limit
+    ends there.
     Raises InputError for arguments out of range and for a folder that holds another family; where there is no
     first member, NoTorus, or NotInFamily if the family turns or ends below `from_energy`.
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> [round(member.energy, 6) for member in tori.members]
-    [0.0005, 0.000606, 0.000773, 0.001052]
+    [0.0005, 0.000605, 0.000772, 0.001]
     """
     if method not in METHODS:
         raise InputError("method", method, f"one of {', '.join(METHODS)}", "name one of these")
@@ -202,96 +208,189 @@ def family(
 
 def _by_arclength(plan: Plan, kept: Kept, report: Report, *, lower: bool = True) -> Family:
     """Newton's method and pseudo-arclength continuation, gone on with from the members there are. lower : as for `_begun`."""
-    _begun(plan, kept, report, lower=lower)
+    if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
 
-    def ending() -> str:
-        """Why the family is not followed further; empty if it is."""
-        if plan.done([kept.members[-1]]) >= 1:
-            return "reached the energy asked for"
-        if returned(kept.members, tolerance=plan.tolerance):
-            return "returned to the linear limit"
-        return f"was left after {len(kept.members)} members, the most asked for" if len(kept.members) >= plan.most else ""
+        def at_goal(k: int) -> Member:
+            way = _way(plan, kept, report, _refined(kept.members[k - 1 : k + 1]))
+            return member(way.between(plan.level), multipliers=plan.multipliers)
 
-    why = ending()
+        return _up_to_goal(plan, kept, at_goal)
+    why = _begun(plan, kept, report, lower=lower) or _ending(plan, kept)
     if not why:
-        tori = [m.torus for m in kept.members[-3:] if isinstance(m.torus, RefinedTorus)]
-        way = Way(
-            plan.ratio, energies=plan.energies, tolerance=plan.tolerance, report=report, tori=tori, step=kept.step, largest=kept.largest
-        )
+        way = _way(plan, kept, report)
         try:
-            for found, events in continued(way, len(kept.members) - 1, multipliers=plan.multipliers, last=kept.members[-1]):
+            for found in continued(way, kept.members, plan.level, multipliers=plan.multipliers):
                 kept.step, kept.largest = way.step, way.largest
-                kept.add(found, events)
-                if why := ending():
+                kept.cut(found.kept)
+                kept.add(found.member, found.events)
+                if why := _ending(plan, kept):
                     break
         except NoTorus as end:
-            doubtful = " from a doubtful member" if kept.members[-1].warnings else ""
-            why = f"ended: {end.reason}, with steps along the way down to {way.step:.1g}{doubtful}"
-    ratio = plan.ratio if plan.energies else None
-    return Family(plan.chain, plan.seeds, tuple(kept.members), tuple(kept.events), why, plan.harmonic, ratio)
+            why = _ended(kept, end, way.step)
+    return _family(plan, kept.members, kept.events, why)
 
 
-def _begun(plan: Plan, kept: Kept, report: Report, *, lower: bool) -> None:
-    """The first two members: from short series, or, where these lead to no torus, the last two of a family that begins lower.
+def _way(plan: Plan, kept: Kept, report: Report, tori: Sequence[RefinedTorus] = ()) -> Way:
+    """The way of a family from its last members, or from other tori."""
+    known = tori or [m.torus for m in kept.members[-3:] if isinstance(m.torus, RefinedTorus)]
+    return Way(
+        plan.ratio,
+        energies=plan.energies,
+        tolerance=plan.tolerance,
+        report=report,
+        tori=known,
+        step=kept.step,
+        largest=kept.largest,
+    )
 
-    lower : whether such a family is looked for.
+
+def _family(plan: Plan, members: Sequence[Member], events: Sequence[Event], why: str) -> Family:
+    ratio = plan.ratio if plan.energies and plan.order is None else None
+    return Family(plan.chain, plan.seeds, tuple(members), tuple(events), why, plan.harmonic, ratio)
+
+
+def _ending(plan: Plan, kept: Kept) -> str:
+    """Why the family is not followed further; empty if it is."""
+    if plan.done([kept.members[-1]]) >= 1:
+        return ENDED_AT_GOAL
+    if returned(kept.members, tolerance=plan.tolerance):
+        return f"{_turned(kept)}returned to the linear limit"
+    return f"was left after {len(kept.members)} members, the most asked for" if len(kept.members) >= plan.most else ""
+
+
+def _turned(kept: Kept) -> str:
+    """Where the energy turned, if it did."""
+    folds = [event.energy for event in kept.events if (event.kind, event.what) == ("fold", "H")]
+    return f"turned at H = {folds[-1]:.7g} and " if folds else ""
+
+
+def _ended(kept: Kept, end: NoTorus, step: float) -> str:
+    """Where and why no further member was found."""
+    last = kept.members[-1]
+    doubtful = " from a doubtful member" if last.warnings else ""
+    nearest = last.torus.near_resonances[:1] if isinstance(last.torus, RefinedTorus) else ()
+    divisor = "".join(f"; the smallest divisor there is {near!r}" for near in nearest)
+    return f"{_turned(kept)}ended at H = {last.energy:.7g}: {end.reason}, with steps along the way down to {step:.1g}{doubtful}{divisor}"
+
+
+def _up_to_goal(plan: Plan, kept: Kept, at_goal: Callable[[int], Member]) -> Family:
+    """The part up to the goal of a family that was followed beyond it before. Raises InputError if it begins beyond.
+
+    at_goal : gives the member at the goal between a member, by its place, and the one before.
+    """
+    energies = [plan.level.of_member(m) for m in kept.members]
+    beyond = next(k for k, energy in enumerate(energies) if plan.level.passed(energy))
+    members, events = kept.members[: beyond + 1], [e for e in kept.events if e.after < beyond]
+    if not plan.level.met(energies[beyond]):
+        if beyond == 0:
+            allowed = f"more than {energies[0]:.10g}, where the family in the folder begins"
+            raise InputError("to_energy", plan.goal, allowed, "choose another folder")
+        found = at_goal(beyond)
+        members = [*members[:-1], found]
+        events = [e for e in events if e.after < beyond - 1 or e.energy <= found.energy]
+    return _family(plan, members, events, ENDED_AT_GOAL)
+
+
+def _refined(members: Sequence[Member]) -> list[RefinedTorus]:
+    return [m.torus for m in members if isinstance(m.torus, RefinedTorus)]
+
+
+def _begun(plan: Plan, kept: Kept, report: Report, *, lower: bool) -> str:
+    """The first two members: from short series, or, where these lead to no torus, at the end of a family that begins lower.
+
+    lower : whether such a family is looked for. Returns why there is no second member; empty if there is.
     """
     if len(kept.members) >= min(2, plan.most):
-        return
-    ratio = plan.ratio if plan.energies else None
+        return ""
+    why = ""
     try:
-        tori = [
-            first_torus(plan.chain, amplitudes, energy_ratio=ratio, tolerance=plan.tolerance, report=report)
-            for amplitudes in (plan.start, {q: a * SECOND for q, a in plan.start.items()})
-        ]
+        tori = _from_series(plan, kept, report)
     except NoTorus:
         if not lower:
             raise
-        tori = _led_up(plan, kept, report)
-    way = Way(plan.ratio, energies=plan.energies, tolerance=plan.tolerance, report=report, tori=tori, step=kept.step, largest=kept.largest)
+        tori, why = _led_up(plan, kept, report)
+    way = _way(plan, kept, report, tori)
     for torus in tori[len(kept.members) : plan.most]:
         found = member(torus, multipliers=plan.multipliers)
         kept.add(found, events_between(way, kept.members[-1], found, 0) if kept.members else [])
+    return why
 
 
-def _led_up(plan: Plan, kept: Kept, report: Report) -> list[RefinedTorus]:
-    """The last tori, one below and one beyond, of a family that leads from a small part of the first energy up to it."""
-    goal = plan.first
-    below = replace(plan, goal=goal, start={q: a * math.sqrt(Fraction(BEGINNING)) for q, a in plan.start.items()}, most=MEMBERS)
-    way = Kept(replace(below, multipliers=False), None)
-    led = _by_arclength(way.plan, way, report, lower=False)
-    if below.done(way.members) < 1:
-        energies = [m.harmonic_energy if plan.harmonic else m.energy for m in way.members]
-        raise NotInFamily("sum E_q" if plan.harmonic else "H", goal, (min(energies), max(energies)), led.ending)
+def _from_series(plan: Plan, kept: Kept, report: Report) -> list[RefinedTorus]:
+    """The torus of the first energy, or the one member there is, and one a little above it, but not beyond the goal."""
+    ratio = ratio_conditions(plan.seeds, plan.ratio, energies=plan.energies)
+    begin = Level(plan.first, plan.harmonic)
+    known = _refined(kept.members)
+    first = known[0] if known else first_at(begin, plan.chain, plan.start, ratio, tolerance=plan.tolerance, report=report)
+    energy = begin.of(first)
+    above = Level(min(SECOND**2 * energy, plan.goal), plan.harmonic)
+    scale = math.sqrt(above.energy / energy)
+    raised = {q: scale * a for q, a in first.amplitudes.items()}
+    return [first, first_at(above, plan.chain, raised, ratio, tolerance=plan.tolerance, report=report)]
+
+
+def _led_up(plan: Plan, kept: Kept, report: Report) -> tuple[list[RefinedTorus], str]:
+    """The torus of the first energy, at the end of a family that leads from a small part of it up to it, and the next one.
+
+    With why there is no next one. Raises NotInFamily where that family does not reach the energy.
+    """
+    goal = Level(plan.first, plan.harmonic)
+    low = {q: a * math.sqrt(Fraction(BEGINNING)) for q, a in plan.start.items()}
+    below = replace(plan, goal=goal.energy, start=low, most=MEMBERS, multipliers=False)
+    led = Kept(below, None)
+    leading = _by_arclength(below, led, report, lower=False)
+    if below.done(led.members) < 1:
+        energies = [goal.of_member(m) for m in led.members]
+        raise NotInFamily(goal.name, goal.energy, (min(energies), max(energies)), leading.ending)
+    way = _way(plan, led, report)
+    first = way.tori[-1]
     kept.step, kept.largest = way.step, way.largest
-    return [m.torus for m in way.members[-2:] if isinstance(m.torus, RefinedTorus)]
+    try:
+        second = way.advance(plan.level)
+    except NoTorus as end:
+        return [first], _ended(led, end, way.step)
+    kept.step, kept.largest = way.step, way.largest
+    return [first, second], ""
 
 
 def _by_appendix_a(plan: Plan, order: int, kept: Kept, tell: Progress) -> Family:
     """The same by the algorithm of Appendix A, gone on with from the members there are."""
     increment = (plan.goal - plan.first) / plan.chain.N / APPENDIX_MEMBERS
     known = [AppendixAMember(m.torus, increment) for m in kept.members if isinstance(m.torus, QTorus)]
-    after = (known[-2], known[-1]) if len(known) > 1 else None
-    del kept.members[len(known) if after else 0 :]
-    ending = "reached the energy asked for"
-    if plan.done(kept.members) >= 1:
-        return Family(plan.chain, plan.seeds, tuple(kept.members), (), ending, plan.harmonic)
+    if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
+        return _up_to_goal(plan, kept, lambda k: series_member(member_at(plan.level, known[k - 1], known[k]).torus))
+    why = f"was left after {len(kept.members)} members, the most asked for"
     if len(kept.members) >= plan.most:
-        ending = f"was left after {len(kept.members)} members, the most asked for"
-        return Family(plan.chain, plan.seeds, tuple(kept.members), (), ending, plan.harmonic)
+        return _family(plan, kept.members, (), why)
+    after = (known[-2], known[-1]) if len(known) > 1 else None
+    kept.cut(len(known) if after else 0)
     try:
-        for found in appendix_a_members(plan.chain, plan.seeds, plan.start, order, increment=increment, after=after):
-            torus = found.torus
-            amplitudes = {q: float(a) for q, a in torus.amplitudes.items()}
-            kept.add(Member(torus, amplitudes, found.energy, found.harmonic_energy, torus.residual(), torus.warnings), [])
-            tell(f"member {len(kept.members)}", plan.done(kept.members))
-            if plan.done(kept.members) >= 1:
-                break
-            if len(kept.members) >= plan.most:
-                ending = f"was left after {len(kept.members)} members, the most asked for"
-                break
+        why = _followed(plan, kept, tell, _steps(plan, order, increment, after))
     except NoFurtherMember as end:
-        ending = f"ended: {end}"
-    if not kept.members:
-        raise SymfpuError(f"no first member: the family {ending}")
-    return Family(plan.chain, plan.seeds, tuple(kept.members), (), ending, plan.harmonic)
+        if not kept.members:
+            raise SymfpuError(f"no first member: the family ended: {end}") from end
+        why = f"ended at H = {kept.members[-1].energy:.7g}: {end}"
+    return _family(plan, kept.members, (), why)
+
+
+def _steps(plan: Plan, order: int, increment: float, after: tuple[AppendixAMember, AppendixAMember] | None) -> Iterator[AppendixAMember]:
+    """The members by Appendix A that come next. Where no beginning is asked for, the first has an energy from which a step leads on."""
+    begin = Level(plan.first, plan.harmonic)
+    while True:
+        steps = members_between(plan.chain, plan.seeds, plan.start, order, increment=increment, begin=begin, goal=plan.level, after=after)
+        if plan.chosen or after is not None or begin.energy < LOWEST * plan.first:
+            return steps
+        try:
+            return itertools.chain([next(steps), next(steps)], steps)
+        except NoFurtherMember:
+            begin = replace(begin, energy=LOWER * begin.energy)
+
+
+def _followed(plan: Plan, kept: Kept, tell: Progress, steps: Iterator[AppendixAMember]) -> str:
+    """Keeps members as long as they are asked for; why there are no more."""
+    for found in steps:
+        kept.add(series_member(found.torus), [])
+        tell(f"member {len(kept.members)}", plan.done(kept.members))
+        if plan.done(kept.members) < 1 and len(kept.members) >= plan.most:
+            return f"was left after {len(kept.members)} members, the most asked for"
+    return ENDED_AT_GOAL

@@ -13,7 +13,7 @@ from typing import Any
 from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.families.continuation import FIRST_STEP, Event, Member, member
+from symfpu.families.continuation import FIRST_STEP, Event, Level, Member, member, series_member
 from symfpu.files.writing import write_text
 from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
@@ -28,7 +28,7 @@ APPENDIX_BEGINNING = "1/10"  # the same with Appendix A
 
 @dataclass(frozen=True)
 class Plan:
-    """Checked arguments. start : amplitudes of the first member; chosen : by from_energy, not from the goal."""
+    """Checked arguments. start : amplitudes that have the first energy in the linear chain; chosen : by from_energy, not from the goal."""
 
     chain: Chain
     seeds: tuple[int, ...]
@@ -45,17 +45,21 @@ class Plan:
 
     @property
     def first(self) -> float:
-        """Energy of the first member, by the linear estimate."""
+        """Energy of the first member: that of the starting amplitudes in the linear chain."""
         linear = self.chain.frequencies()
         return sum((float(linear[q - 1]) * a) ** 2 / 2 for q, a in self.start.items())
+
+    @property
+    def level(self) -> Level:
+        """Where the family ends."""
+        return Level(self.goal, self.harmonic)
 
     def done(self, members: list[Member]) -> float:
         """How far towards the goal, by the logarithm of the energy."""
         if not members:
             return 0.0
-        energy = members[-1].harmonic_energy if self.harmonic else members[-1].energy
-        first = self.first
-        if energy >= self.goal:
+        energy, first = self.level.of_member(members[-1]), self.first
+        if self.level.passed(energy):
             return 1.0
         return max(math.log(energy / first) / math.log(self.goal / first), 0.0) if 0 < first < self.goal and energy > 0 else 0.0
 
@@ -96,7 +100,8 @@ def checked_family(
     )
     if not 0 < goal < LARGEST or not SMALLEST < first < goal:
         argument, value = ("from_energy", from_energy) if from_energy is not None and 0 < goal < LARGEST else ("to_energy", to_energy)
-        raise InputError(argument, value, "0 < from_energy < to_energy, in the range of doubles", "choose energies in this order")
+        advice = "choose energies in this order; a family followed upwards has the tori of the way down"
+        raise InputError(argument, value, "0 < from_energy < to_energy, in the range of doubles", advice)
     if amplitude_ratio is not None and energy_ratio is not None:
         raise InputError("energy_ratio", dict(energy_ratio), "only one of amplitude_ratio and energy_ratio", "leave one out")
     if multipliers and len(chosen) > 1:
@@ -167,9 +172,7 @@ class Kept:
             if isinstance(torus, RefinedTorus):
                 self.members.append(member(torus, multipliers=self.plan.multipliers))
             else:
-                amplitudes, energy = {q: float(a) for q, a in torus.amplitudes.items()}, float(torus.energy())
-                harmonic = float(torus.harmonic_energies().sum())
-                self.members.append(Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings))
+                self.members.append(series_member(torus))
 
     def _torus(self, index: int) -> RefinedTorus | QTorus:
         """A member that the record counts; InputError where its file is not there, BundleError where it is damaged."""
@@ -186,6 +189,11 @@ class Kept:
     def _file(self, index: int) -> Path:
         assert self.folder is not None
         return self.folder / f"member-{index:04d}.symfpu"
+
+    def cut(self, number: int) -> None:
+        """Leave out the members after so many, and what happens on the way to them; files are written over by the next ones."""
+        del self.members[number:]
+        self.events = [event for event in self.events if event.after < number - 1]
 
     def add(self, found: Member, events: list[Event]) -> None:
         """The member first, then the record that counts it: a run may be stopped at any time."""

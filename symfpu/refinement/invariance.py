@@ -259,6 +259,19 @@ class InvarianceEquation:
             total += self.grid.coefficients(tension) @ back
         return np.asarray(total * self.mask)
 
+    def rounding(self, cosines: Floats) -> Floats:
+        """What rounding in long doubles makes of the force of each mode, about; shape (N-1,).
+
+        Every bond rounds at random at every point, and a force is a sum over bonds and points.
+        """
+        tension = np.zeros(self._stretch.shape[1])
+        for part in self._portions():
+            r = self.grid.values(cosines @ self._stretch[:, part])
+            tension[part] = np.mean(bonds.anharmonic_tension(self._law, r) ** 2, axis=1)
+        sizes = np.sqrt(self._back**2 @ tension)
+        points = self.grid.points
+        return np.asarray(np.finfo(np.longdouble).eps * np.sqrt(np.log2(points) / points) * sizes)
+
     def potential(self, Q: Floats) -> np.longdouble:
         """The potential energy of mode coordinates (N-1,), by all bonds."""
         each = bonds.potential(self._law, Q @ self._all_bonds)

@@ -5,6 +5,9 @@ from functools import lru_cache
 from symfpu.chain.chain import Chain
 from symfpu.families.family import family
 
+# Energies at the ends of a family are conditions of Newton's method, met to rounding.
+ENERGY = 1e-12
+
 ROUND = Chain(8, alpha="0.4", beta="0.1")
 
 RUNS = {

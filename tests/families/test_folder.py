@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from symfpu.families.family import family
 from symfpu.files.archive import BundleError
 from symfpu.refinement.tori import RefinedTorus
 from tests.bundles.test_bundle import same
-from tests.families.cases import ROUND, RUNS, whole
+from tests.families.cases import ENERGY, ROUND, RUNS, whole
 
 
 def alike(found, other):
@@ -68,12 +69,35 @@ def test_a_stopped_family_goes_on_as_if_it_had_not_been(run, tmp_path):
 
 
 def test_a_family_goes_on_to_another_goal(tmp_path):
-    """Where it began is in the folder; a goal below what was reached needs nothing more."""
+    """Where it began is in the folder, and what was followed beyond a goal stays there."""
     near = family(ROUND, (3,), "0.01", folder=tmp_path)
     far = family(ROUND, (3,), "0.05", folder=tmp_path)
     assert [m.energy for m in far.members[: len(near.members)]] == [m.energy for m in near.members]
-    assert far.members[-1].energy >= 0.05
-    alike(family(ROUND, (3,), "0.005", folder=tmp_path), far)
+    assert far.members[-1].energy == pytest.approx(0.05, rel=ENERGY)
+    alike(family(ROUND, (3,), "0.01", folder=tmp_path), near)
+    files = sorted(tmp_path.iterdir())
+    nearer = family(ROUND, (3,), "0.005", folder=tmp_path)
+    assert nearer.members[-1].energy == pytest.approx(0.005, rel=ENERGY)
+    assert [m.energy for m in nearer.members[:-1]] == [m.energy for m in far.members if m.energy < 0.005]
+    assert sorted(tmp_path.iterdir()) == files
+    alike(family(ROUND, (3,), "0.05", folder=tmp_path), far)
+    with pytest.raises(InputError, match=r"^to_energy = .*more than 1e-05, where the family in the folder begins"):
+        family(ROUND, (3,), "0.000009", folder=tmp_path)
+
+
+def test_a_family_of_version_01_is_gone_on_with(tmp_path):
+    """It began at about a thousandth of its goal and ended beyond it; its members stay, and the goal is met."""
+    folder, chain = Path("tests/data/version-0.1/family"), Chain(8, alpha="0.33")
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
+    facts = json.loads((folder.parent / "facts.json").read_text())["family"]["energies"]
+    known = family(chain, (1,), "0.01", folder=tmp_path)
+    assert known.ending == "reached the energy asked for"
+    found = [m.energy for m in known.members]
+    assert found[:-1] == pytest.approx([float(e) for e in facts[:-1]], rel=ENERGY)
+    assert found[-1] == pytest.approx(0.01, rel=ENERGY)
+    on = [m.energy for m in family(chain, (1,), "0.012", folder=tmp_path).members]
+    assert on[:-1] == pytest.approx([float(e) for e in facts], rel=ENERGY)
+    assert on[-1] == pytest.approx(0.012, rel=ENERGY)
 
 
 class Killed(BaseException):

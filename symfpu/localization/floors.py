@@ -1,0 +1,238 @@
+"""Where a spectrum ends: errors of the Fourier coefficients of tori and breathers, and the mode energies that they make.
+
+A mode far from the seeds has less energy than rounding gives it, and its number means nothing. Every kind of solution knows its errors:
+- tori and orbits by Newton's method: what the coefficients leave of the equations of motion, harmonics that were left out among them,
+  taken in long doubles, over the divisors; that is the correction of one more step of Newton's method, without the small part of its
+  matrix beside the divisors, which is applied once to the result;
+- series in doubles: a coefficient is rounded relative to the forces of its monomials, the products over the bonds mix modes, and it is
+  divided by its divisor;
+- series with digits: the proved radii of the tables;
+- orbits with digits: the bound of their residual over the divisors.
+An error of the amplitudes changes all coefficients along the family: c_q[nu] of degree d in the amplitudes by d times its relative size.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.breathers.balance import PeriodicOrbit
+from symfpu.breathers.digits import PreciseOrbit
+from symfpu.chain.chain import Chain
+from symfpu.chain.propagation import excitation_sequence
+from symfpu.errors import InputError
+from symfpu.refinement.invariance import InvarianceEquation, dilated
+from symfpu.refinement.tori import shifts_of
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.torus import QTorus
+
+Floats = NDArray[Any]
+Ints = NDArray[np.int64]
+
+EPS = 2.0**-52
+WIDER = 1.5  # times the largest harmonics: up to there left out ones are looked for
+LARGEST_WIDER = 4_000_000  # coefficients of these, of all modes
+SAFETY = 2.0  # on errors of first order
+
+
+class _Errors:
+    """Errors of coefficients : (H, N-1), their harmonics (H, s) and frequencies (H,)."""
+
+    def __init__(self, harmonics: Ints, rates: Floats, sizes: Floats) -> None:
+        self.harmonics, self.rates, self.sizes = harmonics, rates, sizes
+
+    def energies(self, chain: Chain) -> NDArray[np.float64]:
+        """Average mode energies of a motion with these coefficients; shape (N-1,)."""
+        weights = np.where((self.harmonics != 0).any(axis=1), 0.25, 0.5)[:, None]
+        squared = self.rates[:, None] ** 2 + chain.frequencies() ** 2
+        return np.asarray((weights * squared * self.sizes**2).sum(axis=0), dtype=np.float64)
+
+
+def spectrum_floor(solution: QuasiPeriodic | PeriodicOrbit) -> NDArray[np.float64]:
+    """Average energy of the error of every mode, in the unit of `average_spectrum()`; shape (N-1,), dimensionless.
+
+    A mode at or below it is rounding. Above, sqrt(E_q) is within sqrt(floor_q) of the truth: at 100 times the floor E_q has an error
+    of a fifth at most. For tori and orbits by Newton's method the truth is the solution with these frequencies, for a series its
+    exact sum at the chosen orders: what its truncation leaves out is not in it (see `residual`).
+
+    An estimate of first order, above the true error in every case that was compared with many digits (docs/precision.md); for series
+    and orbits with digits a bound. Infinite where a divisor is zero. Raises InputError for anything else.
+
+    >>> from symfpu.breathers.at_energy import breather_at_energy
+    >>> breather = breather_at_energy(Chain(N=32, alpha="0.33"), 1, "5e-5")
+    >>> int(sum(breather.average_spectrum() > spectrum_floor(breather)))  # modes that are known
+    12
+    """
+    errors = _errors(solution)
+    return errors.energies(solution.chain)
+
+
+def coefficient_errors(solution: QuasiPeriodic | PeriodicOrbit) -> NDArray[np.float64]:
+    """The errors of the coefficients `solution.cosines`, of the same shape, as in `spectrum_floor`. Raises InputError."""
+    errors = _errors(solution)
+    wanted = _as_torus(solution).harmonics
+    rows = {nu: i for i, nu in enumerate(map(tuple, _canonical_signs(errors.harmonics).tolist()))}
+    places = [rows[nu] for nu in map(tuple, _canonical_signs(wanted).tolist())]
+    return np.asarray(errors.sizes[places], dtype=np.float64)
+
+
+def _errors(solution: object) -> _Errors:
+    match solution:
+        case QTorus():
+            return _of_series(solution)
+        case PreciseOrbit():
+            return _of_digits(solution)
+        case QuasiPeriodic() | PeriodicOrbit():
+            return _of_newton(_as_torus(solution))
+    raise InputError("solution", type(solution).__name__, "a torus or a periodic orbit", "pass what has an average_spectrum()")
+
+
+def _as_torus(solution: QuasiPeriodic | PeriodicOrbit) -> QuasiPeriodic:
+    """A periodic orbit as a torus of one angle."""
+    if isinstance(solution, QuasiPeriodic):
+        return solution
+    harmonics = np.arange(len(solution.cosines))[:, None]
+    phases = {solution.seed: 0.0}
+    return FourierTorus(solution.chain, (solution.seed,), (solution.frequency,), harmonics, solution.cosines, phases)
+
+
+def _canonical_signs(harmonics: Ints) -> Ints:
+    """One of each pair +-nu: the first number that is not zero is positive."""
+    lead = harmonics[np.arange(len(harmonics)), np.argmax(harmonics != 0, axis=1)]
+    return np.asarray(np.where((lead < 0)[:, None], -harmonics, harmonics))
+
+
+def _degrees(chain: Chain, seeds: tuple[int, ...]) -> Ints:
+    """The lowest degree in the amplitudes with which each mode is excited by the rule, at most N; shape (N-1,)."""
+    model = "beta" if chain.model == "beta" else "alpha"
+    degrees = np.full(chain.N - 1, chain.N)
+    for order, modes in enumerate(excitation_sequence(chain.N, seeds, chain.N, model=model)):
+        degrees[np.array(modes, dtype=np.int64) - 1] = min(1 + chain.degree_step * order, chain.N)
+    return degrees
+
+
+def _along_the_family(chain: Chain, seeds: tuple[int, ...], cosines: Floats, relative: float) -> Floats:
+    """What a relative error of the amplitudes makes of all coefficients; shape (H, N-1)."""
+    return np.asarray(_degrees(chain, seeds) * relative * np.abs(cosines))
+
+
+# Newton's method
+
+
+def _of_newton(torus: QuasiPeriodic) -> _Errors:
+    """One more step of Newton's method, on more harmonics; that of the amplitudes goes along the family."""
+    harmonics = _wider(torus)
+    equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
+    shifts, cosines = shifts_of(torus), _on(torus, harmonics)
+    divisors = np.where(equation.mask, equation.divisors(shifts), 1)
+    left = np.where(equation.mask, divisors * cosines - equation.force(cosines), 0)
+    with np.errstate(divide="ignore"):
+        inverse = np.where(equation.mask, 1 / np.abs(divisors), 0)
+        first = left / divisors
+    second = equation.force_change(equation.slopes(cosines), np.nan_to_num(first).astype(float))
+    sizes = SAFETY * (np.abs(first) + inverse * (np.abs(second) + equation.rounding(cosines)))
+    seeds = equation.seed_rows, equation.seed_columns
+    sizes[seeds] = SAFETY * np.abs(first[seeds])
+    relative = float(np.max(sizes[seeds] / np.abs(cosines[seeds]))) + EPS / 2  # the last for rounding to doubles
+    sizes += _along_the_family(torus.chain, torus.seeds, cosines, relative)
+    return _Errors(harmonics, equation.rates(shifts), sizes)
+
+
+def _wider(torus: QuasiPeriodic) -> Ints:
+    """The harmonics of a torus and those up to WIDER times as large, where so many fit; one of each pair, nu and zero once."""
+    own = np.asarray(torus.harmonics)
+    largest = dilated(own, WIDER)
+    chosen = largest if len(largest) // 2 * (torus.chain.N - 1) <= LARGEST_WIDER else own
+    return np.unique(_canonical_signs(np.concatenate([own, chosen])), axis=0)
+
+
+def _on(torus: QuasiPeriodic, harmonics: Ints) -> Floats:
+    """The coefficients of a torus, in long doubles, at given harmonics; shape (H, N-1)."""
+    rows = {nu: i for i, nu in enumerate(map(tuple, harmonics.tolist()))}
+    places = [rows[nu] for nu in map(tuple, _canonical_signs(np.asarray(torus.harmonics)).tolist())]
+    cosines = np.zeros((len(harmonics), torus.chain.N - 1), dtype=np.longdouble)
+    cosines[places] = torus.cosines.astype(float)
+    return cosines
+
+
+# series
+
+
+def _of_series(torus: QTorus) -> _Errors:
+    """Rounding of the tables at these amplitudes, order by order, and of the amplitudes."""
+    series = torus.series
+    amplitudes = [torus.amplitudes[q] for q in torus.seeds]
+    keys = series.grading.harmonic_keys(torus.harmonics)
+    sizes = np.zeros(torus.cosines.shape)
+    for order in range(1, torus.order + 1):
+        nu, errors = _rounded(torus, amplitudes, order) if series.digits is None else _within_radii(torus, amplitudes, order)
+        sizes[np.searchsorted(keys, series.grading.harmonic_keys(nu))] += errors
+    relative = _of_amplitudes(torus)
+    sizes += _along_the_family(torus.chain, torus.seeds, torus.cosines.astype(float), relative)
+    rates = torus.harmonics @ np.array([float(w) for w in torus.frequencies])
+    return _Errors(torus.harmonics, rates, sizes)
+
+
+def _rounded(torus: QTorus, amplitudes: list[Any], order: int) -> tuple[Ints, Floats]:
+    """Doubles: the largest force of a harmonic is known to so many EPS as the order, and each coefficient is a force over its divisor."""
+    series, linear = torus.series, torus.chain.frequencies()
+    nu, moduli = series.harmonic_terms(amplitudes, order, absolute=True)
+    omega = np.array([float(w) for w in torus.frequencies])
+    chosen = linear.copy()
+    chosen[np.array(torus.seeds) - 1] = omega
+    rates = np.abs(nu @ omega)[:, None]
+    divisors = np.abs((chosen - rates) * (chosen + rates)) / linear  # of u_q = Omega_q Q_q, over Omega_q
+    forces = (moduli * divisors).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        errors = (order + 2) * EPS * forces[:, None] / divisors
+    return nu, np.where(moduli > 0, errors, 0.0)
+
+
+def _within_radii(torus: QTorus, amplitudes: list[Any], order: int) -> tuple[Ints, Floats]:
+    """Digits: the radius of the order, for every monomial of a harmonic."""
+    series = torus.series
+    nu, index = series.grading.harmonics(series.degree(order))
+    seeds = np.abs(series.scaled_seeds(amplitudes).astype(float))
+    monomials = np.prod(seeds ** series.grading.powers(series.degree(order)), axis=1)
+    sums = np.bincount(index, weights=monomials, minlength=len(nu))
+    radius = float(np.ldexp(series.radii[order][0], -series.bits))
+    kappa = float(np.max(np.abs(series.seed_factors.astype(float)) * 2 / torus.chain.frequencies()[np.array(torus.seeds) - 1]))
+    return nu, 2 * radius / kappa * sums[:, None] / torus.chain.frequencies()
+
+
+def _of_amplitudes(torus: QTorus) -> float:
+    """Relative error of the amplitudes: rounding of the frequency series over its derivative; with digits what was asked for."""
+    if torus.digits is not None:
+        return float(10.0**-torus.digits)
+    squares = np.array([float(a) ** 2 for a in torus.amplitudes.values()])
+    terms, slopes = torus.series.frequency_terms(squares, torus.frequency_order)
+    left = EPS * np.abs(terms[1:]).sum(axis=0) * (torus.frequency_order + 2)
+    try:
+        inverse = np.abs(np.linalg.inv(slopes.sum(axis=0)))
+    except np.linalg.LinAlgError:
+        return float("inf")
+    return float(np.max(inverse @ left / (2 * squares))) + EPS / 2
+
+
+# orbits with digits
+
+
+def _of_digits(orbit: PreciseOrbit) -> _Errors:
+    """The bound of the residual, as a number, over the divisors; that of the amplitude goes along the family."""
+    chain, omega = orbit.chain, float(orbit.frequency)
+    t = np.linspace(0, np.pi / omega, 4 * len(orbit.cosines))
+    cosines = orbit.cosines.astype(float)
+    largest = float(np.abs(chain.accelerations(np.cos(np.multiply.outer(t, omega * orbit.harmonics[:, 0])) @ cosines)).max())
+    n = np.arange(3 * len(cosines))[:, None]
+    shift = float(shifts_of(orbit)[0])
+    linear = chain.frequencies()
+    divisors = np.abs((n * omega - linear) * (n * omega + linear))
+    divisors[1, orbit.seed - 1] = abs(shift * (2 * linear[orbit.seed - 1] + shift))
+    allowed = ((np.arange(1, chain.N) - n * orbit.seed) % 2 == 0) & ((n % 2 == 1) | (chain.alpha != 0))
+    with np.errstate(divide="ignore"):
+        sizes = np.where(allowed, SAFETY * float(orbit.bound) * largest / divisors, 0.0)
+    relative = float(sizes[1, orbit.seed - 1] / abs(float(orbit.amplitude)))
+    sizes[: len(cosines)] += _along_the_family(chain, orbit.seeds, cosines, relative)
+    return _Errors(n, omega * n[:, 0], sizes)
