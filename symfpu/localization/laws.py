@@ -24,6 +24,7 @@ Floats = NDArray[np.float64]
 
 FLOOR = 1e-22  # of the largest energy: ten times the rounding of an orbit on T + V with N = 512 to T = 1e6 (docs/localization.md)
 LAST_BIT = 0.045 * 2.0**-104  # mean square of one rounding, relative: EPS^2/12 times the mean of 1/m^2 over mantissas m
+FLOOR_ADVICE = "pass spectrum_floor(solution) for spectra in closed form"
 BLOCKS = 2  # groups of modes, at least, for a line with an error bar
 
 
@@ -261,7 +262,8 @@ def fit_profile(
     modes : tail, all q > s; middle, those of `middle_modes`; or a list.
     power : of kappa, a dimensionless number, or None for a fitted one: 2 in Eq. eksa2, 0 in Eq. eksp2.
     floor : modes at or below it are left out; a number, relative to the largest E_q, or energies (N-1,) in
-        the unit of the spectrum (`rounding_floor`). For spectra in closed form pass 0.
+        the unit of the spectrum: `rounding_floor` of an orbit, `spectrum_floor` of a torus or breather. 0
+        fits rounding too.
 
     All modes count alike. Errors: jackknife over the groups D_k, since within a group the residuals are a
     common staircase; they know of no systematic bend. A part of a group at the end of the tail counts as one.
@@ -357,8 +359,8 @@ def _floor(chain: Chain, floor: float | ArrayLike, E: Floats) -> Floats:
     try:
         least = np.asarray(floor, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError("floor", floor, f"a number, or {chain.N - 1} of them", "pass 0 for spectra in closed form") from error
+        raise InputError("floor", floor, f"a number, or {chain.N - 1} of them", FLOOR_ADVICE) from error
     least = least * E.max() if least.ndim == 0 else least
     if least.shape not in ((), (chain.N - 1,)) or not (np.isfinite(least) & (least >= 0)).all():
-        raise InputError("floor", floor, f"a number, 0 or more, or {chain.N - 1} of them", "pass 0 for spectra in closed form")
+        raise InputError("floor", floor, f"a number, 0 or more, or {chain.N - 1} of them", FLOOR_ADVICE)
     return np.asarray(np.broadcast_to(least, E.shape))
