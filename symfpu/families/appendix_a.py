@@ -74,9 +74,9 @@ class NoFurtherMember(SymfpuError):
 
 @dataclass(frozen=True, eq=False)
 class AppendixAMember:
-    """One torus of a family. increment .
+    """One torus of a family.
 
-    Delta epsilon_l of the family, the growth of the linear specific energy asked for.
+    increment : Delta epsilon_l of the family, the growth of the linear specific energy asked for.
     """
 
     torus: QTorus
@@ -113,18 +113,15 @@ class AppendixAMember:
 
     @property
     def linear_specific_energy(self) -> float:
-        """epsilon_l = (1/N) sum over the seeds of Omega^2 A^2 / 2 (Eq.
-
-        Linespe), with the amplitudes of the solution.
-        """
+        """epsilon_l = (1/N) sum over the seeds of Omega^2 A^2 / 2 (Eq. linespe), as solved."""
         return linear_specific_energy(self.torus.chain, self.torus.amplitudes)
 
 
 @dataclass(frozen=True, eq=False)
 class AppendixAFamily:
-    """A family of tori, energies growing. ending : why it ends here. failure .
+    """A family of tori, energies growing.
 
-    The error that ended it, None if it has what was asked.
+    ending : why it ends here. failure : the error that ended it, None if it has what was asked.
     """
 
     members: tuple[AppendixAMember, ...] = field(repr=False)
@@ -452,9 +449,9 @@ class _Family:
         return torus
 
     def _jacobian(self, shift: Floats, squares: Floats, difference: float) -> Floats:
-        """J_A = dA_i^2 / d omega_j by differences (Eq. jacome); shape (s, s). Eq.
+        """J_A = dA_i^2 / d omega_j by differences (Eq. jacome); shape (s, s).
 
-        Omeprime needs its inverse, d omega_i / dA_j^2.
+        Eq. omeprime needs its inverse, d omega_i / dA_j^2.
         """
         for halving in range(HALVINGS + 1):
             columns = []
@@ -496,9 +493,9 @@ class _Family:
         return np.asarray(terms[first])
 
     def _growth(self, increment: float) -> Floats:
-        """Increments of A^2, those of Omega^2 A^2 / 2 equal and N Delta epsilon_l in all (Eq.
+        """Increments of A^2 (Eq. omeprime); shape (s,).
 
-        Omeprime); shape (s,).
+        Those of Omega^2 A^2 / 2 are equal, and N Delta epsilon_l in all.
         """
         return np.asarray(2 * self.chain.N * increment / (len(self.seeds) * self.linear**2))
 

@@ -47,9 +47,9 @@ def quantities(torus: RefinedTorus) -> dict[str, float]:
 
 
 class _Sign(NamedTuple):
-    """A divisor that changes its sign between two tori. part .
+    """A divisor that changes its sign between two tori.
 
-    Of their distance, where it does so by interpolation.
+    part : of their distance, where it does so by interpolation.
     """
 
     mode: int
@@ -280,9 +280,9 @@ def events_between(way: Way, first: Member, second: Member, after: int) -> list[
 
 
 class Found(NamedTuple):
-    """The next member of a family. kept .
+    """The next member of a family.
 
-    Members before it, fewer than there are where these have passed the goal.
+    kept : members before it, fewer than there are where these have passed the goal.
     """
 
     kept: int

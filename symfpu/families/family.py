@@ -270,7 +270,7 @@ def family(
 def _by_arclength(plan: Plan, kept: Kept, report: Report, *, lower: bool = True) -> Family:
     """Newton's method and pseudo-arclength continuation, gone on with from the members there are.
 
-    Lower : as for `_begun`.
+    lower : as for `_begun`.
     """
     if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
 

@@ -31,9 +31,10 @@ APPENDIX_BEGINNING = "1/10"  # the same with Appendix A
 
 @dataclass(frozen=True)
 class Plan:
-    """Checked arguments. start : amplitudes that have the first energy in the linear chain.
+    """Checked arguments.
 
-    Chosen : by from_energy, not from the goal.
+    start : amplitudes that have the first energy in the linear chain; chosen : by from_energy, not
+    from the goal.
     """
 
     chain: Chain
