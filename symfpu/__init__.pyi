@@ -65,7 +65,9 @@ from symfpu.dynamics.alignment import seconds_needed as seconds_needed
 from symfpu.dynamics.orbits import Orbit as Orbit
 from symfpu.dynamics.orbits import integrate as integrate
 
-# localization: laws, profiles, growth, recurrence, trials
+# localization: laws, floors, profiles, growth, recurrence, trials
+from symfpu.localization.floors import coefficient_errors as coefficient_errors
+from symfpu.localization.floors import spectrum_floor as spectrum_floor
 from symfpu.localization.growth import GroupGrowth as GroupGrowth
 from symfpu.localization.growth import GrowthExponents as GrowthExponents
 from symfpu.localization.growth import growth_exponents as growth_exponents

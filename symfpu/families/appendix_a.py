@@ -1,13 +1,16 @@
-"""Families of q-tori of growing energy by the algorithm of Appendix A: steps in frequency from a finite-difference Jacobian.
+"""Families of q-tori of growing energy by Appendix A: steps in frequency from a Jacobian of differences.
 
-Every member is a root of Eq. omeser at chosen frequencies. A step asks for equal increments of the linear mode energies
-Omega_q^2 A_q^2 / 2 of all seeds. Where we differ from the printed algorithm:
-- the trial frequencies (Eqs. omamid, omafin, omebguess) have the correct bracket: it is the lowest correction of the series, first with
+Every member is a root of Eq. omeser at chosen frequencies. A step asks for equal increments of the
+linear mode energies Omega_q^2 A_q^2 / 2 of all seeds. Where we differ from the printed algorithm:
+- the trial frequencies (Eqs. omamid, omafin, omebguess) have the correct bracket: it is the lowest
+  correction of the series, first with
   the divisors of the linear frequencies, then with those of the middle ones;
 - the neighbouring trial amplitudes are already one step of equal increments away;
-- after a step the new torus is the original one of the next, and the former one its neighbour, from which Delta omega is taken
+- after a step the new torus is the original one of the next, and the former one its neighbour, from
+  which Delta omega is taken
   (Eq. delome); the text leaves this open;
-- Delta omega, a step in every single frequency as long as that of all together, may leave the frequencies that have amplitudes: it is
+- Delta omega, a step in every single frequency as long as that of all together, may leave the
+  frequencies that have amplitudes: it is
   halved until all s neighbours have.
 """
 
@@ -23,7 +26,13 @@ from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
-from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
+from symfpu.errors import (
+    DidNotConverge,
+    InputError,
+    NoRealAmplitude,
+    SymfpuError,
+    UndeterminedAmplitudes,
+)
 from symfpu.families.continuation import Level
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
@@ -42,28 +51,45 @@ HALVINGS = 12  # of Delta omega
 ASTRAY = 0.5  # change of the increment from the one asked for, relative, beyond which the root is another one
 PLACE = 1e-15  # of an energy between two tori, in their distance or in ln A
 BEYOND = 1.2  # what a step that is to pass an energy is longer than the estimate
-NO_ROOT = (NoRealAmplitude, DidNotConverge, InputError, UndeterminedAmplitudes)  # InputError: resonant or negative frequencies
+NO_ROOT = (
+    NoRealAmplitude,
+    DidNotConverge,
+    InputError,
+    UndeterminedAmplitudes,
+)  # InputError: resonant or negative frequencies
 
 
 class NoFurtherMember(SymfpuError):
     """A family ended: carries why, the frequencies that were tried, and the error behind it."""
 
-    def __init__(self, what: str, seeds: Sequence[int], tried: Sequence[float], reason: str) -> None:
+    def __init__(
+        self, what: str, seeds: Sequence[int], tried: Sequence[float], reason: str
+    ) -> None:
         self.seeds, self.frequencies, self.reason = tuple(seeds), tuple(tried), reason
         omega = ", ".join(f"omega_{q} = {w:.9g}" for q, w in zip(seeds, tried, strict=True))
-        super().__init__(f"{what} at {omega}: {reason}; take a smaller increment or another frequency order")
+        super().__init__(
+            f"{what} at {omega}: {reason}; take a smaller increment or another frequency order"
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class AppendixAMember:
-    """One torus of a family. increment : Delta epsilon_l of the family, the growth of the linear specific energy asked for."""
+    """One torus of a family.
+
+    increment : Delta epsilon_l of the family, the growth of the linear specific energy asked for.
+    """
 
     torus: QTorus
     increment: float
 
     def __repr__(self) -> str:
-        omega = ", ".join(f"omega_{q}={text(float(w), 12)}" for q, w in zip(self.torus.seeds, self.frequencies, strict=True))
-        return f"AppendixAMember({omega}, epsilon_l={self.linear_specific_energy:.8g}, {self.torus!r})"
+        omega = ", ".join(
+            f"omega_{q}={text(float(w), 12)}"
+            for q, w in zip(self.torus.seeds, self.frequencies, strict=True)
+        )
+        return (
+            f"AppendixAMember({omega}, epsilon_l={self.linear_specific_energy:.8g}, {self.torus!r})"
+        )
 
     @property
     def frequencies(self) -> tuple[Fraction, ...]:
@@ -87,20 +113,27 @@ class AppendixAMember:
 
     @property
     def linear_specific_energy(self) -> float:
-        """epsilon_l = (1/N) sum over the seeds of Omega^2 A^2 / 2 (Eq. linespe), with the amplitudes of the solution."""
+        """epsilon_l = (1/N) sum over the seeds of Omega^2 A^2 / 2 (Eq. linespe), as solved."""
         return linear_specific_energy(self.torus.chain, self.torus.amplitudes)
 
 
 @dataclass(frozen=True, eq=False)
 class AppendixAFamily:
-    """A family of tori, energies growing. ending : why it ends here. failure : the error that ended it, None if it has what was asked."""
+    """A family of tori, energies growing.
+
+    ending : why it ends here. failure : the error that ended it, None if it has what was asked.
+    """
 
     members: tuple[AppendixAMember, ...] = field(repr=False)
     ending: str
     failure: SymfpuError | None = None
 
     def __repr__(self) -> str:
-        energies = f", H={self.members[0].energy:.6g} .. {self.members[-1].energy:.6g}" if self.members else ""
+        energies = (
+            f", H={self.members[0].energy:.6g} .. {self.members[-1].energy:.6g}"
+            if self.members
+            else ""
+        )
         return f"AppendixAFamily({len(self.members)} members{energies}; {self.ending})"
 
 
@@ -122,9 +155,10 @@ def appendix_a(
     coordinate_order: int | None = None,
     after: tuple[AppendixAMember, AppendixAMember] | None = None,
 ) -> AppendixAFamily:
-    """So many further tori of growing energy by the algorithm of Appendix A, or fewer with the reason in `ending`.
+    """So many further tori of growing energy by Appendix A, or fewer with the reason in `ending`.
 
-    The arguments are those of `appendix_a_members`; members : how many tori, from 1 up. Raises InputError only.
+    The arguments are those of `appendix_a_members`; members : how many tori, from 1 up. Raises
+    InputError only.
 
     >>> family = appendix_a(Chain(N=8, beta=1), (1, 2), {1: "0.1", 2: "0.05"}, 3, members=4)
     >>> family.ending, [round(m.linear_specific_energy, 8) for m in family.members]
@@ -164,23 +198,32 @@ def appendix_a_members(
 ) -> Iterator[AppendixAMember]:
     """The tori of Appendix A one by one, without end: stop taking them, or catch NoFurtherMember.
 
-    start_amplitudes : trial amplitudes of the seeds, positive; halved until they have a solution. order : of the series, at which
-    Q_q(t) is cut unless coordinate_order says less; frequency_order : K of the frequency series, up to order. increment :
-    Delta epsilon_l, growth of the linear specific energy (Eq. linespe) in one step; default a tenth of that of the (halved) trial
-    amplitudes. after : the last two members of a family, which is then continued with their increment; the trial amplitudes are
-    not used. Raises InputError at the call.
+    start_amplitudes : trial amplitudes of the seeds, positive; halved until they have a solution.
+    order : of the series, at which Q_q(t) is cut unless coordinate_order says less; frequency_order
+    : K of the frequency series, up to order. increment : Delta epsilon_l, growth of the linear
+    specific energy (Eq. linespe) in one step; default a tenth of that of the (halved) trial
+    amplitudes. after : the last two members of a family, which is then continued with their
+    increment; the trial amplitudes are not used. Raises InputError at the call.
 
-    The linear specific energy of the seeds grows by Delta epsilon_l at each step, to first order, and H by about N Delta epsilon_l.
+    The linear specific energy of the seeds grows by Delta epsilon_l at each step, to first order,
+    and H by about N Delta epsilon_l.
     """
     plan = checked_plan(chain, order, frequency_order, coordinate_order, None, None)
     modes = tuple(sorted(seed_modes(seeds, chain.N)))
     plan.check_size(chain, modes)
     start = positive_by_seed(chain, "start_amplitudes", start_amplitudes)
     if tuple(start) != modes:
-        raise InputError("start_amplitudes", start_amplitudes, f"an amplitude for each of the seeds {modes}", "name every seed once")
+        raise InputError(
+            "start_amplitudes",
+            start_amplitudes,
+            f"an amplitude for each of the seeds {modes}",
+            "name every seed once",
+        )
     step = None if increment is None else float(exact(increment, "increment"))
     if step is not None and not 0 < step < np.inf:
-        raise InputError("increment", increment, "a positive number", "take a part of the linear specific energy")
+        raise InputError(
+            "increment", increment, "a positive number", "take a part of the linear specific energy"
+        )
     family = _Family(chain, modes, plan)
     if after is not None:
         return family.continued(*_last_two(family, after))
@@ -198,9 +241,10 @@ def members_between(
     goal: Level,
     after: tuple[AppendixAMember, AppendixAMember] | None = None,
 ) -> Iterator[AppendixAMember]:
-    """The tori of Appendix A from one energy to another: the first has the one, the last the other, to rounding.
+    """The tori of Appendix A from one energy to another, which the first and the last have to rounding.
 
-    start_amplitudes : of which a multiple has the first energy. The others as for `appendix_a_members`. Raises NoFurtherMember.
+    start_amplitudes : of which a multiple has the first energy. The others as for
+    `appendix_a_members`. Raises NoFurtherMember.
     """
     family = _Family(chain, seeds, checked_plan(chain, order, None, None, None, None))
     if after is None:
@@ -220,9 +264,14 @@ def members_between(
 
 
 def member_at(level: Level, before: AppendixAMember, last: AppendixAMember) -> AppendixAMember:
-    """The torus of an energy between two members, its frequencies on the line between theirs; raises NoFurtherMember."""
+    """The torus of an energy between two members, its frequencies on the line between theirs.
+
+    Raises NoFurtherMember.
+    """
     series = before.torus.series
-    plan = checked_plan(series.chain, series.order, before.torus.frequency_order, before.torus.order, None, None)
+    plan = checked_plan(
+        series.chain, series.order, before.torus.frequency_order, before.torus.order, None, None
+    )
     return _Family(series.chain, series.seeds, plan).between(before, last, level)
 
 
@@ -230,7 +279,10 @@ def _last_two(family: _Family, after: object) -> tuple[AppendixAMember, Appendix
     allowed = f"two successive members of a family of {family.chain!r}, seeds {family.seeds}"
     match after:
         case (AppendixAMember() as before, AppendixAMember() as last):
-            same = all((m.torus.chain, m.torus.seeds) == (family.chain, family.seeds) for m in (before, last))
+            same = all(
+                (m.torus.chain, m.torus.seeds) == (family.chain, family.seeds)
+                for m in (before, last)
+            )
             if same and before.frequencies != last.frequencies:
                 return before, last
     raise InputError("after", after, allowed, "pass family.members[-2:]")
@@ -242,7 +294,10 @@ def _first(failure: object) -> str:
 
 
 def _bracket(excess: Callable[[float], float]) -> tuple[float, float]:
-    """Two numbers between which a function that grows about as 2x passes zero; raises the error of the last one that has no value."""
+    """Two numbers between which a function that grows about as 2x passes zero.
+
+    Raises the error of the last one that has no value.
+    """
     below, above, without = -math.inf, math.inf, math.inf
     x, failure = 0.0, None
     for _ in range(ATTEMPTS):
@@ -284,7 +339,12 @@ class _Family:
             except NO_ROOT as error:
                 failure, trial = error, LOWERED * trial
         else:
-            raise NoFurtherMember("no torus for the trial amplitudes", self.seeds, self.linear + self.trial_shifts(trial), _first(failure))
+            raise NoFurtherMember(
+                "no torus for the trial amplitudes",
+                self.seeds,
+                self.linear + self.trial_shifts(trial),
+                _first(failure),
+            )
         yield first
         yield second
         yield from self.continued(first, second)
@@ -312,10 +372,14 @@ class _Family:
         x, _ = self._solved(torus, level, None, self.linear + self.trial_shifts(trial))
         return math.exp(x) * trial
 
-    def between(self, before: AppendixAMember, last: AppendixAMember, level: Level) -> AppendixAMember:
+    def between(
+        self, before: AppendixAMember, last: AppendixAMember, level: Level
+    ) -> AppendixAMember:
         """The torus of an energy on the line between the frequencies of two; raises NoFurtherMember."""
         start, end = (shifts(m.torus.series) for m in (before, last))
-        near, far = (np.array([float(a) ** 2 for a in m.amplitudes.values()]) for m in (before, last))
+        near, far = (
+            np.array([float(a) ** 2 for a in m.amplitudes.values()]) for m in (before, last)
+        )
 
         def torus(part: float) -> QTorus:
             return self._torus(start + part * (end - start), near + part * (far - near))
@@ -324,11 +388,16 @@ class _Family:
         return AppendixAMember(found, last.increment)
 
     def _solved(
-        self, torus: Callable[[float], QTorus], level: Level, bracket: tuple[float, float] | None, tried: Floats
+        self,
+        torus: Callable[[float], QTorus],
+        level: Level,
+        bracket: tuple[float, float] | None,
+        tried: Floats,
     ) -> tuple[float, QTorus]:
-        """Where a line of tori has an energy, and the torus there. bracket : on it; None looks for one, ln A along the line.
+        """Where a line of tori has an energy, and the torus there.
 
-        tried : frequencies to be named in NoFurtherMember.
+        bracket : on the line; None looks for one, ln A along the line. tried : frequencies to be
+        named in NoFurtherMember.
         """
         from scipy.optimize import brentq
 
@@ -343,9 +412,13 @@ class _Family:
                 return x, found
         except NO_ROOT as error:
             reason = _first(error)
-        raise NoFurtherMember(f"no torus of {level.name} = {level.energy:.6g}", self.seeds, tried.tolist(), reason)
+        raise NoFurtherMember(
+            f"no torus of {level.name} = {level.energy:.6g}", self.seeds, tried.tolist(), reason
+        )
 
-    def continued(self, before: AppendixAMember, last: AppendixAMember) -> Iterator[AppendixAMember]:
+    def continued(
+        self, before: AppendixAMember, last: AppendixAMember
+    ) -> Iterator[AppendixAMember]:
         """The iteration, without end."""
         while True:
             before, last = last, AppendixAMember(self._next(before, last), last.increment)
@@ -358,18 +431,28 @@ class _Family:
         growth = self._growth(last.increment)
         aimed = shift
         try:
-            aimed = shift + np.linalg.solve(self._jacobian(shift, squares, float(np.linalg.norm(shift - earlier))), growth)
+            aimed = shift + np.linalg.solve(
+                self._jacobian(shift, squares, float(np.linalg.norm(shift - earlier))), growth
+            )
             torus = self._torus(aimed, squares + growth)
         except (*NO_ROOT, np.linalg.LinAlgError) as failure:
-            raise NoFurtherMember("no further torus", self.seeds, self.linear + aimed, _first(failure)) from failure
+            raise NoFurtherMember(
+                "no further torus", self.seeds, self.linear + aimed, _first(failure)
+            ) from failure
         gained = linear_specific_energy(self.chain, torus.amplitudes) - last.linear_specific_energy
         if not abs(gained - last.increment) <= ASTRAY * last.increment:
-            reason = f"the linear specific energy grew by {gained:.3g}, not {last.increment:.3g}: too long a step, or another root"
+            reason = (
+                f"the linear specific energy grew by {gained:.3g}, not {last.increment:.3g}: "
+                f"too long a step, or another root"
+            )
             raise NoFurtherMember("no further torus", self.seeds, self.linear + aimed, reason)
         return torus
 
     def _jacobian(self, shift: Floats, squares: Floats, difference: float) -> Floats:
-        """J_A = dA_i^2 / d omega_j by differences (Eq. jacome); shape (s, s). Eq. omeprime needs its inverse, d omega_i / dA_j^2."""
+        """J_A = dA_i^2 / d omega_j by differences (Eq. jacome); shape (s, s).
+
+        Eq. omeprime needs its inverse, d omega_i / dA_j^2.
+        """
         for halving in range(HALVINGS + 1):
             columns = []
             try:
@@ -391,20 +474,29 @@ class _Family:
     def _torus(self, shift: Floats, guess: Floats) -> QTorus:
         series = lindstedt(self.chain, self.seeds, self._exact(shift), self.plan.order)
         K, coordinates = self.plan.frequency_order, self.plan.coordinate_order
-        return solve_amplitudes(series, frequency_order=K, order=coordinates, guess=self._by_seed(np.sqrt(guess)))
+        return solve_amplitudes(
+            series, frequency_order=K, order=coordinates, guess=self._by_seed(np.sqrt(guess))
+        )
 
     def trial_shifts(self, amplitudes: Floats) -> Floats:
-        """Lowest corrections, first with the linear frequencies in the divisors and then with those found (Eqs. omamid, omafin).
+        """Lowest corrections (Eqs. omamid, omafin).
+
+        First with the linear frequencies in the divisors and then with those found.
 
         With beta alone no divisor enters, and both are Eq. omebguess. Shape (s,).
         """
         middle = np.array(list(frequency_shift(self.chain, self._by_seed(amplitudes)).values()))
         first = 2 // self.chain.degree_step
-        terms, _ = lindstedt(self.chain, self.seeds, self._exact(middle), first).frequency_terms(amplitudes**2)
+        terms, _ = lindstedt(self.chain, self.seeds, self._exact(middle), first).frequency_terms(
+            amplitudes**2
+        )
         return np.asarray(terms[first])
 
     def _growth(self, increment: float) -> Floats:
-        """Increments of A^2, those of Omega^2 A^2 / 2 equal and N Delta epsilon_l in all (Eq. omeprime); shape (s,)."""
+        """Increments of A^2 (Eq. omeprime); shape (s,).
+
+        Those of Omega^2 A^2 / 2 are equal, and N Delta epsilon_l in all.
+        """
         return np.asarray(2 * self.chain.N * increment / (len(self.seeds) * self.linear**2))
 
     def _exact(self, shift: Floats) -> tuple[Fraction, ...]:

@@ -1,8 +1,9 @@
 """Families of tori by pseudo-arclength continuation from the linear limit.
 
-A family keeps the ratio of its amplitudes or mode energies. Its way is measured in the variables (ln |A|, shift / scale) of the seeds,
-scale the shift where the step begins: from one member a step goes along the secant of the last two and Newton's method returns to the
-family in the plane across it, so that a turn of the energy or of a frequency is passed like any other point.
+A family keeps the ratio of its amplitudes or mode energies. Its way is measured in the variables
+(ln |A|, shift / scale) of the seeds, scale the shift where the step begins: from one member a step
+goes along the secant of the last two and Newton's method returns to the family in the plane across
+it, so that a turn of the energy or of a frequency is passed like any other point.
 """
 
 from __future__ import annotations
@@ -23,15 +24,27 @@ from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import Amplitude, Condition, Energy, Plane, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, Floats
 from symfpu.refinement.newton import Report
-from symfpu.refinement.tori import TOLERANCE, NoTorus, RefinedTorus, refine_at_amplitudes, refined_torus, shifts_of
+from symfpu.refinement.tori import (
+    TOLERANCE,
+    NoTorus,
+    RefinedTorus,
+    refine_at_amplitudes,
+    refined_torus,
+    shifts_of,
+)
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 from symfpu.tori.torus import QTorus
 
 GUESS_ORDER = 2  # of the series that begins a family
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
-DOUBTFUL_STEP = 0.05  # the smallest from a doubtful member: near a saddle ever more harmonics let such ones crawl on without end
-EASY, FACTOR = 4, 1.3  # Newton steps up to which the next step along the way is longer, and by how much
+DOUBTFUL_STEP = (
+    0.05  # the smallest from a doubtful member: near a saddle such ones crawl on without end
+)
+EASY, FACTOR = (
+    4,
+    1.3,
+)  # Newton steps up to which the next step along the way is longer, and by how much
 KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
 ASTRAY = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
 UNRESOLVED = 1e-6  # residual beyond which a torus is no member
@@ -87,7 +100,7 @@ class Member:
 
     >>> from symfpu import Chain, family
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").members[0]
-    Member(torus, H=0.0005004912021, omega_1=0.390193414744, A_1=0.081046503, residual ...)
+    Member(torus, H=0.0005, omega_1=..., A_1=..., residual ...)
     """
 
     torus: QuasiPeriodic
@@ -104,11 +117,21 @@ class Member:
         return "doubtful" if self.warnings else "torus"
 
     def __repr__(self) -> str:
-        rates = ", ".join(f"omega_{q}={float(w):.12g}" for q, w in zip(self.torus.seeds, self.torus.frequencies, strict=True))
+        rates = ", ".join(
+            f"omega_{q}={float(w):.12g}"
+            for q, w in zip(self.torus.seeds, self.torus.frequencies, strict=True)
+        )
         amplitudes = ", ".join(f"A_{q}={a:.8g}" for q, a in self.amplitudes.items())
-        stability = "" if self.multipliers is None else ", stable" if self.multipliers.stable else ", unstable"
+        stability = (
+            ""
+            if self.multipliers is None
+            else ", stable"
+            if self.multipliers.stable
+            else ", unstable"
+        )
         doubts = "".join(f"; {w}" for w in self.warnings)
-        return f"Member({self.verdict}, H={self.energy:.10g}, {rates}, {amplitudes}, residual {self.residual:.2g}{stability}{doubts})"
+        where = f"H={self.energy:.10g}, {rates}, {amplitudes}, residual {self.residual:.2g}"
+        return f"Member({self.verdict}, {where}{stability}{doubts})"
 
 
 @dataclass(frozen=True)
@@ -135,11 +158,18 @@ class Event:
     interpolated: bool = False
 
     def __repr__(self) -> str:
-        where = f"H = {self.energy:.3g} (interpolated)" if self.interpolated else f"H = {self.energy:.10g}"
+        where = (
+            f"H = {self.energy:.3g} (interpolated)"
+            if self.interpolated
+            else f"H = {self.energy:.10g}"
+        )
         if self.kind == "resonance":
             harmonic = ",".join(map(str, self.harmonic))
-            return f"resonance of mode {self.mode} with harmonic ({harmonic}) at {where}, coefficient {self.value:.2g}"
-        return f"{self.kind}: {self.what} at {where}" + (f", {self.value:.10g}" if self.kind == "fold" else "")
+            what = f"mode {self.mode} with harmonic ({harmonic})"
+            return f"resonance of {what} at {where}, coefficient {self.value:.2g}"
+        return f"{self.kind}: {self.what} at {where}" + (
+            f", {self.value:.10g}" if self.kind == "fold" else ""
+        )
 
 
 def first_torus(
@@ -152,7 +182,8 @@ def first_torus(
 ) -> RefinedTorus:
     """The torus with these small amplitudes, from a short series about the lowest frequency shift.
 
-    energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed is as given.
+    energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed
+    is as given.
     """
     guess = _short_series(chain, amplitudes)
     if energy_ratio is None:
@@ -173,10 +204,15 @@ def first_at(
 ) -> RefinedTorus:
     """The torus of an energy near the linear limit, from a short series with about its amplitudes.
 
-    ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found are far from those of the series:
-    a torus of another family may have the energy.
+    ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found
+    are far from those of the series: a torus of another family may have the energy.
     """
-    found = refined_torus(_short_series(chain, amplitudes), [level.condition, *ratio], tolerance=tolerance, report=report)
+    found = refined_torus(
+        _short_series(chain, amplitudes),
+        [level.condition, *ratio],
+        tolerance=tolerance,
+        report=report,
+    )
     astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
     if astray > FAR:
         raise NoTorus(f"an amplitude is {astray:.0%} off the one expected", found, found.residual())
@@ -187,7 +223,10 @@ def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
     """The series of lowest orders about the frequencies that these amplitudes shift."""
     shifts = frequency_shift(chain, amplitudes)
     with mpmath.workdps(DIGITS):
-        omega = [Fraction(text(chain.linear_frequency(q) + mpmath.mpf(shifts[q]), 25)) for q in amplitudes]
+        omega = [
+            Fraction(text(chain.linear_frequency(q) + mpmath.mpf(shifts[q]), 25))
+            for q in amplitudes
+        ]
     series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
     return QTorus(series, dict(amplitudes), dict.fromkeys(amplitudes, 0.0), 0, GUESS_ORDER)
 
@@ -220,14 +259,18 @@ def periodic(torus: QuasiPeriodic) -> PeriodicOrbit:
     with mpmath.workdps(2 * DIGITS):
         w = mpmath.mpf(torus.frequencies[0].numerator) / torus.frequencies[0].denominator
         sigma = float(w**2 - torus.chain.linear_frequency(torus.seeds[0]) ** 2)
-    return PeriodicOrbit(torus.chain, torus.seeds[0], torus.frequencies[0], cosines, torus.residual(), 0, sigma)
+    return PeriodicOrbit(
+        torus.chain, torus.seeds[0], torus.frequencies[0], cosines, torus.residual(), 0, sigma
+    )
 
 
 def returned(members: Sequence[Member], *, tolerance: float) -> bool:
-    """Whether a family has come back to the linear limit: below where it began, to the torus that the series there lead to.
+    """Whether a family has come back to the linear limit.
 
-    Two tori of the same amplitudes nearer to each other than the root of the tolerance are one: Newton's method leads from one to
-    the other.
+    It is below where it began, at the torus that the series there lead to.
+
+    Two tori of the same amplitudes nearer to each other than the root of the tolerance are one:
+    Newton's method leads from one to the other.
     """
     first, last = members[0], members[-1]
     if len(members) < 3 or not last.energy < min(first.energy, members[-2].energy):
@@ -240,8 +283,15 @@ def returned(members: Sequence[Member], *, tolerance: float) -> bool:
         return False
     rows = {tuple(nu): i for i, nu in enumerate(other.harmonics.tolist())}
     zero = 0 * other.cosines[0]
-    same = np.array([other.cosines[rows[nu]] if nu in rows else zero for nu in map(tuple, last.torus.harmonics.tolist())])
-    return bool(np.abs(last.torus.cosines - same).max() < np.sqrt(tolerance) * np.abs(other.cosines).max())
+    same = np.array(
+        [
+            other.cosines[rows[nu]] if nu in rows else zero
+            for nu in map(tuple, last.torus.harmonics.tolist())
+        ]
+    )
+    return bool(
+        np.abs(last.torus.cosines - same).max() < np.sqrt(tolerance) * np.abs(other.cosines).max()
+    )
 
 
 class Way:
@@ -275,9 +325,15 @@ class Way:
         )
 
     def scales(self) -> Floats:
-        """A size for the shifts of all seeds that vanishes with none of them: the largest relative one, not far below any before."""
+        """A size for the shifts of all seeds that vanishes with none of them.
+
+        The largest relative one, not far below any before.
+        """
         linear = self.tori[0].chain.frequencies()[np.array(self.tori[0].seeds) - 1]
-        relative = [float(np.max(np.abs(shifts_of(torus)).astype(float) / linear)) for torus in self.tori[-2:]]
+        relative = [
+            float(np.max(np.abs(shifts_of(torus)).astype(float) / linear))
+            for torus in self.tori[-2:]
+        ]
         self.largest = max(self.largest, *relative)
         return np.asarray(max(relative[-1], KEPT_SCALE * self.largest) * linear)
 
@@ -293,17 +349,29 @@ class Way:
         """The torus whose way from the last one, along the secant, has this length; raises NoTorus."""
         last, before = self.tori[-1], self.tori[-2]
         scales = self.scales()
-        x, difference = self.variables(last, scales), self.variables(last, scales) - self.variables(before, scales)
+        x, difference = (
+            self.variables(last, scales),
+            self.variables(last, scales) - self.variables(before, scales),
+        )
         length = float(np.linalg.norm(difference.astype(float)))
         tangent = (difference / length).astype(float)
         plane = Plane(tuple(x), tuple(tangent.tolist()), tuple(scales.tolist()), distance)
         found = refined_torus(
-            extrapolated(before, last, distance / length), self._conditions(plane), tolerance=self.tolerance, report=self.report
+            extrapolated(before, last, distance / length),
+            self._conditions(plane),
+            tolerance=self.tolerance,
+            report=self.report,
         )
         _require_resolved(found)
-        off = float(np.linalg.norm((self.variables(found, scales) - x).astype(float) - distance * tangent))
+        off = float(
+            np.linalg.norm((self.variables(found, scales) - x).astype(float) - distance * tangent)
+        )
         if off > ASTRAY * max(abs(distance), SMALLEST_STEP):
-            raise NoTorus(f"the torus found is {off / abs(distance):.2g} steps off the way", found, found.residual())
+            raise NoTorus(
+                f"the torus found is {off / abs(distance):.2g} steps off the way",
+                found,
+                found.residual(),
+            )
         return found
 
     def between(self, level: Level) -> RefinedTorus:
@@ -318,20 +386,29 @@ class Way:
         _require_resolved(found)
         along, astray = self.place(found)
         if astray > ASTRAY or not -SPARE <= along <= 1 + SPARE:
-            raise NoTorus(f"the torus of {level.name} = {level.energy:.6g} is not between two neighbours", found, found.residual())
+            raise NoTorus(
+                f"the torus of {level.name} = {level.energy:.6g} is not between two neighbours",
+                found,
+                found.residual(),
+            )
         return found
 
     def place(self, torus: RefinedTorus) -> tuple[float, float]:
-        """How far along the way from the last torus but one to the last another one is, and how far off it, in their distance."""
+        """How far along the way between the last two tori another one is, and off it, in their distance."""
         scales = self.scales()
-        start, end, here = (self.variables(x, scales).astype(float) for x in (*self.tori[-2:], torus))
+        start, end, here = (
+            self.variables(x, scales).astype(float) for x in (*self.tori[-2:], torus)
+        )
         secant = end - start
         along = float((here - start) @ secant) / float(secant @ secant)
         off = float(np.linalg.norm(here - start - along * secant))
         return along, off / float(np.linalg.norm(secant))
 
     def advance(self, goal: Level) -> RefinedTorus:
-        """The next torus, by the longest step that succeeds; that of the goal where it leads beyond. Raises NoTorus when none does."""
+        """The next torus, by the longest step that succeeds.
+
+        That of the goal where it leads beyond. Raises NoTorus when none does.
+        """
         while True:
             try:
                 found = self.at(self.step)
@@ -359,7 +436,17 @@ def _require_resolved(found: RefinedTorus) -> None:
 def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> FourierTorus:
     """The guess on the line through two tori, `ratio` of their distance beyond the second."""
     rows = {tuple(nu): i for i, nu in enumerate(before.harmonics.tolist())}
-    earlier = np.array([before.cosines[rows[nu]] if nu in rows else 0 * last.cosines[0] for nu in map(tuple, last.harmonics.tolist())])
+    earlier = np.array(
+        [
+            before.cosines[rows[nu]] if nu in rows else 0 * last.cosines[0]
+            for nu in map(tuple, last.harmonics.tolist())
+        ]
+    )
     cosines = last.cosines + ratio * (last.cosines - earlier)
-    frequencies = tuple(b + Fraction(ratio) * (b - a) for a, b in zip(before.frequencies, last.frequencies, strict=True))
-    return FourierTorus(last.chain, last.seeds, frequencies, last.harmonics, cosines, dict(last.phases))
+    frequencies = tuple(
+        b + Fraction(ratio) * (b - a)
+        for a, b in zip(before.frequencies, last.frequencies, strict=True)
+    )
+    return FourierTorus(
+        last.chain, last.seeds, frequencies, last.harmonics, cosines, dict(last.phases)
+    )

@@ -1,7 +1,7 @@
-"""What happens on the way of a family: folds, resonances and changes of stability between its members, located.
+"""What happens on the way of a family: folds, resonances and changes of stability, located.
 
-A fold is found by parabolas through ever nearer tori, a resonance by Newton's method with the zero divisor as its condition, a change of
-stability by halving.
+A fold is found by parabolas through ever nearer tori, a resonance by Newton's method with the zero
+divisor as its condition, a change of stability by halving.
 """
 
 from __future__ import annotations
@@ -13,14 +13,30 @@ import mpmath
 import numpy as np
 
 from symfpu.breathers.floquet import floquet
-from symfpu.families.continuation import ASTRAY, Event, Level, Member, Way, extrapolated, member, periodic
+from symfpu.families.continuation import (
+    ASTRAY,
+    Event,
+    Level,
+    Member,
+    Way,
+    extrapolated,
+    member,
+    periodic,
+)
 from symfpu.refinement.conditions import Crossing, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
 from symfpu.refinement.tori import NoTorus, RefinedTorus, refined_torus, shifts_of
 
-SIGNIFICANT = 1e-11  # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
-LOCATED, LOCATIONS = 1e-7, 8  # relative change of the place of an event that is enough, and the most members spent on it
-STRONGEST = 8  # crossings of resonances of one step, by their coefficients, that are located by Newton's method
+SIGNIFICANT = (
+    1e-11  # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
+)
+LOCATED, LOCATIONS = (
+    1e-7,
+    8,
+)  # relative change of the place of an event that is enough, and the most members spent on it
+STRONGEST = (
+    8  # crossings of resonances of one step, by their coefficients, that Newton's method locates
+)
 
 
 def quantities(torus: RefinedTorus) -> dict[str, float]:
@@ -31,7 +47,10 @@ def quantities(torus: RefinedTorus) -> dict[str, float]:
 
 
 class _Sign(NamedTuple):
-    """A divisor that changes its sign between two tori. part : of their distance, where it does so by interpolation."""
+    """A divisor that changes its sign between two tori.
+
+    part : of their distance, where it does so by interpolation.
+    """
 
     mode: int
     harmonic: tuple[int, ...]
@@ -40,56 +59,102 @@ class _Sign(NamedTuple):
 
 
 def _signs(first: RefinedTorus, second: RefinedTorus) -> list[_Sign]:
-    """The divisors of significant coefficients that change their sign between two tori, in order of the way."""
+    """The divisors of significant coefficients that change their sign between two tori, as they come."""
     rows = {tuple(nu): i for i, nu in enumerate(first.harmonics.tolist())}
-    pairs = [(rows[nu], j) for j, nu in enumerate(map(tuple, second.harmonics.tolist())) if nu in rows]
+    pairs = [
+        (rows[nu], j) for j, nu in enumerate(map(tuple, second.harmonics.tolist())) if nu in rows
+    ]
     i, j = (np.array(x) for x in zip(*pairs, strict=True))
     linear = first.chain.frequencies()
     known = []
     for torus, at in ((first, i), (second, j)):
         rates = np.abs(torus.harmonics[at] @ np.array([float(w) for w in torus.frequencies]))
         known.append(rates[:, None] - linear)
-    size = np.maximum(np.abs(first.cosines[i]), np.abs(second.cosines[j])) / np.abs(second.cosines).max()
+    size = (
+        np.maximum(np.abs(first.cosines[i]), np.abs(second.cosines[j]))
+        / np.abs(second.cosines).max()
+    )
     seeds = np.zeros(size.shape, dtype=bool)
     for k, q in enumerate(first.seeds):
-        seeds[:, q - 1] = (np.abs(first.harmonics[i]).sum(axis=1) == 1) & (first.harmonics[i][:, k] == 1)
+        seeds[:, q - 1] = (np.abs(first.harmonics[i]).sum(axis=1) == 1) & (
+            first.harmonics[i][:, k] == 1
+        )
     found = []
-    for h, q in zip(*np.nonzero((known[0] * known[1] < 0) & (size > SIGNIFICANT) & ~seeds), strict=True):
+    for h, q in zip(
+        *np.nonzero((known[0] * known[1] < 0) & (size > SIGNIFICANT) & ~seeds), strict=True
+    ):
         part = float(known[0][h, q] / (known[0][h, q] - known[1][h, q]))
-        found.append(_Sign(int(q) + 1, tuple(first.harmonics[i[h]].tolist()), part, float(second.cosines[j[h], q])))
+        found.append(
+            _Sign(
+                int(q) + 1,
+                tuple(first.harmonics[i[h]].tolist()),
+                part,
+                float(second.cosines[j[h], q]),
+            )
+        )
     return sorted(found, key=lambda sign: sign.part)
 
 
 def resonances(way: Way, after: int) -> Iterator[Event]:
     """The divisors that change their sign between the last two tori.
 
-    The strongest are located by Newton's method. The others, and those where it finds no torus between the two, are interpolated.
+    The strongest are located by Newton's method. The others, and those where it finds no torus
+    between the two, are interpolated.
     """
     first, second = way.tori[-2:]
     signs = _signs(first, second)
-    strongest = sorted(signs, key=lambda sign: -abs(sign.coefficient))[: 0 if first.warnings or second.warnings else STRONGEST]
+    strongest = sorted(signs, key=lambda sign: -abs(sign.coefficient))[
+        : 0 if first.warnings or second.warnings else STRONGEST
+    ]
     for sign in signs:
         torus = _resonant(way, sign) if sign in strongest else None
         if torus is None:
-            energy, coefficient = float(first.energy()) + sign.part * float(second.energy() - first.energy()), sign.coefficient
+            energy, coefficient = (
+                float(first.energy()) + sign.part * float(second.energy() - first.energy()),
+                sign.coefficient,
+            )
         else:
             row = torus.harmonics.tolist().index(list(sign.harmonic))
             energy, coefficient = float(torus.energy()), float(torus.cosines[row, sign.mode - 1])
-        yield Event("resonance", "divisor", after, energy, coefficient, sign.mode, sign.harmonic, torus is None)
+        yield Event(
+            "resonance",
+            "divisor",
+            after,
+            energy,
+            coefficient,
+            sign.mode,
+            sign.harmonic,
+            torus is None,
+        )
 
 
 def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
-    """The torus between the last two on which this divisor is zero; None where Newton's method does not lead to it."""
+    """The torus between the last two on which this divisor is zero.
+
+    None where Newton's method does not lead to it.
+    """
     first, second = way.tori[-2:]
     chain = first.chain
-    rate = sum(n * (a + b) for n, a, b in zip(sign.harmonic, first.frequencies, second.frequencies, strict=True))
+    rate = sum(
+        n * (a + b)
+        for n, a, b in zip(sign.harmonic, first.frequencies, second.frequencies, strict=True)
+    )
     with mpmath.workdps(2 * DIGITS):
-        linear = sum(n * chain.linear_frequency(q) for n, q in zip(sign.harmonic, first.seeds, strict=True))
+        linear = sum(
+            n * chain.linear_frequency(q) for n, q in zip(sign.harmonic, first.seeds, strict=True)
+        )
         wanted = chain.linear_frequency(sign.mode)
-        crossing = Crossing(sign.harmonic, long((wanted if rate > 0 else -wanted) - linear), float(wanted))
+        crossing = Crossing(
+            sign.harmonic, long((wanted if rate > 0 else -wanted) - linear), float(wanted)
+        )
     conditions = [crossing, *ratio_conditions(tuple(way.ratio), way.ratio, energies=way.energies)]
     try:
-        found = refined_torus(extrapolated(first, second, sign.part - 1), conditions, tolerance=way.tolerance, report=way.report)
+        found = refined_torus(
+            extrapolated(first, second, sign.part - 1),
+            conditions,
+            tolerance=way.tolerance,
+            report=way.report,
+        )
     except NoTorus:
         return None
     along, astray = way.local(first, second).place(found)
@@ -98,7 +163,7 @@ def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
 
 
 def folds(way: Way, after: int) -> Iterator[Event]:
-    """The quantities that turn at or about the middle of the last three tori, located by a parabola through ever nearer tori."""
+    """The quantities that turn about the middle of the last three tori, by parabolas through nearer ones."""
     three = way.tori[-3:]
     if len(three) < 3:
         return
@@ -129,7 +194,10 @@ def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTo
     scales = local.scales()
     x = [local.variables(torus, scales).astype(float) for torus in (first, middle, last)]
     direction = (x[1] - x[0]) / np.linalg.norm(x[1] - x[0])
-    known = {float((y - x[1]) @ direction): torus for y, torus in zip(x, (first, middle, last), strict=True)}
+    known = {
+        float((y - x[1]) @ direction): torus
+        for y, torus in zip(x, (first, middle, last), strict=True)
+    }
     torus, place = middle, 0.0
     for _ in range(LOCATIONS):
         near = sorted(known, key=lambda s: abs(s - place))[:3]
@@ -145,9 +213,10 @@ def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTo
 
 
 def crossing(way: Way, goal: Level) -> tuple[int, RefinedTorus] | None:
-    """The torus of the goal where the energy passes it, turns, and is below it again on all of the last three tori.
+    """The torus of the goal where the energy passes it and turns between the last three tori, all below.
 
-    With the number of these three that come before it. None where the energy does not turn, or below the goal. Raises NoTorus.
+    With the number of these three that come before it. None where the energy does not turn, or
+    below the goal. Raises NoTorus.
     """
     three = way.tori[-3:]
     if len(three) < 3:
@@ -169,12 +238,20 @@ def _vertex(s: Sequence[float], y: Sequence[float]) -> float:
 
 def stability_change(way: Way, first: Member, second: Member, after: int) -> Event | None:
     """The place between two breathers where one becomes unstable or stable, halved down from the step."""
-    if first.multipliers is None or second.multipliers is None or first.multipliers.stable == second.multipliers.stable:
+    if (
+        first.multipliers is None
+        or second.multipliers is None
+        or first.multipliers.stable == second.multipliers.stable
+    ):
         return None
     before, last = way.tori[-2], way.tori[-1]
     local = way.local(last, before)
     scales = local.scales()
-    length = float(np.linalg.norm((local.variables(last, scales) - local.variables(before, scales)).astype(float)))
+    length = float(
+        np.linalg.norm(
+            (local.variables(last, scales) - local.variables(before, scales)).astype(float)
+        )
+    )
     low, high, energy = 0.0, -length, first.energy
     for _ in range(LOCATIONS):
         middle = (low + high) / 2
@@ -187,25 +264,38 @@ def stability_change(way: Way, first: Member, second: Member, after: int) -> Eve
         low, high = (middle, high) if stable == first.multipliers.stable else (low, middle)
     unstable = second.multipliers if first.multipliers.stable else first.multipliers
     change = "begins" if first.multipliers.stable else "ends"
-    return Event("stability", f"instability ({', '.join(unstable.instabilities)}) {change}", after, energy, unstable.largest)
+    return Event(
+        "stability",
+        f"instability ({', '.join(unstable.instabilities)}) {change}",
+        after,
+        energy,
+        unstable.largest,
+    )
 
 
 def events_between(way: Way, first: Member, second: Member, after: int) -> list[Event]:
-    """What happens between two neighbouring members, the last of the way, and the folds at the first of them."""
+    """What happens between two neighbours, the last of the way, and the folds at the first of them."""
     change = stability_change(way, first, second, after)
     return [*folds(way, after - 1), *resonances(way, after), *([change] if change else [])]
 
 
 class Found(NamedTuple):
-    """The next member of a family. kept : members before it, fewer than there are where these have passed the goal."""
+    """The next member of a family.
+
+    kept : members before it, fewer than there are where these have passed the goal.
+    """
 
     kept: int
     member: Member
     events: list[Event]
 
 
-def continued(way: Way, members: Sequence[Member], goal: Level, *, multipliers: bool) -> Iterator[Found]:
-    """Members and events from the end of a way on, as long as they are asked for; ends with NoTorus where the family cannot be followed.
+def continued(
+    way: Way, members: Sequence[Member], goal: Level, *, multipliers: bool
+) -> Iterator[Found]:
+    """Members and events from the end of a way on, as long as they are asked for.
+
+    Ends with NoTorus where the family cannot be followed.
 
     members : so far, the last of the way; it grows with what is found. The member at the goal has its energy.
     """

@@ -1,4 +1,7 @@
-"""Families of tori in energy: followed from the linear limit, kept member by member, gone on with where they were left."""
+"""Families of tori in energy.
+
+Followed from the linear limit, kept member by member, gone on with where they were left.
+"""
 
 from __future__ import annotations
 
@@ -42,8 +45,13 @@ MEMBERS = 200
 APPENDIX_A = "appendix-a"
 METHODS = ("arclength", APPENDIX_A)
 ENDED_AT_GOAL = "reached the energy asked for"
-LOWER, LOWEST = 0.25, 1e-12  # factor of a first energy that no torus of the series has, and the part of it that is given up
-APPENDIX_MEMBERS = 20  # about how many steps lead with Appendix A from the beginning to the energy asked for
+LOWER, LOWEST = (
+    0.25,
+    1e-12,
+)  # factor of a first energy that no torus of the series has, and the part of it that is given up
+APPENDIX_MEMBERS = (
+    20  # about how many steps lead with Appendix A from the beginning to the energy asked for
+)
 
 
 class NotInFamily(SymfpuError):
@@ -54,10 +62,13 @@ class NotInFamily(SymfpuError):
     ending : why the family was not followed further. Ours.
     """
 
-    def __init__(self, quantity: str, value: float, reached: tuple[float, float], ending: str) -> None:
+    def __init__(
+        self, quantity: str, value: float, reached: tuple[float, float], ending: str
+    ) -> None:
         self.quantity, self.value, self.reached, self.ending = quantity, value, reached, ending
         super().__init__(
-            f"no member has {quantity} = {value:.10g}: the family goes from {reached[0]:.10g} to {reached[1]:.10g} and {ending}; "
+            f"no member has {quantity} = {value:.10g}: "
+            f"the family goes from {reached[0]:.10g} to {reached[1]:.10g} and {ending}; "
             f"take a value in this range, or follow the family further"
         )
 
@@ -76,7 +87,7 @@ class Family:
 
     >>> from symfpu import Chain, family
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
-    Family(N=8, alpha=0.3, seeds=1, 4 members, H = 0.000500491 .. 0.00105223, no events; it reached the
+    Family(N=8, alpha=0.3, seeds=1, 4 members, H = 0.0005 .. 0.001, no events; it reached the
     energy asked for)
     """
 
@@ -92,15 +103,19 @@ class Family:
         energies = [m.energy for m in self.members]
         doubtful = sum(m.verdict != "torus" for m in self.members)
         doubts = f", {doubtful} of them doubtful" if doubtful else ""
-        kinds = {kind: sum(e.kind == kind for e in self.events) for kind in ("fold", "resonance", "stability")}
+        kinds = {
+            kind: sum(e.kind == kind for e in self.events)
+            for kind in ("fold", "resonance", "stability")
+        }
         events = ", ".join(_counted(n, kind) for kind, n in kinds.items() if n)
         return (
-            f"Family({repr(self.chain)[6:-1]}, seeds={','.join(map(str, self.seeds))}, {len(self.members)} members{doubts}, "
+            f"Family({repr(self.chain)[6:-1]}, seeds={','.join(map(str, self.seeds))}, "
+            f"{len(self.members)} members{doubts}, "
             f"H = {min(energies):.6g} .. {max(energies):.6g}, {events or 'no events'}; it {self.ending})"
         )
 
     def at_energy(self, energy: Number, *, harmonic: bool) -> RefinedTorus:
-        """The torus of this energy, H or with `harmonic` sum E_q, from the nearest member; it keeps the ratio that the family keeps.
+        """The torus of this energy, H or with `harmonic` sum E_q; it keeps the ratio that the family keeps.
 
         A family by Appendix A keeps none: there the amplitudes have the ratio of the nearest member.
         Raises NotInFamily beyond the range of the members, NoTorus as `refine_at_energy` does.
@@ -110,29 +125,41 @@ class Family:
         known = np.array([level.of_member(m) for m in self.members])
         at_an_end = level.met(float(known.min())) or level.met(float(known.max()))
         if not at_an_end and not known.min() <= value <= known.max():
-            raise NotInFamily(level.name, value, (float(known.min()), float(known.max())), self.ending)
+            raise NotInFamily(
+                level.name, value, (float(known.min()), float(known.max())), self.ending
+            )
         nearest = self.members[int(np.argmin(np.abs(np.log(known / value))))]
-        return refine_at_energy(nearest.torus, energy, harmonic=harmonic, energy_ratio=self.energy_ratio)
+        return refine_at_energy(
+            nearest.torus, energy, harmonic=harmonic, energy_ratio=self.energy_ratio
+        )
 
     def at_frequency(self, seed: int, frequency: Number) -> tuple[RefinedTorus, ...]:
-        """The tori on which this seed has this frequency, one for every pair of neighbouring members with it between them.
+        """The tori on which this seed has this frequency, one between every two neighbours about it.
 
-        They keep the ratio that the family keeps. Raises NotInFamily beyond the range of the members, NoTorus as `refine` does.
+        They keep the ratio that the family keeps. Raises NotInFamily beyond the range of the
+        members, NoTorus as `refine` does.
         """
         if seed not in self.seeds:
             raise InputError("seed", seed, f"one of the seeds {self.seeds}", "name a seed")
         place, omega = self.seeds.index(seed), exact(frequency, "frequency")
         known = [m.torus.frequencies[place] for m in self.members]
         if not min(known) <= omega <= max(known):
-            raise NotInFamily(f"omega_{seed}", float(omega), (float(min(known)), float(max(known))), self.ending)
+            raise NotInFamily(
+                f"omega_{seed}", float(omega), (float(min(known)), float(max(known))), self.ending
+            )
         with mpmath.workdps(2 * DIGITS):
-            shift = long(mpmath.mpf(omega.numerator) / omega.denominator - self.chain.linear_frequency(seed))
+            shift = long(
+                mpmath.mpf(omega.numerator) / omega.denominator - self.chain.linear_frequency(seed)
+            )
         found = []
         for k, (before, after) in enumerate(itertools.pairwise(known)):
             if (before - omega) * (after - omega) < 0 or omega == before:
                 first, second = (m.torus.in_doubles() for m in self.members[k : k + 2])
                 ratio = self.energy_ratio or self.members[k].amplitudes
-                conditions = [FrequencyShift(place, shift), *ratio_conditions(self.seeds, ratio, energies=self.energy_ratio is not None)]
+                conditions = [
+                    FrequencyShift(place, shift),
+                    *ratio_conditions(self.seeds, ratio, energies=self.energy_ratio is not None),
+                ]
                 part = float((omega - before) / (after - before)) if after != before else 0.0
                 found.append(refined_torus(extrapolated(first, second, part - 1), conditions))
         return tuple(found)
@@ -182,11 +209,11 @@ def family(
         goals too.
     progress : called as (label, fraction done).
 
-    The last member of a family that reaches its goal has this energy, to 1e-12. Of a folder with members
-    beyond the goal, these are left out, and the member at the goal is not kept. Members of a folder written
-    by version 0.1 stay as they are: the first one has about from_energy.
-    A family that cannot be followed to its goal is returned as far as it went; `ending` says where and why it
-    ended. One that comes back to the linear limit ends there.
+    The last member of a family that reaches its goal has this energy, to 1e-12. Of a folder with
+    members beyond the goal these are left out, and the member at the goal is not kept. Members of a
+    folder that version 0.1 wrote stay as they are: the first one has about from_energy. A family
+    that cannot be followed to its goal is returned as far as it went; `ending` says where and why
+    it ended. One that comes back to the linear limit ends there.
     Raises InputError for arguments out of range and for a folder that holds another family; where there is no
     first member, NoTorus, or NotInFamily if the family turns or ends below `from_energy`.
 
@@ -197,10 +224,30 @@ def family(
     if method not in METHODS:
         raise InputError("method", method, f"one of {', '.join(METHODS)}", "name one of these")
     if (method == APPENDIX_A) != (order is not None):
-        raise InputError("order", order, f"an order with method = {APPENDIX_A!r}, none with others", "give both or neither")
+        raise InputError(
+            "order",
+            order,
+            f"an order with method = {APPENDIX_A!r}, none with others",
+            "give both or neither",
+        )
     if order is not None and multipliers:
-        raise InputError("multipliers", multipliers, f"False with method = {APPENDIX_A!r}", "its members are series: leave it out")
-    arguments = (to_energy, harmonic, amplitude_ratio, energy_ratio, from_energy, members, multipliers, tolerance, order)
+        raise InputError(
+            "multipliers",
+            multipliers,
+            f"False with method = {APPENDIX_A!r}",
+            "its members are series: leave it out",
+        )
+    arguments = (
+        to_energy,
+        harmonic,
+        amplitude_ratio,
+        energy_ratio,
+        from_energy,
+        members,
+        multipliers,
+        tolerance,
+        order,
+    )
     plan = checked_family(chain, seeds, *arguments)
     kept = Kept(plan, None if folder is None else Path(folder))
     tell = progress or (lambda label, done: None)
@@ -209,7 +256,11 @@ def family(
         tell(f"member {len(kept.members) + 1}: {line}", kept.plan.done(kept.members))
 
     try:
-        return _by_arclength(kept.plan, kept, report) if order is None else _by_appendix_a(kept.plan, order, kept, tell)
+        return (
+            _by_arclength(kept.plan, kept, report)
+            if order is None
+            else _by_appendix_a(kept.plan, order, kept, tell)
+        )
     except KeyboardInterrupt as stop:
         if kept.folder is None:
             raise
@@ -217,7 +268,10 @@ def family(
 
 
 def _by_arclength(plan: Plan, kept: Kept, report: Report, *, lower: bool = True) -> Family:
-    """Newton's method and pseudo-arclength continuation, gone on with from the members there are. lower : as for `_begun`."""
+    """Newton's method and pseudo-arclength continuation, gone on with from the members there are.
+
+    lower : as for `_begun`.
+    """
     if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
 
         def at_goal(k: int) -> Member:
@@ -265,7 +319,11 @@ def _ending(plan: Plan, kept: Kept) -> str:
         return ENDED_AT_GOAL
     if returned(kept.members, tolerance=plan.tolerance):
         return f"{_turned(kept)}returned to the linear limit"
-    return f"was left after {len(kept.members)} members, the most asked for" if len(kept.members) >= plan.most else ""
+    return (
+        f"was left after {len(kept.members)} members, the most asked for"
+        if len(kept.members) >= plan.most
+        else ""
+    )
 
 
 def _turned(kept: Kept) -> str:
@@ -280,11 +338,12 @@ def _ended(kept: Kept, end: NoTorus, step: float) -> str:
     doubtful = " from a doubtful member" if last.warnings else ""
     nearest = last.torus.near_resonances[:1] if isinstance(last.torus, RefinedTorus) else ()
     divisor = "".join(f"; the smallest divisor there is {near!r}" for near in nearest)
-    return f"{_turned(kept)}ended at H = {last.energy:.7g}: {end.reason}, with steps along the way down to {step:.1g}{doubtful}{divisor}"
+    steps = f"with steps along the way down to {step:.1g}{doubtful}{divisor}"
+    return f"{_turned(kept)}ended at H = {last.energy:.7g}: {end.reason}, {steps}"
 
 
 def _up_to_goal(plan: Plan, kept: Kept, at_goal: Callable[[int], Member]) -> Family:
-    """The part up to the goal of a family that was followed beyond it before. Raises InputError if it begins beyond.
+    """The part up to the goal of a family that was followed beyond it. Raises InputError if it begins beyond.
 
     at_goal : gives the member at the goal between a member, by its place, and the one before.
     """
@@ -306,7 +365,7 @@ def _refined(members: Sequence[Member]) -> list[RefinedTorus]:
 
 
 def _begun(plan: Plan, kept: Kept, report: Report, *, lower: bool) -> str:
-    """The first two members: from short series, or, where these lead to no torus, at the end of a family that begins lower.
+    """The first two members: from short series, or, where these fail, from a family that begins lower.
 
     lower : whether such a family is looked for. Returns why there is no second member; empty if there is.
     """
@@ -327,20 +386,27 @@ def _begun(plan: Plan, kept: Kept, report: Report, *, lower: bool) -> str:
 
 
 def _from_series(plan: Plan, kept: Kept, report: Report) -> list[RefinedTorus]:
-    """The torus of the first energy, or the one member there is, and one a little above it, but not beyond the goal."""
+    """The torus of the first energy, or the one member there is, and one a little above, up to the goal."""
     ratio = ratio_conditions(plan.seeds, plan.ratio, energies=plan.energies)
     begin = Level(plan.first, plan.harmonic)
     known = _refined(kept.members)
-    first = known[0] if known else first_at(begin, plan.chain, plan.start, ratio, tolerance=plan.tolerance, report=report)
+    first = (
+        known[0]
+        if known
+        else first_at(begin, plan.chain, plan.start, ratio, tolerance=plan.tolerance, report=report)
+    )
     energy = begin.of(first)
     above = Level(min(SECOND**2 * energy, plan.goal), plan.harmonic)
     scale = math.sqrt(above.energy / energy)
     raised = {q: scale * a for q, a in first.amplitudes.items()}
-    return [first, first_at(above, plan.chain, raised, ratio, tolerance=plan.tolerance, report=report)]
+    return [
+        first,
+        first_at(above, plan.chain, raised, ratio, tolerance=plan.tolerance, report=report),
+    ]
 
 
 def _led_up(plan: Plan, kept: Kept, report: Report) -> tuple[list[RefinedTorus], str]:
-    """The torus of the first energy, at the end of a family that leads from a small part of it up to it, and the next one.
+    """The torus of the first energy, at the end of a family from a small part of it, and the next one.
 
     With why there is no next one. Raises NotInFamily where that family does not reach the energy.
     """
@@ -366,9 +432,13 @@ def _led_up(plan: Plan, kept: Kept, report: Report) -> tuple[list[RefinedTorus],
 def _by_appendix_a(plan: Plan, order: int, kept: Kept, tell: Progress) -> Family:
     """The same by the algorithm of Appendix A, gone on with from the members there are."""
     increment = (plan.goal - plan.first) / plan.chain.N / APPENDIX_MEMBERS
-    known = [AppendixAMember(m.torus, increment) for m in kept.members if isinstance(m.torus, QTorus)]
+    known = [
+        AppendixAMember(m.torus, increment) for m in kept.members if isinstance(m.torus, QTorus)
+    ]
     if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
-        return _up_to_goal(plan, kept, lambda k: series_member(member_at(plan.level, known[k - 1], known[k]).torus))
+        return _up_to_goal(
+            plan, kept, lambda k: series_member(member_at(plan.level, known[k - 1], known[k]).torus)
+        )
     why = f"was left after {len(kept.members)} members, the most asked for"
     if len(kept.members) >= plan.most:
         return _family(plan, kept.members, (), why)
@@ -383,11 +453,25 @@ def _by_appendix_a(plan: Plan, order: int, kept: Kept, tell: Progress) -> Family
     return _family(plan, kept.members, (), why)
 
 
-def _steps(plan: Plan, order: int, increment: float, after: tuple[AppendixAMember, AppendixAMember] | None) -> Iterator[AppendixAMember]:
-    """The members by Appendix A that come next. Where no beginning is asked for, the first has an energy from which a step leads on."""
+def _steps(
+    plan: Plan, order: int, increment: float, after: tuple[AppendixAMember, AppendixAMember] | None
+) -> Iterator[AppendixAMember]:
+    """The members by Appendix A that come next.
+
+    Where no beginning is asked for, the first has an energy from which a step leads on.
+    """
     begin = Level(plan.first, plan.harmonic)
     while True:
-        steps = members_between(plan.chain, plan.seeds, plan.start, order, increment=increment, begin=begin, goal=plan.level, after=after)
+        steps = members_between(
+            plan.chain,
+            plan.seeds,
+            plan.start,
+            order,
+            increment=increment,
+            begin=begin,
+            goal=plan.level,
+            after=after,
+        )
         if plan.chosen or after is not None or begin.energy < LOWEST * plan.first:
             return steps
         try:

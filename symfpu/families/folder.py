@@ -1,4 +1,4 @@
-"""The checked arguments of a family, and its members and events as they are kept, in memory and in a folder."""
+"""The checked arguments of a family; its members and events as they are kept, in memory and in a folder."""
 
 from __future__ import annotations
 
@@ -21,14 +21,21 @@ from symfpu.tori.torus import QTorus
 
 Json = dict[str, Any]
 BEGINNING = "1/1000"  # of the energy asked for, where a family begins by default
-SMALLEST, LARGEST = Fraction(1, 10**300), 10**300  # energies whose doubles are neither 0 nor infinite
+SMALLEST, LARGEST = (
+    Fraction(1, 10**300),
+    10**300,
+)  # energies whose doubles are neither 0 nor infinite
 RECORD = "family.json"
 APPENDIX_BEGINNING = "1/10"  # the same with Appendix A
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Checked arguments. start : amplitudes that have the first energy in the linear chain; chosen : by from_energy, not from the goal."""
+    """Checked arguments.
+
+    start : amplitudes that have the first energy in the linear chain; chosen : by from_energy, not
+    from the goal.
+    """
 
     chain: Chain
     seeds: tuple[int, ...]
@@ -61,7 +68,11 @@ class Plan:
         energy, first = self.level.of_member(members[-1]), self.first
         if self.level.passed(energy):
             return 1.0
-        return max(math.log(energy / first) / math.log(self.goal / first), 0.0) if 0 < first < self.goal and energy > 0 else 0.0
+        return (
+            max(math.log(energy / first) / math.log(self.goal / first), 0.0)
+            if 0 < first < self.goal and energy > 0
+            else 0.0
+        )
 
     def described(self) -> Json:
         """What two runs of one family have in common."""
@@ -96,22 +107,53 @@ def checked_family(
     chosen = tuple(sorted(seed_modes(seeds, chain.N)))
     goal = exact(to_energy, "to_energy")
     first = (
-        goal * exact(BEGINNING if order is None else APPENDIX_BEGINNING, "") if from_energy is None else exact(from_energy, "from_energy")
+        goal * exact(BEGINNING if order is None else APPENDIX_BEGINNING, "")
+        if from_energy is None
+        else exact(from_energy, "from_energy")
     )
     if not 0 < goal < LARGEST or not SMALLEST < first < goal:
-        argument, value = ("from_energy", from_energy) if from_energy is not None and 0 < goal < LARGEST else ("to_energy", to_energy)
-        advice = "choose energies in this order; a family followed upwards has the tori of the way down"
-        raise InputError(argument, value, "0 < from_energy < to_energy, in the range of doubles", advice)
+        argument, value = (
+            ("from_energy", from_energy)
+            if from_energy is not None and 0 < goal < LARGEST
+            else ("to_energy", to_energy)
+        )
+        advice = (
+            "choose energies in this order; a family followed upwards has the tori of the way down"
+        )
+        raise InputError(
+            argument, value, "0 < from_energy < to_energy, in the range of doubles", advice
+        )
     if amplitude_ratio is not None and energy_ratio is not None:
-        raise InputError("energy_ratio", dict(energy_ratio), "only one of amplitude_ratio and energy_ratio", "leave one out")
+        raise InputError(
+            "energy_ratio",
+            dict(energy_ratio),
+            "only one of amplitude_ratio and energy_ratio",
+            "leave one out",
+        )
     if multipliers and len(chosen) > 1:
-        raise InputError("multipliers", multipliers, "False for more than one seed", "only periodic orbits have multipliers")
+        raise InputError(
+            "multipliers",
+            multipliers,
+            "False for more than one seed",
+            "only periodic orbits have multipliers",
+        )
     name = "energy_ratio" if amplitude_ratio is None else "amplitude_ratio"
-    given = next((x for x in (amplitude_ratio, energy_ratio) if x is not None), dict.fromkeys(chosen, 1))
-    if not hasattr(given, "values") or set(given) != set(chosen) or not all(exact(x, name) > 0 for x in given.values()):
-        raise InputError(name, given, f"a positive number for each of the seeds {chosen}", "complete it")
+    given = next(
+        (x for x in (amplitude_ratio, energy_ratio) if x is not None), dict.fromkeys(chosen, 1)
+    )
+    if (
+        not hasattr(given, "values")
+        or set(given) != set(chosen)
+        or not all(exact(x, name) > 0 for x in given.values())
+    ):
+        raise InputError(
+            name, given, f"a positive number for each of the seeds {chosen}", "complete it"
+        )
     ratio, linear = {q: float(exact(given[q], name)) for q in chosen}, chain.frequencies()
-    weights = {q: x if amplitude_ratio is not None else math.sqrt(x) / float(linear[q - 1]) for q, x in ratio.items()}
+    weights = {
+        q: x if amplitude_ratio is not None else math.sqrt(x) / float(linear[q - 1])
+        for q, x in ratio.items()
+    }
     energy = sum((float(linear[q - 1]) * w) ** 2 / 2 for q, w in weights.items())
     start = {q: w * math.sqrt(float(first) / energy) for q, w in weights.items()}
     return Plan(
@@ -149,24 +191,45 @@ class Kept:
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise InputError("folder", str(folder), "a folder that can be written", f"choose another ({error.strerror})") from error
+            raise InputError(
+                "folder",
+                str(folder),
+                "a folder that can be written",
+                f"choose another ({error.strerror})",
+            ) from error
         if not (folder / RECORD).exists():
             return
         try:
             record = json.loads((folder / RECORD).read_text())
             plan, events, count = record["plan"], record["events"], int(record["members"])
             self.step, self.largest = float(record["step"]), float(record["largest"])
-            start = {q: float(plan["start"][str(q)]) for q in self.plan.seeds} if _seeds(plan) == self.plan.seeds else self.plan.start
+            start = (
+                {q: float(plan["start"][str(q)]) for q in self.plan.seeds}
+                if _seeds(plan) == self.plan.seeds
+                else self.plan.start
+            )
             # records of before resonances were located do not say that they were interpolated
             known = [{"interpolated": event["kind"] == "resonance"} | event for event in events]
-            self.events = [Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in known]
+            self.events = [
+                Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in known
+            ]
         except (ValueError, KeyError, TypeError, AttributeError) as error:
-            raise InputError("folder", str(folder), "a family that symfpu wrote", f"{RECORD} is damaged; choose another folder") from error
+            raise InputError(
+                "folder",
+                str(folder),
+                "a family that symfpu wrote",
+                f"{RECORD} is damaged; choose another folder",
+            ) from error
         if not self.plan.chosen:
             self.plan = replace(self.plan, start=start)
         different = [key for key, value in self.plan.described().items() if plan.get(key) != value]
         if different:
-            raise InputError("folder", str(folder), f"the same family (its {different[0]} differs)", "choose another folder")
+            raise InputError(
+                "folder",
+                str(folder),
+                f"the same family (its {different[0]} differs)",
+                "choose another folder",
+            )
         for k in range(count):
             torus = self._torus(k)
             if isinstance(torus, RefinedTorus):
@@ -175,11 +238,17 @@ class Kept:
                 self.members.append(series_member(torus))
 
     def _torus(self, index: int) -> RefinedTorus | QTorus:
-        """A member that the record counts; InputError where its file is not there, BundleError where it is damaged."""
+        """A member that the record counts.
+
+        InputError where its file is not there, BundleError where it is damaged.
+        """
         try:
             torus = load(self._file(index)).torus
         except FileNotFoundError as error:
-            allowed, advice = f"all {index + 1} members or more", f"restore {self._file(index).name}, or choose another folder"
+            allowed, advice = (
+                f"all {index + 1} members or more",
+                f"restore {self._file(index).name}, or choose another folder",
+            )
             raise InputError("folder", str(self.folder), allowed, advice) from error
         if torus is None or (torus.chain, tuple(torus.seeds)) != (self.plan.chain, self.plan.seeds):
             advice = f"{self._file(index).name} is another torus; choose another folder"
@@ -191,14 +260,21 @@ class Kept:
         return self.folder / f"member-{index:04d}.symfpu"
 
     def cut(self, number: int) -> None:
-        """Leave out the members after so many, and what happens on the way to them; files are written over by the next ones."""
+        """Leave out the members after so many, and what happens on the way to them.
+
+        Files are written over by the next ones.
+        """
         del self.members[number:]
         self.events = [event for event in self.events if event.after < number - 1]
 
     def add(self, found: Member, events: list[Event]) -> None:
         """The member first, then the record that counts it: a run may be stopped at any time."""
         if self.folder is not None and isinstance(found.torus, (RefinedTorus, QTorus)):
-            save(self._file(len(self.members)), found.torus, verdict={"verdict": found.verdict, "reasons": list(found.warnings)})
+            save(
+                self._file(len(self.members)),
+                found.torus,
+                verdict={"verdict": found.verdict, "reasons": list(found.warnings)},
+            )
         self.members.append(found)
         self.events += events
         if self.folder is not None:

@@ -26,11 +26,14 @@ CURVE_STYLES: Mapping[str, dict[str, Any]] = {
 }
 
 
-def plot_spectrum(spectrum: Floats, ax: Axes, *, label: str = "", marker: str = "o") -> Axes:
-    """Normalised average energies of the modes against q, on a logarithmic scale; spectrum (N-1,)."""
+def plot_spectrum(spectrum: Floats, ax: Axes, *, label: str = "", marker: str = "o", floor: Floats | float = 0.0) -> Axes:
+    """Normalised average energies of the modes against q, on a logarithmic scale; spectrum (N-1,).
+
+    floor : in the unit of the spectrum, (N-1,) or one for all, as from `spectrum_floor`; modes at or below it are not drawn.
+    """
     q = np.arange(1, len(spectrum) + 1)
-    positive = spectrum > 0
-    ax.semilogy(q[positive], spectrum[positive], marker=marker, label=label)
+    known = spectrum > floor
+    ax.semilogy(q[known], spectrum[known], marker=marker, label=label)
     ax.set_xlabel(r"$q$")
     ax.set_ylabel(r"$\overline{E}_q / E$")
     return ax

@@ -11,6 +11,7 @@ import numpy as np
 from symfpu.breathers.floquet import ELLIPTIC, TRIVIAL
 from symfpu.families.family import Family
 from symfpu.figures.drawing import save_panel
+from symfpu.localization.floors import spectrum_floor
 
 Axes = Any
 FOLDED = 0.01  # of the smallest of the largest shifts, below which a scale with folds is linear
@@ -74,11 +75,11 @@ def plot_multipliers(found: Family, ax: Axes) -> Axes:
 
 
 def plot_spectra(found: Family, ax: Axes) -> Axes:
-    """Average spectra of some members, normalised."""
+    """Average spectra of some members, normalised; modes at or below the `spectrum_floor` of their member are not drawn."""
     chosen = np.unique(np.linspace(0, len(found.members) - 1, SPECTRA).round().astype(int))
     for i, m in enumerate(found.members[k] for k in chosen):
         spectrum = np.asarray(m.torus.average_spectrum(), dtype=float)
-        q = np.flatnonzero(spectrum > 0)
+        q = np.flatnonzero(spectrum > spectrum_floor(m.torus))
         ax.semilogy(q + 1, spectrum[q] / spectrum.sum(), marker=".", color=f"C{i}", label=f"$H$ = {m.energy:.2g}")
     ax.set_xlabel(r"$q$")
     ax.set_ylabel(r"$\overline{E}_q / E$")

@@ -1,14 +1,17 @@
-"""Where a spectrum ends: errors of the Fourier coefficients of tori and breathers, and the mode energies that they make.
+"""Where a spectrum ends: errors of Fourier coefficients, and the mode energies that they make.
 
-A mode far from the seeds has less energy than rounding gives it, and its number means nothing. Every kind of solution knows its errors:
-- tori and orbits by Newton's method: what the coefficients leave of the equations of motion, harmonics that were left out among them,
-  taken in long doubles, over the divisors; that is the correction of one more step of Newton's method, without the small part of its
-  matrix beside the divisors, which is applied once to the result;
-- series in doubles: a coefficient is rounded relative to the forces of its monomials, the products over the bonds mix modes, and it is
-  divided by its divisor;
+A mode far from the seeds has less energy than rounding gives it, and its number means nothing.
+Every kind of solution knows its errors:
+- tori and orbits by Newton's method: what the coefficients leave of the equations of motion, taken
+  in long doubles and at harmonics that were left out too, over the divisors. That is the correction
+  of one more step of Newton's method with the divisors alone as its matrix; the rest of the matrix
+  is applied to it once;
+- series in doubles: rounding relative to the largest force of a harmonic, since products over the
+  bonds mix modes, over the divisor;
 - series with digits: the proved radii of the tables;
 - orbits with digits: the bound of their residual over the divisors.
-An error of the amplitudes changes all coefficients along the family: c_q[nu] of degree d in the amplitudes by d times its relative size.
+An error of the amplitudes changes all coefficients along the family: one of degree d in the
+amplitudes by d times its relative size.
 """
 
 from __future__ import annotations
@@ -23,7 +26,7 @@ from symfpu.breathers.digits import PreciseOrbit
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.errors import InputError
-from symfpu.refinement.invariance import InvarianceEquation, dilated
+from symfpu.refinement.invariance import OVERSAMPLING, InvarianceEquation, dilated
 from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 from symfpu.tori.torus import QTorus
@@ -32,8 +35,7 @@ Floats = NDArray[Any]
 Ints = NDArray[np.int64]
 
 EPS = 2.0**-52
-WIDER = 1.5  # times the largest harmonics: up to there left out ones are looked for
-LARGEST_WIDER = 4_000_000  # coefficients of these, of all modes
+WIDER = 1.5  # times the largest harmonic of one angle: up to there left out ones are solved for
 SAFETY = 2.0  # on errors of first order
 
 
@@ -51,16 +53,20 @@ class _Errors:
 
 
 def spectrum_floor(solution: QuasiPeriodic | PeriodicOrbit) -> NDArray[np.float64]:
-    """Average energy of the error of every mode, in the unit of `average_spectrum()`; shape (N-1,), dimensionless.
+    """The energies at and below which the modes of a torus or breather are rounding; shape (N-1,).
 
-    A mode at or below it is rounding. Above, sqrt(E_q) is within sqrt(floor_q) of the truth: at 100 times the floor E_q has an error
-    of a fifth at most. For tori and orbits by Newton's method the truth is the solution with these frequencies, for a series its
-    exact sum at the chosen orders: what its truncation leaves out is not in it (see `residual`).
+    solution : a torus or periodic orbit of any kind.
 
-    An estimate of first order, above the true error in every case that was compared with many digits (docs/precision.md); for series
-    and orbits with digits a bound. Infinite where a divisor is zero. Raises InputError for anything else.
+    Dimensionless, as `average_spectrum()`: the average energy of the errors of all coefficients of a mode.
+    Above it sqrt(E_q) is within sqrt(floor_q) of the truth, so that at 100 times the floor E_q is off by a
+    fifth at most. For tori and orbits by Newton's method the truth is the solution with these frequencies;
+    for a series its exact sum at its orders: what truncation leaves out is not rounding (see `residual`).
 
-    >>> from symfpu.breathers.at_energy import breather_at_energy
+    An estimate of first order, above the true error wherever it was compared with many digits
+    (docs/precision.md). With digits it counts on those asked for, not on those carried beyond. Next to a
+    divisor that is zero it is as large as the inverse says, or infinite. Raises InputError. Ours.
+
+    >>> from symfpu import Chain, breather_at_energy
     >>> breather = breather_at_energy(Chain(N=32, alpha="0.33"), 1, "5e-5")
     >>> int(sum(breather.average_spectrum() > spectrum_floor(breather)))  # modes that are known
     12
@@ -70,7 +76,16 @@ def spectrum_floor(solution: QuasiPeriodic | PeriodicOrbit) -> NDArray[np.float6
 
 
 def coefficient_errors(solution: QuasiPeriodic | PeriodicOrbit) -> NDArray[np.float64]:
-    """The errors of the coefficients `solution.cosines`, of the same shape, as in `spectrum_floor`. Raises InputError."""
+    """How far off the Fourier coefficients of a torus or breather are; shape (H, N-1), as its `cosines`.
+
+    solution : a torus or periodic orbit of any kind. Dimensionless; what they count on is said in
+        `spectrum_floor`. Raises InputError. Ours.
+
+    >>> from symfpu import Chain, breather_at_energy
+    >>> breather = breather_at_energy(Chain(N=32, alpha="0.33"), 1, "5e-5")
+    >>> bool(coefficient_errors(breather).max() < 1e-11 * breather.amplitude)
+    True
+    """
     errors = _errors(solution)
     wanted = _as_torus(solution).harmonics
     rows = {nu: i for i, nu in enumerate(map(tuple, _canonical_signs(errors.harmonics).tolist()))}
@@ -86,7 +101,12 @@ def _errors(solution: object) -> _Errors:
             return _of_digits(solution)
         case QuasiPeriodic() | PeriodicOrbit():
             return _of_newton(_as_torus(solution))
-    raise InputError("solution", type(solution).__name__, "a torus or a periodic orbit", "pass what has an average_spectrum()")
+    raise InputError(
+        "solution",
+        type(solution).__name__,
+        "a torus or a periodic orbit",
+        "pass what has an average_spectrum()",
+    )
 
 
 def _as_torus(solution: QuasiPeriodic | PeriodicOrbit) -> QuasiPeriodic:
@@ -95,7 +115,9 @@ def _as_torus(solution: QuasiPeriodic | PeriodicOrbit) -> QuasiPeriodic:
         return solution
     harmonics = np.arange(len(solution.cosines))[:, None]
     phases = {solution.seed: 0.0}
-    return FourierTorus(solution.chain, (solution.seed,), (solution.frequency,), harmonics, solution.cosines, phases)
+    return FourierTorus(
+        solution.chain, (solution.seed,), (solution.frequency,), harmonics, solution.cosines, phases
+    )
 
 
 def _canonical_signs(harmonics: Ints) -> Ints:
@@ -105,7 +127,10 @@ def _canonical_signs(harmonics: Ints) -> Ints:
 
 
 def _degrees(chain: Chain, seeds: tuple[int, ...]) -> Ints:
-    """The lowest degree in the amplitudes with which each mode is excited by the rule, at most N; shape (N-1,)."""
+    """The lowest degree in the amplitudes with which each mode is excited by the rule, at most N.
+
+    Shape (N-1,).
+    """
     model = "beta" if chain.model == "beta" else "alpha"
     degrees = np.full(chain.N - 1, chain.N)
     for order, modes in enumerate(excitation_sequence(chain.N, seeds, chain.N, model=model)):
@@ -113,9 +138,16 @@ def _degrees(chain: Chain, seeds: tuple[int, ...]) -> Ints:
     return degrees
 
 
-def _along_the_family(chain: Chain, seeds: tuple[int, ...], cosines: Floats, relative: float) -> Floats:
-    """What a relative error of the amplitudes makes of all coefficients; shape (H, N-1)."""
-    return np.asarray(_degrees(chain, seeds) * relative * np.abs(cosines))
+def _along_the_family(
+    chain: Chain, seeds: tuple[int, ...], harmonics: Ints, cosines: Floats, relative: float
+) -> Floats:
+    """What a relative error of the amplitudes makes of coefficients (H, N-1).
+
+    As many times as their degree, |nu| or more.
+    """
+    lengths = np.abs(harmonics).sum(axis=1)
+    degrees = np.maximum(_degrees(chain, seeds), lengths[:, None])
+    return np.asarray(degrees * relative * np.abs(cosines))
 
 
 # Newton's method
@@ -123,29 +155,51 @@ def _along_the_family(chain: Chain, seeds: tuple[int, ...], cosines: Floats, rel
 
 def _of_newton(torus: QuasiPeriodic) -> _Errors:
     """One more step of Newton's method, on more harmonics; that of the amplitudes goes along the family."""
-    harmonics = _wider(torus)
-    equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
-    shifts, cosines = shifts_of(torus), _on(torus, harmonics)
+    equation = InvarianceEquation(torus.chain, torus.seeds, _harmonics(torus))
+    shifts, cosines = shifts_of(torus), _on(torus, equation.harmonics)
     divisors = np.where(equation.mask, equation.divisors(shifts), 1)
     left = np.where(equation.mask, divisors * cosines - equation.force(cosines), 0)
+    rounding = equation.rounding(cosines)
     with np.errstate(divide="ignore"):
         inverse = np.where(equation.mask, 1 / np.abs(divisors), 0)
         first = left / divisors
-    second = equation.force_change(equation.slopes(cosines), np.nan_to_num(first).astype(float))
-    sizes = SAFETY * (np.abs(first) + inverse * (np.abs(second) + equation.rounding(cosines)))
+    finite = np.where(np.isfinite(first), first, 0)
+    second = equation.force_change(equation.slopes(cosines), finite.astype(float))
     seeds = equation.seed_rows, equation.seed_columns
-    sizes[seeds] = SAFETY * np.abs(first[seeds])
-    relative = float(np.max(sizes[seeds] / np.abs(cosines[seeds]))) + EPS / 2  # the last for rounding to doubles
-    sizes += _along_the_family(torus.chain, torus.seeds, cosines, relative)
-    return _Errors(harmonics, equation.rates(shifts), sizes)
+    second[seeds] = 0  # the amplitudes go along the family
+    sizes = SAFETY * (np.abs(first) + inverse * (np.abs(second) + rounding))
+    relative = float(np.max(sizes[seeds] / np.abs(cosines[seeds])))
+    relative += EPS / 2  # they are rounded to doubles
+    sizes += _along_the_family(torus.chain, torus.seeds, equation.harmonics, cosines, relative)
+    harmonics, rates, omitted = _left_out(equation, shifts, cosines, rounding)
+    return _Errors(
+        np.concatenate([equation.harmonics, harmonics]),
+        np.concatenate([equation.rates(shifts), rates]),
+        np.concatenate([sizes, omitted]),
+    )
 
 
-def _wider(torus: QuasiPeriodic) -> Ints:
-    """The harmonics of a torus and those up to WIDER times as large, where so many fit; one of each pair, nu and zero once."""
-    own = np.asarray(torus.harmonics)
-    largest = dilated(own, WIDER)
-    chosen = largest if len(largest) // 2 * (torus.chain.N - 1) <= LARGEST_WIDER else own
-    return np.unique(_canonical_signs(np.concatenate([own, chosen])), axis=0)
+def _harmonics(torus: QuasiPeriodic) -> Ints:
+    """The harmonics of a torus, one of each pair; of one angle also those up to WIDER times as large."""
+    own = _canonical_signs(np.asarray(torus.harmonics))
+    if len(torus.seeds) == 1:
+        own = np.arange(int(WIDER * own.max()) + 1)[:, None]
+    return np.unique(own, axis=0)
+
+
+def _left_out(
+    equation: InvarianceEquation, shifts: Floats, cosines: Floats, rounding: Floats
+) -> tuple[Ints, Floats, Floats]:
+    """Harmonics next to those of the equation, their frequencies, and the coefficients by their forces."""
+    known = set(map(tuple, equation.harmonics.tolist()))
+    around = np.unique(_canonical_signs(dilated(equation.harmonics, OVERSAMPLING / 2)), axis=0)
+    harmonics = around[[nu not in known for nu in map(tuple, around.tolist())]]
+    forces = equation.force_at(cosines, harmonics)
+    rates = harmonics @ (equation.linear[equation.seed_columns] + shifts)
+    divisors = np.abs((rates[:, None] - equation.linear) * (rates[:, None] + equation.linear))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sizes = SAFETY * (np.abs(forces) + rounding) / divisors
+    return harmonics, rates, np.where(equation.allowed(harmonics), sizes, 0)
 
 
 def _on(torus: QuasiPeriodic, harmonics: Ints) -> Floats:
@@ -166,24 +220,29 @@ def _of_series(torus: QTorus) -> _Errors:
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     keys = series.grading.harmonic_keys(torus.harmonics)
     sizes = np.zeros(torus.cosines.shape)
+    of_order = _rounded if series.digits is None else _within_radii
     for order in range(1, torus.order + 1):
-        nu, errors = _rounded(torus, amplitudes, order) if series.digits is None else _within_radii(torus, amplitudes, order)
+        nu, errors = of_order(torus, amplitudes, order)
         sizes[np.searchsorted(keys, series.grading.harmonic_keys(nu))] += errors
-    relative = _of_amplitudes(torus)
-    sizes += _along_the_family(torus.chain, torus.seeds, torus.cosines.astype(float), relative)
+    cosines, relative = torus.cosines.astype(float), _of_amplitudes(torus)
+    sizes += _along_the_family(torus.chain, torus.seeds, torus.harmonics, cosines, relative)
     rates = torus.harmonics @ np.array([float(w) for w in torus.frequencies])
     return _Errors(torus.harmonics, rates, sizes)
 
 
 def _rounded(torus: QTorus, amplitudes: list[Any], order: int) -> tuple[Ints, Floats]:
-    """Doubles: the largest force of a harmonic is known to so many EPS as the order, and each coefficient is a force over its divisor."""
+    """An order in doubles: the errors are those of forces, over their divisors.
+
+    The largest force of a harmonic is known to about as many EPS as the order says.
+    """
     series, linear = torus.series, torus.chain.frequencies()
     nu, moduli = series.harmonic_terms(amplitudes, order, absolute=True)
     omega = np.array([float(w) for w in torus.frequencies])
     chosen = linear.copy()
     chosen[np.array(torus.seeds) - 1] = omega
     rates = np.abs(nu @ omega)[:, None]
-    divisors = np.abs((chosen - rates) * (chosen + rates)) / linear  # of u_q = Omega_q Q_q, over Omega_q
+    divisors = np.abs((chosen - rates) * (chosen + rates))
+    divisors /= linear  # forces on bonds: those of u_q = Omega_q Q_q over Omega_q^2
     forces = (moduli * divisors).max(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         errors = (order + 2) * EPS * forces[:, None] / divisors
@@ -191,19 +250,23 @@ def _rounded(torus: QTorus, amplitudes: list[Any], order: int) -> tuple[Ints, Fl
 
 
 def _within_radii(torus: QTorus, amplitudes: list[Any], order: int) -> tuple[Ints, Floats]:
-    """Digits: the radius of the order, for every monomial of a harmonic."""
+    """An order with digits: its radius, for every monomial of a harmonic."""
     series = torus.series
     nu, index = series.grading.harmonics(series.degree(order))
     seeds = np.abs(series.scaled_seeds(amplitudes).astype(float))
     monomials = np.prod(seeds ** series.grading.powers(series.degree(order)), axis=1)
     sums = np.bincount(index, weights=monomials, minlength=len(nu))
     radius = float(np.ldexp(series.radii[order][0], -series.bits))
-    kappa = float(np.max(np.abs(series.seed_factors.astype(float)) * 2 / torus.chain.frequencies()[np.array(torus.seeds) - 1]))
-    return nu, 2 * radius / kappa * sums[:, None] / torus.chain.frequencies()
+    linear = torus.chain.frequencies()
+    kappa = 2 * abs(float(series.seed_factors[0])) / linear[torus.seeds[0] - 1]
+    return nu, 2 * radius / kappa * sums[:, None] / linear
 
 
 def _of_amplitudes(torus: QTorus) -> float:
-    """Relative error of the amplitudes: rounding of the frequency series over its derivative; with digits what was asked for."""
+    """Relative error of the amplitudes: rounding of the frequency series over its derivative.
+
+    With digits what was asked for.
+    """
     if torus.digits is not None:
         return float(10.0**-torus.digits)
     squares = np.array([float(a) ** 2 for a in torus.amplitudes.values()])
@@ -220,19 +283,21 @@ def _of_amplitudes(torus: QTorus) -> float:
 
 
 def _of_digits(orbit: PreciseOrbit) -> _Errors:
-    """The bound of the residual, as a number, over the divisors; that of the amplitude goes along the family."""
+    """The bound of the residual over the divisors; that of the amplitude goes along the family."""
     chain, omega = orbit.chain, float(orbit.frequency)
-    t = np.linspace(0, np.pi / omega, 4 * len(orbit.cosines))
-    cosines = orbit.cosines.astype(float)
-    largest = float(np.abs(chain.accelerations(np.cos(np.multiply.outer(t, omega * orbit.harmonics[:, 0])) @ cosines)).max())
+    cosines, doubles = orbit.cosines.astype(float), orbit.in_doubles()
+    half = np.linspace(0, np.pi / omega, 4 * len(cosines))
+    largest = float(np.abs(chain.accelerations(doubles.positions(half))).max())
     n = np.arange(3 * len(cosines))[:, None]
     shift = float(shifts_of(orbit)[0])
     linear = chain.frequencies()
     divisors = np.abs((n * omega - linear) * (n * omega + linear))
     divisors[1, orbit.seed - 1] = abs(shift * (2 * linear[orbit.seed - 1] + shift))
-    allowed = ((np.arange(1, chain.N) - n * orbit.seed) % 2 == 0) & ((n % 2 == 1) | (chain.alpha != 0))
+    even = (np.arange(1, chain.N) - n * orbit.seed) % 2 == 0
+    allowed = even & ((n % 2 == 1) | (chain.alpha != 0))
     with np.errstate(divide="ignore"):
         sizes = np.where(allowed, SAFETY * float(orbit.bound) * largest / divisors, 0.0)
     relative = float(sizes[1, orbit.seed - 1] / abs(float(orbit.amplitude)))
-    sizes[: len(cosines)] += _along_the_family(chain, orbit.seeds, cosines, relative)
+    own = slice(len(cosines))
+    sizes[own] += _along_the_family(chain, orbit.seeds, n[own], cosines, relative)
     return _Errors(n, omega * n[:, 0], sizes)

@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
 FLOOR = 1e-22
 # mean square of one rounding, relative: EPS^2/12 times the mean of 1/m^2 over mantissas m
 LAST_BIT = 0.045 * 2.0**-104
-FLOOR_ADVICE = "pass 0 for spectra in closed form"
+FLOOR_ADVICE = "pass spectrum_floor(solution) for spectra in closed form"
 LEAST_GROUPS = 2  # of modes, for a line with an error bar
 
 
@@ -306,7 +306,8 @@ def fit_profile(
     modes : tail, all q > s; middle, those of `middle_modes`; or a list.
     power : of kappa, a dimensionless number, or None for a fitted one: 2 in Eq. eksa2, 0 in Eq. eksp2.
     floor : modes at or below it are left out; a number, relative to the largest E_q, or energies (N-1,) in
-        the unit of the spectrum (`rounding_floor`). For spectra in closed form pass 0.
+        the unit of the spectrum: `rounding_floor` of an orbit, `spectrum_floor` of a torus or breather. 0
+        fits rounding too.
 
     All modes count alike. Errors: jackknife over the groups D_k, since within a group the residuals are a
     common staircase; they know of no systematic bend. A part of a group at the end of the tail counts as one.

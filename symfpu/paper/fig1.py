@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.figures.alignment import alignment_panel
+from symfpu.localization.floors import spectrum_floor
 from symfpu.localization.laws import fit_profile
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.dimensions import FULL_TIME, indices
@@ -136,7 +137,7 @@ def _near(value: float, printed: float) -> bool:
 
 def _localized(exact: RefinedTorus) -> Claim:
     spectrum = np.asarray(exact.average_spectrum(), dtype=float)
-    fit = fit_profile(exact.chain, spectrum, len(exact.seeds), floor=0.0)
+    fit = fit_profile(exact.chain, spectrum, len(exact.seeds), floor=spectrum_floor(exact))
     holds = -fit.line.slope > 3 * fit.errors[0] and fit.scatter < LINEAR
     return Claim("3.2", "the energies E_q fall exponentially with q", "", f"{fit!r} (exact torus)", judged(holds))
 

@@ -16,6 +16,7 @@ from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Curve, Panel
 from symfpu.localization.growth import GroupGrowth, GrowthExponents, growth_exponents
+from symfpu.localization.floors import spectrum_floor
 from symfpu.localization.laws import fit_profile, middle_modes
 from symfpu.localization.profiles import fpu_trajectory, normalised_averages, profile_distance
 from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_line
@@ -34,7 +35,14 @@ from symfpu.paper.judgements import (
     sums_panel,
 )
 from symfpu.paper.printed import PrintedLine, PrintedTorus
-from symfpu.paper.starts import follow, printed_amplitudes, printed_row, printed_torus, profile_panel
+from symfpu.paper.starts import (
+    follow,
+    normalised_floor,
+    printed_amplitudes,
+    printed_row,
+    printed_torus,
+    profile_panel,
+)
 from symfpu.paper.steps import Step
 from symfpu.paper.table import rounds_to
 from symfpu.refinement.tori import RefinedTorus, refine
@@ -65,10 +73,13 @@ def figure2(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
         "PLn": normalised_averages(orbit)[-1],
         "exact torus": exact.average_spectrum() / exact.energy(),
     }
+    floors = {"PL": normalised_floor(torus), "exact torus": normalised_floor(exact)}
     line = printed_line("Fig. 2a")
     sums = torus.series.absolute_sums(1, list(torus.amplitudes.values()), with_mu=True)
     panels = (
-        profile_panel("fig2a", "Fig. 2(a): the 4-torus, average spectrum", row.chain, profiles, *_lines(line)),
+        profile_panel(
+            "fig2a", "Fig. 2(a): the 4-torus, average spectrum", row.chain, profiles, *_lines(line), floors=floors
+        ),
         alignment_panel("fig2b", "Fig. 2(b): alignment indices of PLn", found),
         sums_panel("fig2c", "Fig. 2(c): cancellations in the series of mode 1", 1, sums),
     )
@@ -117,7 +128,8 @@ def _identical(torus: QTorus, orbit: Orbit) -> Claim:
 
 def _exponential(exact: RefinedTorus) -> Claim:
     """A straight line beyond the seeds."""
-    fit = fit_profile(exact.chain, np.asarray(exact.average_spectrum(), dtype=float), len(exact.seeds), floor=0.0)
+    spectrum = np.asarray(exact.average_spectrum(), dtype=float)
+    fit = fit_profile(exact.chain, spectrum, len(exact.seeds), floor=spectrum_floor(exact))
     text = "strong localization in the first four modes, then an exponential decay of e_kappa with kappa"
     return Claim("4", text, "", f"{fit!r} (exact torus)", judged(-fit.line.slope > 3 * fit.errors[0] and fit.scatter <= SIMILAR))
 
@@ -157,13 +169,14 @@ def figure3(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     groups = excitation_sequence(row.chain.N, row.seeds, (row.chain.N - 1) // len(row.seeds))
     growth = [growth_exponents(row.chain, orbit.times, shares, groups, window=window) for window in (None, EARLY)]
     profiles = {"torus (PL)": np.asarray(torus.average_spectrum() / torus.energy()), "FPU-trajectory": shares[-1]}
+    floors = {"torus (PL)": normalised_floor(torus)}
     curves = tuple(
         Curve(f"$D_{{{k}}}$", orbit.times, shares[:, q - 1], group=k, name=f"D_{k} q={q}") for k, modes in enumerate(groups) for q in modes
     )
     axes, title = ("t", "average_energy_over_H"), "Fig. 3(a): FPU-trajectory, running averages by mode"
     panels = (
         Panel("fig3a", title, r"$t$", r"$\overline{E}_q(t) / E$", curves, axes, log_x=True),
-        profile_panel("fig3b", "Fig. 3(b): torus and FPU-trajectory", row.chain, profiles),
+        profile_panel("fig3b", "Fig. 3(b): torus and FPU-trajectory", row.chain, profiles, floors=floors),
     )
     text = "the FPU-trajectory settles to a profile very similar to that of the torus"
     claims = (

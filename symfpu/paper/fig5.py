@@ -12,7 +12,7 @@ from symfpu.figures.panels import Panel
 from symfpu.localization.profiles import normalised_averages
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import AGREEMENT, groups_claim, parting_level, runs
-from symfpu.paper.starts import follow, printed_row, printed_torus, profile_panel
+from symfpu.paper.starts import follow, normalised_floor, printed_row, printed_torus, profile_panel
 from symfpu.paper.steps import Step
 
 Floats = NDArray[np.float64]
@@ -36,7 +36,9 @@ def figure5(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
         orbit = follow(f"fig5 {label[-1]}", row.chain, torus, TIME, step)
         profiles = {"PL": np.asarray(torus.average_spectrum() / torus.energy(), dtype=float), "PLn": normalised_averages(orbit)[-1]}
         title = f"Fig. 5({label[-1]}): {where}, seeds {runs(row.seeds)}, N = {row.chain.N}"
-        panels.append(profile_panel(f"fig5{label[-1]}", title, row.chain, profiles, by_kappa=False))
+        floors = {"PL": normalised_floor(torus)}
+        panel = f"fig5{label[-1]}"
+        panels.append(profile_panel(panel, title, row.chain, profiles, by_kappa=False, floors=floors))
         groups = excitation_sequence(row.chain.N, row.seeds, row.order)
         claims += [_agreement(label, profiles), groups_claim(f"6.2, {label}", GROUPS_TEXT, groups, profiles["PL"])]
         if label == "Fig. 5a":

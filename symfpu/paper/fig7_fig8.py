@@ -25,6 +25,7 @@ from symfpu.paper.starts import (
     Starting,
     energies_panel,
     follow,
+    normalised_floor,
     printed_amplitudes,
     printed_row,
     printed_torus,
@@ -69,7 +70,8 @@ def figure7(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
         for letter, name in zip("abc", shares, strict=True)
     )
     law = law_curve(row, float(torus.energy()), profiles["PL"])
-    panels += (profile_panel("fig7d", "Fig. 7(d): average spectra", row.chain, profiles, law),)
+    floors = {"PL": normalised_floor(torus), "Newton": normalised_floor(newton)}
+    panels += (profile_panel("fig7d", "Fig. 7(d): average spectra", row.chain, profiles, law, floors=floors),)
     claims = (
         _return(row, torus),
         _constancy(shares["PL"], shares["FPU-trajectory"]),
@@ -164,10 +166,11 @@ def figure8(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
         ),
     }
     profiles = profiles_of(torus, long)
+    floors = {"PL": normalised_floor(torus)}
     title = f"Fig. 8(a): energies of modes {', '.join(map(str, seen))}"
     panels = (
         Panel("fig8a", title, r"$t$", r"$E_q(t) / E$", curves, ("t", "energy_over_H"), bottom=1e-40),
-        profile_panel("fig8b", "Fig. 8(b): average spectra, seed 25", row.chain, profiles, by_kappa=False),
+        profile_panel("fig8b", "Fig. 8(b): average spectra, seed 25", row.chain, profiles, by_kappa=False, floors=floors),
     )
     claims = (
         _rounding({name: values for name, (_, values) in by_route.items()}, seen),

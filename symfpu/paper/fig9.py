@@ -24,10 +24,26 @@ from symfpu.localization.recurrence import recurrence
 from symfpu.numbers.typed import Number
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.dimensions import FULL_TIME, indices, settled_after
-from symfpu.paper.fig7_fig8 import NARROW, SHOWN, SHOWN_ONLY, law_claim, law_curve, profiles_of, variation
+from symfpu.paper.fig7_fig8 import (
+    NARROW,
+    SHOWN,
+    SHOWN_ONLY,
+    law_claim,
+    law_curve,
+    profiles_of,
+    variation,
+)
 from symfpu.paper.judgements import SIMILAR, dimension_claim, same_profile
 from symfpu.paper.printed import FIG9_PACKETS, FIG9_RECURRENCE, PrintedTorus
-from symfpu.paper.starts import energies_panel, follow, printed_amplitudes, printed_row, printed_torus, profile_panel
+from symfpu.paper.starts import (
+    energies_panel,
+    follow,
+    normalised_floor,
+    printed_amplitudes,
+    printed_row,
+    printed_torus,
+    profile_panel,
+)
 from symfpu.paper.steps import Step
 from symfpu.paper.table import rounds_to
 from symfpu.tori.torus import QTorus
@@ -69,12 +85,13 @@ def figure9(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
         "FPU-trajectory": normalised_averages(main)[-1],
         "Newton": np.asarray(newton.average_spectrum() / newton.energy(), dtype=float),
     }
+    floors = {"PL": normalised_floor(torus), "Newton": normalised_floor(newton)}
     law = law_curve(row, float(row.energy), profiles["Newton"])
     modes = tuple(range(1, SHOWN + 1))
     panels = (
         energies_panel("fig9a", "Fig. 9(a): breather of the printed frequency", seen, breather, modes),
         energies_panel("fig9b", "Fig. 9(b): FPU-trajectory of the printed energy", seen, shares, modes, bottom=1e-10),
-        profile_panel("fig9c", "Fig. 9(c): average spectra", row.chain, profiles, law),
+        profile_panel("fig9c", "Fig. 9(c): average spectra", row.chain, profiles, law, floors=floors),
         alignment_panel("fig9d", "Fig. 9(d): alignment indices of the FPU-trajectory", found),
     )
     text = "the spectra of breather and FPU-trajectory agree quite well, especially in the low modes"

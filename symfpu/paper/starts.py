@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, Protocol
 
 import numpy as np
@@ -12,10 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import Orbit, integrate
 from symfpu.figures.panels import Curve, Panel
+from symfpu.localization.floors import spectrum_floor
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS, PrintedTorus
 from symfpu.paper.steps import Step
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
@@ -77,14 +80,35 @@ def follow(
     )
 
 
-def profile_panel(name: str, title: str, chain: Chain, profiles: Mapping[str, Floats], *laws: Curve, by_kappa: bool = True) -> Panel:
-    """Normalised spectra (N-1,) by name, against q/N or q, with lines of laws."""
+def profile_panel(
+    name: str,
+    title: str,
+    chain: Chain,
+    profiles: Mapping[str, Floats],
+    *laws: Curve,
+    by_kappa: bool = True,
+    floors: Mapping[str, Floats] = MappingProxyType({}),
+) -> Panel:
+    """Normalised spectra (N-1,) by name, against q/N or q, with lines of laws.
+
+    floors : by name too, from `normalised_floor`; modes at or below them are left out.
+    """
     q = np.arange(1.0, chain.N)
     x = q / chain.N if by_kappa else q
     styles = itertools.cycle(("points", "triangles", "rings"))
-    curves = tuple(Curve(label, x, np.asarray(e, dtype=float), style) for (label, e), style in zip(profiles.items(), styles, strict=False))
+    curves = []
+    for (label, profile), style in zip(profiles.items(), styles, strict=False):
+        e = np.asarray(profile, dtype=float)
+        known = e > floors.get(label, -np.inf)
+        curves.append(Curve(label, x[known], e[known], style))
     labels = (r"$\kappa = q/N$", r"$e_\kappa$") if by_kappa else (r"$q$", r"$\overline{E}_q / E$")
-    return Panel(name, title, *labels, curves + laws, ("kappa" if by_kappa else "q", "average_energy_over_H"))
+    axes = ("kappa" if by_kappa else "q", "average_energy_over_H")
+    return Panel(name, title, *labels, (*curves, *laws), axes)
+
+
+def normalised_floor(solution: QuasiPeriodic) -> Floats:
+    """The energies below which a mode of a torus is rounding, over its energy; shape (N-1,)."""
+    return np.asarray(spectrum_floor(solution) / float(solution.energy()))
 
 
 def energies_panel(name: str, title: str, times: Floats, energies: Floats, modes: tuple[int, ...], *, bottom: float | None = None) -> Panel:

@@ -1,4 +1,4 @@
-"""The invariance equation of a torus in Fourier space, its linear part exact and its products pseudo-spectral.
+"""The invariance equation of a torus in Fourier space: linear part exact, products pseudo-spectral.
 
 Q_q(theta) = sum over nu of c_q[nu] cos(nu.theta) is a torus of the chain if for every mode and
 harmonic ((nu.omega)^2 - Omega_q^2) c_q[nu] = N_q[nu], N the transform of alpha r^2 + beta r^3
@@ -59,6 +59,11 @@ def _halves(value: Any) -> tuple[np.longdouble, np.longdouble]:
         return high, long(low)
 
 
+def _halves_of_pairs(harmonics: Ints) -> Floats:
+    """The coefficient of exp(i nu.theta) for one of cos(nu.theta); shape (H,)."""
+    return np.where((harmonics != 0).any(axis=1), 0.5, 1.0)
+
+
 class Lattice:
     """Even functions of s angles: coefficients at chosen harmonics, values on a line of points.
 
@@ -75,7 +80,7 @@ class Lattice:
         self.period, self.generator = generated_lattice(dilated(harmonics, OVERSAMPLING / 2))
         self.points = self.period // 2 + 1
         self._place = self.entries(harmonics)
-        self._weight = np.where((harmonics != 0).any(axis=1), 0.5, 1.0)
+        self._weight = _halves_of_pairs(harmonics)
 
     def entries(self, harmonics: Ints) -> Ints:
         """Places of any harmonics in the spectrum; shape (...) of (..., s)."""
@@ -99,6 +104,11 @@ class Lattice:
         """Coefficients (H, m) of cosines of even functions given by values (m, points)."""
         chosen = self.spectrum(values)[:, self._place]
         return np.asarray(chosen.T / self._weight[:, None])
+
+    def coefficients_at(self, values: Floats, harmonics: Ints) -> Floats:
+        """The same at other harmonics (M, s), up to OVERSAMPLING / 2 times as large as the chosen ones."""
+        found = self.spectrum(values)[:, self.entries(harmonics)]
+        return np.asarray(found.T / _halves_of_pairs(harmonics)[:, None])
 
     def spectrum(self, values: Floats) -> Floats:
         """Coefficients of exp(i nu.theta), by place; shape (m, points)."""
@@ -176,7 +186,7 @@ class InvarianceEquation:
     def __init__(self, chain: Chain, seeds: Sequence[int], harmonics: Ints) -> None:
         self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
         self.grid = Lattice(harmonics)
-        self.mask = self._mask()
+        self.mask = self.allowed(harmonics)
         units = np.eye(len(seeds), dtype=np.int64)
         places = [np.flatnonzero((harmonics == e).all(axis=1)) for e in units]
         self.seed_rows = np.array([int(place[0]) for place in places])
@@ -187,14 +197,14 @@ class InvarianceEquation:
         self._set_bonds()
         self._set_divisors(linear)
 
-    def _mask(self) -> NDArray[np.bool_]:
-        """Where the selection rules let a mode carry a harmonic."""
+    def allowed(self, harmonics: Ints) -> NDArray[np.bool_]:
+        """Where the selection rules let a mode carry a harmonic (H, s); shape (H, N-1)."""
         modes = np.arange(1, self.chain.N)
-        of_harmonic = self.harmonics @ np.array(self.seeds) % 2
+        of_harmonic = harmonics @ np.array(self.seeds) % 2
         parity = of_harmonic[:, None] == modes % 2
         if self.chain.alpha:
             return np.asarray(parity)
-        odd = self.harmonics.sum(axis=1) % 2 == 1
+        odd = harmonics.sum(axis=1) % 2 == 1
         return np.asarray(parity & odd[:, None])
 
     def _set_bonds(self) -> None:
@@ -259,6 +269,15 @@ class InvarianceEquation:
             total += self.grid.coefficients(tension) @ back
         return np.asarray(total * self.mask)
 
+    def force_at(self, cosines: Floats, harmonics: Ints) -> Floats:
+        """The same at harmonics (M, s) that were not chosen, next to those; shape (M, N-1)."""
+        total = np.zeros((len(harmonics), cosines.shape[1]), dtype=np.longdouble)
+        for part in self._portions():
+            r = self.grid.values(cosines @ self._stretch[:, part])
+            tension = bonds.anharmonic_tension(self._law, r)
+            total += self.grid.coefficients_at(tension, harmonics) @ self._back[:, part].T
+        return np.asarray(total * self.allowed(harmonics))
+
     def rounding(self, cosines: Floats) -> Floats:
         """What rounding in long doubles makes of the force of each mode, about; shape (N-1,).
 
@@ -308,8 +327,8 @@ class InvarianceEquation:
     def block(self, slopes: Floats, rows: Ints, columns: Ints) -> Floats:
         """The derivative of the force between chosen unknowns; shape (m, m).
 
-        rows, columns : of harmonic and mode. Of a unit of cos(nu'.theta) the coefficient at nu is slope[nu - nu'] + slope[nu + nu'],
-        without the second for nu = 0.
+        rows, columns : of harmonic and mode. Of a unit of cos(nu'.theta) the coefficient at nu is
+        slope[nu - nu'] + slope[nu + nu'], without the second for nu = 0.
         """
         spectrum = self._spectrum(slopes).T.copy()
         nu = self.harmonics[rows]

@@ -365,7 +365,7 @@ def _rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats]:
 def chosen_harmonics(
     known: Mapping[tuple[int, ...], Floats], chain: Chain, s: int, tolerance: float
 ) -> tuple[Ints, bool]:
-    """Harmonics whose coefficients are expected above the tolerance, relative; and whether more would not fit.
+    """Harmonics whose coefficients are expected above the tolerance; and whether more would not fit.
 
     ln |c[nu]| is fitted by a - sum w_i |nu_i|; all harmonics within the reach of the fit are
     taken, one of each pair +-nu.

@@ -90,7 +90,8 @@ def test_a_torus_found_by_root_finding_refutes_that_it_cannot_be(residual, verdi
 
 
 @pytest.mark.parametrize(("decades", "verdict"), [(1, HOLDS), (-0.1, FAILS)])
-def test_exponential_decay_beyond_the_seeds(decades, verdict):
+def test_exponential_decay_beyond_the_seeds(decades, verdict, monkeypatch):
+    monkeypatch.setattr(fig2_fig3, "spectrum_floor", lambda exact: 0.0)
     exact = SimpleNamespace(chain=Chain(32, alpha="0.33"), seeds=(1, 2, 3, 4), average_spectrum=lambda: exponential(32, decades))
     assert fig2_fig3._exponential(exact).verdict == verdict
 

@@ -1,0 +1,209 @@
+"""Floors of spectra against orbits and series of many digits, and what pictures and fits leave out below them."""
+
+from fractions import Fraction
+from functools import lru_cache
+
+import mpmath
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from symfpu.breathers.at_energy import breather_at_energy
+from symfpu.breathers.digits import periodic_orbit_digits
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from symfpu.families.family import family
+from symfpu.figures.family import plot_spectra
+from symfpu.localization.floors import coefficient_errors, spectrum_floor
+from symfpu.localization.laws import fit_profile
+from symfpu.refinement.tori import refine
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.quasiperiodic import FourierTorus
+
+# A floor is an estimate of first order, made twice as large: four times the energy of the error, and more where errors do not add up.
+# Rounding in long doubles is taken at random, ten times and more its size in single modes of some orbits.
+LOOSE = 1e6
+
+# Two orbits of one energy, each met to rounding, have frequencies in doubles: 1e-16 of some 1e-4 of it that the amplitude shifts.
+SAME_ENERGY = 1e-9
+
+# The many digits of the truth, and those of its sums.
+DIGITS = 60
+
+STATED = (Chain(32, alpha="0.33"), 1, "5e-5")
+BREATHERS = {
+    "alpha, small": STATED,
+    "alpha, large": (Chain(32, alpha="0.33"), 1, "0.05"),
+    "beta": (Chain(16, beta="0.5"), 3, "0.1"),
+    "both, high seed": (Chain(16, alpha="0.25", beta="0.5"), 15, "0.3"),
+    "alpha, seed 5": (Chain(16, alpha="0.4"), 5, "1e-3"),
+}
+SERIES = {
+    "breather": (Chain(32, alpha="0.33"), (1,), ("0.0982",), 31),
+    "2-torus": (Chain(16, alpha="0.33"), (1, 2), ("0.19626", "0.39046"), 12),
+    "beta": (Chain(16, beta="0.3"), (1, 3), ("0.1963", "0.5812"), 6),
+    "both": (Chain(16, alpha="0.33", beta="0.3"), (5,), ("0.9432",), 12),
+}
+
+
+@lru_cache
+def orbit(case):
+    return breather_at_energy(*BREATHERS[case])
+
+
+@lru_cache
+def precise(case):
+    return periodic_orbit_digits(orbit(case), DIGITS)
+
+
+def torus_of(breather):
+    harmonics = np.arange(len(breather.cosines))[:, None]
+    return FourierTorus(breather.chain, (breather.seed,), (breather.frequency,), harmonics, breather.cosines, {breather.seed: 0.0})
+
+
+def rows(solution):
+    if not hasattr(solution, "harmonics"):
+        solution = torus_of(solution)
+    return {tuple(nu): row for nu, row in zip(solution.harmonics.tolist(), solution.cosines, strict=True)}
+
+
+def error_energies(solution, truth):
+    """Average mode energies of the difference, with the digits of the truth; shape (N-1,)."""
+    linear = truth.chain.frequencies()
+    omega = np.array([float(w) for w in truth.frequencies])
+    mine, right, total = rows(solution), rows(truth), np.zeros(len(linear), dtype=object)
+    with mpmath.workdps(DIGITS + 20):
+        for nu in mine.keys() | right.keys():
+            difference = np.zeros(len(linear), dtype=object)
+            for sign, known in ((1, mine), (-1, right)):
+                if nu in known:
+                    difference = difference + sign * np.array([mpmath.mpf(x) for x in known[nu]])
+            total = total + (0.25 if any(nu) else 0.5) * ((np.dot(nu, omega)) ** 2 + linear**2) * difference**2
+        return np.array([float(x) for x in total])
+
+
+def require_above(floor, errors, loose=LOOSE):
+    """Above the true error in every mode, and not by much."""
+    excited = errors > 0
+    assert excited.any()
+    assert (floor[excited] >= errors[excited]).all()
+    assert (floor[excited] <= loose * errors[excited]).all()
+
+
+@pytest.mark.parametrize("case", BREATHERS)
+def test_floors_of_breathers_are_above_their_errors(case):
+    """Harmonic balance in doubles, and Newton's method on tori, whose residuals are long doubles."""
+    require_above(spectrum_floor(orbit(case)), error_energies(orbit(case), precise(case)))
+    refined = refine(torus_of(orbit(case)))
+    require_above(spectrum_floor(refined), error_energies(refined, precise(case)))
+
+
+def test_the_stated_case():
+    """E_28 of the refined breather is rounding: 1e-50 where the truth is 3e-75. What is above the floor is right."""
+    chain, seed, energy = STATED
+    truth = precise("alpha, small").average_spectrum().astype(float)
+    member = family(chain, (seed,), "0.001", from_energy=energy, members=1).members[0].torus
+    assert truth[27] == pytest.approx(2.7e-75, rel=0.1)
+    for solution in (orbit("alpha, small"), member):
+        E, floor = solution.average_spectrum(), spectrum_floor(solution)
+        assert truth[27] < 1e-20 * E[27]
+        assert E[27] <= floor[27]
+        known = floor < E
+        assert known.tolist() == sorted(known, reverse=True)
+        assert 12 <= known.sum() <= 18
+        off = np.abs(np.sqrt(E) - np.sqrt(truth))
+        assert (off[known] <= np.sqrt(floor[known]) + SAME_ENERGY * np.sqrt(truth[known])).all()
+
+
+@pytest.mark.parametrize("case", BREATHERS)
+def test_coefficients_know_their_errors(case):
+    breather = orbit(case)
+    errors = coefficient_errors(breather)
+    assert errors.shape == breather.cosines.shape
+    right = precise(case).cosines[: len(breather.cosines)]
+    with mpmath.workdps(DIGITS):
+        off = np.abs(np.array(right) - breather.cosines).astype(float)
+    assert (off <= errors).all()
+    assert errors.max() < 1e-10 * breather.amplitude
+    refined = refine(torus_of(breather))
+    assert coefficient_errors(refined).shape == refined.cosines.shape
+
+
+@pytest.mark.parametrize("case", SERIES)
+def test_floors_of_series_in_doubles_are_above_their_errors(case):
+    chain, seeds, frequencies, order = SERIES[case]
+    torus = solve_amplitudes(lindstedt(chain, seeds, frequencies, order))
+    truth = solve_amplitudes(lindstedt(chain, seeds, frequencies, order, digits=40))
+    require_above(spectrum_floor(torus), error_energies(torus, truth))
+    assert coefficient_errors(torus).shape == torus.cosines.shape
+
+
+def test_floors_with_digits_are_bounds():
+    """They fall with the digits asked for; what is carried beyond these they do not count."""
+    chain, seeds, frequencies, order = SERIES["2-torus"]
+    truth = solve_amplitudes(lindstedt(chain, seeds, frequencies, order, digits=60))
+    for digits in (15, 30):
+        torus = solve_amplitudes(lindstedt(chain, seeds, frequencies, order, digits=digits))
+        floor, E = spectrum_floor(torus), torus.average_spectrum().astype(float)
+        assert (floor >= error_energies(torus, truth)).all()
+        assert (floor[:5] < 10.0 ** (-2 * digits + 6) * E[:5]).all()
+    few = periodic_orbit_digits(orbit("alpha, small"), 30)
+    floor, E = spectrum_floor(few), few.average_spectrum().astype(float)
+    assert (floor >= error_energies(few, precise("alpha, small"))).all()
+    assert (floor < E).all()
+
+
+def test_the_floor_of_a_refined_torus_is_above_its_error():
+    """The truth is a series that has converged far below doubles."""
+    chain, seeds, frequencies = Chain(8, beta=1), (1, 3), ("0.39020", "1.11119")
+    truth = solve_amplitudes(lindstedt(chain, seeds, frequencies, 12, digits=DIGITS))
+    assert truth.residual() < 1e-24
+    refined = refine(truth)
+    errors = error_energies(refined, truth)
+    require_above(spectrum_floor(refined), errors)
+
+
+def test_harmonics_that_were_left_out_are_in_the_floor():
+    """A looser tolerance takes fewer harmonics: the modes that have only these are not known."""
+    loose = refine(torus_of(orbit("both, high seed")), tolerance=1e-6)
+    tight = refine(torus_of(orbit("both, high seed")))
+    assert len(loose.harmonics) < len(tight.harmonics)
+    require_above(spectrum_floor(loose), error_energies(loose, precise("both, high seed")), loose=1e8)
+
+
+def test_a_resonant_divisor_leaves_its_mode_unknown():
+    """N = 3: Omega_1 = 1 is three times the frequency, and a cubic force has this harmonic."""
+    chain = Chain(3, beta=1)
+    assert chain.linear_frequency(1) == 1
+    cosines = np.zeros((6, 2))
+    cosines[1, 0] = 0.1
+    torus = FourierTorus(chain, (1,), (Fraction(1, 3),), np.arange(6)[:, None], cosines, {1: 0.0})
+    assert spectrum_floor(torus)[0] > 1e20
+
+
+def test_what_has_no_spectrum_has_no_floor():
+    with pytest.raises(InputError, match=r"^solution = "):
+        spectrum_floor(np.ones(3))
+
+
+def test_pictures_of_spectra_end_at_the_floor():
+    found = family(STATED[0], (1,), "1e-4", from_energy="5e-5")
+    ax = plot_spectra(found, Figure().add_subplot())
+    for line, m in zip((ax.get_lines()[0], ax.get_lines()[-1]), (found.members[0], found.members[-1]), strict=True):
+        E, floor = m.torus.average_spectrum(), spectrum_floor(m.torus)
+        assert line.get_xdata().tolist() == (np.flatnonzero(floor < E) + 1).tolist()
+        assert line.get_ydata().tolist() == (E / E.sum())[floor < E].tolist()
+        assert max(line.get_xdata()) < 20
+
+
+def test_fits_stop_at_the_floor():
+    """The line through all modes takes in rounding; the one above the floor is that of the truth."""
+    breather = orbit("alpha, small")
+    chain, E = breather.chain, breather.average_spectrum()
+    truth = np.array([float(x) for x in precise("alpha, small").average_spectrum()])
+    fit = fit_profile(chain, E, 1, power=2.0, floor=spectrum_floor(breather))
+    right = fit_profile(chain, truth, 1, power=2.0, modes=fit.modes, floor=0.0)
+    assert fit.modes == tuple(range(2, 13))
+    assert fit.line.slope == pytest.approx(right.line.slope, rel=1e-3)
+    assert fit_profile(chain, E, 1, power=2.0, floor=0.0).line.slope > 0.8 * right.line.slope
