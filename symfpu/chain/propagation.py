@@ -126,8 +126,8 @@ def coupling_sequence(
     N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
     model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers.
 
-    Differs from the Proposition in the beta model where two seeds have the sum N: there opposite
-    terms of C cancel.
+    The couplings are those of Eq. transa. Differs from the Proposition in the beta model where
+    two seeds have the sum N: there opposite terms of C cancel.
     Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an
     unknown model.
 
@@ -141,9 +141,9 @@ def coupling_sequence(
 
 @lru_cache(maxsize=1 << 18)
 def product_modes(N: int, modes: tuple[int, ...]) -> frozenset[int]:
-    """The modes q whose coupling B or C with these two or three is not zero (for B, Eq.
+    """The modes q whose coupling B or C with these two or three is not zero.
 
-    Wg of Appendix B).
+    For B this is Eq. wg of Appendix B.
     """
     counts: dict[int, int] = {}
     first, *others = modes

@@ -27,7 +27,9 @@ def lindstedt(
     digits: int | None = None,
     progress: Progress | None = None,
 ) -> LindstedtSeries:
-    """The Poincare-Lindstedt series of a q-torus with free seed amplitudes (Eqs. qser, omeser).
+    """The Poincare-Lindstedt series of a q-torus with free seed amplitudes (section 3.1).
+
+    The series are those of Eqs. qser and omeser.
 
     chain : the model; frequencies, amplitudes and times are in its units, dimensionless.
     seeds : distinct modes D_0.
