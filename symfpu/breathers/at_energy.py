@@ -8,11 +8,21 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import REACH, Balance, Condition, NoPeriodicOrbit, PeriodicOrbit, orbit_near
+from symfpu.breathers.balance import (
+    ONE_SEED,
+    REACH,
+    Balance,
+    Condition,
+    NoPeriodicOrbit,
+    PeriodicOrbit,
+    as_periodic_orbit,
+    orbit_near,
+)
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.typed import Number, exact, seed_modes
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +42,7 @@ class NoBreatherAtEnergy(SymfpuError):
 
     def __init__(self, seed: int, energy: float, harmonic: bool, member: PeriodicOrbit | None, failure: NoPeriodicOrbit) -> None:
         self.seed, self.energy, self.harmonic, self.reason = seed, energy, harmonic, str(failure)
-        self.reached = 0.0 if member is None else member.harmonic_energy if harmonic else member.energy
+        self.reached = 0.0 if member is None else _energy(member, harmonic)
         self.frequency = None if member is None else float(member.frequency)
         self.amplitude = 0.0 if member is None else member.amplitude
         kind = "harmonic energy" if harmonic else "energy"
@@ -66,7 +76,7 @@ class Level:
 
 
 def breather_at_energy(
-    chain: Chain, seed: int, energy: Number, *, harmonic: bool = False, guess: PeriodicOrbit | None = None
+    chain: Chain, seed: int, energy: Number, *, harmonic: bool = False, guess: QuasiPeriodic | None = None
 ) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given energy; frequency and amplitude are found.
 
@@ -74,14 +84,14 @@ def breather_at_energy(
     energy : H, or with harmonic=True the harmonic energy sum E_q at t = 0, when every momentum vanishes; a
         positive exact number.
     harmonic : which of the two.
-    guess : a member nearby; None follows the family from rest, with A > 0.
+    guess : a member nearby, any solution of this seed and chain; None follows the family from rest, with A > 0.
 
     Harmonic balance, as `periodic_orbit`; the breathers of section 6.4 by their energy, where the paper gives
     frequencies.
     Raises InputError; NoBreatherAtEnergy if the family from rest ends before; with a guess NoPeriodicOrbit.
 
     >>> orbit = breather_at_energy(Chain(N=32, alpha="0.33"), 25, "0.00465")
-    >>> round(float(orbit.frequency), 12), round(orbit.energy, 15)
+    >>> round(float(orbit.frequency), 12), round(float(orbit.energy()), 15)
     (1.883074184707, 0.00465)
     """
     (seed,), target = seed_modes((seed,), chain.N), _positive(energy)
@@ -121,9 +131,17 @@ def _positive(energy: Number) -> Fraction:
 
 
 def _member(guess: object, chain: Chain, seed: int) -> PeriodicOrbit:
-    if isinstance(guess, PeriodicOrbit) and (guess.chain, guess.seed) == (chain, seed):
-        return guess
-    raise InputError("guess", type(guess).__name__, f"a PeriodicOrbit of seed {seed} of the same chain", "take a member nearby, or None")
+    """A guess as a periodic orbit; raises InputError where it is none, or of another seed or chain."""
+    member = as_periodic_orbit(guess, "guess", ONE_SEED)
+    if (member.chain, member.seed) != (chain, seed):
+        given = f"of seed {member.seed}, {member.chain!r}"
+        raise InputError("guess", given, f"a solution of seed {seed} of the same chain", "take a member nearby, or None")
+    return member
+
+
+def _energy(member: PeriodicOrbit, harmonic: bool) -> float:
+    """H, or the harmonic energy sum E_q, at t = 0."""
+    return float(member.harmonic_energies().sum() if harmonic else member.energy())
 
 
 def _next(chain: Chain, seed: int, energy: float, harmonic: bool, members: list[tuple[float, PeriodicOrbit]]) -> PeriodicOrbit:

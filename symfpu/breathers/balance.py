@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import mpmath
@@ -21,6 +21,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
 from symfpu.numbers.typed import Number, decimal, exact, seed_modes
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
 Floats = NDArray[np.float64]
 Condition = Callable[[Floats], tuple[float, Floats]]  # of z: what has to vanish, relative to what it is made of, and its derivatives
@@ -30,6 +31,7 @@ STEP, ROUNDING_STEP = 1e-14, 1e-9  # relative Newton step that ends the iteratio
 ITERATIONS = 25
 GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or down
 REACH = 0.3  # change of a coefficient from one guess to its orbit, relative to the largest, that stays on the family
+ONE_SEED = "take a solution of one seed, or None"
 SMALLEST_PART = 1 / 64  # of the way from rest, in one step
 
 
@@ -50,15 +52,16 @@ class NoPeriodicOrbit(SymfpuError):
         )
 
 
-@dataclass(frozen=True, eq=False)
-class PeriodicOrbit:
-    """The periodic orbit Q_q(t) = sum_n c[n, q-1] cos(n omega t) of a chain; dimensionless.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PeriodicOrbit(FourierTorus):
+    """The periodic orbit Q_q(t) = sum_n c[n, q-1] cos(n omega t) of a chain: a solution of one angle; dimensionless.
 
     Made by `periodic_orbit`, `breather_at_amplitude` and `breather_at_energy`: Eq. qser with s = 1, exact
     where the paper cuts it (section 6.4).
 
-    chain, seed : the model and the mode. frequency : omega, exact. cosines : c, shape (H+1, N-1).
-    residual : largest |Q'' - force| between the collocation points, relative to the largest acceleration.
+    chain, seeds : the model and its one seed. frequencies : omega, exact, shape (1,).
+    harmonics : 0 .. H, shape (H+1, 1). cosines : c in doubles, shape (H+1, N-1), harmonic 0 first.
+    phases : 0 of the seed, radians. digits : None, of doubles.
     iterations : Newton steps on the way. sigma : omega^2 - Omega_seed^2.
 
     >>> from symfpu import periodic_orbit
@@ -67,51 +70,39 @@ class PeriodicOrbit:
     residual ...)
     """
 
-    chain: Chain
-    seed: int
-    frequency: Fraction
-    cosines: Floats = field(repr=False)
-    residual: float
     iterations: int
     sigma: float
 
     def __repr__(self) -> str:
-        return (
-            f"PeriodicOrbit({repr(self.chain)[6:-1]}, seed {self.seed}, omega={decimal(self.frequency)}, A={self.amplitude:.13g}, "
-            f"H={self.energy:.11g}, {len(self.cosines) - 1} harmonics, residual {self.residual:.2g})"
-        )
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        which = f"seed {self.seed}, omega={decimal(self.frequency)}, A={self.amplitude:.13g}"
+        quality = f"{len(self.cosines) - 1} harmonics, residual {self.residual():.2g}"
+        return f"PeriodicOrbit({chain}, {which}, H={self.energy():.11g}, {quality})"
 
-    @property
-    def amplitude(self) -> float:
-        """A, the coefficient of cos(omega t) in Q_seed."""
-        return float(self.cosines[1, self.seed - 1])
 
-    @property
-    def energy(self) -> float:
-        """Total energy H."""
-        return float(self.chain.energy(self.positions(0.0), self.momenta(0.0)))
+def orbit_of(chain: Chain, seed: int, omega: Fraction, cosines: Floats, *, iterations: int, sigma: float) -> PeriodicOrbit:
+    """The orbit with these coefficients, harmonic 0 first, shape (H+1, N-1)."""
+    harmonics = np.arange(len(cosines))[:, None]
+    phases = {seed: 0.0}
+    return PeriodicOrbit(chain, (seed,), (omega,), harmonics, cosines, phases, iterations=iterations, sigma=sigma)
 
-    @property
-    def harmonic_energy(self) -> float:
-        """Harmonic energy sum E_q at t = 0."""
-        return float(self.chain.harmonic_energies(self.positions(0.0), self.momenta(0.0)).sum())
 
-    @property
-    def _rates(self) -> Floats:
-        return np.asarray(np.arange(len(self.cosines)) * float(self.frequency), dtype=np.float64)
+def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicOrbit:
+    """A solution of one angle as a periodic orbit in doubles, at rest at t = 0; raises InputError for any other.
 
-    def positions(self, t: ArrayLike) -> Floats:
-        """Mode coordinates Q_q(t); shape of t with an axis N-1 at the end."""
-        return np.asarray(np.cos(np.multiply.outer(t, self._rates)) @ self.cosines)
-
-    def momenta(self, t: ArrayLike) -> Floats:
-        """Mode momenta P_q(t) = dQ_q/dt; shape of t with an axis N-1 at the end."""
-        return np.asarray(np.sin(np.multiply.outer(t, self._rates)) @ (-self._rates[:, None] * self.cosines))
-
-    def average_spectrum(self) -> Floats:
-        """Averages of the harmonic energies E_q over a period, in closed form; shape (N-1,)."""
-        squares = self.cosines**2 / np.where(self._rates > 0, 2, 1)[:, None]
-        return np.asarray((self._rates**2 @ squares + self.chain.frequencies() ** 2 * squares.sum(axis=0)) / 2)
+    advice : what to do with a torus of more angles.
+    """
+    allowed = "a solution of one angle"
+    if not isinstance(solution, QuasiPeriodic):
+        made = "take one from periodic_orbit, breather_at_amplitude or refine"
+        raise InputError(argument, type(solution).__name__, allowed, made)
+    if len(solution.seeds) > 1:
+        raise InputError(argument, f"a torus of {len(solution.seeds)} angles", allowed, advice)
+    if isinstance(solution, PeriodicOrbit) and not solution.phases[solution.seed]:
+        return solution
+    chain, seed, omega = solution.chain, solution.seed, solution.frequency
+    sigma = detuning(chain, seed, omega)[1]
+    return orbit_of(chain, seed, omega, solution.by_harmonic().astype(float), iterations=0, sigma=sigma)
 
 
 def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -210,20 +201,22 @@ def residual(chain: Chain, omega: float, cosines: Floats) -> float:
     return float(np.max(np.abs(table @ ((n[:, None] * omega) ** 2 * cosines) + force))) / largest
 
 
-def periodic_orbit(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = None) -> PeriodicOrbit:
+def periodic_orbit(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | QuasiPeriodic | None = None) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given frequency.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
     frequency : omega, an exact number.
-    guess : cosine coefficients, shape (H+1, N-1), of which those that the symmetry forbids are dropped; None
-        follows the family from rest, with the amplitude of the lowest order.
+    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1), of which those that the
+        symmetry forbids are dropped; None follows the family from rest, with the amplitude of the lowest
+        order.
 
     Newton's method on the Fourier coefficients of Eq. eqmo (harmonic balance), where the paper has the series
     of section 6.4. The orbit is one near the guess: a frequency may have several.
     Raises InputError; without a guess NoRealAmplitude or UndeterminedAmplitudes if the lowest order has no
     amplitude; NoPeriodicOrbit with the best iterate.
 
-    >>> round(periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537").energy, 12)
+    >>> orbit = periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
+    >>> round(float(orbit.energy()), 12)
     0.004649999361
     """
     (seed,), omega = seed_modes((seed,), chain.N), positive_frequency(frequency)
@@ -232,7 +225,7 @@ def periodic_orbit(chain: Chain, seed: int, frequency: Number, guess: ArrayLike 
         orbit = orbit_near(chain, seed, _cosines(chain, seed, guess), sigma, held_frequency)
     else:
         orbit = _walk(chain, seed, lowest_amplitude(chain, seed, shift), sigma, by_amplitude=False)
-    return replace(orbit, frequency=omega)
+    return replace(orbit, frequencies=(omega,))
 
 
 def positive_frequency(frequency: Number) -> Fraction:
@@ -260,12 +253,13 @@ def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
     return float((shift / coefficient) ** 0.5)
 
 
-def breather_at_amplitude(chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | None = None) -> PeriodicOrbit:
+def breather_at_amplitude(chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | QuasiPeriodic | None = None) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given amplitude; its frequency is found.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
     amplitude : A, the coefficient of cos(omega t) in Q_seed, an exact number, not 0.
-    guess : cosine coefficients, shape (H+1, N-1); None follows the family from rest.
+    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1); None follows the family from
+        rest.
 
     Harmonic balance with A among the equations: the gauge of Eq. qq0, A is not Q_seed(0).
     Raises InputError, and NoPeriodicOrbit with the best iterate.
@@ -287,7 +281,9 @@ def breather_at_amplitude(chain: Chain, seed: int, amplitude: Number, guess: Arr
     return orbit_near(chain, seed, cosines, sigma, held_amplitude)
 
 
-def _cosines(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
+def _cosines(chain: Chain, seed: int, guess: ArrayLike | QuasiPeriodic) -> Floats:
+    if isinstance(guess, QuasiPeriodic):
+        guess = as_periodic_orbit(guess, "guess", ONE_SEED).cosines
     shape = f"(H+1, {chain.N - 1})"
     try:
         cosines = np.array(guess, dtype=np.float64)
@@ -328,7 +324,7 @@ def orbit_near(
     if change > reach or abs(cosines[1, seed - 1]) < np.max(np.abs(cosines)) / GROWTH:
         raise NoPeriodicOrbit(balance, f"the orbit found is another one: a change by {change:.3g} of the largest coefficient", z)
     cosines, omega = cosines[: int(np.flatnonzero(heights > TAIL / 100)[-1]) + 1], balance.frequency(z)
-    return PeriodicOrbit(chain, seed, exact(omega, "frequency"), cosines, residual(chain, omega, cosines), iterations, sigma)
+    return orbit_of(chain, seed, exact(omega, "frequency"), cosines, iterations=iterations, sigma=sigma)
 
 
 def _walk(chain: Chain, seed: int, amplitude: float, sigma: float, *, by_amplitude: bool) -> PeriodicOrbit:

@@ -8,7 +8,7 @@ the rest of their rows and are divided by it; then a sweep gains fewer digits.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -16,15 +16,24 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import Balance, NoPeriodicOrbit, PeriodicOrbit, breather_at_amplitude, periodic_orbit, unknowns
+from symfpu.breathers.balance import (
+    Balance,
+    NoPeriodicOrbit,
+    PeriodicOrbit,
+    as_periodic_orbit,
+    breather_at_amplitude,
+    periodic_orbit,
+    unknowns,
+)
 from symfpu.breathers.fixed_force import FixedForce, Integers
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers
 from symfpu.numbers.typed import Number, exact, integer
-from symfpu.tori.quasiperiodic import FourierTorus, show
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, show
 
 Floats = NDArray[np.float64]
 
+MORE_ANGLES = "tori of more angles have many digits as series only: give digits= to lindstedt"
 LARGEST_BLOCK = 2500  # unknowns in the matrix that is factored
 MOST_DIGITS = 1000
 MOST_HARMONICS = 4096
@@ -64,34 +73,19 @@ class PreciseOrbit(FourierTorus):
         show(self, "bound")
 
     def __repr__(self) -> str:
-        omega = mpmath.nstr(mpmath.mpf(self.frequency.numerator) / self.frequency.denominator, 15)
-        return (
-            f"PreciseOrbit({repr(self.chain)[6:-1]}, seed {self.seed}, omega={omega}.., A={mpmath.nstr(self.amplitude, 15)}.., "
-            f"{self.digits} digits, {len(self.cosines) - 1} harmonics, residual below {mpmath.nstr(self.bound, 2)})"
-        )
-
-    @property
-    def seed(self) -> int:
-        """The seed mode."""
-        return self.seeds[0]
-
-    @property
-    def frequency(self) -> Fraction:
-        """omega: the number that was given, or that found, rounded to its digits."""
-        return self.frequencies[0]
-
-    @property
-    def amplitude(self) -> Any:
-        """A, the coefficient of cos(omega t) in Q_seed."""
-        return self.cosines[1, self.seed - 1]
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        exact_omega = mpmath.mpf(self.frequency.numerator) / self.frequency.denominator
+        omega, A = mpmath.nstr(exact_omega, 15), mpmath.nstr(self.amplitude, 15)
+        quality = f"{len(self.cosines) - 1} harmonics, residual below {mpmath.nstr(self.bound, 2)}"
+        return f"PreciseOrbit({chain}, seed {self.seed}, omega={omega}.., A={A}.., {self.digits} digits, {quality})"
 
 
 def periodic_orbit_digits(
-    orbit: PeriodicOrbit, digits: int, *, frequency: Number | None = None, amplitude: Number | None = None
+    orbit: QuasiPeriodic, digits: int, *, frequency: Number | None = None, amplitude: Number | None = None
 ) -> PreciseOrbit:
     """A periodic orbit refined to so many digits of its largest coefficient.
 
-    orbit : in doubles; all quantities are dimensionless.
+    orbit : a solution of one angle, whose phase (radians) is kept; all else is dimensionless.
     digits : 1 .. 1000.
     frequency, amplitude : exact numbers, at most one of them; the member with that omega or that A near the
         orbit. Neither: the frequency of the orbit.
@@ -105,19 +99,19 @@ def periodic_orbit_digits(
     >>> print(mpmath.nstr(precise.amplitude, 30))
     0.0512121591740189630941015617011
     """
-    if not isinstance(orbit, PeriodicOrbit):
-        raise InputError("orbit", type(orbit).__name__, "a PeriodicOrbit", "take one from periodic_orbit or breather_at_amplitude")
+    near = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
     if integer(digits, "digits", 1) > MOST_DIGITS:
         raise InputError("digits", digits, f"1..{MOST_DIGITS}", "take fewer")
     if frequency is not None and amplitude is not None:
         raise InputError("frequency, amplitude", (frequency, amplitude), "one of them", "leave the other out")
     held = None
     if amplitude is not None:
-        held, orbit = exact(amplitude, "amplitude"), breather_at_amplitude(orbit.chain, orbit.seed, amplitude, orbit.cosines)
+        held = exact(amplitude, "amplitude")
+        near = breather_at_amplitude(near.chain, near.seed, amplitude, near.cosines)
     elif frequency is not None:
-        orbit = periodic_orbit(orbit.chain, orbit.seed, frequency, orbit.cosines)
+        near = periodic_orbit(near.chain, near.seed, frequency, near.cosines)
     with mpmath.workdps(digits + 2 * GUARD_DIGITS):
-        return _refine(orbit, digits, held)
+        return replace(_refine(near, digits, held), phases=dict(orbit.phases))
 
 
 def _refine(orbit: PeriodicOrbit, digits: int, amplitude: Fraction | None) -> PreciseOrbit:

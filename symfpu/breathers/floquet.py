@@ -14,13 +14,17 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import PeriodicOrbit
+from symfpu.breathers.balance import PeriodicOrbit, as_periodic_orbit
 from symfpu.chain import bonds
 from symfpu.dynamics.kahan_li8 import ORDER, tangent_map_along
-from symfpu.errors import InputError
 from symfpu.numbers.typed import decimal
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Floats = NDArray[np.float64]
+MORE_ANGLES = (
+    "normal frequencies of tori of more angles are not available; take a breather of one seed, or let "
+    "alignment_indices tell whether the orbit is regular"
+)
 ACCURACY = 1e-12  # of the tangent map, relative to its largest entry
 FIRST_STEP = 0.1  # over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
 DOUBLINGS = 5
@@ -51,7 +55,7 @@ class Floquet:
     Floquet(N=4, beta=1, seed 2, omega=1.4168, stable, largest |multiplier| 1, symplecticity error ...)
     """
 
-    orbit: PeriodicOrbit
+    orbit: QuasiPeriodic
     pairs: NDArray[np.complex128] = field(repr=False)
     kinds: tuple[str, ...]
     kappa: NDArray[np.complex128] = field(repr=False)
@@ -90,15 +94,19 @@ class Floquet:
         return 1.0 if self.stable else float(np.max(np.abs(self.pairs)))
 
 
-def monodromy(orbit: PeriodicOrbit) -> Floats:
-    """Tangent map over one period in mode coordinates and momenta, from t = 0; shape (2(N-1), 2(N-1)). Raises InputError."""
-    return _whole(_half(_checked(orbit))[0])
+def monodromy(orbit: QuasiPeriodic) -> Floats:
+    """Tangent map over one period in mode coordinates and momenta, from a state at rest; shape (2(N-1), 2(N-1)).
+
+    Raises InputError.
+    """
+    return _whole(_half(as_periodic_orbit(orbit, "orbit", MORE_ANGLES))[0])
 
 
-def floquet(orbit: PeriodicOrbit) -> Floquet:
+def floquet(orbit: QuasiPeriodic) -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
-    orbit : from `periodic_orbit` or its sisters; dimensionless.
+    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others; dimensionless. Of a truncated
+        series, multipliers are as good as the orbit is.
 
     The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time; ours. A
     kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its
@@ -112,10 +120,11 @@ def floquet(orbit: PeriodicOrbit) -> Floquet:
     """
     from scipy.linalg import eig
 
-    half, map_error = _half(_checked(orbit))
+    periodic = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
+    half, map_error = _half(periodic)
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]
-    force = orbit.chain.accelerations(orbit.positions(0.0))
+    force = periodic.chain.accelerations(periodic.positions(0.0))
     basis = np.linalg.svd(force[None, :])[2].T  # the acceleration, then an orthonormal basis of what is perpendicular to it
     flow, rest = basis[:, 0], basis[:, 1:]
     trivial = float(np.linalg.norm(C.T @ (B @ flow)))
@@ -137,12 +146,6 @@ def floquet(orbit: PeriodicOrbit) -> Floquet:
         map_error,
         trivial,
     )
-
-
-def _checked(orbit: PeriodicOrbit) -> PeriodicOrbit:
-    if not isinstance(orbit, PeriodicOrbit):
-        raise InputError("orbit", type(orbit).__name__, "a PeriodicOrbit", "take one from periodic_orbit or breather_at_amplitude")
-    return orbit
 
 
 def _half(orbit: PeriodicOrbit) -> tuple[Floats, float]:

@@ -8,22 +8,28 @@ integrator's map, so that Newton's method converges quadratically down to roundi
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.breathers.balance import GROWTH, ITERATIONS, ROUNDING_STEP, STEP, detuning, lowest_amplitude, positive_frequency
+from symfpu.algebra.grading import Ints
+from symfpu.breathers.balance import GROWTH, ITERATIONS, ROUNDING_STEP, STEP, TAIL, detuning, lowest_amplitude, positive_frequency
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.kahan_li8 import ORDER, tangent_flow
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.typed import Number, decimal, seed_modes
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 
 Floats = NDArray[np.float64]
 ACCURACY = 1e-15  # of the half period, relative to its largest number: a small omega - Omega magnifies errors
 FIRST_STEP = 0.1  # time of the coarser of the first two integrations
 DOUBLINGS = 5
+HALF_PERIOD_SAMPLES = (256, 1024, 4096)  # at which an orbit is analysed, until its harmonics fall off
+NOISE = 4e-15  # of the largest coefficient: those below are rounding of the integration
 
 
 class ShootingFailed(SymfpuError):
@@ -43,36 +49,43 @@ class ShootingFailed(SymfpuError):
 
 
 @dataclass(frozen=True, eq=False)
-class ShotOrbit:
-    """A periodic orbit as its start at rest; dimensionless.
+class ShotOrbit(QuasiPeriodic):
+    """A periodic orbit found from its start at rest: a solution of one angle; dimensionless.
 
     Made by `shoot`, a route to the breathers of section 6.4 independent of harmonic balance. Ours.
 
-    chain, seed : the model and the mode. frequency : omega, exact. start : Q(0), shape (N-1,); P(0) = 0.
-    residual : the distance of (omega Q, P) after a whole period from the start, over omega max|Q|, with steps
+    chain, seeds : the model and its one seed. frequencies : omega, exact, shape (1,).
+    start : Q(0), shape (N-1,); P(0) = 0.
+    closure : the distance of (omega Q, P) after a whole period from the start, over omega max|Q|, with steps
         half as long as those of the search.
     history : max|P(T/2)| / (omega max|Q|) of the guess and after every Newton step.
     steps : of the composition in half a period.
+    analysed : coefficients of cos(n omega t), shape (H+1, N-1), if they are known already.
+
+    harmonics, 0 .. H, shape (H+1, 1), and cosines follow from integrating over half a period, when they are
+    first asked for. phases : 0 of the seed, radians. digits : None, of doubles.
 
     >>> from symfpu import Chain, shoot
     >>> shoot(Chain(N=8, alpha="0.3"), 1, "0.3905")
     ShotOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, Q_1(0)=0.4052474469027, H=0.012798422083, 5 Newton
-    steps, residual ...)
+    steps, closure ...)
     """
 
     chain: Chain
-    seed: int
-    frequency: Fraction
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...]
     start: Floats = field(repr=False)
-    residual: float
+    closure: float
     history: tuple[float, ...] = field(repr=False)
     steps: int
+    analysed: Floats | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
-        return (
-            f"ShotOrbit({repr(self.chain)[6:-1]}, seed {self.seed}, omega={decimal(self.frequency)}, Q_{self.seed}(0)="
-            f"{self.start[self.seed - 1]:.13g}, H={self.energy:.11g}, {self.iterations} Newton steps, residual {self.residual:.2g})"
-        )
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        energy = self.chain.energy(self.start, np.zeros_like(self.start))
+        which = f"seed {self.seed}, omega={decimal(self.frequency)}, Q_{self.seed}(0)={self.start[self.seed - 1]:.13g}"
+        quality = f"{self.iterations} Newton steps, closure {self.closure:.2g}"
+        return f"ShotOrbit({chain}, {which}, H={energy:.11g}, {quality})"
 
     @property
     def iterations(self) -> int:
@@ -80,14 +93,61 @@ class ShotOrbit:
         return len(self.history) - 1
 
     @property
-    def energy(self) -> float:
-        """Total energy H."""
-        return float(self.chain.energy(self.start, np.zeros_like(self.start)))
+    def phases(self) -> Mapping[int, float]:
+        """The orbit is at rest at t = 0."""
+        return {self.seed: 0.0}
 
     @property
-    def harmonic_energy(self) -> float:
-        """Harmonic energy sum E_q at t = 0."""
-        return float(self.chain.harmonic_energies(self.start, np.zeros_like(self.start)).sum())
+    def digits(self) -> None:
+        """Doubles."""
+        return None
+
+    @property
+    def harmonics(self) -> Ints:
+        """The harmonics 0 .. H; shape (H+1, 1)."""
+        return np.arange(len(self.cosines))[:, None]
+
+    @cached_property
+    def cosines(self) -> Floats:
+        """The coefficients of cos(n omega t) in Q_q; shape (H+1, N-1). Raises ShootingFailed where they do not fall off."""
+        if self.analysed is not None:
+            return self.analysed
+        return _analysed(self)
+
+    @property
+    def amplitudes(self) -> Mapping[int, float]:
+        """A by seed, the coefficient of cos(omega t) in Q_seed."""
+        return amplitudes_of(self)
+
+
+def _analysed(orbit: ShotOrbit) -> Floats:
+    """Cosine coefficients of an orbit that is even in time, from equal steps of half a period."""
+    from scipy.fft import dct
+
+    for samples in HALF_PERIOD_SAMPLES:
+        path = _half_period(orbit, samples)
+        cosines = dct(path, type=1, axis=0) / samples
+        cosines[[0, -1]] /= 2
+        heights = np.max(np.abs(cosines), axis=1)
+        relative = heights / np.max(heights)
+        if np.max(relative[-samples // 8 :]) <= TAIL:
+            last = int(np.flatnonzero(relative > NOISE)[-1])
+            return np.asarray(cosines[: max(last, 1) + 1])
+    reason = f"the last of {samples} harmonics of the orbit is still {relative[-1]:.1g} of the largest"
+    raise ShootingFailed(orbit.seed, reason, orbit.start, orbit.history)
+
+
+def _half_period(orbit: ShotOrbit, samples: int) -> Floats:
+    """Q at the samples + 1 equidistant times of half a period, steps no longer than those of the search; shape (samples + 1, N-1)."""
+    none = np.zeros((0, orbit.chain.N - 1))
+    pause = np.pi / float(orbit.frequency) / samples
+    steps = -(-orbit.steps // samples)
+    Q, P = orbit.start, 0 * orbit.start
+    path = [Q]
+    for _ in range(samples):
+        Q, P, *_ = tangent_flow(orbit.chain, Q, P, none, none, pause, steps)
+        path.append(Q)
+    return np.array(path)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # motions that run away are refused
@@ -104,7 +164,7 @@ def shoot(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = 
     UndeterminedAmplitudes; ShootingFailed with the best start.
 
     >>> shot = shoot(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
-    >>> round(shot.energy, 12), shot.residual < 1e-13
+    >>> round(float(shot.energy()), 12), shot.closure < 1e-13
     (0.004649999361, True)
     """
     (seed,), omega = seed_modes((seed,), chain.N), positive_frequency(frequency)
@@ -121,8 +181,9 @@ def shoot(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = 
     start, history = _newton(chain, seed, start, np.flatnonzero(allowed), half, steps)
     none = np.zeros((0, chain.N - 1))
     Q, P, *_ = tangent_flow(chain, start, 0 * start, none, none, 2 * half, 4 * steps)
-    residual = float(max(np.max(np.abs(Q - start)), np.max(np.abs(P)) / rate) / np.max(np.abs(start)))
-    return ShotOrbit(chain, seed, omega, start, residual, history, steps)
+    distance = max(np.max(np.abs(Q - start)), np.max(np.abs(P)) / rate)
+    closure = float(distance / np.max(np.abs(start)))
+    return ShotOrbit(chain, (seed,), (omega,), start, closure, history, steps)
 
 
 def _newton(chain: Chain, seed: int, start: Floats, free: NDArray[np.intp], half: float, steps: int) -> tuple[Floats, tuple[float, ...]]:

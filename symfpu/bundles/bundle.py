@@ -1,4 +1,4 @@
-"""A series and its torus, or a refined torus, in one file: a ZIP archive of bundle.json and of arrays that numpy.load reads.
+"""A series and its torus, or any other solution, in one file: a ZIP archive of bundle.json and of arrays that numpy.load reads.
 
 Everything but the tables is in bundle.json: numbers that must come back exactly are strings, and a digest covers the whole.
 The tables are flat arrays, order after order and row after row: doubles, words of integers (symfpu.algebra.words), or places
@@ -23,8 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.grading import canonical_count
-from symfpu.bundles.entries import number, number_entry
+from symfpu.bundles.entries import chain_entries, chain_from, number, number_entry
 from symfpu.bundles.refined import refined_entries, refined_from
+from symfpu.bundles.solutions import FOURIER, solution_entries, solution_from
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.archive import FORMAT, SCHEMA, Archive, BundleError, Json, digest_of, member_digest, write_archive
@@ -62,7 +63,8 @@ class Bundle:
 
     All is dimensionless; the format is ours.
 
-    series : None for a refined torus. torus, verdict : None if none was saved.
+    series : None for a solution without one. torus : any solution, of the class that was saved, or None.
+    verdict : None if none was saved.
     provenance : created (UTC), command, versions by package.
     test_vectors : a few points of the torus as it was when it was saved: t, Q and P, (N-1,), as decimals.
 
@@ -74,7 +76,7 @@ class Bundle:
     """
 
     series: LindstedtSeries | None
-    torus: QTorus | RefinedTorus | None
+    torus: QuasiPeriodic | None
     verdict: Json | None
     provenance: Json
     test_vectors: tuple[OrbitPoint, ...] = field(repr=False, default=())
@@ -91,13 +93,13 @@ class Bundle:
 
 def save(
     path: Path | str,
-    result: LindstedtSeries | QTorus | RefinedTorus,
+    result: LindstedtSeries | QuasiPeriodic,
     *,
     verdict: Json | None = None,
     command: str | None = None,
     created: datetime | None = None,
 ) -> Path:
-    """Write a series, a torus with its series, or a refined torus as one file; returns its path.
+    """Write a series, a torus with its series, or any other solution as one file; returns its path.
 
     path : of the file, which is written whole or not at all.
     result : what to keep, with all its digits; dimensionless.
@@ -116,26 +118,41 @@ def save(
     """
     path = _path(path)
     _require_arguments(result, verdict, command, created)
-    if isinstance(result, RefinedTorus):
-        entries, members = refined_entries(result)
-        parts: Json = {"series": None, "torus": entries | {"kind": REFINED}}
-    else:
-        series = result if isinstance(result, LindstedtSeries) else result.series
-        members, layout = _tables(series)
-        parts = {"series": _series_entries(series) | layout, "torus": _torus_entries(result) if isinstance(result, QTorus) else None}
+    parts, members = _parts(result)
+    moment = (created or datetime.now(UTC)).astimezone(UTC)
+    points = [] if isinstance(result, LindstedtSeries) else _test_vectors(result)
     body: Json = {
         "format": FORMAT,
-        "schema": SCHEMA,
-        "created": (created or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="seconds"),
+        "schema": _schema(result),
+        "created": moment.isoformat(timespec="seconds"),
         "command": command,
         "versions": _versions(),
         **parts,
         "verdict": verdict,
-        "test_vectors": [] if isinstance(result, LindstedtSeries) else [point._asdict() for point in _test_vectors(result)],
+        "test_vectors": [point._asdict() for point in points],
         "arrays": {name: member_digest(values) for name, values in members.items()},
     }
     write_archive(path, body | {"digest": digest_of(body)}, members)
     return path
+
+
+def _parts(result: LindstedtSeries | QuasiPeriodic) -> tuple[Json, dict[str, Array]]:
+    """The entries of series and torus, and their arrays."""
+    if isinstance(result, RefinedTorus):
+        entries, members = refined_entries(result)
+        return {"series": None, "torus": entries | {"kind": REFINED}}, members
+    if not isinstance(result, (LindstedtSeries, QTorus)):
+        entries, members = solution_entries(result)
+        return {"series": None, "torus": entries}, members
+    series = result if isinstance(result, LindstedtSeries) else result.series
+    torus = _torus_entries(result) if isinstance(result, QTorus) else None
+    members, layout = _tables(series)
+    return {"series": _series_entries(series) | layout, "torus": torus}, members
+
+
+def _schema(result: LindstedtSeries | QuasiPeriodic) -> int:
+    """The least that a reader has to know: what the first version wrote, it still reads."""
+    return 1 if isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)) else SCHEMA
 
 
 def load(path: Path | str) -> Bundle:
@@ -174,8 +191,8 @@ def _path(path: object) -> Path:
 
 
 def _require_arguments(result: object, verdict: object, command: object, created: object) -> None:
-    if not isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)):
-        allowed = "a LindstedtSeries, a QTorus or a RefinedTorus"
+    if not isinstance(result, (LindstedtSeries, QuasiPeriodic)):
+        allowed = "a series or a solution: a torus or a breather"
         raise InputError("result", type(result).__name__, allowed, "pass what lindstedt, solve_amplitudes or refine gave")
     if command is not None and not isinstance(command, str):
         raise InputError("command", command, "a string or None", "join its words")
@@ -232,9 +249,7 @@ def _flat(parts: Iterable[Array], dtype: str) -> Array:
 def _series_entries(series: LindstedtSeries) -> Json:
     point = series.point
     return {
-        "N": series.chain.N,
-        "alpha": fraction_text(series.chain.alpha),
-        "beta": fraction_text(series.chain.beta),
+        **chain_entries(series.chain),
         "seeds": list(series.seeds),
         "frequencies": None if series.frequencies is None else [fraction_text(w) for w in series.frequencies],
         "order": series.order,
@@ -319,7 +334,7 @@ def _kind(body: Json) -> RingKind:
 
 
 def _series(archive: Archive, body: Json) -> LindstedtSeries:
-    chain = Chain(integer(body["N"], "N", 2), fraction(body["alpha"]), fraction(body["beta"]))
+    chain = chain_from(body)
     seeds, order = seed_modes(body["seeds"], chain.N), integer(body["order"], "order", 0)
     chosen, point, digits = body["frequencies"], body["point"], body["digits"]
     frequencies = None if chosen is None else tuple(fraction(w) for w in chosen)
@@ -402,17 +417,20 @@ def _bundle(path: Path, archive: Archive) -> Bundle:
         kind = KINDS[body["kind"]]
         raise BundleError(path, f"is a checkpoint of {kind.of}, which holds no torus", f"go on from it with {kind.resume}")
     series = None if body["series"] is None else _series(archive, body["series"])
-    torus: QTorus | RefinedTorus | None = None
-    if series is None:
-        if body["torus"]["kind"] != REFINED:
-            raise ValueError(f"a torus of kind {body['torus']['kind']!r:.40} without a series")
-        torus = refined_from(archive, body["torus"])
-    elif body["torus"] is not None:
-        torus = _torus(body["torus"], series)
     return Bundle(
         series=series,
-        torus=torus,
+        torus=_solution(archive, body["torus"], series),
         verdict=None if body["verdict"] is None else dict(body["verdict"]),
         provenance={name: body[name] for name in ("created", "command", "versions")},
         test_vectors=tuple(OrbitPoint(str(v["t"]), tuple(map(str, v["Q"])), tuple(map(str, v["P"]))) for v in body["test_vectors"]),
     )
+
+
+def _solution(archive: Archive, body: Json | None, series: LindstedtSeries | None) -> QuasiPeriodic | None:
+    if series is not None:
+        return None if body is None else _torus(body, series)
+    readers = {REFINED: refined_from, FOURIER: solution_from}
+    if body is None or body["kind"] not in readers:
+        kind = None if body is None else body["kind"]
+        raise ValueError(f"a torus of kind {kind!r:.40} without a series")
+    return readers[body["kind"]](archive, body)

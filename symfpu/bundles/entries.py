@@ -1,4 +1,4 @@
-"""Numbers of a result as text, and back without executing anything."""
+"""Numbers and chains of a result as text, and back without executing anything."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ from typing import Any
 import mpmath
 from mpmath import libmp
 
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.files.archive import Json
 from symfpu.numbers.arithmetic import text
+from symfpu.numbers.typed import fraction, fraction_text, integer
 
 
 def number_entry(value: Any) -> str | dict[str, str]:
@@ -21,13 +24,26 @@ def number_entry(value: Any) -> str | dict[str, str]:
     if not mpmath.isfinite(value):
         raise InputError("result", value, "finite numbers", "solve for the amplitudes again")
     sign, mantissa, exponent, bits = value._mpf_
-    return {"exact": f"{'-' if sign else ''}{int(mantissa):#x}p{exponent}", "decimal": text(value, max(1, bits * 3 // 10))}
+    exact = f"{'-' if sign else ''}{int(mantissa):#x}p{exponent}"
+    return {"exact": exact, "decimal": text(value, max(1, bits * 3 // 10))}
 
 
 def number(entry: Any) -> Any:
+    """The number of such an entry, to the last bit."""
     if isinstance(entry, str):
         return float(entry)
     found = re.fullmatch(r"(-?0x[0-9a-f]+)p(-?\d{1,18})", entry["exact"], re.ASCII)
     if not found:
         raise ValueError(f"{entry['exact']!r:.40} is no binary number")
     return mpmath.mp.make_mpf(libmp.from_man_exp(int(found[1], 16), int(found[2])))
+
+
+def chain_entries(chain: Chain) -> Json:
+    """A chain as exact text."""
+    return {"N": chain.N, "alpha": fraction_text(chain.alpha), "beta": fraction_text(chain.beta)}
+
+
+def chain_from(body: Json) -> Chain:
+    """The chain of such entries."""
+    N = integer(body["N"], "N", 2)
+    return Chain(N, fraction(body["alpha"]), fraction(body["beta"]))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain.chain import Chain
+from symfpu.bundles.entries import chain_entries, chain_from
 from symfpu.files.archive import Archive, Json
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
 from symfpu.refinement.newton import NewtonStep
@@ -19,9 +19,7 @@ Array = NDArray[Any]
 def refined_entries(torus: RefinedTorus) -> tuple[Json, dict[str, Array]]:
     """The entries of a document and the arrays `harmonics` and `cosines`, from which the same torus is made again."""
     entries: Json = {
-        "N": torus.chain.N,
-        "alpha": fraction_text(torus.chain.alpha),
-        "beta": fraction_text(torus.chain.beta),
+        **chain_entries(torus.chain),
         "seeds": list(torus.seeds),
         "frequencies": [fraction_text(w) for w in torus.frequencies],
         "amplitudes": [repr(a) for a in torus.amplitudes.values()],
@@ -36,7 +34,7 @@ def refined_entries(torus: RefinedTorus) -> tuple[Json, dict[str, Array]]:
 
 def refined_from(archive: Archive, body: Json) -> RefinedTorus:
     """The torus of such entries; ValueError where they do not fit together."""
-    chain = Chain(integer(body["N"], "N", 2), fraction(body["alpha"]), fraction(body["beta"]))
+    chain = chain_from(body)
     seeds, count = seed_modes(body["seeds"], chain.N), integer(body["harmonics"], "harmonics", 1)
     s = len(seeds)
     lengths = {name: len(body[name]) for name in ("frequencies", "amplitudes", "phases")}

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from symfpu.errors import InputError
 from symfpu.files.archive import (
     FORMAT,
-    SCHEMA,
     Archive,
     BundleError,
     Json,
@@ -30,6 +29,7 @@ from symfpu.numbers.typed import integer
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+CHECKPOINT_SCHEMA = 1
 ADVICE = "name another file, or remove this one"
 # parameters that a longer run, which goes on from a shorter one, has otherwise
 LENGTH = ("steps", "sampled steps")
@@ -90,7 +90,7 @@ def write_checkpoint(
         digests[name] = member_digest(members[name])
     body: Json = {
         "format": FORMAT,
-        "schema": SCHEMA,
+        "schema": CHECKPOINT_SCHEMA,
         "kind": kind.name,
         "parameters": parameters,
         "steps": steps,

@@ -247,7 +247,7 @@ def scheme_limit(chain: Chain, seed: int, energies: tuple[str, str], step: Step 
 
     k = next(k for k, gap in enumerate(gaps) if gap < 0)
     omega = brentq(lambda w: series_end(chain, seed, w)[1] - w, rates[k - 1], rates[k], xtol=1e-12, rtol=1e-12)
-    orbit = periodic_orbit(chain, seed, omega, chosen[k - 1].torus.cosines[np.argsort(chosen[k - 1].torus.harmonics[:, 0])])
+    orbit = periodic_orbit(chain, seed, omega, chosen[k - 1].torus)
     return SchemeLimit(orbit, tuple(rates), tuple(m.amplitudes[seed] for m in chosen), tuple(a for a, _ in ends), found)
 
 

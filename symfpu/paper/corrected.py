@@ -206,9 +206,7 @@ def _guess(printed: PrintedTorus, order: int, tell: Report) -> QuasiPeriodic:
     chain, seeds = printed.chain, printed.seeds
     if len(seeds) == 1:
         tell("periodic orbit")
-        orbit = periodic_orbit(chain, seeds[0], printed.frequencies[0])
-        nu = np.arange(len(orbit.cosines), dtype=np.int64)[:, None]
-        return FourierTorus(chain, seeds, (orbit.frequency,), nu, orbit.cosines, {seeds[0]: 0.0})
+        return periodic_orbit(chain, seeds[0], printed.frequencies[0])
     tell("short series")
     return solve_amplitudes(lindstedt(chain, seeds, printed.frequencies, min(order, printed.order)))
 

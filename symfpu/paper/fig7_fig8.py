@@ -22,7 +22,6 @@ from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import SIMILAR, same_profile
 from symfpu.paper.printed import PrintedTorus
 from symfpu.paper.starts import (
-    Starting,
     energies_panel,
     follow,
     normalised_floor,
@@ -32,6 +31,7 @@ from symfpu.paper.starts import (
     profile_panel,
 )
 from symfpu.paper.steps import Step, unheard
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
@@ -56,7 +56,7 @@ def figure7(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     row = printed_row("Fig. 7")
     torus, newton = printed_torus(row), periodic_orbit_digits(periodic_orbit(row.chain, 1, row.frequencies[0]), NEWTON_DIGITS)
     fpu = fpu_trajectory(row.chain, printed_amplitudes(row))
-    starts: dict[str, Starting | tuple[Floats, Floats]] = {"PLn": torus, "FPU-trajectory": fpu}
+    starts: dict[str, QuasiPeriodic | tuple[Floats, Floats]] = {"PLn": torus, "FPU-trajectory": fpu}
     moments = np.linspace(0.0, TIME_7, 2001)
     orbits = {name: follow(f"fig7 {name}", row.chain, start, TIME_7, step, samples=moments) for name, start in starts.items()}
     times = orbits["PLn"].times

@@ -172,10 +172,12 @@ def cancellation_markdown(data: CancellationStudy) -> str:
 
 def breather_markdown(data: BreatherStudy) -> str:
     """Question (ii) of the convergence study."""
-    rows = [
-        [name, f"{float(o.frequency):.14f}", f"{o.amplitude:.11f}", f"{o.energy:.10f}", f"{o.harmonic_energy:.10f}", f"{o.residual:.0e}"]
-        for name, o in (("printed frequency", data.orbit), ("printed amplitude", data.at_printed))
-    ]
+    rows = []
+    for name, orbit in (("printed frequency", data.orbit), ("printed amplitude", data.at_printed)):
+        harmonic = orbit.harmonic_energies().sum()
+        motion = [f"{float(orbit.frequency):.14f}", f"{orbit.amplitude:.11f}"]
+        energies = [f"{orbit.energy():.10f}", f"{harmonic:.10f}"]
+        rows.append([name, *motion, *energies, f"{orbit.residual():.0e}"])
     orders = [k for k in data.amplitudes if k in (2, 10, 50, 100, 150, 200) or k == max(data.amplitudes)]
     return "\n\n".join(
         [
@@ -185,7 +187,7 @@ def breather_markdown(data: BreatherStudy) -> str:
             f"The frequency series with these divisors ends at A = {data.singularity:.9f} (spread of the fit {data.spread:.0e}) in a "
             f"singularity of exponent {data.exponent:.4f}.",
             f"The breathers lie behind such an end, out of reach of the series, from A = {data.limit.orbit.amplitude:.6f}, omega = "
-            f"{float(data.limit.orbit.frequency):.9f}, H = {data.limit.orbit.energy:.7f} on; Newton's method followed the family to H = "
+            f"{float(data.limit.orbit.frequency):.9f}, H = {data.limit.orbit.energy():.7f} on; Newton's method followed the family to H = "
             f"{data.limit.family.members[-1].energy:.4f}.",
             f"Verdict: {data.assessment.headline} ({'; '.join(data.assessment.reasons)}).",
         ]
@@ -208,12 +210,12 @@ def convergence_record(cancellation: CancellationStudy, breather: BreatherStudy)
         "resummed_residuals": {str(k): fifteen_digits(r) for k, r in cancellation.resummed.items()},
         "torus": cancellation.assessment.record(),
         "orbit": {"frequency": decimal(breather.orbit.frequency), "amplitude": repr(breather.orbit.amplitude)},
-        "orbit_energy": repr(breather.orbit.energy),
+        "orbit_energy": repr(float(breather.orbit.energy())),
         "singularity": fifteen_digits(breather.singularity),
         "limit": {
             "frequency": decimal(breather.limit.orbit.frequency),
             "amplitude": repr(breather.limit.orbit.amplitude),
-            "energy": repr(breather.limit.orbit.energy),
+            "energy": repr(float(breather.limit.orbit.energy())),
         },
         "breather": breather.assessment.record(),
     }

@@ -5,10 +5,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import Orbit, integrate
@@ -26,14 +25,6 @@ Floats = NDArray[np.float64]
 # frequency orders that give the printed amplitudes (docs/reproduction.md); the last one for those that are met by none
 AMPLITUDE_ORDERS = {"Fig. 1": 24, "Fig. 2": 4, "Fig. 5a": 6, "Fig. 5b": 6, "Fig. 5c": 6, "Fig. 5d": 4, "Fig. 9": 242}
 SCHEME, MODE_STEP = "aba864_modes", 0.7  # tails far below the rounding of the largest mode; two looks in a period of E_q
-
-
-class Starting(Protocol):
-    """Where an orbit can start: tori and breathers."""
-
-    def positions(self, t: ArrayLike) -> Any: ...
-
-    def momenta(self, t: ArrayLike) -> Any: ...
 
 
 def printed_row(label: str) -> PrintedTorus:
@@ -55,7 +46,7 @@ def printed_amplitudes(row: PrintedTorus) -> dict[int, str]:
 def follow(
     name: str,
     chain: Chain,
-    start: Starting | tuple[Floats, Floats],
+    start: QuasiPeriodic | tuple[Floats, Floats],
     T: float,
     tell: Step,
     *,
@@ -65,11 +56,11 @@ def follow(
     averages: bool = True,
 ) -> Orbit:
     """The orbit from a torus or a state at t = 0, with running averages; `tell` hears how far it is."""
-    Q, P = start if isinstance(start, tuple) else (start.positions(0.0), start.momenta(0.0))
+    Q, P = start if isinstance(start, tuple) else start.state()
     return integrate(
         chain,
-        np.asarray(Q, dtype=float),
-        np.asarray(P, dtype=float),
+        Q,
+        P,
         T,
         step=step,
         scheme=scheme,

@@ -36,7 +36,7 @@ from symfpu.refinement.invariance import (
     rational,
 )
 from symfpu.refinement.newton import Iterate, NewtonStep, Report, newton
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 
 # residual of the equations of motion, relative to the largest acceleration, that ends the search
 # for harmonics
@@ -231,10 +231,7 @@ def refine_at_energy(
     elif amplitude_ratio is not None:
         ratio = _by_seed("amplitude_ratio", amplitude_ratio, torus, signed=True)
     else:
-        ratio = {
-            q: exact(a, "amplitude")
-            for q, a in zip(torus.seeds, _seed_amplitudes(torus), strict=True)
-        }
+        ratio = {q: exact(float(a), "amplitude") for q, a in amplitudes_of(torus).items()}
     numbers = {q: float(x) for q, x in ratio.items()}
     conditions = [
         Energy(long(value), bool(harmonic)),
@@ -268,13 +265,6 @@ def _by_seed(
         advice = "leave out a seed that is at rest"
         raise InputError(argument, dict(values), f"{allowed}, of moderate size", advice)
     return numbers
-
-
-def _seed_amplitudes(torus: QuasiPeriodic) -> list[float]:
-    rows = {tuple(nu): i for i, nu in enumerate(torus.harmonics.tolist())}
-    units = unit_harmonics(len(torus.seeds))
-    places = [(rows[e], q - 1) for e, q in zip(units, torus.seeds, strict=True)]
-    return [float(torus.cosines[place]) for place in places]
 
 
 def unit_harmonics(s: int) -> list[tuple[int, ...]]:

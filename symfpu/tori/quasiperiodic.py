@@ -1,4 +1,4 @@
-"""Quasi-periodic solutions given by their cosine coefficients: orbit, energies, averages and residuals."""
+"""Quasi-periodic solutions by their cosine coefficients: orbit, energies, averages and residuals."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,7 @@ from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbe
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
+Value = TypeVar("Value")
 
 CHUNK = 4_000_000  # entries of a table of cosines held at once
 GRID_POINTS = 4096  # angles at which a residual is taken, about
@@ -26,21 +27,47 @@ SEEN_BY_DOUBLES = 1e-10  # relative residuals above it need no more digits
 GRID_POINTS_DIGITS = 16  # the same for numbers of many digits
 
 
-class QuasiPeriodic:
+class Solution(Protocol):
+    """What makes a solution: fields of some kinds, computed by others; none can be set."""
+
+    @property
+    def chain(self) -> Chain: ...
+    @property
+    def seeds(self) -> tuple[int, ...]: ...
+    @property
+    def frequencies(self) -> tuple[Fraction, ...]: ...
+    @property
+    def phases(self) -> Mapping[int, Any]: ...
+    @property
+    def harmonics(self) -> Ints: ...
+    @property
+    def cosines(self) -> Numbers: ...
+    @property
+    def amplitudes(self) -> Mapping[int, Any]: ...
+    @property
+    def digits(self) -> int | None: ...
+
+
+# Properties in a base class would be taken for defaults of the fields of its dataclasses: they are for type checkers alone.
+if TYPE_CHECKING:
+    Parts = Solution
+else:
+    Parts = object
+
+
+class QuasiPeriodic(Parts):
     """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)): what every torus and breather can do.
 
-    seeds, frequencies, phases : the s angles. harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : c_q[nu];
-    shape (H, N-1). With digits, results are mpf or arrays of them, evaluated with that many digits
-    and more, which print that many; else doubles.
+    chain : the model. seeds, frequencies, phases : the s angles.
+    harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : c_q[nu]; shape (H, N-1).
+    amplitudes : A_q by seed, the coefficient of cos(theta_q) in Q_q.
+    warnings : reasons to doubt that this is a torus.
+
+    With digits, results are mpf or arrays of them, evaluated with that many digits and more, which
+    print that many; else doubles.
     """
 
-    chain: Chain
-    seeds: tuple[int, ...]
-    frequencies: tuple[Fraction, ...]
-    phases: Mapping[int, Any]
-    harmonics: Ints
-    cosines: Numbers
-    digits: int | None
+    warnings: tuple[str, ...] = ()
 
     @property
     def numbers(self) -> Arithmetic:
@@ -59,44 +86,114 @@ class QuasiPeriodic:
         """nu.omega of every harmonic; shape (H,)."""
         return np.asarray(self.harmonics @ self._omega)
 
+    # solutions of one angle
+
+    @property
+    def seed(self) -> int:
+        """The seed mode of a solution of one angle; raises InputError for more."""
+        return self._only("seed", self.seeds)
+
+    @property
+    def frequency(self) -> Fraction:
+        """omega of a solution of one angle, exact; raises InputError for more."""
+        return self._only("frequency", self.frequencies)
+
+    @property
+    def amplitude(self) -> Any:
+        """A, the coefficient of cos(omega t + phi) in Q_seed, of a solution of one angle; raises InputError for more."""
+        return self._only("amplitude", tuple(self.amplitudes.values()))
+
+    def by_harmonic(self) -> Numbers:
+        """Coefficients of a solution of one angle by the number n of the harmonic, 0 .. H.
+
+        Row n belongs to cos(n (omega t + phi)); shape (H+1, N-1). Raises InputError for more angles.
+        """
+        self._only("harmonics", self.seeds)
+        n = np.abs(self.harmonics[:, 0])
+        table = self.numbers.zeros((max(int(n.max()), 1) + 1, self.chain.N - 1))
+        table[n] = self.cosines
+        return table
+
+    def _only(self, name: str, values: tuple[Value, ...]) -> Value:
+        if len(self.seeds) == 1:
+            return values[0]
+        advice = "use seeds, frequencies, amplitudes, harmonics and cosines"
+        raise InputError(name, f"of {len(self.seeds)} angles", "that of a solution of one angle", advice)
+
+    # along the orbit
+
     def in_doubles(self) -> FourierTorus:
         """The same solution with its coefficients rounded to doubles."""
         phases = {q: float(phi) for q, phi in self.phases.items()}
-        return FourierTorus(self.chain, self.seeds, self.frequencies, self.harmonics, self.cosines.astype(float), phases)
+        cosines = self.cosines.astype(float)
+        return FourierTorus(self.chain, self.seeds, self.frequencies, self.harmonics, cosines, phases)
+
+    def state(self, t: float = 0.0) -> tuple[Floats, Floats]:
+        """Mode coordinates and momenta at a time, in doubles, where `integrate` and others may start; (N-1,) each.
+
+        >>> from symfpu import Chain, breather_at_amplitude, integrate
+        >>> orbit = breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4")
+        >>> integrate(orbit.chain, *orbit.state(), 10.0, step=0.1).energy_error < 1e-10
+        True
+        """
+        if np.ndim(t):
+            raise InputError("t", t, "one finite number", "take positions(t) and momenta(t) for many times")
+        Q, P = self.positions(t), self.momenta(t)
+        return Q.astype(float), P.astype(float)
 
     def positions(self, t: ArrayLike) -> Numbers:
         """Mode coordinates Q_q(t); t a number or an array (T,), result (N-1,) or (T, N-1)."""
         return with_digits(self._positions(t), self.digits)
 
     def _positions(self, t: ArrayLike) -> Numbers:
-        return self._along(t, lambda angles: self.numbers.dot(self.numbers.cos(angles), self.cosines))
+        return self._along(t, self._cosine_sums(self.cosines))
 
     def momenta(self, t: ArrayLike) -> Numbers:
         """Mode momenta P_q(t) = dQ_q/dt; t a number or an array (T,), result (N-1,) or (T, N-1)."""
         return with_digits(self._momenta(t), self.digits)
 
     def _momenta(self, t: ArrayLike) -> Numbers:
-        return self._along(t, lambda angles: self.numbers.dot(self.numbers.sin(angles), -self._rates[:, None] * self.cosines))
+        def derivative(angles: Numbers) -> Numbers:
+            velocities = -self._rates[:, None] * self.cosines
+            return self.numbers.dot(self.numbers.sin(angles), velocities)
+
+        return self._along(t, derivative)
+
+    def _cosine_sums(self, coefficients: Numbers) -> Callable[[Numbers], Numbers]:
+        """Of the angles of all harmonics, (P, H), the sums of cosines with these coefficients, (P, N-1)."""
+
+        def sums(angles: Numbers) -> Numbers:
+            return self.numbers.dot(self.numbers.cos(angles), coefficients)
+
+        return sums
 
     def _along(self, t: ArrayLike, evaluate: Callable[[Numbers], Numbers]) -> Numbers:
         with self._context():
-            try:
-                times = self.numbers.array(t)
-            except (TypeError, ValueError) as error:
-                raise InputError("t", t, "a finite number or an array of them", "pass real numbers") from error
-            if times.ndim > 1 or not self.numbers.finite(times):
-                raise InputError("t", t, "a finite number or a one-dimensional array of them", "flatten it")
+            times = self._times(t)
             theta = times.reshape(-1, 1) * self._omega + self._offsets()
             values = self._at_angles(theta, evaluate)
             return values[0] if times.ndim == 0 else values
+
+    def _times(self, t: ArrayLike) -> Numbers:
+        try:
+            times = self.numbers.array(t)
+        except (TypeError, ValueError) as error:
+            raise InputError("t", t, "a finite number or an array of them", "pass real numbers") from error
+        if times.ndim > 1 or not self.numbers.finite(times):
+            allowed = "a finite number or a one-dimensional array of them"
+            raise InputError("t", t, allowed, "flatten it")
+        return times
 
     def _offsets(self) -> Numbers:
         return self.numbers.array([self.phases[q] for q in self.seeds])
 
     def _at_angles(self, theta: Numbers, evaluate: Callable[[Numbers], Numbers]) -> Numbers:
         step = max(1, CHUNK // len(self.harmonics))
-        parts = [evaluate(theta[i : i + step] @ self.harmonics.T) for i in range(0, len(theta), step)]
+        starts = range(0, len(theta), step)
+        parts = [evaluate(theta[i : i + step] @ self.harmonics.T) for i in starts]
         return np.concatenate(parts) if parts else np.zeros((0, self.chain.N - 1))
+
+    # energies
 
     def energy(self, t: ArrayLike = 0.0) -> Any:
         """Total energy H at t, a number or (T,), in the shape of t; constant in time for an exact torus."""
@@ -113,23 +210,28 @@ class QuasiPeriodic:
     def energy_error(self, t: ArrayLike, *, harmonic: bool = False) -> Numbers:
         """Relative error (E(t) - E(0)) / E(0) of the total energy, or of the harmonic one, sum E_q (section 3.2)."""
         with self._context():
-            values = self.harmonic_energies(t).sum(axis=-1) if harmonic else self.energy(t)
-            start = self.harmonic_energies().sum() if harmonic else self.energy()
+            if harmonic:
+                values = self.harmonic_energies(t).sum(axis=-1)
+                start = self.harmonic_energies().sum()
+            else:
+                values, start = self.energy(t), self.energy()
             return with_digits(np.asarray((values - start) / start), self.digits)
 
     def average_spectrum(self, T: float | None = None) -> Numbers:
         """Time averages of the harmonic energies E_q, in closed form; shape (N-1,).
 
-        T : averaging time from t = 0, computed in doubles; None for the infinite-time average, (1/4) sum c^2 ((nu.omega)^2 +
-        Omega^2) over nu != 0 plus the constant term. With the factor 1/2 of E_q that the paper's section 3.2 leaves out.
+        T : averaging time from t = 0, computed in doubles; None for the infinite-time average,
+        (1/4) sum c^2 ((nu.omega)^2 + Omega^2) over nu != 0 plus the constant term. With the factor
+        1/2 of E_q that the paper's section 3.2 leaves out.
         """
         if T is not None:
             return self._finite_average(T)
         with self._context():
             linear = self.chain.frequencies(self.numbers)
             weights = np.where((self.harmonics != 0).any(axis=1), 0.5, 1.0)
-            kinetic = (weights * self._rates**2) @ self.cosines**2
-            average = 0.5 * (kinetic + linear**2 * (weights @ self.cosines**2))
+            squares = self.cosines**2
+            kinetic = (weights * self._rates**2) @ squares
+            average = 0.5 * (kinetic + linear**2 * (weights @ squares))
             return with_digits(np.asarray(average), self.digits)
 
     def _finite_average(self, T: float) -> Floats:
@@ -146,8 +248,11 @@ class QuasiPeriodic:
             difference = mean_cosine(rates[rows, None] - rates, psi[rows, None] - psi, T)
             total_ = mean_cosine(rates[rows, None] + rates, psi[rows, None] + psi, T)
             total += np.einsum("hq,hq->q", velocity[rows], (difference - total_) @ velocity)
-            total += linear**2 * np.einsum("hq,hq->q", cosines[rows], (difference + total_) @ cosines)
+            squares = np.einsum("hq,hq->q", cosines[rows], (difference + total_) @ cosines)
+            total += linear**2 * squares
         return total / 4
+
+    # the equations of motion
 
     @property
     def _curvatures(self) -> Numbers:
@@ -156,8 +261,8 @@ class QuasiPeriodic:
     def residuals(self, points: int | None = None) -> Numbers:
         """Largest |d^2Q_q/dt^2 - force| of each mode on a grid of angles; zero for an exact torus; shape (N-1,).
 
-        points : grid points for each of the s angles; default such that the grid has about 4096. With digits, where doubles
-        cannot see the residual, about 16.
+        points : grid points for each of the s angles; default such that the grid has about 4096.
+        With digits, where doubles cannot see the residual, about 16.
         """
         return with_digits(self._residuals(points)[0], self.digits)
 
@@ -182,17 +287,29 @@ class QuasiPeriodic:
             residuals, largest = self.in_doubles()._residuals(None)
             if residuals.max() > SEEN_BY_DOUBLES * largest:
                 return residuals, largest
-        wanted = GRID_POINTS if self.digits is None else GRID_POINTS_DIGITS
-        number = integer(points, "points", 1) if points is not None else max(2, min(64, round(wanted ** (1 / len(self.seeds)))))
+        number = self._grid_points() if points is None else integer(points, "points", 1)
         with self._context():
-            worst, largest = np.zeros(self.chain.N - 1), 0.0
-            for theta in self.angle_grid(number):
-                Q = self._at_angles(theta, lambda angles: self.numbers.dot(self.numbers.cos(angles), self.cosines))
-                second = self._at_angles(theta, lambda angles: self.numbers.dot(self.numbers.cos(angles), self._curvatures))
-                force = self.chain.accelerations(Q)
-                worst = np.maximum(worst, np.abs(second - force).max(axis=0))
-                largest = max(largest, np.abs(force).max())
-            return worst, largest
+            return self._worst_on_grid(number)
+
+    def _grid_points(self) -> int:
+        """Points for each of the angles by default."""
+        wanted = GRID_POINTS if self.digits is None else GRID_POINTS_DIGITS
+        number: int = round(wanted ** (1 / len(self.seeds)))
+        return max(2, min(64, number))
+
+    def _worst_on_grid(self, number: int) -> tuple[Numbers, Any]:
+        """By mode the largest |d^2Q_q/dt^2 - force|, and the largest force."""
+        worst = np.zeros(self.chain.N - 1)
+        largest: Any = 0.0
+        coordinates = self._cosine_sums(self.cosines)
+        accelerations = self._cosine_sums(self._curvatures)
+        for theta in self.angle_grid(number):
+            Q = self._at_angles(theta, coordinates)
+            second = self._at_angles(theta, accelerations)
+            force = self.chain.accelerations(Q)
+            worst = np.maximum(worst, np.abs(second - force).max(axis=0))
+            largest = max(largest, np.abs(force).max())
+        return worst, largest
 
     def angle_grid(self, number: int) -> Iterator[Numbers]:
         """The tensor grid of angles, radians, in portions (P, s); a shift keeps it off 0 and pi.
@@ -200,10 +317,25 @@ class QuasiPeriodic:
         number : of points for each of the s angles.
         """
         s = len(self.seeds)
+        shape = (number,) * s
         for start in range(0, number**s, GRID_POINTS):
             index = np.arange(start, min(start + GRID_POINTS, number**s))
-            digits = np.stack(np.unravel_index(index, (number,) * s), axis=-1)
+            digits = np.stack(np.unravel_index(index, shape), axis=-1)
             yield 2 * self.numbers.pi * (3 * digits + 1) / (3 * number)
+
+
+def amplitudes_of(solution: Solution) -> dict[int, Any]:
+    """A_q by seed, read from the coefficients: that of cos(theta_q) in Q_q, zero where there is none."""
+    rows = {tuple(nu): row for nu, row in zip(solution.harmonics.tolist(), solution.cosines, strict=True)}
+    nothing = 0 * solution.cosines[0]
+    amplitudes = {}
+    for i, q in enumerate(solution.seeds):
+        unit = tuple(int(i == j) for j in range(len(solution.seeds)))
+        opposite = tuple(-n for n in unit)
+        row = rows.get(unit, rows.get(opposite, nothing))
+        value = row[q - 1]
+        amplitudes[q] = float(value) if solution.digits is None else value
+    return amplitudes
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,7 +346,8 @@ class FourierTorus(QuasiPeriodic):
         angles.
     frequencies : omega of every seed, exact, shape (s,). harmonics : the nu, integers, one of each pair +-nu,
         shape (H, s).
-    cosines : c_q[nu], shape (H, N-1). phases : phi by seed. digits : of cosines in mpf; None for doubles.
+    cosines : c_q[nu], shape (H, N-1). phases : phi by seed, 0 where left out.
+    digits : of cosines in mpf; None for doubles.
 
     Eqs. qser and serabs1 with the amplitudes put in. Nothing is checked: whether it solves the equations of
     motion is what `residual` measures.
@@ -237,14 +370,22 @@ class FourierTorus(QuasiPeriodic):
     digits: int | None = None
 
     def __post_init__(self) -> None:
+        phases = {q: self.phases.get(q, 0.0) for q in self.seeds}
+        object.__setattr__(self, "phases", phases)
         show(self, "cosines", "phases")
+
+    @property
+    def amplitudes(self) -> Mapping[int, Any]:
+        """A_q by seed, the coefficient of cos(theta_q) in Q_q."""
+        return amplitudes_of(self)
 
 
 def show(result: QuasiPeriodic, *names: str) -> None:
     """Lets numbers in these fields of a frozen result print its digits; for `__post_init__`."""
     if result.digits is not None:
         for name in names:
-            object.__setattr__(result, name, with_digits(getattr(result, name), result.digits))
+            shown = with_digits(getattr(result, name), result.digits)
+            object.__setattr__(result, name, shown)
 
 
 def mean_cosine(rate: Floats, phase: Floats, T: float) -> Floats:

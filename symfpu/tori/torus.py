@@ -77,33 +77,37 @@ class QTorus(QuasiPeriodic):
 
     def __repr__(self) -> str:
         places = self.digits or 12
-        amplitudes = ", ".join(f"A_{q}={text(a, places)}" for q, a in self.amplitudes.items())
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        proof = "" if self.certificate is None else ", certified" if self.certificate.certified else ", not certified"
+        amplitudes = ", ".join(f"A_{q}={text(a, places)}" for q, a in self.amplitudes.items())
+        orders = f"frequency order {self.frequency_order}, order {self.order}"
+        quality = f"H={float(self.energy()):.10g}, residual {self.residual():.2g}"
         doubts = "".join(f"; {warning}" for warning in self.warnings)
-        return (
-            f"QTorus({chain}, {amplitudes}, frequency order {self.frequency_order}, order {self.order}, "
-            f"H={float(self.energy()):.10g}, residual {self.residual():.2g}{proof}{doubts})"
-        )
+        return f"QTorus({chain}, {amplitudes}, {orders}, {quality}{self._proof()}{doubts})"
+
+    def _proof(self) -> str:
+        """What is known of the root, for print."""
+        if self.certificate is None:
+            return ""
+        return ", certified" if self.certificate.certified else ", not certified"
 
     @property
-    def chain(self) -> Chain:  # type: ignore[override]
+    def chain(self) -> Chain:
         """The chain."""
         return self.series.chain
 
     @property
-    def seeds(self) -> tuple[int, ...]:  # type: ignore[override]
+    def seeds(self) -> tuple[int, ...]:
         """The seed modes."""
         return self.series.seeds
 
     @property
-    def frequencies(self) -> tuple[Fraction, ...]:  # type: ignore[override]
+    def frequencies(self) -> tuple[Fraction, ...]:
         """The chosen frequency of every seed."""
         assert self.series.frequencies is not None
         return self.series.frequencies
 
     @property
-    def digits(self) -> int | None:  # type: ignore[override]
+    def digits(self) -> int | None:
         """Digits of all results; None for doubles."""
         return self.series.digits
 
@@ -120,7 +124,8 @@ class QTorus(QuasiPeriodic):
         """Harmonics (H, s) and cosine coefficients (H, N-1), all orders summed."""
         amplitudes = [self.amplitudes[q] for q in self.seeds]
         with self._context():
-            parts = [self.series.harmonic_terms(amplitudes, k) for k in range(self.order + 1)]
+            orders = range(self.order + 1)
+            parts = [self.series.harmonic_terms(amplitudes, k) for k in orders]
             keys = np.concatenate([self.series.grading.harmonic_keys(nu) for nu, _ in parts])
             _, first, index = np.unique(keys, return_index=True, return_inverse=True)
             values = self.numbers.zeros((len(first), self.chain.N - 1))
@@ -128,14 +133,15 @@ class QTorus(QuasiPeriodic):
             for nu, part in parts:
                 values[index[at : at + len(nu)]] += part
                 at += len(nu)
-        return np.concatenate([nu for nu, _ in parts])[first], with_digits(values, self.digits)
+        harmonics = np.concatenate([nu for nu, _ in parts])[first]
+        return harmonics, with_digits(values, self.digits)
 
     @property
-    def harmonics(self) -> Ints:  # type: ignore[override]
+    def harmonics(self) -> Ints:
         """The harmonics nu of the solution, one of each pair +-nu; shape (H, s)."""
         return self._terms[0]
 
     @property
-    def cosines(self) -> Numbers:  # type: ignore[override]
+    def cosines(self) -> Numbers:
         """The coefficients c_q[nu] of cos(nu.theta) in Q_q; shape (H, N-1)."""
         return self._terms[1]

@@ -1,0 +1,213 @@
+"""Solutions without a series, by their coefficients, as plain entries and flat arrays, for files.
+
+Harmonics and coefficients are written alike for all kinds; what made a solution is written by its kind, of which a new one is
+a line in KINDS. Coefficients of many digits are mantissas in words (symfpu.algebra.words), each with its binary exponent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any, NamedTuple
+
+import mpmath
+import numpy as np
+from mpmath import libmp
+from numpy.typing import NDArray
+
+from symfpu.algebra.words import IntegerTable
+from symfpu.breathers.balance import PeriodicOrbit
+from symfpu.breathers.digits import PreciseOrbit
+from symfpu.breathers.shooting import ShotOrbit
+from symfpu.bundles.entries import chain_entries, chain_from, number, number_entry
+from symfpu.errors import InputError
+from symfpu.files.archive import Archive, Json
+from symfpu.numbers.arithmetic import Numbers
+from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.resummation import ResummedTorus
+
+Array = NDArray[Any]
+Arrays = dict[str, Array]
+
+FOURIER = "fourier"  # kind of a solution that is given by its coefficients
+FLOATS, INTEGERS = "<f8", "<i8"
+
+
+class Kind(NamedTuple):
+    """written : of a solution, what made it, as an entry and arrays. read : of its parts, back."""
+
+    written: Callable[[Any], tuple[Json, Arrays]]
+    read: Callable[[FourierTorus, Archive, Json], QuasiPeriodic]
+
+
+def solution_entries(solution: QuasiPeriodic) -> tuple[Json, Arrays]:
+    """The entries of a document and the arrays, from which the same solution is made again; raises InputError for another kind."""
+    name = type(solution).__name__
+    if name not in KINDS:
+        raise InputError("result", name, f"one of {', '.join(KINDS)}", "save its coefficients: in_doubles()")
+    made, arrays = KINDS[name].written(solution)
+    cosines, layout = _packed(solution.cosines, solution.digits)
+    entries: Json = {
+        "kind": FOURIER,
+        "class": name,
+        **chain_entries(solution.chain),
+        "seeds": list(solution.seeds),
+        "frequencies": [fraction_text(w) for w in solution.frequencies],
+        "phases": [number_entry(solution.phases[q]) for q in solution.seeds],
+        "digits": solution.digits,
+        "harmonics": len(solution.harmonics),
+        **layout,
+        "made": made,
+    }
+    harmonics = np.asarray(solution.harmonics).ravel().astype(INTEGERS)
+    return entries, {"harmonics": harmonics, **cosines, **arrays}
+
+
+def solution_from(archive: Archive, body: Json) -> QuasiPeriodic:
+    """The solution of such entries; ValueError where they do not fit together."""
+    if body["class"] not in KINDS:
+        raise ValueError(f"no solution is of the class {body['class']!r:.40}")
+    chain = chain_from(body)
+    seeds = seed_modes(body["seeds"], chain.N)
+    frequencies = tuple(fraction(w) for w in body["frequencies"])
+    phases = [number(entry) for entry in body["phases"]]
+    if {len(frequencies), len(phases)} != {len(seeds)} or min(frequencies) <= 0:
+        raise ValueError(f"frequencies and phases do not fit the seeds {seeds}")
+    count = integer(body["harmonics"], "harmonics", 1)
+    harmonics = archive.array("harmonics", INTEGERS, count * len(seeds)).reshape(count, len(seeds))
+    digits = None if body["digits"] is None else integer(body["digits"], "digits", 1)
+    cosines = _unpacked(archive, body, (count, chain.N - 1), digits)
+    by_seed = dict(zip(seeds, phases, strict=True))
+    parts = FourierTorus(chain, seeds, frequencies, harmonics.astype(np.int64), cosines, by_seed, digits)
+    return KINDS[body["class"]].read(parts, archive, body["made"])
+
+
+# coefficients
+
+
+def _packed(cosines: Numbers, digits: int | None) -> tuple[Arrays, Json]:
+    """The arrays of coefficients (H, N-1), and what else is needed to read them."""
+    if digits is None:
+        return {"cosines": _floats(cosines)}, {}
+    if not all(mpmath.isfinite(c) for c in cosines.flat):
+        raise InputError("result", "a coefficient that is not finite", "finite numbers", "compute it again")
+    parts = [c._mpf_ for c in cosines.flat]
+    mantissas = np.empty((len(parts), 1), dtype=object)
+    mantissas[:, 0] = [-int(mantissa) if sign else int(mantissa) for sign, mantissa, _, _ in parts]
+    words = IntegerTable.of(mantissas).words
+    exponents = np.array([exponent for _, _, exponent, _ in parts], dtype=INTEGERS)
+    arrays = {"cosines": words.ravel().astype(INTEGERS), "exponents": exponents}
+    return arrays, {"words": words.shape[-1]}
+
+
+def _unpacked(archive: Archive, body: Json, shape: tuple[int, int], digits: int | None) -> Numbers:
+    rows, columns = shape
+    count = rows * columns
+    if digits is None:
+        cosines = _finite(archive, "cosines", count)
+        return cosines.reshape(shape)
+    words = integer(body["words"], "words", 1)
+    flat = archive.array("cosines", INTEGERS, count * words)
+    mantissas = IntegerTable(flat.reshape(count, 1, words)).integers()[:, 0]
+    exponents = archive.array("exponents", INTEGERS, count).tolist()
+    values = np.empty(count, dtype=object)
+    for i, (mantissa, exponent) in enumerate(zip(mantissas, exponents, strict=True)):
+        values[i] = mpmath.mp.make_mpf(libmp.from_man_exp(int(mantissa), exponent))
+    return values.reshape(shape)
+
+
+def _floats(values: Array) -> Array:
+    flat: Array = np.asarray(values).ravel().astype(FLOATS)
+    if not np.isfinite(flat).all():
+        raise InputError("result", "a number that is not finite", "finite numbers", "compute it again")
+    return flat
+
+
+def _finite(archive: Archive, name: str, count: int) -> Array:
+    values = archive.array(name, FLOATS, count)
+    if not np.isfinite(values).all():
+        raise ValueError(f"a number of {name} is not finite")
+    return values
+
+
+# what made them, by kind
+
+
+def _fields(parts: FourierTorus) -> dict[str, Any]:
+    """The fields of FourierTorus, which others begin with."""
+    return {item.name: getattr(parts, item.name) for item in fields(FourierTorus)}
+
+
+def _periodic(parts: FourierTorus) -> FourierTorus:
+    """The parts, if they are those of a periodic orbit; ValueError otherwise."""
+    numbered = np.arange(len(parts.harmonics))[:, None]
+    if len(parts.seeds) > 1 or len(numbered) < 2 or not np.array_equal(parts.harmonics, numbered):
+        raise ValueError("the harmonics are not those of a periodic orbit")
+    return parts
+
+
+def _made_plainly(solution: FourierTorus) -> tuple[Json, Arrays]:
+    return {}, {}
+
+
+def _read_plainly(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
+    return parts
+
+
+def _made_by_sums(torus: ResummedTorus) -> tuple[Json, Arrays]:
+    return {}, {"disagreement": _floats(torus.disagreement)}
+
+
+def _read_sums(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
+    shape = parts.cosines.shape
+    disagreement = _finite(archive, "disagreement", parts.cosines.size).reshape(shape)
+    return ResummedTorus(**_fields(parts), disagreement=disagreement)
+
+
+def _made_by_balance(orbit: PeriodicOrbit) -> tuple[Json, Arrays]:
+    return {"iterations": orbit.iterations, "sigma": number_entry(orbit.sigma)}, {}
+
+
+def _read_balance(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
+    iterations = integer(made["iterations"], "iterations", 0)
+    return PeriodicOrbit(**_fields(_periodic(parts)), iterations=iterations, sigma=float(made["sigma"]))
+
+
+def _made_by_sweeps(orbit: PreciseOrbit) -> tuple[Json, Arrays]:
+    return {"bound": number_entry(orbit.bound), "sweeps": orbit.sweeps}, {}
+
+
+def _read_sweeps(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
+    sweeps = integer(made["sweeps"], "sweeps", 0)
+    return PreciseOrbit(**_fields(_periodic(parts)), bound=number(made["bound"]), sweeps=sweeps)
+
+
+def _made_by_shooting(orbit: ShotOrbit) -> tuple[Json, Arrays]:
+    history = [number_entry(x) for x in orbit.history]
+    entries = {"closure": number_entry(orbit.closure), "history": history, "steps": orbit.steps}
+    return entries, {"start": _floats(orbit.start)}
+
+
+def _read_shooting(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
+    _periodic(parts)
+    start = _finite(archive, "start", parts.chain.N - 1)
+    return ShotOrbit(
+        chain=parts.chain,
+        seeds=parts.seeds,
+        frequencies=parts.frequencies,
+        start=start,
+        closure=float(made["closure"]),
+        history=tuple(float(x) for x in made["history"]),
+        steps=integer(made["steps"], "steps", 1),
+        analysed=parts.cosines,
+    )
+
+
+KINDS = {
+    FourierTorus.__name__: Kind(_made_plainly, _read_plainly),
+    ResummedTorus.__name__: Kind(_made_by_sums, _read_sums),
+    PeriodicOrbit.__name__: Kind(_made_by_balance, _read_balance),
+    PreciseOrbit.__name__: Kind(_made_by_sweeps, _read_sweeps),
+    ShotOrbit.__name__: Kind(_made_by_shooting, _read_shooting),
+}
