@@ -62,16 +62,16 @@ def test_one_mode_has_the_frequency_of_its_potential(chain, seed, energy):
     with mpmath.workdps(30):
         omega = frequency_at(potential(chain, seed), mpmath.mpf(energy))
     orbit = breather_at_energy(chain, seed, energy)
-    assert orbit.energy == pytest.approx(float(energy), rel=ENERGY)
+    assert orbit.energy() == pytest.approx(float(energy), rel=ENERGY)
     assert float(orbit.frequency) == pytest.approx(float(omega), rel=FREQUENCY)
     others = np.delete(np.arange(chain.N - 1), seed - 1)
     assert orbit.cosines[:, others] == pytest.approx(0, abs=1e-13)
-    assert orbit.residual < 1e-12
+    assert orbit.residual() < 1e-12
 
 
 def test_the_energies_of_the_paper_lead_back_to_its_frequencies():
     orbit = periodic_orbit(ALPHA, 25, "1.8830741847088537")
-    found = breather_at_energy(ALPHA, 25, orbit.energy)
+    found = breather_at_energy(ALPHA, 25, orbit.energy())
     assert float(found.frequency) == pytest.approx(1.8830741847088537, abs=1e-15)
     assert found.amplitude == pytest.approx(orbit.amplitude, rel=1e-12)
     assert found.iterations >= 1
@@ -80,19 +80,19 @@ def test_the_energies_of_the_paper_lead_back_to_its_frequencies():
 def test_harmonic_energy_is_another_member():
     chain = Chain(8, alpha="0.4", beta="0.1")
     total, harmonic = breather_at_energy(chain, 3, "0.4"), breather_at_energy(chain, 3, "0.4", harmonic=True)
-    assert total.energy == pytest.approx(0.4, rel=ENERGY)
-    assert harmonic.harmonic_energy == pytest.approx(0.4, rel=ENERGY)
-    assert harmonic.energy != pytest.approx(0.4, rel=1e-3)
+    assert total.energy() == pytest.approx(0.4, rel=ENERGY)
+    assert harmonic.harmonic_energies().sum() == pytest.approx(0.4, rel=ENERGY)
+    assert harmonic.energy() != pytest.approx(0.4, rel=1e-3)
 
 
 def test_a_member_nearby_is_enough():
     chain = Chain(8, alpha="0.4", beta="0.1")
     member = breather_at_amplitude(chain, 3, "-0.8")
-    found = breather_at_energy(chain, 3, 1.01 * member.energy, guess=member)
-    assert found.energy == pytest.approx(1.01 * member.energy, rel=ENERGY)
+    found = breather_at_energy(chain, 3, 1.01 * member.energy(), guess=member)
+    assert found.energy() == pytest.approx(1.01 * member.energy(), rel=ENERGY)
     assert found.amplitude < 0
     with pytest.raises(NoPeriodicOrbit):
-        breather_at_energy(chain, 3, 1e6 * member.energy, guess=member)
+        breather_at_energy(chain, 3, 1e6 * member.energy(), guess=member)
     for guess in (member.cosines, breather_at_amplitude(chain, 2, "0.1"), breather_at_amplitude(Chain(8, alpha="0.4"), 3, "0.1")):
         with pytest.raises(InputError, match=r"^guess = "):
             breather_at_energy(chain, 3, 1, guess=guess)

@@ -183,7 +183,7 @@ def test_one_seed_is_a_periodic_orbit(case):
     (seed,), (frequency,) = torus.seeds, torus.frequencies
     orbit = periodic_orbit(torus.chain, seed, frequency)
     assert torus.amplitudes[seed] == pytest.approx(orbit.amplitude, rel=OF_BREATHER)
-    assert float(torus.energy()) == pytest.approx(orbit.energy, rel=OF_BREATHER)
+    assert float(torus.energy()) == pytest.approx(orbit.energy(), rel=OF_BREATHER)
     for (n,), row in rows(torus).items():
         expected = orbit.cosines[n] if n < len(orbit.cosines) else 0 * row
         assert row == pytest.approx(expected, abs=OF_BREATHER * abs(orbit.amplitude))
