@@ -24,13 +24,19 @@ from symfpu.numbers.typed import Number, decimal, exact, seed_modes
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
 Floats = NDArray[np.float64]
-Condition = Callable[[Floats], tuple[float, Floats]]  # of z: what has to vanish, relative to what it is made of, and its derivatives
+Condition = Callable[
+    [Floats], tuple[float, Floats]
+]  # of z: what has to vanish, relative to what it is made of, and its derivatives
 LARGEST_SYSTEM = 8192  # unknowns; a matrix of 512 MB
 TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonics may reach
-STEP, ROUNDING_STEP = 1e-14, 1e-9  # relative Newton step that ends the iteration, at once or when it no longer shrinks
+STEP, ROUNDING_STEP = (
+    1e-14,
+    1e-9,
+)  # relative Newton step that ends the iteration, at once or when it no longer shrinks
 ITERATIONS = 25
 GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or down
 REACH = 0.3  # change of a coefficient from one guess to its orbit, relative to the largest, that stays on the family
+ONE_ANGLE = "a solution of one angle"
 ONE_SEED = "take a solution of one seed, or None"
 SMALLEST_PART = 1 / 64  # of the way from rest, in one step
 
@@ -43,7 +49,11 @@ class NoPeriodicOrbit(SymfpuError):
     """
 
     def __init__(self, balance: Balance, reason: str, z: Floats) -> None:
-        self.seed, self.iterate, self.frequency = balance.seed, balance.cosines(z), balance.frequency(z)
+        self.seed, self.iterate, self.frequency = (
+            balance.seed,
+            balance.cosines(z),
+            balance.frequency(z),
+        )
         self.residual = residual(balance.chain, self.frequency, self.iterate)
         super().__init__(
             f"no periodic orbit of seed {self.seed}: {reason}; the best iterate, omega = {self.frequency:.12g} and A = "
@@ -80,11 +90,15 @@ class PeriodicOrbit(FourierTorus):
         return f"PeriodicOrbit({chain}, {which}, H={self.energy():.11g}, {quality})"
 
 
-def orbit_of(chain: Chain, seed: int, omega: Fraction, cosines: Floats, *, iterations: int, sigma: float) -> PeriodicOrbit:
+def orbit_of(
+    chain: Chain, seed: int, omega: Fraction, cosines: Floats, *, iterations: int, sigma: float
+) -> PeriodicOrbit:
     """The orbit with these coefficients, harmonic 0 first, shape (H+1, N-1)."""
     harmonics = np.arange(len(cosines))[:, None]
     phases = {seed: 0.0}
-    return PeriodicOrbit(chain, (seed,), (omega,), harmonics, cosines, phases, iterations=iterations, sigma=sigma)
+    return PeriodicOrbit(
+        chain, (seed,), (omega,), harmonics, cosines, phases, iterations=iterations, sigma=sigma
+    )
 
 
 def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicOrbit:
@@ -92,17 +106,18 @@ def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicO
 
     advice : what to do with a torus of more angles.
     """
-    allowed = "a solution of one angle"
     if not isinstance(solution, QuasiPeriodic):
-        made = "take one from periodic_orbit, breather_at_amplitude or refine"
-        raise InputError(argument, type(solution).__name__, allowed, made)
+        advice = "take one from periodic_orbit, breather_at_amplitude or refine"
+        raise InputError(argument, type(solution).__name__, ONE_ANGLE, advice)
     if len(solution.seeds) > 1:
-        raise InputError(argument, f"a torus of {len(solution.seeds)} angles", allowed, advice)
+        raise InputError(argument, f"a torus of {len(solution.seeds)} angles", ONE_ANGLE, advice)
     if isinstance(solution, PeriodicOrbit) and not solution.phases[solution.seed]:
         return solution
     chain, seed, omega = solution.chain, solution.seed, solution.frequency
     sigma = detuning(chain, seed, omega)[1]
-    return orbit_of(chain, seed, omega, solution.by_harmonic().astype(float), iterations=0, sigma=sigma)
+    return orbit_of(
+        chain, seed, omega, solution.by_harmonic().astype(float), iterations=0, sigma=sigma
+    )
 
 
 def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -151,7 +166,11 @@ class Balance:
         slope[1:] /= 2  # coefficients of exp(i k theta), k of both signs
         stiffness = np.einsum("kj,pj,qj->kpq", slope, self.stretch, self.stretch, optimize=True)
         n, q = self.n[:, None], self.q[:, None]
-        J = -stiffness[abs(n - self.n), q, self.q] - np.where(n > 0, stiffness[n + self.n, q, self.q], 0.0) + np.diag(diagonal)
+        J = (
+            -stiffness[abs(n - self.n), q, self.q]
+            - np.where(n > 0, stiffness[n + self.n, q, self.q], 0.0)
+            + np.diag(diagonal)
+        )
         return diagonal * z[:-1] + force[self.n, self.q], np.column_stack([J, self.n**2 * z[:-1]])
 
     def newton(self, z: Floats, given: int | Condition) -> tuple[Floats, int]:
@@ -169,12 +188,16 @@ class Balance:
             try:
                 step = np.linalg.solve(jacobian[:, free], equations)
             except np.linalg.LinAlgError:
-                raise NoPeriodicOrbit(self, "the matrix of Newton's method is singular", best) from None
+                raise NoPeriodicOrbit(
+                    self, "the matrix of Newton's method is singular", best
+                ) from None
             z = z.copy()
             z[free] -= step
             reached = float(np.max(np.abs(z[:-1])))
             if not size / GROWTH < reached < size * GROWTH:
-                raise NoPeriodicOrbit(self, f"the largest coefficient goes from {size:.3g} to {reached:.3g}", best)
+                raise NoPeriodicOrbit(
+                    self, f"the largest coefficient goes from {size:.3g} to {reached:.3g}", best
+                )
             relative = float(np.max(np.abs(step[free < len(z) - 1]))) / reached
             if relative <= STEP or (relative < ROUNDING_STEP and relative > before / 2):
                 return z, iteration
@@ -201,7 +224,9 @@ def residual(chain: Chain, omega: float, cosines: Floats) -> float:
     return float(np.max(np.abs(table @ ((n[:, None] * omega) ** 2 * cosines) + force))) / largest
 
 
-def periodic_orbit(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | QuasiPeriodic | None = None) -> PeriodicOrbit:
+def periodic_orbit(
+    chain: Chain, seed: int, frequency: Number, guess: ArrayLike | QuasiPeriodic | None = None
+) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given frequency.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
@@ -232,14 +257,19 @@ def positive_frequency(frequency: Number) -> Fraction:
     """The exact number that a frequency denotes; raises InputError."""
     omega = exact(frequency, "frequency")
     if omega <= 0:
-        raise InputError("frequency", frequency, "a positive number", "take one near the linear frequency")
+        raise InputError(
+            "frequency", frequency, "a positive number", "take one near the linear frequency"
+        )
     return omega
 
 
 def detuning(chain: Chain, seed: int, omega: Fraction) -> tuple[float, float]:
     """omega - Omega_seed and sigma = omega^2 - Omega_seed^2, without loss of digits."""
     with mpmath.workdps(50):
-        linear, target = chain.linear_frequency(seed), mpmath.mpf(omega.numerator) / omega.denominator
+        linear, target = (
+            chain.linear_frequency(seed),
+            mpmath.mpf(omega.numerator) / omega.denominator,
+        )
         return float(target - linear), float((target - linear) * (target + linear))
 
 
@@ -253,7 +283,9 @@ def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
     return float((shift / coefficient) ** 0.5)
 
 
-def breather_at_amplitude(chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | QuasiPeriodic | None = None) -> PeriodicOrbit:
+def breather_at_amplitude(
+    chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | QuasiPeriodic | None = None
+) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given amplitude; its frequency is found.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
@@ -290,15 +322,30 @@ def _cosines(chain: Chain, seed: int, guess: ArrayLike | QuasiPeriodic) -> Float
     except (TypeError, ValueError) as error:
         raise InputError("guess", guess, f"an array of shape {shape}", "pass numbers") from error
     if cosines.ndim != 2 or len(cosines) < 2 or cosines.shape[1] != chain.N - 1:
-        raise InputError("guess", cosines.shape, f"the shape {shape}, H from 1 up", "put the harmonics first, the modes last")
+        raise InputError(
+            "guess",
+            cosines.shape,
+            f"the shape {shape}, H from 1 up",
+            "put the harmonics first, the modes last",
+        )
     if not np.isfinite(cosines).all() or cosines[1, seed - 1] == 0:
-        raise InputError("guess", cosines[1, seed - 1], f"finite numbers, A = guess[1, {seed - 1}] not 0", "give the seed an amplitude")
+        raise InputError(
+            "guess",
+            cosines[1, seed - 1],
+            f"finite numbers, A = guess[1, {seed - 1}] not 0",
+            "give the seed an amplitude",
+        )
     return cosines
 
 
 @np.errstate(over="ignore", invalid="ignore")  # iterates that run away are refused by their size
 def orbit_near(
-    chain: Chain, seed: int, cosines: Floats, sigma: float, given: Callable[[Balance], int | Condition], reach: float = GROWTH
+    chain: Chain,
+    seed: int,
+    cosines: Floats,
+    sigma: float,
+    given: Callable[[Balance], int | Condition],
+    reach: float = GROWTH,
 ) -> PeriodicOrbit:
     """The orbit near cosines and sigma, with as many harmonics as it needs, none of them changed by more than reach.
 
@@ -307,30 +354,59 @@ def orbit_near(
     """
     guess, harmonics, iterations = cosines, max(8, len(cosines) - 1), 0
     if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
-        raise InputError("N, harmonics", (chain.N, harmonics), f"at most {2 * LARGEST_SYSTEM} as their product", "cut the guess")
+        raise InputError(
+            "N, harmonics",
+            (chain.N, harmonics),
+            f"at most {2 * LARGEST_SYSTEM} as their product",
+            "cut the guess",
+        )
     while True:
         balance = Balance(chain, seed, harmonics)
         z, steps = balance.newton(balance.vector(cosines, sigma), given(balance))
         cosines, sigma, iterations = balance.cosines(z), float(z[-1]), iterations + steps
         if balance.frequency(z) <= 0:
-            raise NoPeriodicOrbit(balance, f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2", z)
+            raise NoPeriodicOrbit(
+                balance,
+                f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2",
+                z,
+            )
         heights = np.max(np.abs(cosines), axis=1) / np.max(np.abs(cosines))
         if np.max(heights[-max(2, harmonics // 8) :]) <= TAIL:
             break
         harmonics *= 2
         if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
-            raise NoPeriodicOrbit(balance, f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g} of the largest", z)
-    change = float(np.max(np.abs(z - balance.vector(guess, sigma)))) / float(np.max(np.abs(cosines)))
+            raise NoPeriodicOrbit(
+                balance,
+                f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g} of the largest",
+                z,
+            )
+    change = float(np.max(np.abs(z - balance.vector(guess, sigma)))) / float(
+        np.max(np.abs(cosines))
+    )
     if change > reach or abs(cosines[1, seed - 1]) < np.max(np.abs(cosines)) / GROWTH:
-        raise NoPeriodicOrbit(balance, f"the orbit found is another one: a change by {change:.3g} of the largest coefficient", z)
-    cosines, omega = cosines[: int(np.flatnonzero(heights > TAIL / 100)[-1]) + 1], balance.frequency(z)
-    return orbit_of(chain, seed, exact(omega, "frequency"), cosines, iterations=iterations, sigma=sigma)
+        raise NoPeriodicOrbit(
+            balance,
+            f"the orbit found is another one: a change by {change:.3g} of the largest coefficient",
+            z,
+        )
+    cosines, omega = (
+        cosines[: int(np.flatnonzero(heights > TAIL / 100)[-1]) + 1],
+        balance.frequency(z),
+    )
+    return orbit_of(
+        chain, seed, exact(omega, "frequency"), cosines, iterations=iterations, sigma=sigma
+    )
 
 
-def _walk(chain: Chain, seed: int, amplitude: float, sigma: float, *, by_amplitude: bool) -> PeriodicOrbit:
+def _walk(
+    chain: Chain, seed: int, amplitude: float, sigma: float, *, by_amplitude: bool
+) -> PeriodicOrbit:
     """The member at the end of the way from rest, on which A grows about with the part gone and sigma with its square."""
     gone, step, iterations = 0.0, 1.0, 0
-    scale, cosines = 1.0, np.zeros((2, chain.N - 1))  # the guess is cosines, a member or the linear mode, scaled to the next part
+    scale, cosines = (
+        1.0,
+        np.zeros((2, chain.N - 1)),
+    )  # the guess is cosines, a member or the linear mode, scaled to the next part
     cosines[1, seed - 1] = amplitude
     given = held_amplitude if by_amplitude else held_frequency
     while True:

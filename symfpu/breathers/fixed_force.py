@@ -31,8 +31,13 @@ class FixedForce:
             N, root = chain.N, mpmath.sqrt(mpmath.mpf(2) / chain.N)
             linear = [chain.linear_frequency(q) for q in range(1, N)]
             cosines = [root * mpmath.cospi(mpmath.mpf(k) / (2 * N)) for k in range(4 * N)]
-            rows = [[self.fixed(Omega * cosines[q * (2 * j + 1) % (4 * N)]) for j in range(N)] for q, Omega in enumerate(linear, 1)]
-            self.squares: Integers = np.array([self.fixed(Omega**2) for Omega in linear], dtype=object)
+            rows = [
+                [self.fixed(Omega * cosines[q * (2 * j + 1) % (4 * N)]) for j in range(N)]
+                for q, Omega in enumerate(linear, 1)
+            ]
+            self.squares: Integers = np.array(
+                [self.fixed(Omega**2) for Omega in linear], dtype=object
+            )
         self.stretch = flint.fmpz_mat(rows)  # of every bond by a unit of each mode
         self.modes = self.stretch.transpose()
 
@@ -66,7 +71,9 @@ class FixedForce:
             power = self._lowered(power * twice)
             if coupling:
                 part = power.coeffs()[k * degree : k * degree + harmonics + 1]
-                total[: len(part)] += [int(x) * 2 * coupling.numerator // (2**k * coupling.denominator) for x in part]
+                total[: len(part)] += [
+                    int(x) * 2 * coupling.numerator // (2**k * coupling.denominator) for x in part
+                ]
         total[0] //= 2
         return list(total)
 

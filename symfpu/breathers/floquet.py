@@ -66,7 +66,11 @@ class Floquet:
     trivial_error: float
 
     def __repr__(self) -> str:
-        verdict = "stable" if self.stable else "unstable: " + ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
+        verdict = (
+            "stable"
+            if self.stable
+            else "unstable: " + ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
+        )
         return (
             f"Floquet({repr(self.orbit.chain)[6:-1]}, seed {self.orbit.seed}, omega={decimal(self.orbit.frequency)}, {verdict}, "
             f"largest |multiplier| {self.largest:.12g}, symplecticity error {self.symplecticity:.1g})"
@@ -125,12 +129,18 @@ def floquet(orbit: QuasiPeriodic) -> Floquet:
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]
     force = periodic.chain.accelerations(periodic.positions(0.0))
-    basis = np.linalg.svd(force[None, :])[2].T  # the acceleration, then an orthonormal basis of what is perpendicular to it
+    basis = np.linalg.svd(force[None, :])[
+        2
+    ].T  # the acceleration, then an orthonormal basis of what is perpendicular to it
     flow, rest = basis[:, 0], basis[:, 1:]
     trivial = float(np.linalg.norm(C.T @ (B @ flow)))
     error = map_error * float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2)) + trivial
     kappa, left, right = eig(rest.T @ B.T @ C @ rest, left=True)
-    tolerance = SAFETY * error / np.maximum(np.abs(np.einsum("ij,ij->j", left.conj(), right)), np.finfo(float).tiny)
+    tolerance = (
+        SAFETY
+        * error
+        / np.maximum(np.abs(np.einsum("ij,ij->j", left.conj(), right)), np.finfo(float).tiny)
+    )
     kinds = [_kind(k, t) for k, t in zip(kappa, tolerance, strict=True)]
     pairs = np.array([_pair(k, kind) for k, kind in zip(kappa, kinds, strict=True)]).reshape(-1, 2)
     order = np.lexsort((np.angle(pairs[:, 0]), -np.abs(pairs[:, 0]).round(12)))

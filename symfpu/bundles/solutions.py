@@ -1,7 +1,8 @@
 """Solutions without a series, by their coefficients, as plain entries and flat arrays, for files.
 
-Harmonics and coefficients are written alike for all kinds; what made a solution is written by its kind, of which a new one is
-a line in KINDS. Coefficients of many digits are mantissas in words (symfpu.algebra.words), each with its binary exponent.
+Harmonics and coefficients are written alike for all kinds; what made a solution is written by its
+kind, of which a new one is a line in KINDS. Coefficients of many digits are mantissas in words
+(symfpu.algebra.words), each with its binary exponent.
 """
 
 from __future__ import annotations
@@ -42,10 +43,15 @@ class Kind(NamedTuple):
 
 
 def solution_entries(solution: QuasiPeriodic) -> tuple[Json, Arrays]:
-    """The entries of a document and the arrays, from which the same solution is made again; raises InputError for another kind."""
+    """The entries of a document and the arrays, from which the same solution is made again.
+
+    Raises InputError for another kind.
+    """
     name = type(solution).__name__
     if name not in KINDS:
-        raise InputError("result", name, f"one of {', '.join(KINDS)}", "save its coefficients: in_doubles()")
+        raise InputError(
+            "result", name, f"one of {', '.join(KINDS)}", "save its coefficients: in_doubles()"
+        )
     made, arrays = KINDS[name].written(solution)
     cosines, layout = _packed(solution.cosines, solution.digits)
     entries: Json = {
@@ -79,7 +85,9 @@ def solution_from(archive: Archive, body: Json) -> QuasiPeriodic:
     digits = None if body["digits"] is None else integer(body["digits"], "digits", 1)
     cosines = _unpacked(archive, body, (count, chain.N - 1), digits)
     by_seed = dict(zip(seeds, phases, strict=True))
-    parts = FourierTorus(chain, seeds, frequencies, harmonics.astype(np.int64), cosines, by_seed, digits)
+    parts = FourierTorus(
+        chain, seeds, frequencies, harmonics.astype(np.int64), cosines, by_seed, digits
+    )
     return KINDS[body["class"]].read(parts, archive, body["made"])
 
 
@@ -91,7 +99,9 @@ def _packed(cosines: Numbers, digits: int | None) -> tuple[Arrays, Json]:
     if digits is None:
         return {"cosines": _floats(cosines)}, {}
     if not all(mpmath.isfinite(c) for c in cosines.flat):
-        raise InputError("result", "a coefficient that is not finite", "finite numbers", "compute it again")
+        raise InputError(
+            "result", "a coefficient that is not finite", "finite numbers", "compute it again"
+        )
     parts = [c._mpf_ for c in cosines.flat]
     mantissas = np.empty((len(parts), 1), dtype=object)
     mantissas[:, 0] = [-int(mantissa) if sign else int(mantissa) for sign, mantissa, _, _ in parts]
@@ -120,7 +130,9 @@ def _unpacked(archive: Archive, body: Json, shape: tuple[int, int], digits: int 
 def _floats(values: Array) -> Array:
     flat: Array = np.asarray(values).ravel().astype(FLOATS)
     if not np.isfinite(flat).all():
-        raise InputError("result", "a number that is not finite", "finite numbers", "compute it again")
+        raise InputError(
+            "result", "a number that is not finite", "finite numbers", "compute it again"
+        )
     return flat
 
 
@@ -171,7 +183,9 @@ def _made_by_balance(orbit: PeriodicOrbit) -> tuple[Json, Arrays]:
 
 def _read_balance(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
     iterations = integer(made["iterations"], "iterations", 0)
-    return PeriodicOrbit(**_fields(_periodic(parts)), iterations=iterations, sigma=float(made["sigma"]))
+    return PeriodicOrbit(
+        **_fields(_periodic(parts)), iterations=iterations, sigma=float(made["sigma"])
+    )
 
 
 def _made_by_sweeps(orbit: PreciseOrbit) -> tuple[Json, Arrays]:

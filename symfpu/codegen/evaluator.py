@@ -20,7 +20,7 @@ from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.errors import InputError, SymfpuError
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, require_solution
 
 Floats = NDArray[np.float64]
 Angles = Floats | None  # (s,), or those of the torus
@@ -153,6 +153,7 @@ def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Ev
     if isinstance(torus, LindstedtSeries):
         advice = "call solve_amplitudes(series) first, or export the series"
         raise InputError("torus", "a series without amplitudes", "a torus", advice)
+    require_solution(torus, "torus")
     if backend is not None and backend not in BACKENDS:
         allowed = f"one of {', '.join(BACKENDS)}, or None"
         raise InputError("backend", backend, allowed, "name a backend or leave it out")

@@ -24,7 +24,7 @@ from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.numbers.arithmetic import text
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.torus import QTorus
 
 LANGUAGES = {
@@ -86,6 +86,7 @@ def export(
         series = series_program(solution, file.stem, facts, **orders)
         source = chosen.series(series)
     else:
+        require_solution(solution, "solution")
         _refuse_orders(orders)
         facts |= _orders(solution) | torus_facts(solution)
         torus = torus_program(solution, file.stem, facts)

@@ -15,8 +15,10 @@ from typing import Any
 
 import mpmath
 import numpy as np
+from numpy.typing import NDArray
 
 from symfpu.algebra.grading import Ints
+from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
@@ -103,6 +105,7 @@ def _blocks(torus: QuasiPeriodic) -> list[Block]:
         columns = np.flatnonzero(modes % 2 == parity)
         rows = np.flatnonzero(parities == parity)
         coefficients = torus.cosines[np.ix_(rows, columns)]
+        _require_parity(torus, rows, modes % 2 != parity)
         silent = (coefficients == 0).all(axis=1)
         if silent.all():
             continue
@@ -111,6 +114,15 @@ def _blocks(torus: QuasiPeriodic) -> list[Block]:
         block = Block(tuple(own_modes), harmonics, coefficients[~silent])
         blocks.append(block)
     return blocks
+
+
+def _require_parity(torus: QuasiPeriodic, rows: Ints, others: NDArray[np.bool_]) -> None:
+    """InputError where harmonics appear in modes of the other parity, beyond rounding."""
+    largest = np.abs(torus.cosines).max(initial=0)
+    strange = np.abs(torus.cosines[rows][:, others]).max(initial=0)
+    if strange > TOLERANCE * largest:
+        allowed = "harmonics nu in modes q with nu.seeds - q even, as equations of motion make them"
+        raise InputError("solution", f"a coefficient {float(strange):.2g}", allowed, "refine it first")
 
 
 def highest_numbers(harmonics: Sequence[Ints], s: int) -> tuple[int, ...]:

@@ -36,7 +36,7 @@ from symfpu.refinement.invariance import (
     rational,
 )
 from symfpu.refinement.newton import Iterate, NewtonStep, Report, newton
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 
 # residual of the equations of motion, relative to the largest acceleration, that ends the search
 # for harmonics
@@ -146,7 +146,7 @@ def refine(
     >>> breather.residual() < 1e-13
     True
     """
-    _require_torus(torus)
+    require_solution(torus, "torus")
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
     refined = refined_torus(torus, conditions, tolerance=tolerance, report=report)
     return replace(refined, frequencies=tuple(torus.frequencies))
@@ -174,7 +174,7 @@ def refine_at_amplitudes(
     >>> round(float(refine_at_amplitudes(guess, {1: "0.41"}).frequencies[0]), 9)
     0.390507682
     """
-    _require_torus(torus)
+    require_solution(torus, "torus")
     values = [long(a) for a in _by_seed("amplitudes", amplitudes, torus, signed=True).values()]
     return refined_torus(
         torus, [Amplitude(i, a) for i, a in enumerate(values)], tolerance=tolerance, report=report
@@ -209,7 +209,7 @@ def refine_at_energy(
     >>> round(float(refine_at_energy(guess, "0.012", harmonic=False).energy()), 12)
     0.012
     """
-    _require_torus(torus)
+    require_solution(torus, "torus")
     value = exact(energy, "energy")
     if value <= 0:
         raise InputError(
@@ -238,16 +238,6 @@ def refine_at_energy(
         *ratio_conditions(torus.seeds, numbers, energies=energy_ratio is not None),
     ]
     return refined_torus(torus, conditions, tolerance=tolerance, report=report)
-
-
-def _require_torus(torus: object) -> None:
-    if not isinstance(torus, QuasiPeriodic):
-        raise InputError(
-            "torus",
-            type(torus).__name__,
-            "a torus",
-            "pass what solve_amplitudes, resum or refine gave",
-        )
 
 
 def _by_seed(
@@ -283,7 +273,7 @@ def refined_torus(
 
     With as many harmonics as the tolerance needs.
     """
-    _require_torus(torus)
+    require_solution(torus, "torus")
     if not isinstance(tolerance, Real) or not 0 < tolerance < 1:
         raise InputError("tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more")
     chain, seeds = torus.chain, torus.seeds

@@ -26,7 +26,7 @@ from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf, with_digits
 from symfpu.numbers.typed import decimal, exact, integer
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.root_certificate import certify_root
-from symfpu.tori.torus import QTorus
+from symfpu.tori.torus import QTorus, series_behind
 
 Floats = NDArray[np.float64]
 # relative residual below which growth with the order is no reason to doubt
@@ -91,22 +91,24 @@ def frequency_orders(series: LindstedtSeries) -> tuple[int, ...]:
     return tuple(range(step, series.order + 1, step))
 
 
-def amplitude_history(series: LindstedtSeries) -> AmplitudeHistory:
+def amplitude_history(series: LindstedtSeries | QTorus) -> AmplitudeHistory:
     """The amplitudes for every frequency order, each found from the one before.
 
-    series : with chosen frequencies; amplitudes are dimensionless, mpf if it has digits.
+    series : with chosen frequencies, or a torus solved from one; amplitudes are dimensionless, mpf
+        if it has digits.
 
     Solves Eq. omeser truncated at every order (section 3.2). The lowest order is linear in A^2
     and needs no guess.
-    Raises InputError for a series in universal form or without corrections,
-    UndeterminedAmplitudes if the lowest order does not determine A^2. Orders without a root are
-    kept with their error.
+    Raises InputError for a series in universal form or without corrections and for a solution
+    without a series, UndeterminedAmplitudes if the lowest order does not determine A^2. Orders
+    without a root are kept with their error.
 
     >>> from symfpu import Chain, lindstedt
     >>> history = amplitude_history(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6))
     >>> {K: round(A, 9) for K, (A,) in history.amplitudes.items()}
     {2: 0.414689531, 4: 0.405667682, 6: 0.40519105}
     """
+    series = series_behind(series)
     orders = frequency_orders(series)
     found: dict[int, tuple[Any, ...]] = {}
     failures: dict[int, SymfpuError] = {}

@@ -48,7 +48,7 @@ class Solution(Protocol):
     def digits(self) -> int | None: ...
 
 
-# Properties in a base class would be taken for defaults of the fields of its dataclasses: they are for type checkers alone.
+# For type checkers alone: dataclasses take properties of their base for defaults of their fields.
 if TYPE_CHECKING:
     Parts = Solution
 else:
@@ -100,7 +100,10 @@ class QuasiPeriodic(Parts):
 
     @property
     def amplitude(self) -> Any:
-        """A, the coefficient of cos(omega t + phi) in Q_seed, of a solution of one angle; raises InputError for more."""
+        """A of a solution of one angle, the coefficient of cos(omega t + phi) in Q_seed.
+
+        Raises InputError for more.
+        """
         return self._only("amplitude", tuple(self.amplitudes.values()))
 
     def by_harmonic(self) -> Numbers:
@@ -118,7 +121,9 @@ class QuasiPeriodic(Parts):
         if len(self.seeds) == 1:
             return values[0]
         advice = "use seeds, frequencies, amplitudes, harmonics and cosines"
-        raise InputError(name, f"of {len(self.seeds)} angles", "that of a solution of one angle", advice)
+        raise InputError(
+            name, f"of {len(self.seeds)} angles", "that of a solution of one angle", advice
+        )
 
     # along the orbit
 
@@ -126,10 +131,12 @@ class QuasiPeriodic(Parts):
         """The same solution with its coefficients rounded to doubles."""
         phases = {q: float(phi) for q, phi in self.phases.items()}
         cosines = self.cosines.astype(float)
-        return FourierTorus(self.chain, self.seeds, self.frequencies, self.harmonics, cosines, phases)
+        return FourierTorus(
+            self.chain, self.seeds, self.frequencies, self.harmonics, cosines, phases
+        )
 
     def state(self, t: float = 0.0) -> tuple[Floats, Floats]:
-        """Mode coordinates and momenta at a time, in doubles, where `integrate` and others may start; (N-1,) each.
+        """Mode coordinates and momenta at a time, in doubles, for `integrate` to start from; (N-1,) each.
 
         >>> from symfpu import Chain, breather_at_amplitude, integrate
         >>> orbit = breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4")
@@ -137,7 +144,9 @@ class QuasiPeriodic(Parts):
         True
         """
         if np.ndim(t):
-            raise InputError("t", t, "one finite number", "take positions(t) and momenta(t) for many times")
+            raise InputError(
+                "t", t, "one finite number", "take positions(t) and momenta(t) for many times"
+            )
         Q, P = self.positions(t), self.momenta(t)
         return Q.astype(float), P.astype(float)
 
@@ -178,7 +187,9 @@ class QuasiPeriodic(Parts):
         try:
             times = self.numbers.array(t)
         except (TypeError, ValueError) as error:
-            raise InputError("t", t, "a finite number or an array of them", "pass real numbers") from error
+            raise InputError(
+                "t", t, "a finite number or an array of them", "pass real numbers"
+            ) from error
         if times.ndim > 1 or not self.numbers.finite(times):
             allowed = "a finite number or a one-dimensional array of them"
             raise InputError("t", t, allowed, "flatten it")
@@ -208,7 +219,10 @@ class QuasiPeriodic(Parts):
             return with_digits(energies, self.digits)
 
     def energy_error(self, t: ArrayLike, *, harmonic: bool = False) -> Numbers:
-        """Relative error (E(t) - E(0)) / E(0) of the total energy, or of the harmonic one, sum E_q (section 3.2)."""
+        """Relative error (E(t) - E(0)) / E(0) of the total energy, or of the harmonic one, sum E_q.
+
+        As in section 3.2.
+        """
         with self._context():
             if harmonic:
                 values = self.harmonic_energies(t).sum(axis=-1)
@@ -259,7 +273,9 @@ class QuasiPeriodic(Parts):
         return np.asarray(-(self._rates[:, None] ** 2) * self.cosines)
 
     def residuals(self, points: int | None = None) -> Numbers:
-        """Largest |d^2Q_q/dt^2 - force| of each mode on a grid of angles; zero for an exact torus; shape (N-1,).
+        """Largest |d^2Q_q/dt^2 - force| of each mode on a grid of angles, shape (N-1,).
+
+        Zero for an exact torus.
 
         points : grid points for each of the s angles; default such that the grid has about 4096.
         With digits, where doubles cannot see the residual, about 16.
@@ -324,9 +340,21 @@ class QuasiPeriodic(Parts):
             yield 2 * self.numbers.pi * (3 * digits + 1) / (3 * number)
 
 
+def require_solution(solution: object, argument: str) -> None:
+    """InputError for what is no solution."""
+    if not isinstance(solution, QuasiPeriodic):
+        advice = "pass what solve_amplitudes, refine or periodic_orbit gave"
+        raise InputError(
+            argument, type(solution).__name__, "a solution: a torus or a breather", advice
+        )
+
+
 def amplitudes_of(solution: Solution) -> dict[int, Any]:
     """A_q by seed, read from the coefficients: that of cos(theta_q) in Q_q, zero where there is none."""
-    rows = {tuple(nu): row for nu, row in zip(solution.harmonics.tolist(), solution.cosines, strict=True)}
+    rows = {
+        tuple(nu): row
+        for nu, row in zip(solution.harmonics.tolist(), solution.cosines, strict=True)
+    }
     nothing = 0 * solution.cosines[0]
     amplitudes = {}
     for i, q in enumerate(solution.seeds):

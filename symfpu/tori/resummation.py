@@ -22,7 +22,7 @@ from symfpu.numbers.typed import integer
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import frequency_orders, shifts
 from symfpu.tori.quasiperiodic import FourierTorus
-from symfpu.tori.torus import QTorus
+from symfpu.tori.torus import QTorus, require_series_torus
 
 Floats = NDArray[np.float64]
 
@@ -259,15 +259,15 @@ def resum(torus: QTorus) -> ResummedTorus:
         dimensionless.
 
     The terms of Eq. qser for one harmonic are summed by Pade approximants (Wynn, MTAC 10 (1956)
-    91), where the paper cuts them at an order. Raises nothing: where approximants do not exist,
-    the last one that does is taken.
+    91), where the paper cuts them at an order. Where approximants do not exist, the last one that
+    does is taken. Raises InputError for a torus without a series.
 
     >>> from symfpu import Chain, lindstedt, solve_amplitudes
     >>> torus = solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 8))
     >>> bool(resum(torus).residual() < torus.residual())
     True
     """
-    return next(resum_by_order(torus, [torus.order]))
+    return next(resum_by_order(require_series_torus(torus), [torus.order]))
 
 
 def resum_by_order(torus: QTorus, orders: Iterable[int]) -> Iterator[ResummedTorus]:

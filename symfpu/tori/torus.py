@@ -12,6 +12,7 @@ import numpy as np
 
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers, text, with_digits
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic, show
@@ -145,3 +146,20 @@ class QTorus(QuasiPeriodic):
     def cosines(self) -> Numbers:
         """The coefficients c_q[nu] of cos(nu.theta) in Q_q; shape (H, N-1)."""
         return self._terms[1]
+
+
+def series_behind(result: object) -> LindstedtSeries:
+    """A series, or that of a torus that was solved from one; raises InputError for what has none."""
+    if isinstance(result, LindstedtSeries):
+        return result
+    return require_series_torus(result, "series").series
+
+
+def require_series_torus(torus: object, argument: str = "torus") -> QTorus:
+    """A torus that was solved from a series; raises InputError for any other solution."""
+    if isinstance(torus, QTorus):
+        return torus
+    advice = (
+        "pass what solve_amplitudes gave; a solution without a series is judged by its residual()"
+    )
+    raise InputError(argument, type(torus).__name__, "a QTorus, which has its series", advice)

@@ -24,7 +24,7 @@ from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders
 from symfpu.tori.quasiperiodic import GRID_POINTS_DIGITS, SEEN_BY_DOUBLES
 from symfpu.tori.resummation import pade_poles, resum
-from symfpu.tori.torus import QTorus, RootCertificate
+from symfpu.tori.torus import QTorus, RootCertificate, require_series_torus
 
 Floats = NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -212,14 +212,14 @@ def assess(
     series, fall and rise again for an asymptotic one; a root that moves with the frequency order,
     or whose best residual is large, is no torus. The paper judges by the sums of Eqs. serabs2,
     serabs3; these are among the results.
-    Raises InputError if the torus belongs to another series.
+    Raises InputError if the torus belongs to another series, or to none.
 
     >>> from symfpu import Chain, lindstedt, solve_amplitudes
     >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8)
     >>> assess(series, solve_amplitudes(series)).word
     'converged'
     """
-    if torus.series is not series:
+    if require_series_torus(torus).series is not series:
         allowed = "one solved from this series"
         advice = "call solve_amplitudes(series)"
         raise InputError("torus", "of another series", allowed, advice)
