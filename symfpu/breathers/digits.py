@@ -152,9 +152,11 @@ class Sweeps:
         self.force = FixedForce(self.chain, int(mpmath.mp.prec) - math.frexp(largest)[1])
         self.size = self.force.fixed(mpmath.mpf(largest))
         self.c: Integers = np.zeros((harmonics + 1, self.chain.N - 1), dtype=object)
-        self.c[: len(orbit.cosines)] = np.frompyfunc(
-            lambda x: self.force.fixed(mpmath.mpf(x)), 1, 1
-        )(orbit.cosines)
+        self.n, self.q = unknowns(self.chain, orbit.seed, harmonics)
+        known = self.n < len(orbit.cosines)  # what the symmetry forbids, rounding if any, stays zero
+        n, q = self.n[known], self.q[known]
+        fixed = np.frompyfunc(lambda x: self.force.fixed(mpmath.mpf(x)), 1, 1)
+        self.c[n, q] = fixed(orbit.cosines[n, q])
         if amplitude is None:
             self.squared = self.force.fixed(orbit.frequency**2)
         else:
@@ -162,7 +164,6 @@ class Sweeps:
                 mpmath.mpf(orbit.sigma)
             )
             self.c[1, orbit.seed - 1] = self.force.fixed(amplitude)
-        self.n, self.q = unknowns(self.chain, orbit.seed, harmonics)
         self._factor()
 
     def _factor(self) -> None:

@@ -73,7 +73,6 @@ class ShotOrbit(QuasiPeriodic):
         half as long as those of the search.
     history : max|P(T/2)| / (omega max|Q|) of the guess and after every Newton step.
     steps : of the composition in half a period.
-    analysed : coefficients of cos(n omega t), shape (H+1, N-1), if they are known already.
 
     harmonics, 0 .. H, shape (H+1, 1), and cosines follow from integrating over half a period, when they are
     first asked for. phases : 0 of the seed, radians. digits : None, of doubles.
@@ -91,7 +90,6 @@ class ShotOrbit(QuasiPeriodic):
     closure: float
     history: tuple[float, ...] = field(repr=False)
     steps: int
-    analysed: Floats | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
@@ -122,9 +120,7 @@ class ShotOrbit(QuasiPeriodic):
 
     @cached_property
     def cosines(self) -> Floats:
-        """The coefficients of cos(n omega t) in Q_q; shape (H+1, N-1). Raises ShootingFailed where they do not fall off."""
-        if self.analysed is not None:
-            return self.analysed
+        """The coefficients of cos(n omega t) in Q_q, shape (H+1, N-1); ShootingFailed if they do not fall off."""
         return _analysed(self)
 
     @property

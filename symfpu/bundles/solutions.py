@@ -206,7 +206,7 @@ def _made_by_shooting(orbit: ShotOrbit) -> tuple[Json, Arrays]:
 def _read_shooting(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
     _periodic(parts)
     start = _finite(archive, "start", parts.chain.N - 1)
-    return ShotOrbit(
+    orbit = ShotOrbit(
         chain=parts.chain,
         seeds=parts.seeds,
         frequencies=parts.frequencies,
@@ -214,8 +214,9 @@ def _read_shooting(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPe
         closure=float(made["closure"]),
         history=tuple(float(x) for x in made["history"]),
         steps=integer(made["steps"], "steps", 1),
-        analysed=parts.cosines,
     )
+    orbit.__dict__["cosines"] = parts.cosines  # as they were saved, to the last bit
+    return orbit
 
 
 KINDS = {

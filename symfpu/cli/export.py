@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from symfpu.bundles.bundle import load
-from symfpu.cli.terminal import optional, path_named, progress_bar
+from symfpu.cli.terminal import FileArgument, optional, path_named, progress_bar
 from symfpu.cli.verbs import app
 from symfpu.codegen.export import LANGUAGES
 from symfpu.codegen.export import export as export_source
@@ -19,7 +19,7 @@ from symfpu.files.writing import output_file
 @app.command(epilog="Example: symfpu export torus.symfpu --lang c -o my_torus")
 def export(
     context: typer.Context,
-    file: Annotated[str, typer.Argument(help="A file written by symfpu solve -o.", metavar="FILE")],
+    file: FileArgument,
     language: Annotated[
         str, typer.Option("--lang", help=f"{', '.join(LANGUAGES)}.", metavar="LANGUAGE")
     ],
@@ -51,7 +51,7 @@ def export(
     solution = bundle.series if series else bundle.torus
     if solution is None:
         wanted = "series" if series else "torus"
-        advice = "write one with symfpu solve -o, or export the --series"
+        advice = "write one with symfpu solve or breather -o, or export the --series"
         if series:
             advice = "leave out --series"
         raise InputError("FILE", file, f"a file with a {wanted} in it", advice)

@@ -14,8 +14,10 @@ from symfpu.chain.chain import Chain
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
     BondsOption,
+    FileArgument,
     JsonOption,
     SeedsOption,
+    held,
     optional,
     path_named,
     print_json,
@@ -42,12 +44,7 @@ from symfpu.reports.family import (
 @app.command("refine", epilog="Example: symfpu refine torus.symfpu -o refined.symfpu")
 def refine_file(
     context: typer.Context,
-    file: Annotated[
-        str,
-        typer.Argument(
-            help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE"
-        ),
-    ],
+    file: FileArgument,
     output: Annotated[
         str | None,
         typer.Option("-o", "--output", help="Keep the refined torus in this file.", metavar="FILE"),
@@ -76,11 +73,7 @@ def refine_file(
 
     It has the same frequencies, or a given energy or amplitudes.
     """
-    torus = load(path_named("FILE", file)).torus
-    if torus is None:
-        raise InputError(
-            "FILE", file, "a file with a torus in it", "write one with symfpu solve -o"
-        )
+    torus = held(load(path_named("FILE", file)).torus, file)
     if energy is not None and amplitudes is not None:
         raise InputError(
             "amplitudes", amplitudes, "only one of --energy and --amplitudes", "leave one out"

@@ -10,7 +10,9 @@ import typer
 
 from symfpu.bundles.bundle import load
 from symfpu.cli.terminal import (
+    FileArgument,
     JsonOption,
+    held,
     kept_run,
     number,
     optional,
@@ -29,7 +31,6 @@ from symfpu.dynamics.alignment import (
     alignment_indices,
     seconds_needed,
 )
-from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
 from symfpu.numbers.typed import decimal
@@ -38,12 +39,7 @@ from symfpu.reports.tables import fifteen_digits
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
 def gali(
-    file: Annotated[
-        str,
-        typer.Argument(
-            help="A file with a torus in it, from symfpu solve -o or refine -o.", metavar="FILE"
-        ),
-    ],
+    file: FileArgument,
     time: Annotated[
         str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")
     ],
@@ -83,11 +79,7 @@ def gali(
 
     With the Lyapunov exponent of that orbit.
     """
-    torus = load(path_named("FILE", file)).torus
-    if torus is None:
-        raise InputError(
-            "FILE", file, "a file with a torus in it", "write one with symfpu solve -o"
-        )
+    torus = held(load(path_named("FILE", file)).torus, file)
     T = number("time", time)
     h = number("step", step)
     count = optional("vectors", vectors)
@@ -100,8 +92,7 @@ def gali(
     with progress_bar("alignment indices", lambda: kept_run(kept)) as advance:
         found = alignment_indices(
             torus.chain,
-            [float(x) for x in torus.positions(0.0)],
-            [float(x) for x in torus.momenta(0.0)],
+            *torus.state(),
             T,
             vectors=count,
             step=h,

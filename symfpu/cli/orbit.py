@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 
 from symfpu.bundles.bundle import load
 from symfpu.cli.terminal import (
+    FileArgument,
     JsonOption,
+    held,
     kept_run,
     number,
     path_named,
@@ -36,9 +38,7 @@ SHOWN_MODES = 8  # those of the largest average harmonic energy
 
 @app.command(epilog="Example: symfpu orbit torus.symfpu --time 1e5 -o orbit.csv")
 def orbit(
-    file: Annotated[
-        str, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")
-    ],
+    file: FileArgument,
     time: Annotated[
         str, typer.Option("--time", help="How long to follow it, such as 1e6.", metavar="T")
     ],
@@ -72,17 +72,12 @@ def orbit(
     T = number("time", time)
     h = number("step", step)
     count = whole("samples", samples)
-    torus = load(path_named("FILE", file)).torus
-    if torus is None:
-        raise InputError(
-            "FILE", file, "a file with a torus in it", "write one with symfpu solve -o"
-        )
+    torus = held(load(path_named("FILE", file)).torus, file)
     exact = torus.in_doubles()
     with progress_bar("orbit", lambda: kept_run(kept)) as advance:
         made = integrate(
             exact.chain,
-            exact.positions(0.0),
-            exact.momenta(0.0),
+            *exact.state(),
             T,
             step=h,
             scheme=scheme,

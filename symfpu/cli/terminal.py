@@ -16,7 +16,7 @@ from datetime import timedelta
 from pathlib import Path
 from threading import Event, Lock, Thread
 from time import monotonic
-from typing import Annotated, Any, Protocol, TextIO
+from typing import Annotated, Any, Protocol, TextIO, TypeVar
 
 import typer
 from rich.console import Console
@@ -43,9 +43,15 @@ SeedsOption = Annotated[
     str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")
 ]
 OrderOption = Annotated[str, typer.Option("--order", help="Order k of the series.", metavar="K")]
+FileArgument = Annotated[
+    str,
+    typer.Argument(help="A file written by symfpu solve, breather or refine -o.", metavar="FILE"),
+]
 JsonOption = Annotated[
     bool, typer.Option("--json", help="Machine-readable result on standard output.")
 ]
+
+Found = TypeVar("Found")
 
 NOTHING_KEPT = "nothing is kept"
 BAR_WIDTH = 20
@@ -108,6 +114,14 @@ def kept_run(checkpoint: Path | None) -> str:
     if checkpoint is None or not checkpoint.exists():
         return NOTHING_KEPT
     return f"the run up to its last checkpoint is kept in {checkpoint}; the same command goes on from it"
+
+
+def held(found: Found | None, file: str) -> Found:
+    """What a file was to hold; InputError where there is none."""
+    if found is None:
+        advice = "write one with symfpu solve or breather -o"
+        raise InputError("FILE", file, "a file with a torus or a breather in it", advice)
+    return found
 
 
 def print_json(record: dict[str, Any]) -> None:

@@ -8,10 +8,11 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.bundles.bundle import load, save
+from symfpu.bundles.bundle import Bundle, load, save
 from symfpu.chain.chain import Chain
 from symfpu.cli.terminal import (
     BondsOption,
+    FileArgument,
     JsonOption,
     OrderOption,
     SeedsOption,
@@ -30,9 +31,11 @@ from symfpu.files.writing import output_file
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.family import refined_record, refined_text
+from symfpu.reports.solution import solution_record, solution_text
 from symfpu.reports.torus import assessment_text, torus_record
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import assess
 
@@ -143,20 +146,13 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
 
 @app.command(epilog="Example: symfpu show torus.symfpu")
 def show(
-    file: Annotated[
-        str, typer.Argument(help="A file written by symfpu solve -o or refine -o.", metavar="FILE")
-    ],
+    file: FileArgument,
     as_json: JsonOption = False,
 ) -> None:
     """What a result file holds: series, torus, verdict, and what made it."""
     bundle = load(path_named("FILE", file))
-    refined = bundle.torus if isinstance(bundle.torus, RefinedTorus) else None
-    torus = bundle.torus if isinstance(bundle.torus, QTorus) else None
-    record: dict[str, Any] = {}
-    if refined:
-        record = refined_record(refined)
-    elif torus:
-        record = torus_record(torus)
+    solution = bundle.torus
+    record = {} if solution is None else _record(solution)
     if as_json:
         kept = {
             "provenance": dict(bundle.provenance),
@@ -165,15 +161,33 @@ def show(
         }
         print_json(record | kept)
         return
-    if bundle.verdict and not refined:
-        say(f"verdict: {bundle.verdict.get('verdict')}")
-    if refined:
-        say(refined_text(refined))
-    elif torus:
-        _print_torus(torus, record)
-    else:
-        say(bundle.series)
-    for reason in (bundle.verdict or {}).get("reasons", []):
+    verdict = bundle.verdict or {}
+    if verdict and not isinstance(solution, RefinedTorus):
+        say(f"verdict: {verdict.get('verdict')}")
+    _print_held(bundle, record)
+    for reason in verdict.get("reasons", []):
         say(f"  {reason}")
     for key, value in bundle.provenance.items():
         say(f"{key:<18} {value}")
+
+
+def _record(solution: QuasiPeriodic) -> dict[str, Any]:
+    """A solution for JSON, with what only its kind has."""
+    if isinstance(solution, RefinedTorus):
+        return refined_record(solution)
+    if isinstance(solution, QTorus):
+        return torus_record(solution)
+    return solution_record(solution)
+
+
+def _print_held(bundle: Bundle, record: dict[str, Any]) -> None:
+    """The series or the solution of a file, for a reader."""
+    solution = bundle.torus
+    if solution is None:
+        say(bundle.series)
+    elif isinstance(solution, RefinedTorus):
+        say(refined_text(solution))
+    elif isinstance(solution, QTorus):
+        _print_torus(solution, record)
+    else:
+        say(solution_text(record))

@@ -22,6 +22,7 @@ VERBS = {
     "sweep": "proofs",
     "solve": "tori",
     "show": "tori",
+    "breather": "breather",
     "refine": "families",
     "family": "families",
     "orbit": "orbit",

@@ -1,0 +1,106 @@
+"""The verb breather: the periodic orbit of one seed, by frequency, amplitude or energy."""
+
+from __future__ import annotations
+
+import shlex
+from typing import Annotated
+
+import typer
+
+from symfpu.breathers.at_energy import breather_at_energy
+from symfpu.breathers.balance import PeriodicOrbit, breather_at_amplitude, periodic_orbit
+from symfpu.breathers.digits import periodic_orbit_digits
+from symfpu.breathers.floquet import floquet
+from symfpu.bundles.bundle import save
+from symfpu.chain.chain import Chain
+from symfpu.cli.terminal import (
+    BondsOption,
+    JsonOption,
+    optional,
+    path_named,
+    print_json,
+    progress_bar,
+    say,
+    whole,
+)
+from symfpu.cli.verbs import app
+from symfpu.errors import InputError
+from symfpu.files.writing import output_file
+from symfpu.reports.solution import solution_record, solution_text
+from symfpu.tori.quasiperiodic import FourierTorus
+
+DOUBLE_ENERGY = "the energy is met in doubles; the digits are of the orbit with the frequency found"
+
+
+@app.command(epilog="Example: symfpu breather -N 32 --alpha 0.33 --seed 1 --energy 0.01")
+def breather(
+    context: typer.Context,
+    bonds: BondsOption,
+    seed: Annotated[str, typer.Option("--seed", help="Seed mode.", metavar="Q")],
+    alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
+    beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
+    omega: Annotated[
+        str | None, typer.Option(help="The breather of this frequency.", metavar="W")
+    ] = None,
+    amplitude: Annotated[
+        str | None, typer.Option(help="The one of this amplitude.", metavar="A")
+    ] = None,
+    energy: Annotated[
+        str | None, typer.Option(help="The one of this energy H.", metavar="E")
+    ] = None,
+    digits: Annotated[
+        str | None, typer.Option(help="Any number of digits.  Default: doubles.", metavar="D")
+    ] = None,
+    multipliers: Annotated[
+        bool, typer.Option("--multipliers", help="Floquet multipliers.")
+    ] = False,
+    output: Annotated[
+        str | None,
+        typer.Option("-o", "--output", help="Keep the orbit in this file.", metavar="FILE"),
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """A q-breather, found from exactly one of --omega, --amplitude and --energy."""
+    chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
+    mode, places = whole("seed", seed), optional("digits", digits)
+    _require_one(omega, amplitude, energy)
+    file = None if output is None else output_file(path_named("output", output))
+    doubts = (DOUBLE_ENERGY,) if energy is not None and places is not None else ()
+    with progress_bar("harmonic balance") as advance:
+        orbit: FourierTorus = _found(chain, mode, omega, amplitude, energy)
+        if places is not None:
+            advance("digits")
+            orbit = periodic_orbit_digits(orbit, places, frequency=omega, amplitude=amplitude)
+        advance("multipliers" if multipliers else "energies")
+        stability = floquet(orbit) if multipliers else None
+        if file:
+            verdict = {"verdict": "periodic orbit", "reasons": list(doubts)}
+            save(file, orbit, verdict=verdict, command=shlex.join(["symfpu", *context.obj]))
+    record = solution_record(orbit, stability, doubts)
+    if as_json:
+        print_json(record)
+        return
+    say(solution_text(record))
+    if file:
+        print(f"written: {file}")
+
+
+def _require_one(omega: str | None, amplitude: str | None, energy: str | None) -> None:
+    """InputError unless exactly one of them is given."""
+    options = {"omega": omega, "amplitude": amplitude, "energy": energy}
+    given = {name: value for name, value in options.items() if value is not None}
+    if len(given) != 1:
+        allowed = "exactly one of --omega, --amplitude and --energy"
+        advice = "leave the others out" if given else "give one of them"
+        raise InputError("omega, amplitude, energy", given or None, allowed, advice)
+
+
+def _found(
+    chain: Chain, seed: int, omega: str | None, amplitude: str | None, energy: str | None
+) -> PeriodicOrbit:
+    if omega is not None:
+        return periodic_orbit(chain, seed, omega)
+    if amplitude is not None:
+        return breather_at_amplitude(chain, seed, amplitude)
+    assert energy is not None
+    return breather_at_energy(chain, seed, energy)

@@ -1,0 +1,58 @@
+"""Verbs that read a file take any saved solution: show, refine, orbit, gali, export."""
+
+import json
+
+import pytest
+
+from symfpu.bundles.bundle import load, save
+from symfpu.cli.main import main
+from tests.tori.solutions import CASES
+
+
+@pytest.fixture(scope="module", params=CASES)
+def saved(request, tmp_path_factory):
+    """A file, and the solution in it."""
+    solution = CASES[request.param]()
+    return save(tmp_path_factory.mktemp("saved") / "solution.symfpu", solution), solution
+
+
+def record(capsys, *words):
+    assert main([*map(str, words), "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_show(capsys, saved):
+    file, solution = saved
+    found = record(capsys, "show", file)
+    assert found["seeds"] == list(solution.seeds)
+    assert set(found["amplitudes"]) == set(map(str, solution.seeds))
+    assert float(found["energy"]) == pytest.approx(float(solution.energy()), rel=1e-14)
+    assert {"frequencies", "harmonic_energy", "residual", "warnings", "provenance"} <= set(found)
+    assert main(["show", str(file)]) == 0
+    text = capsys.readouterr().out
+    assert "energy H" in text
+    assert "created" in text
+
+
+def test_refine(capsys, saved, tmp_path):
+    file, solution = saved
+    found = record(capsys, "refine", file, "-o", tmp_path / "refined.symfpu")
+    assert found["residual"] < 1e-12
+    assert load(tmp_path / "refined.symfpu").torus.frequencies == solution.frequencies
+
+
+def test_orbit(capsys, saved):
+    file, _ = saved
+    assert record(capsys, "orbit", file, "--time", "10", "--step", "0.05")["largest_deviation"] < 1e-5
+
+
+def test_gali(capsys, saved):
+    file, solution = saved
+    found = record(capsys, "gali", file, "--time", "100", "--vectors", "2", "--samples", "64")
+    assert found["seeds"] == list(solution.seeds)
+
+
+def test_export(capsys, saved, tmp_path):
+    file, _ = saved
+    assert main(["export", str(file), "--lang", "numpy", "-o", str(tmp_path / "mode")]) == 0
+    assert "def positions(" in (tmp_path / "mode.py").read_text()
