@@ -57,6 +57,8 @@ from symfpu.families.continuation import Event as Event
 from symfpu.families.continuation import Member as Member
 from symfpu.families.family import Family as Family
 from symfpu.families.family import family as family
+from symfpu.families.family import member_at_energy as member_at_energy
+from symfpu.families.family import member_at_frequency as member_at_frequency
 
 # dynamics: orbits and alignment indices
 from symfpu.dynamics.alignment import AlignmentIndices as AlignmentIndices

@@ -41,7 +41,7 @@ from symfpu.errors import (
 )
 from symfpu.families.appendix_a import NoFurtherMember, appendix_a
 from symfpu.families.continuation import Event
-from symfpu.families.family import NotInFamily, family
+from symfpu.families.family import NotInFamily, family, member_at_energy
 from symfpu.files.archive import BundleError
 from symfpu.files.checkpoint import Refused
 from symfpu.localization.growth import growth_exponents
@@ -176,7 +176,7 @@ RESULTS = {
     "Bundle": (bundle, lambda x: motion(x.torus)),
     "Chain": (lambda _: Chain(8, alpha="1/3", beta="0.1"), lambda x: (x.frequencies(), x.small_parameter())),
     "Event": (lambda _: Event("fold", "omega_1", 3, 0.1, 0.2), lambda x: x.kind),
-    "Family": (lambda _: breathers(), lambda x: x.at_energy("0.012", harmonic=False).amplitudes),
+    "Family": (lambda _: breathers(), lambda x: member_at_energy(x, "0.012", harmonic=False).amplitudes),
     "Floquet": (lambda _: floquet(orbit()), lambda x: (x.stable, x.multipliers)),
     "FourierTorus": (lambda _: torus().in_doubles(), motion),
     "GroupGrowth": (lambda _: growth().groups[0], lambda x: x.mean),

@@ -15,7 +15,6 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 
-from symfpu.breathers.balance import PeriodicOrbit
 from symfpu.breathers.floquet import Floquet, floquet
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
@@ -240,7 +239,7 @@ def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
         harmonic_energy=float(torus.harmonic_energies().sum()),
         residual=torus.residual(),
         warnings=torus.warnings,
-        multipliers=floquet(periodic(torus)) if multipliers else None,
+        multipliers=floquet(torus) if multipliers else None,
     )
 
 
@@ -249,19 +248,6 @@ def series_member(torus: QTorus) -> Member:
     amplitudes = {q: float(a) for q, a in torus.amplitudes.items()}
     energy, harmonic = float(torus.energy()), float(torus.harmonic_energies().sum())
     return Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings)
-
-
-def periodic(torus: QuasiPeriodic) -> PeriodicOrbit:
-    """A torus of one angle as a periodic orbit."""
-    order = np.argsort(torus.harmonics[:, 0])
-    cosines = np.zeros((int(torus.harmonics[:, 0].max()) + 1, torus.chain.N - 1))
-    cosines[torus.harmonics[order, 0]] = torus.cosines[order].astype(float)
-    with mpmath.workdps(2 * DIGITS):
-        w = mpmath.mpf(torus.frequencies[0].numerator) / torus.frequencies[0].denominator
-        sigma = float(w**2 - torus.chain.linear_frequency(torus.seeds[0]) ** 2)
-    return PeriodicOrbit(
-        torus.chain, torus.seeds[0], torus.frequencies[0], cosines, torus.residual(), 0, sigma
-    )
 
 
 def returned(members: Sequence[Member], *, tolerance: float) -> bool:

@@ -21,7 +21,6 @@ from symfpu.families.continuation import (
     Way,
     extrapolated,
     member,
-    periodic,
 )
 from symfpu.refinement.conditions import Crossing, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
@@ -259,7 +258,7 @@ def stability_change(way: Way, first: Member, second: Member, after: int) -> Eve
             torus = local.at(middle)
         except NoTorus:
             break
-        stable = floquet(periodic(torus)).stable
+        stable = floquet(torus).stable
         energy = float(torus.energy())
         low, high = (middle, high) if stable == first.multipliers.stable else (low, middle)
     unstable = second.multipliers if first.multipliers.stable else first.multipliers

@@ -55,7 +55,7 @@ APPENDIX_MEMBERS = (
 
 
 class NotInFamily(SymfpuError):
-    """No member of a family has this energy or frequency: raised by `family` and the methods of Family.
+    """No member of a family has this energy or frequency: raised by `family`, `member_at_energy` and others.
 
     quantity : its name; value : asked for; reached : the range of the members, (least, largest);
         dimensionless.
@@ -114,61 +114,90 @@ class Family:
             f"H = {min(energies):.6g} .. {max(energies):.6g}, {events or 'no events'}; it {self.ending})"
         )
 
-    def at_energy(self, energy: Number, *, harmonic: bool) -> RefinedTorus:
-        """The torus of this energy, H or with `harmonic` sum E_q; it keeps the ratio that the family keeps.
-
-        A family by Appendix A keeps none: there the amplitudes have the ratio of the nearest member.
-        Raises NotInFamily beyond the range of the members, NoTorus as `refine_at_energy` does.
-        """
-        value = float(exact(energy, "energy"))
-        level = Level(value, bool(harmonic))
-        known = np.array([level.of_member(m) for m in self.members])
-        at_an_end = level.met(float(known.min())) or level.met(float(known.max()))
-        if not at_an_end and not known.min() <= value <= known.max():
-            raise NotInFamily(
-                level.name, value, (float(known.min()), float(known.max())), self.ending
-            )
-        nearest = self.members[int(np.argmin(np.abs(np.log(known / value))))]
-        return refine_at_energy(
-            nearest.torus, energy, harmonic=harmonic, energy_ratio=self.energy_ratio
-        )
-
-    def at_frequency(self, seed: int, frequency: Number) -> tuple[RefinedTorus, ...]:
-        """The tori on which this seed has this frequency, one between every two neighbours about it.
-
-        They keep the ratio that the family keeps. Raises NotInFamily beyond the range of the
-        members, NoTorus as `refine` does.
-        """
-        if seed not in self.seeds:
-            raise InputError("seed", seed, f"one of the seeds {self.seeds}", "name a seed")
-        place, omega = self.seeds.index(seed), exact(frequency, "frequency")
-        known = [m.torus.frequencies[place] for m in self.members]
-        if not min(known) <= omega <= max(known):
-            raise NotInFamily(
-                f"omega_{seed}", float(omega), (float(min(known)), float(max(known))), self.ending
-            )
-        with mpmath.workdps(2 * DIGITS):
-            shift = long(
-                mpmath.mpf(omega.numerator) / omega.denominator - self.chain.linear_frequency(seed)
-            )
-        found = []
-        for k, (before, after) in enumerate(itertools.pairwise(known)):
-            if (before - omega) * (after - omega) < 0 or omega == before:
-                first, second = (m.torus.in_doubles() for m in self.members[k : k + 2])
-                ratio = self.energy_ratio or self.members[k].amplitudes
-                conditions = [
-                    FrequencyShift(place, shift),
-                    *ratio_conditions(self.seeds, ratio, energies=self.energy_ratio is not None),
-                ]
-                part = float((omega - before) / (after - before)) if after != before else 0.0
-                found.append(refined_torus(extrapolated(first, second, part - 1), conditions))
-        return tuple(found)
-
 
 def _counted(n: int, kind: str) -> str:
     if kind == "stability":
         return f"{n} change{'s' * (n > 1)} of stability"
     return f"{n} {kind}{'s' * (n > 1)}"
+
+
+def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> RefinedTorus:
+    """The torus of a family that has this energy, by Newton's method from the nearest member.
+
+    found : the family. energy : an exact number, dimensionless; H, or with `harmonic` sum E_q, both at the
+        angles zero.
+
+    It keeps the ratio that the family keeps. A family by Appendix A keeps none: there the amplitudes have the
+    ratio of the nearest member. Eq. eqmo; ours.
+    Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine_at_energy` does.
+
+    >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
+    >>> round(float(member_at_energy(tori, "0.0007", harmonic=False).energy()), 12)
+    0.0007
+    """
+    _require_family(found)
+    value = float(exact(energy, "energy"))
+    level = Level(value, bool(harmonic))
+    known = np.array([level.of_member(m) for m in found.members])
+    least, largest = float(known.min()), float(known.max())
+    at_an_end = level.met(least) or level.met(largest)
+    if not at_an_end and not least <= value <= largest:
+        raise NotInFamily(level.name, value, (least, largest), found.ending)
+    distances = np.abs(np.log(known / value))
+    nearest = found.members[int(np.argmin(distances))].torus
+    return refine_at_energy(nearest, energy, harmonic=harmonic, energy_ratio=found.energy_ratio)
+
+
+def member_at_frequency(found: Family, seed: int, frequency: Number) -> tuple[RefinedTorus, ...]:
+    """The tori of a family on which this seed has this frequency.
+
+    One for every pair of neighbouring members with the frequency between them.
+
+    found : the family. seed : one of its seeds. frequency : omega_seed, an exact number, dimensionless.
+
+    They keep the ratio that the family keeps. Eq. eqmo; ours.
+    Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine` does.
+
+    >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
+    >>> [round(A, 9) for torus in member_at_frequency(tori, 1, "0.3902") for A in torus.amplitudes.values()]
+    [0.095437646]
+    """
+    _require_family(found)
+    if seed not in found.seeds:
+        raise InputError("seed", seed, f"one of the seeds {found.seeds}", "name a seed")
+    place, omega = found.seeds.index(seed), exact(frequency, "frequency")
+    known = [m.torus.frequencies[place] for m in found.members]
+    least, largest = min(known), max(known)
+    if not least <= omega <= largest:
+        reached = float(least), float(largest)
+        raise NotInFamily(f"omega_{seed}", float(omega), reached, found.ending)
+    tori = []
+    for k, (before, after) in enumerate(itertools.pairwise(known)):
+        if (before - omega) * (after - omega) < 0 or omega == before:
+            part = float((omega - before) / (after - before)) if after != before else 0.0
+            tori.append(_between(found, k, place, omega, part))
+    return tuple(tori)
+
+
+def _require_family(found: object) -> None:
+    if not isinstance(found, Family):
+        raise InputError("found", type(found).__name__, "a Family", "pass what family gave")
+
+
+def _between(found: Family, k: int, place: int, omega: Fraction, part: float) -> RefinedTorus:
+    """The torus with this frequency, about as far on the way from member k to the next as `part` says."""
+    seed = found.seeds[place]
+    with mpmath.workdps(2 * DIGITS):
+        exact_omega = mpmath.mpf(omega.numerator) / omega.denominator
+        shift = long(exact_omega - found.chain.linear_frequency(seed))
+    first, second = (m.torus.in_doubles() for m in found.members[k : k + 2])
+    energies = found.energy_ratio is not None
+    ratio = found.energy_ratio or found.members[k].amplitudes
+    conditions = [
+        FrequencyShift(place, shift),
+        *ratio_conditions(found.seeds, ratio, energies=energies),
+    ]
+    return refined_torus(extrapolated(first, second, part - 1), conditions)
 
 
 def family(

@@ -250,7 +250,8 @@ class Kept:
                 f"restore {self._file(index).name}, or choose another folder",
             )
             raise InputError("folder", str(self.folder), allowed, advice) from error
-        if torus is None or (torus.chain, tuple(torus.seeds)) != (self.plan.chain, self.plan.seeds):
+        ours = self.plan.chain, self.plan.seeds
+        if not isinstance(torus, (RefinedTorus, QTorus)) or (torus.chain, torus.seeds) != ours:
             advice = f"{self._file(index).name} is another torus; choose another folder"
             raise InputError("folder", str(self.folder), "members of one family", advice)
         return torus

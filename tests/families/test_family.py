@@ -15,7 +15,7 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
 from symfpu.families import events
 from symfpu.families.continuation import first_torus, member
-from symfpu.families.family import Family, NotInFamily, family
+from symfpu.families.family import Family, NotInFamily, family, member_at_energy, member_at_frequency
 from symfpu.refinement.tori import NoTorus, refine_at_energy, shifts_of
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -129,7 +129,7 @@ def test_both_ends_have_the_energies_asked_for(case, harmonic):
     assert measured == sorted(measured)
     assert found.ending == "reached the energy asked for"
     for energy in (first, goal):
-        assert float(found.at_energy(energy, harmonic=harmonic).energy()) > 0
+        assert float(member_at_energy(found, energy, harmonic=harmonic).energy()) > 0
     if len(seeds) == 1 and not harmonic:
         ends = [breather_at_energy(chain, seeds[0], energy) for energy in (first, goal)]
         assert [omega(found.members[k]) for k in (0, -1)] == pytest.approx([float(o.frequency) for o in ends], rel=SAME_ORBIT)
@@ -240,7 +240,7 @@ def test_a_resonance_of_two_frequencies_is_located():
     def divisor(torus):
         return abs(float(12 * torus.frequencies[0] - 8 * torus.frequencies[1])) - WIDE.frequencies()[3]
 
-    at = found.at_energy(repr(event.energy), harmonic=False)
+    at = member_at_energy(found, repr(event.energy), harmonic=False)
     first, second = (divisor(m.torus) for m in found.members[event.after : event.after + 2])
     assert first * second < 0
     assert abs(divisor(at)) < LOCATED * abs(second - first)
@@ -349,7 +349,7 @@ def test_a_family_turns_below_a_barrier():
         quadratic = mpmath.mpf("0.5") / mpmath.sqrt(6) * linear**3 * BARRIER.B(2, 2, 2)
         barrier = float(linear**6 / (6 * quadratic**2))
         known = [m for m in found.members if omega(m) > 0.75]
-        known.append(member(found.at_energy("3.99", harmonic=False), multipliers=False))
+        known.append(member(member_at_energy(found, "3.99", harmonic=False), multipliers=False))
         for m in known:
             rate, amplitude = cubic_oscillator(linear**2, quadratic, mpmath.mpf(float(m.torus.positions(0.0)[1])))
             assert omega(m) == pytest.approx(float(rate), rel=OSCILLATOR)
@@ -371,7 +371,7 @@ def test_a_family_that_cannot_go_on_says_so():
     assert all(m.residual < 1e-6 for m in found.members)
     assert energies(found).max() < 2
     with pytest.raises(NotInFamily, match="ended at H = "):
-        found.at_energy("20", harmonic=False)
+        member_at_energy(found, "20", harmonic=False)
 
 
 def test_the_family_goes_on_where_its_series_ends():
@@ -399,21 +399,21 @@ def test_the_family_goes_on_where_its_series_ends():
 
 def test_at_energy_is_on_the_family():
     """Not the ratio of the nearest member's amplitudes, which changes along a family of equal energies."""
-    torus = folded().at_energy("0.02", harmonic=False)
+    torus = member_at_energy(folded(), "0.02", harmonic=False)
     mine = averages(torus)
     assert mine[0] == pytest.approx(mine[1], rel=RATIO)
     assert float(torus.energy()) == pytest.approx(0.02, rel=RATIO)
     assert torus.residual() < RESIDUAL
-    harmonic = folded().at_energy("0.02", harmonic=True)
+    harmonic = member_at_energy(folded(), "0.02", harmonic=True)
     assert float(harmonic.harmonic_energies().sum()) == pytest.approx(0.02, rel=RATIO)
-    breather = breathers().at_energy("0.1", harmonic=False)
+    breather = member_at_energy(breathers(), "0.1", harmonic=False)
     assert breather.amplitudes[3] == pytest.approx(breather_at_energy(ROUND, 3, "0.1").amplitude, rel=SAME_ORBIT)
 
 
 @pytest.mark.parametrize("energy", ["0.0001", "7"])
 def test_an_energy_beyond_reach_is_not_in_the_family(energy):
     with pytest.raises(NotInFamily) as failure:
-        breathers().at_energy(energy, harmonic=False)
+        member_at_energy(breathers(), energy, harmonic=False)
     assert (failure.value.quantity, failure.value.value) == ("H", float(energy))
     assert failure.value.reached == (energies(breathers()).min(), energies(breathers()).max())
     assert type(failure.value.reached[0]) is float
@@ -427,7 +427,7 @@ def test_a_frequency_may_have_several_members():
     lowest = min(float(m.torus.frequencies[1]) for m in family_.members)
     first = float(family_.members[0].torus.frequencies[1])
     wanted = repr((first + lowest) / 2)
-    tori = family_.at_frequency(2, wanted)
+    tori = member_at_frequency(family_, 2, wanted)
     assert len(tori) == 2
     for torus in tori:
         assert float(torus.frequencies[1]) == pytest.approx(float(wanted), abs=1e-15)
@@ -435,16 +435,16 @@ def test_a_frequency_may_have_several_members():
         assert torus.residual() < 1e-12
         assert averages[1] / averages[0] == pytest.approx(1, rel=RATIO)
     assert tori[0].energy() < tori[1].energy()
-    assert len(breathers().at_frequency(3, breathers().members[2].torus.frequencies[0])) == 1
+    assert len(member_at_frequency(breathers(), 3, breathers().members[2].torus.frequencies[0])) == 1
 
 
 def test_a_frequency_beyond_reach_is_not_in_the_family():
     with pytest.raises(NotInFamily, match=r"no member has omega_3 = 9: the family goes from .* follow the family further") as failure:
-        breathers().at_frequency(3, 9)
+        member_at_frequency(breathers(), 3, 9)
     assert failure.value.quantity == "omega_3"
     assert failure.value.reached[0] < failure.value.reached[1] < 9
     with pytest.raises(InputError, match=r"^seed = 5"):
-        breathers().at_frequency(5, 1)
+        member_at_frequency(breathers(), 5, 1)
 
 
 def test_appendix_a_gives_series_of_growing_energy():
@@ -457,7 +457,7 @@ def test_appendix_a_gives_series_of_growing_energy():
         assert m.torus.order == 4
         assert m.energy == pytest.approx(float(m.torus.energy()), rel=1e-15)
         assert m.residual == m.torus.residual()
-    refined = found.at_energy("0.005", harmonic=False)
+    refined = member_at_energy(found, "0.005", harmonic=False)
     assert float(refined.energy()) == pytest.approx(0.005, rel=RATIO)
 
 
