@@ -103,7 +103,8 @@ def breather_at_energy(
     energy : H, or with harmonic=True the harmonic energy sum E_q at t = 0, when every momentum vanishes; a
         positive exact number.
     harmonic : which of the two.
-    guess : a member nearby, any solution of this seed and chain; None follows the family from rest, with A > 0.
+    guess : a member nearby, any solution of this seed and chain; None follows the family from rest, with
+        A > 0.
 
     Harmonic balance, as `periodic_orbit`; the breathers of section 6.4 by their energy, where the paper gives
     frequencies.

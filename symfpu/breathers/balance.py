@@ -64,10 +64,10 @@ class NoPeriodicOrbit(SymfpuError):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PeriodicOrbit(FourierTorus):
-    """The periodic orbit Q_q(t) = sum_n c[n, q-1] cos(n omega t) of a chain: a solution of one angle; dimensionless.
+    """The periodic orbit Q_q(t) = sum_n c[n, q-1] cos(n omega t) of a chain; dimensionless.
 
-    Made by `periodic_orbit`, `breather_at_amplitude` and `breather_at_energy`: Eq. qser with s = 1, exact
-    where the paper cuts it (section 6.4).
+    A solution of one angle. Made by `periodic_orbit`, `breather_at_amplitude` and
+    `breather_at_energy`: Eq. qser with s = 1, exact where the paper cuts it (section 6.4).
 
     chain, seeds : the model and its one seed. frequencies : omega, exact, shape (1,).
     harmonics : 0 .. H, shape (H+1, 1). cosines : c in doubles, shape (H+1, N-1), harmonic 0 first.
@@ -102,9 +102,9 @@ def orbit_of(
 
 
 def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicOrbit:
-    """A solution of one angle as a periodic orbit in doubles, at rest at t = 0; raises InputError for any other.
+    """A solution of one angle as a periodic orbit in doubles, at rest at t = 0.
 
-    advice : what to do with a torus of more angles.
+    Raises InputError for any other. advice : what to do with a torus of more angles.
     """
     if not isinstance(solution, QuasiPeriodic):
         advice = "take one from periodic_orbit, breather_at_amplitude or refine"

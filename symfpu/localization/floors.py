@@ -21,14 +21,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import PeriodicOrbit
 from symfpu.breathers.digits import PreciseOrbit
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
-from symfpu.errors import InputError
 from symfpu.refinement.invariance import OVERSAMPLING, InvarianceEquation, dilated
 from symfpu.refinement.tori import shifts_of
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[Any]
@@ -52,7 +50,7 @@ class _Errors:
         return np.asarray((weights * squared * self.sizes**2).sum(axis=0), dtype=np.float64)
 
 
-def spectrum_floor(solution: QuasiPeriodic | PeriodicOrbit) -> NDArray[np.float64]:
+def spectrum_floor(solution: QuasiPeriodic) -> NDArray[np.float64]:
     """The energies at and below which the modes of a torus or breather are rounding; shape (N-1,).
 
     solution : a torus or periodic orbit of any kind.
@@ -75,7 +73,7 @@ def spectrum_floor(solution: QuasiPeriodic | PeriodicOrbit) -> NDArray[np.float6
     return errors.energies(solution.chain)
 
 
-def coefficient_errors(solution: QuasiPeriodic | PeriodicOrbit) -> NDArray[np.float64]:
+def coefficient_errors(solution: QuasiPeriodic) -> NDArray[np.float64]:
     """How far off the Fourier coefficients of a torus or breather are; shape (H, N-1), as its `cosines`.
 
     solution : a torus or periodic orbit of any kind. Dimensionless; what they count on is said in
@@ -87,37 +85,19 @@ def coefficient_errors(solution: QuasiPeriodic | PeriodicOrbit) -> NDArray[np.fl
     True
     """
     errors = _errors(solution)
-    wanted = _as_torus(solution).harmonics
+    wanted = solution.harmonics
     rows = {nu: i for i, nu in enumerate(map(tuple, _canonical_signs(errors.harmonics).tolist()))}
     places = [rows[nu] for nu in map(tuple, _canonical_signs(wanted).tolist())]
     return np.asarray(errors.sizes[places], dtype=np.float64)
 
 
-def _errors(solution: object) -> _Errors:
-    match solution:
-        case QTorus():
-            return _of_series(solution)
-        case PreciseOrbit():
-            return _of_digits(solution)
-        case QuasiPeriodic() | PeriodicOrbit():
-            return _of_newton(_as_torus(solution))
-    raise InputError(
-        "solution",
-        type(solution).__name__,
-        "a torus or a periodic orbit",
-        "pass what has an average_spectrum()",
-    )
-
-
-def _as_torus(solution: QuasiPeriodic | PeriodicOrbit) -> QuasiPeriodic:
-    """A periodic orbit as a torus of one angle."""
-    if isinstance(solution, QuasiPeriodic):
-        return solution
-    harmonics = np.arange(len(solution.cosines))[:, None]
-    phases = {solution.seed: 0.0}
-    return FourierTorus(
-        solution.chain, (solution.seed,), (solution.frequency,), harmonics, solution.cosines, phases
-    )
+def _errors(solution: QuasiPeriodic) -> _Errors:
+    require_solution(solution, "solution")
+    if isinstance(solution, QTorus):
+        return _of_series(solution)
+    if isinstance(solution, PreciseOrbit):
+        return _of_digits(solution)
+    return _of_newton(solution)
 
 
 def _canonical_signs(harmonics: Ints) -> Ints:

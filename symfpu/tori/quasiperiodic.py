@@ -136,7 +136,9 @@ class QuasiPeriodic(Parts):
         )
 
     def state(self, t: float = 0.0) -> tuple[Floats, Floats]:
-        """Mode coordinates and momenta at a time, in doubles, for `integrate` to start from; (N-1,) each.
+        """Mode coordinates Q and momenta P at a time, in doubles, for `integrate` to start from.
+
+        t : a number, dimensionless. Returns two arrays (N-1,). Raises InputError for many times.
 
         >>> from symfpu import Chain, breather_at_amplitude, integrate
         >>> orbit = breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4")

@@ -25,6 +25,7 @@ from symfpu.codegen.export import export
 from symfpu.dynamics.alignment import alignment_indices
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
+from symfpu.localization.floors import spectrum_floor
 from symfpu.refinement.tori import RefinedTorus, refine, refine_at_energy
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
@@ -194,6 +195,11 @@ class SolutionTests:
         expected = simpson(solution.in_doubles().harmonic_energies(t), x=t, axis=0) / 30.0
         found = solution.average_spectrum(30.0)
         assert np.allclose(found, expected, rtol=QUADRATURE, atol=QUADRATURE * expected.max())
+
+    def test_its_spectrum_knows_where_it_ends(self, solution):
+        floor, spectrum = spectrum_floor(solution), solution.average_spectrum().astype(float)
+        assert floor.shape == (7,)
+        assert all(0 < floor[q - 1] < self.close * spectrum[q - 1] for q in solution.seeds)
 
     def test_doubles_are_the_same_solution(self, solution):
         doubles = solution.in_doubles()
