@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from symfpu.breathers.balance import PeriodicOrbit
 from symfpu.chain import bonds
-from symfpu.dynamics.kahan_li8 import ORDER, tangent_map_along
+from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.schemes import particle_scheme
+from symfpu.dynamics.tangent import tangent_map_along
 from symfpu.errors import InputError
 from symfpu.numbers.typed import decimal
 
@@ -90,15 +92,19 @@ class Floquet:
         return 1.0 if self.stable else float(np.max(np.abs(self.pairs)))
 
 
-def monodromy(orbit: PeriodicOrbit) -> Floats:
-    """Tangent map over one period in mode coordinates and momenta, from t = 0; shape (2(N-1), 2(N-1)). Raises InputError."""
-    return _whole(_half(_checked(orbit))[0])
+def monodromy(orbit: PeriodicOrbit, *, scheme: str = "kahan_li8") -> Floats:
+    """Tangent map over one period in mode coordinates and momenta, from t = 0.
+
+    scheme : of the integrator, on T + V. Returns shape (2(N-1), 2(N-1)). Raises InputError.
+    """
+    return _whole(_half(_checked(orbit), particle_scheme(scheme))[0])
 
 
-def floquet(orbit: PeriodicOrbit) -> Floquet:
+def floquet(orbit: PeriodicOrbit, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
     orbit : from `periodic_orbit` or its sisters; dimensionless.
+    scheme : of the integrator, on T + V; with one of lower order errors and tolerances are larger.
 
     The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time; ours. A
     kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its
@@ -112,7 +118,7 @@ def floquet(orbit: PeriodicOrbit) -> Floquet:
     """
     from scipy.linalg import eig
 
-    half, map_error = _half(_checked(orbit))
+    half, map_error = _half(_checked(orbit), particle_scheme(scheme))
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]
     force = orbit.chain.accelerations(orbit.positions(0.0))
@@ -145,7 +151,7 @@ def _checked(orbit: PeriodicOrbit) -> PeriodicOrbit:
     return orbit
 
 
-def _half(orbit: PeriodicOrbit) -> tuple[Floats, float]:
+def _half(orbit: PeriodicOrbit, scheme: Scheme) -> tuple[Floats, float]:
     """The tangent map over half a period and its estimated error, in the spectral norm."""
     chain, duration = orbit.chain, np.pi / float(orbit.frequency)
     r = chain.stretches(orbit.positions(np.linspace(0, duration, 2 * len(orbit.cosines))))
@@ -157,11 +163,11 @@ def _half(orbit: PeriodicOrbit) -> tuple[Floats, float]:
     def stretches(t: Floats) -> Floats:
         return np.asarray(np.cos(np.multiply.outer(t, rates)) @ coefficients)
 
-    coarse = tangent_map_along(chain, stretches, duration, steps)
+    coarse = tangent_map_along(chain, stretches, duration, steps, scheme=scheme)
     for _ in range(DOUBLINGS):
         steps *= 2
-        fine = tangent_map_along(chain, stretches, duration, steps)
-        error = float(np.linalg.norm(fine - coarse, 2)) / (2**ORDER - 1)
+        fine = tangent_map_along(chain, stretches, duration, steps, scheme=scheme)
+        error = float(np.linalg.norm(fine - coarse, 2)) / (2**scheme.order - 1)
         if error <= ACCURACY * max(1.0, float(np.max(np.abs(fine)))):
             break
         coarse = fine
