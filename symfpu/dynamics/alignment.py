@@ -91,11 +91,14 @@ class AlignmentIndices:
     scheme: Scheme = BLANES_MOAN6
 
     def __repr__(self) -> str:
-        slopes = ", ".join(f"{s.value:.2f}" for s in self.slopes())
-        return (
-            f"AlignmentIndices({repr(self.chain)[6:-1]}, t = {self.times[-1]:.3g}, {self.dimension().verdict}: slopes of "
-            f"GALI_2..{self.vectors} {slopes}, Lyapunov exponent {self.lyapunov[-1]:.2g}, energy error {self.energy_error:.1g})"
-        )
+        model = repr(self.chain)[6:-1]
+        verdict = self.dimension().verdict
+        values = ", ".join(f"{s.value:.2f}" for s in self.slopes())
+        slopes = f"slopes of GALI_2..{self.vectors} {values}"
+        exponent = f"Lyapunov exponent {self.lyapunov[-1]:.2g}"
+        error = f"energy error {self.energy_error:.1g}"
+        answer = f"t = {self.times[-1]:.3g}, {verdict}: {slopes}, {exponent}, {error}"
+        return f"AlignmentIndices({model}, {answer})"
 
     @property
     def vectors(self) -> int:
@@ -130,7 +133,8 @@ class AlignmentIndices:
         InputError.
         """
         if not self.energy_error <= LOST_ENERGY:
-            reason = f"the orbit is off by {self.energy_error:.1g} of its energy: take a shorter step than {self.step:g}"
+            lost = f"the orbit is off by {self.energy_error:.1g} of its energy"
+            reason = f"{lost}: take a shorter step than {self.step:g}"
             return TorusDimension("undecided", None, math.nan, {}, reason)
         growth = self.lyapunov * self.times
         return torus_dimension(
@@ -207,10 +211,9 @@ def alignment_indices(
     if file is not None:
         run.keep_in(checkpoint_path(file))
     run.go(progress or (lambda label, done: None))
-    times, volumes = (
-        np.asarray(run.marks * h, dtype=np.float64),
-        np.cumsum(run.volumes, axis=1)[:, 1:] / math.log(10),
-    )
+    times = np.asarray(run.marks * h, dtype=np.float64)
+    logarithms = np.cumsum(run.volumes, axis=1)
+    volumes = logarithms[:, 1:] / math.log(10)
     error = abs(float(chain.energy(*frame.orbit())) - before) / abs(before)
     return AlignmentIndices(chain, times, volumes, run.growth / times, h, error, integrator)
 
@@ -290,11 +293,14 @@ def _steps(T: float, h: float) -> int:
 
 def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
     """Orthonormal vectors of a phase space of dimension 2n as rows."""
-    rows = np.linalg.qr(np.random.default_rng(seed).normal(size=(2 * n, vectors)))[0].T
+    random = np.random.default_rng(seed)
+    columns = random.normal(size=(2 * n, vectors))
+    rows = np.linalg.qr(columns)[0].T
     return rows[:, :n], rows[:, n:]
 
 
 def _marks(last: int, h: float, samples: int) -> Ints:
     """Numbers of steps at which there are samples."""
-    found: Ints = np.unique(np.geomspace(max(1.0, 1 / h), last, samples).round().astype(np.int64))
+    even_in_log = np.geomspace(max(1.0, 1 / h), last, samples)
+    found: Ints = np.unique(even_in_log.round().astype(np.int64))
     return found

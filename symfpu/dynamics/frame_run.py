@@ -44,9 +44,8 @@ class OrbitLost(SymfpuError):
 
     def __init__(self, time: float, step: float) -> None:
         self.time, self.step = time, step
-        super().__init__(
-            f"the orbit is lost before t = {time:.6g} with steps of {step:g}; take less energy or a shorter step"
-        )
+        lost = f"the orbit is lost before t = {time:.6g} with steps of {step:g}"
+        super().__init__(f"{lost}; take less energy or a shorter step")
 
 
 class FrameRun:

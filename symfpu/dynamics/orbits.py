@@ -81,11 +81,15 @@ class Orbit:
     seconds: float = field(repr=False, default=0.0)
 
     def __repr__(self) -> str:
-        many = f"{math.prod(self.Q.shape[1:-1])} orbits, " if self.Q.ndim > 2 else ""
-        return (
-            f"Orbit({repr(self.chain)[6:-1]}, {many}T={self.times[-1]:.10g}, {self.scheme.name}, step {abs(self.step):.6g}, "
-            f"{len(self.times)} samples, H={np.ravel(self.energies)[0]:.12g}, energy error {self.energy_error:.2g})"
-        )
+        model = repr(self.chain)[6:-1]
+        orbits = math.prod(self.Q.shape[1:-1])
+        many = f"{orbits} orbits, " if self.Q.ndim > 2 else ""
+        end = f"{many}T={self.times[-1]:.10g}"
+        integrator = f"{self.scheme.name}, step {abs(self.step):.6g}"
+        first_energy = np.ravel(self.energies)[0]
+        samples = f"{len(self.times)} samples, H={first_energy:.12g}"
+        error = f"energy error {self.energy_error:.2g}"
+        return f"Orbit({model}, {end}, {integrator}, {samples}, {error})"
 
     @property
     def energy_error(self) -> float:
@@ -93,8 +97,10 @@ class Orbit:
 
         Absolute for orbits at rest.
         """
-        start = np.where(self.energies[0] == 0, 1.0, np.abs(self.energies[0]))
-        return float(np.max(np.abs(self.energies - self.energies[0]) / start))
+        first = self.energies[0]
+        scale = np.where(first == 0, 1.0, np.abs(first))
+        deviations = np.abs(self.energies - first) / scale
+        return float(np.max(deviations))
 
     def harmonic_energies(self) -> Floats:
         """E_q of every sample; shape (S, ..., N-1)."""
@@ -216,7 +222,7 @@ class _Run:
     def keep_in(self, path: Path, every: float, *, exact: bool) -> None:
         """Goes on from the file, if there is one, which may hold a shorter run.
 
-        Exact : as for `marks_of`.
+        exact : as for `marks_of`.
         """
         self.path, self.every = path, every
         chain, scheme = self.chain, self.scheme
@@ -327,35 +333,29 @@ class _Run:
     def _stop(self, row: int, steps: int, *, escaped: bool) -> None:
         Q, P = (part[0] for part in self.motion.modes(self.state[row : row + 1]))
         growth = np.abs(self.chain.harmonic_energies(Q, P) - (self.start[row] if steps else 0.0))
-        kind: type[OrbitStopped]
-        kind, reason, advice = (
-            UnstableStep,
-            f"a step of {abs(self.step):.6g} of {self.scheme.name} loses the energy",
-            "take a shorter step",
-        )
+        place: tuple[int, ...] = ()
+        if len(self.shape) > 1:
+            place = tuple(int(i) for i in np.unravel_index(row, self.shape[:-1]))
+        kind: type[OrbitStopped] = UnstableStep
+        reason = f"a step of {abs(self.step):.6g} of {self.scheme.name} loses the energy"
+        advice = "take a shorter step"
         if escaped:
-            kind, reason, advice = (
-                EscapedOrbit,
-                "a bond passes the barrier of its potential",
-                "start from a state of less energy",
-            )
-        place = (
-            tuple(int(i) for i in np.unravel_index(row, self.shape[:-1]))
-            if len(self.shape) > 1
-            else ()
-        )
-        energy, mode = float(self.chain.energy(Q, P)), int(np.argmax(growth)) + 1
+            kind = EscapedOrbit
+            reason = "a bond passes the barrier of its potential"
+            advice = "start from a state of less energy"
         raise kind(
             reason,
             advice,
             time=self.T * (steps / self.steps),
-            mode=mode,
-            energy=energy,
+            mode=int(np.argmax(growth)) + 1,
+            energy=float(self.chain.energy(Q, P)),
             orbit=place,
         )
 
     def result(self) -> Orbit:
-        Q, P = (part.reshape(len(self.sampled), *self.shape) for part in (self.Q, self.P))
+        shape = len(self.sampled), *self.shape
+        Q = self.Q.reshape(shape)
+        P = self.P.reshape(shape)
         energies = np.asarray(self.chain.energy(Q, P))
         times = np.asarray(self.T * (self.sampled / self.steps), dtype=np.float64)
         averages = self.averages.reshape(Q.shape) if self.stride else None

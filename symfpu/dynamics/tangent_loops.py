@@ -1,9 +1,9 @@
 """The compiled loops of orbits with deviation vectors: plain arrays, moved in place.
 
-Importing this module imports numba. x, p : displacements and momenta of one orbit with its two walls, (N+1,), zero at the walls. dx,
-dp : deviations from it, blocks of LANES vectors, (blocks, N+1, LANES), zero at the walls and in
-lanes that are not used. The lanes are the last axis and their number is fixed, so that the loop
-over them is one or two machine instructions.
+Importing this module imports numba. x, p : displacements and momenta of one orbit with its two
+walls, (N+1,), zero at the walls. dx, dp : deviations from it, blocks of LANES vectors, (blocks,
+N+1, LANES), zero at the walls and in lanes that are not used. The lanes are the last axis and
+their number is fixed, so that the loop over them is one or two machine instructions.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def advance(
 ) -> None:
     """So many steps of a splitting, of an orbit and its deviations.
 
-    Kicks (stages,) and drifts (stages + 1,) are lengths of time, drifts that meet are one.
+    kicks (stages,) and drifts (stages + 1,) are lengths of time, drifts that meet are one.
     """
     if steps == 0:
         return
