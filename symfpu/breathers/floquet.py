@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from symfpu.breathers.balance import PeriodicOrbit, as_periodic_orbit
 from symfpu.chain import bonds
-from symfpu.dynamics.kahan_li8 import ORDER, tangent_map_along
+from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.schemes import particle_scheme
+from symfpu.dynamics.tangent import tangent_map_along
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
@@ -98,19 +100,21 @@ class Floquet:
         return 1.0 if self.stable else float(np.max(np.abs(self.pairs)))
 
 
-def monodromy(orbit: QuasiPeriodic) -> Floats:
-    """Tangent map over one period in mode coordinates and momenta, from a state at rest; shape (2(N-1), 2(N-1)).
+def monodromy(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floats:
+    """Tangent map over one period in mode coordinates and momenta, from a state at rest.
 
-    Raises InputError.
+    scheme : of the integrator, on T + V. Returns shape (2(N-1), 2(N-1)). Raises InputError.
     """
-    return _whole(_half(as_periodic_orbit(orbit, "orbit", MORE_ANGLES))[0])
+    periodic = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
+    return _whole(_half(periodic, particle_scheme(scheme))[0])
 
 
-def floquet(orbit: QuasiPeriodic) -> Floquet:
+def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
     orbit : a solution of one angle, from `periodic_orbit`, `refine` or others; dimensionless. Of a truncated
         series, multipliers are as good as the orbit is.
+    scheme : of the integrator, on T + V; with one of lower order errors and tolerances are larger.
 
     The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time; ours. A
     kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its
@@ -125,7 +129,7 @@ def floquet(orbit: QuasiPeriodic) -> Floquet:
     from scipy.linalg import eig
 
     periodic = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
-    half, map_error = _half(periodic)
+    half, map_error = _half(periodic, particle_scheme(scheme))
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]
     force = periodic.chain.accelerations(periodic.positions(0.0))
@@ -158,7 +162,7 @@ def floquet(orbit: QuasiPeriodic) -> Floquet:
     )
 
 
-def _half(orbit: PeriodicOrbit) -> tuple[Floats, float]:
+def _half(orbit: PeriodicOrbit, scheme: Scheme) -> tuple[Floats, float]:
     """The tangent map over half a period and its estimated error, in the spectral norm."""
     chain, duration = orbit.chain, np.pi / float(orbit.frequency)
     r = chain.stretches(orbit.positions(np.linspace(0, duration, 2 * len(orbit.cosines))))
@@ -170,11 +174,11 @@ def _half(orbit: PeriodicOrbit) -> tuple[Floats, float]:
     def stretches(t: Floats) -> Floats:
         return np.asarray(np.cos(np.multiply.outer(t, rates)) @ coefficients)
 
-    coarse = tangent_map_along(chain, stretches, duration, steps)
+    coarse = tangent_map_along(chain, stretches, duration, steps, scheme=scheme)
     for _ in range(DOUBLINGS):
         steps *= 2
-        fine = tangent_map_along(chain, stretches, duration, steps)
-        error = float(np.linalg.norm(fine - coarse, 2)) / (2**ORDER - 1)
+        fine = tangent_map_along(chain, stretches, duration, steps, scheme=scheme)
+        error = float(np.linalg.norm(fine - coarse, 2)) / (2**scheme.order - 1)
         if error <= ACCURACY * max(1.0, float(np.max(np.abs(fine)))):
             break
         coarse = fine

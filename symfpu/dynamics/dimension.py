@@ -142,12 +142,19 @@ def linear_decades(times: Floats, growth: Floats) -> float:
 def fits(times: Floats, values: Floats, decades: float) -> list[tuple[float, float]]:
     """Slopes of columns (S, k) against log10 t over the last decades, with jackknife errors."""
     x = np.log10(times)
-    first = min(int(np.searchsorted(x, x[-1] - _span(x, decades) - 1e-9)), max(0, len(x) - FEWEST))
-    x, values = x[first:], values[first:]
+    begin = x[-1] - _span(x, decades) - 1e-9
+    first = min(int(np.searchsorted(x, begin)), max(0, len(x) - FEWEST))
+    x = x[first:]
+    values = values[first:]
     part = np.arange(len(x)) * PARTS // len(x)
     whole = np.polyfit(x, values, 1)[0]
-    without = np.array([np.polyfit(x[part != i], values[part != i], 1)[0] for i in range(PARTS)])
-    errors = np.sqrt((PARTS - 1) / PARTS * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
+    partial = []
+    for i in range(PARTS):
+        others = part != i
+        partial.append(np.polyfit(x[others], values[others], 1)[0])
+    without = np.array(partial)
+    squares = (without - without.mean(axis=0)) ** 2
+    errors = np.sqrt((PARTS - 1) / PARTS * np.sum(squares, axis=0))
     return list(zip(whole.tolist(), errors.tolist(), strict=True))
 
 
