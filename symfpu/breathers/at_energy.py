@@ -1,4 +1,6 @@
-"""The q-breather of a prescribed energy: harmonic balance bordered by the energy, along the family from rest."""
+"""The q-breather of a prescribed energy: harmonic balance bordered by the energy, along the
+family from rest.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,14 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import REACH, Balance, Condition, NoPeriodicOrbit, PeriodicOrbit, orbit_near
+from symfpu.breathers.balance import (
+    REACH,
+    Balance,
+    Condition,
+    NoPeriodicOrbit,
+    PeriodicOrbit,
+    orbit_near,
+)
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, SymfpuError
@@ -30,13 +39,26 @@ class NoBreatherAtEnergy(SymfpuError):
     reason : of the last failure. Ours.
     """
 
-    def __init__(self, seed: int, energy: float, harmonic: bool, member: PeriodicOrbit | None, failure: NoPeriodicOrbit) -> None:
+    def __init__(
+        self,
+        seed: int,
+        energy: float,
+        harmonic: bool,
+        member: PeriodicOrbit | None,
+        failure: NoPeriodicOrbit,
+    ) -> None:
         self.seed, self.energy, self.harmonic, self.reason = seed, energy, harmonic, str(failure)
-        self.reached = 0.0 if member is None else member.harmonic_energy if harmonic else member.energy
+        self.reached = (
+            0.0 if member is None else member.harmonic_energy if harmonic else member.energy
+        )
         self.frequency = None if member is None else float(member.frequency)
         self.amplitude = 0.0 if member is None else member.amplitude
         kind = "harmonic energy" if harmonic else "energy"
-        last = "no member was found" if member is None else f"the last has omega = {self.frequency:.12g}, A = {self.amplitude:.6g}"
+        last = (
+            "no member was found"
+            if member is None
+            else f"the last has omega = {self.frequency:.12g}, A = {self.amplitude:.6g}"
+        )
         super().__init__(
             f"no breather of seed {seed} at {kind} {energy:.6g}: the family from rest was followed over 0 .. {self.reached:.6g}, {last}; "
             f"it ended because: {self.reason.partition('; the best')[0]}; ask for {kind} below {self.reached:.6g}"
@@ -45,7 +67,9 @@ class NoBreatherAtEnergy(SymfpuError):
 
 @dataclass(frozen=True)
 class Level:
-    """The condition that H, or the harmonic energy at t = 0, has a given value: momenta vanish, Q_q(0) = sum_n c[n, q]."""
+    """The condition that H, or the harmonic energy at t = 0, has a given value: momenta vanish,
+    Q_q(0) = sum_n c[n, q].
+    """
 
     chain: Chain
     energy: float
@@ -58,7 +82,10 @@ class Level:
                 gradient = self.chain.frequencies() ** 2 * Q
                 value = float(gradient @ Q) / 2
             else:
-                gradient, value = -self.chain.accelerations(Q), float(self.chain.energy(Q, np.zeros_like(Q)))
+                gradient, value = (
+                    -self.chain.accelerations(Q),
+                    float(self.chain.energy(Q, np.zeros_like(Q))),
+                )
             scale = self.energy / np.max(np.abs(z[:-1]))
             return (value - self.energy) / scale, np.append(gradient[balance.q], 0.0) / scale
 
@@ -66,7 +93,12 @@ class Level:
 
 
 def breather_at_energy(
-    chain: Chain, seed: int, energy: Number, *, harmonic: bool = False, guess: PeriodicOrbit | None = None
+    chain: Chain,
+    seed: int,
+    energy: Number,
+    *,
+    harmonic: bool = False,
+    guess: PeriodicOrbit | None = None,
 ) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given energy; frequency and amplitude are found.
 
@@ -86,10 +118,14 @@ def breather_at_energy(
     """
     (seed,), target = seed_modes((seed,), chain.N), _positive(energy)
     if not isinstance(harmonic, bool):
-        raise InputError("harmonic", harmonic, "True or False", "say whether energy means sum E_q at t = 0")
+        raise InputError(
+            "harmonic", harmonic, "True or False", "say whether energy means sum E_q at t = 0"
+        )
     if guess is not None:
         member = _member(guess, chain, seed)
-        return orbit_near(chain, seed, member.cosines, member.sigma, Level(chain, float(target), harmonic), REACH)
+        return orbit_near(
+            chain, seed, member.cosines, member.sigma, Level(chain, float(target), harmonic), REACH
+        )
     members: list[tuple[float, PeriodicOrbit]] = []
     aim, growth, iterations = float(target), LARGEST_GROWTH, 0
     while True:
@@ -104,7 +140,9 @@ def breather_at_energy(
                 growth = growth**0.5
                 aim = min(float(target), members[-1][0] * growth)
                 continue
-            raise NoBreatherAtEnergy(seed, float(target), harmonic, members[-1][1] if members else None, failure) from failure
+            raise NoBreatherAtEnergy(
+                seed, float(target), harmonic, members[-1][1] if members else None, failure
+            ) from failure
         iterations += orbit.iterations
         if aim == float(target):
             return replace(orbit, iterations=iterations)
@@ -123,25 +161,52 @@ def _positive(energy: Number) -> Fraction:
 def _member(guess: object, chain: Chain, seed: int) -> PeriodicOrbit:
     if isinstance(guess, PeriodicOrbit) and (guess.chain, guess.seed) == (chain, seed):
         return guess
-    raise InputError("guess", type(guess).__name__, f"a PeriodicOrbit of seed {seed} of the same chain", "take a member nearby, or None")
+    raise InputError(
+        "guess",
+        type(guess).__name__,
+        f"a PeriodicOrbit of seed {seed} of the same chain",
+        "take a member nearby, or None",
+    )
 
 
-def _next(chain: Chain, seed: int, energy: float, harmonic: bool, members: list[tuple[float, PeriodicOrbit]]) -> PeriodicOrbit:
+def _next(
+    chain: Chain,
+    seed: int,
+    energy: float,
+    harmonic: bool,
+    members: list[tuple[float, PeriodicOrbit]],
+) -> PeriodicOrbit:
     """The member at an energy near those of the last two, or near the linear mode."""
     if not members:
         linear = float(chain.frequencies()[seed - 1])
         cosines = np.zeros((2, chain.N - 1))
         cosines[1, seed - 1] = (2 * energy) ** 0.5 / linear
         shift = frequency_shift(chain, {seed: float(cosines[1, seed - 1])})[seed]
-        return orbit_near(chain, seed, cosines, shift * (2 * linear + shift), Level(chain, energy, harmonic), REACH)
+        return orbit_near(
+            chain,
+            seed,
+            cosines,
+            shift * (2 * linear + shift),
+            Level(chain, energy, harmonic),
+            REACH,
+        )
     last, member = members[-1]
     ratio = energy / last
     if len(members) == 1:
-        return orbit_near(chain, seed, member.cosines * ratio**0.5, member.sigma * ratio, Level(chain, energy, harmonic), REACH)
+        return orbit_near(
+            chain,
+            seed,
+            member.cosines * ratio**0.5,
+            member.sigma * ratio,
+            Level(chain, energy, harmonic),
+            REACH,
+        )
     first, before = members[0]
     weight = (energy**0.5 - last**0.5) / (last**0.5 - first**0.5)
     old = np.zeros((max(len(before.cosines), len(member.cosines)), chain.N - 1))
     new = old.copy()
     old[: len(before.cosines)], new[: len(member.cosines)] = before.cosines, member.cosines
     sigma = member.sigma + (energy - last) / (last - first) * (member.sigma - before.sigma)
-    return orbit_near(chain, seed, new + weight * (new - old), sigma, Level(chain, energy, harmonic), REACH)
+    return orbit_near(
+        chain, seed, new + weight * (new - old), sigma, Level(chain, energy, harmonic), REACH
+    )

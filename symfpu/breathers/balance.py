@@ -1,8 +1,9 @@
 """Exact q-breathers: time-periodic orbits by harmonic balance and Newton's method, in doubles.
 
-Q_q(t) = sum_n c[n, q-1] cos(n omega t) solves Q'' = chain.accelerations(Q). The unknowns are c and sigma = omega^2 - Omega^2 of
-the seed, so that a small shift loses no digits; one of them, sigma or A = c[1, seed-1], is given. Reflection of the chain with a
-change of sign is half a period of the family: only c with q - n seed even (and n odd if alpha = 0) are unknowns.
+Q_q(t) = sum_n c[n, q-1] cos(n omega t) solves Q'' = chain.accelerations(Q). The unknowns are c
+and sigma = omega^2 - Omega^2 of the seed, so that a small shift loses no digits; one of them,
+sigma or A = c[1, seed-1], is given. Reflection of the chain with a change of sign is half a
+period of the family: only c with q - n seed even (and n odd if alpha = 0) are unknowns.
 """
 
 from __future__ import annotations
@@ -23,13 +24,17 @@ from symfpu.errors import InputError, NoRealAmplitude, SymfpuError, Undetermined
 from symfpu.numbers.typed import Number, decimal, exact, seed_modes
 
 Floats = NDArray[np.float64]
-Condition = Callable[[Floats], tuple[float, Floats]]  # of z: what has to vanish, relative to what it is made of, and its derivatives
+# of z: what has to vanish, relative to what it is made of, and its derivatives
+Condition = Callable[[Floats], tuple[float, Floats]]
 LARGEST_SYSTEM = 8192  # unknowns; a matrix of 512 MB
 TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonics may reach
-STEP, ROUNDING_STEP = 1e-14, 1e-9  # relative Newton step that ends the iteration, at once or when it no longer shrinks
+# relative Newton step that ends the iteration, at once or when it no longer shrinks
+STEP, ROUNDING_STEP = 1e-14, 1e-9
 ITERATIONS = 25
 GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or down
-REACH = 0.3  # change of a coefficient from one guess to its orbit, relative to the largest, that stays on the family
+# change of a coefficient from one guess to its orbit, relative to the largest, that stays on the
+# family
+REACH = 0.3
 SMALLEST_PART = 1 / 64  # of the way from rest, in one step
 
 
@@ -41,7 +46,11 @@ class NoPeriodicOrbit(SymfpuError):
     """
 
     def __init__(self, balance: Balance, reason: str, z: Floats) -> None:
-        self.seed, self.iterate, self.frequency = balance.seed, balance.cosines(z), balance.frequency(z)
+        self.seed, self.iterate, self.frequency = (
+            balance.seed,
+            balance.cosines(z),
+            balance.frequency(z),
+        )
         self.residual = residual(balance.chain, self.frequency, self.iterate)
         super().__init__(
             f"no periodic orbit of seed {self.seed}: {reason}; the best iterate, omega = {self.frequency:.12g} and A = "
@@ -106,23 +115,31 @@ class PeriodicOrbit:
 
     def momenta(self, t: ArrayLike) -> Floats:
         """Mode momenta P_q(t) = dQ_q/dt; shape of t with an axis N-1 at the end."""
-        return np.asarray(np.sin(np.multiply.outer(t, self._rates)) @ (-self._rates[:, None] * self.cosines))
+        return np.asarray(
+            np.sin(np.multiply.outer(t, self._rates)) @ (-self._rates[:, None] * self.cosines)
+        )
 
     def average_spectrum(self) -> Floats:
         """Averages of the harmonic energies E_q over a period, in closed form; shape (N-1,)."""
         squares = self.cosines**2 / np.where(self._rates > 0, 2, 1)[:, None]
-        return np.asarray((self._rates**2 @ squares + self.chain.frequencies() ** 2 * squares.sum(axis=0)) / 2)
+        return np.asarray(
+            (self._rates**2 @ squares + self.chain.frequencies() ** 2 * squares.sum(axis=0)) / 2
+        )
 
 
 def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Harmonics n and places q - 1 of the coefficients that the symmetry allows, in the order of the vectors z."""
+    """Harmonics n and places q - 1 of the coefficients that the symmetry allows, in the order of
+    the vectors z.
+    """
     n, q = np.indices((harmonics + 1, chain.N - 1))
     places = np.nonzero(((q + 1 - n * seed) % 2 == 0) & ((n % 2 == 1) | (chain.alpha != 0)))
     return places[0], places[1]
 
 
 class Balance:
-    """The equations n^2 omega^2 c + force = 0 up to a number of harmonics, for vectors z = (the c that are unknowns, sigma)."""
+    """The equations n^2 omega^2 c + force = 0 up to a number of harmonics, for vectors z = (the c
+    that are unknowns, sigma).
+    """
 
     def __init__(self, chain: Chain, seed: int, harmonics: int) -> None:
         self.chain, self.seed, self.harmonics = chain, seed, harmonics
@@ -130,7 +147,8 @@ class Balance:
         linear = chain.frequencies()
         self.detuning = self.n**2 * linear[seed - 1] ** 2 - linear[self.q] ** 2
         self.first = int(np.flatnonzero((self.n == 1) & (self.q == seed - 1))[0])
-        self.stretch = chain.stretches(np.eye(chain.N - 1))  # of every bond by a unit of each mode
+        # of every bond by a unit of each mode
+        self.stretch = chain.stretches(np.eye(chain.N - 1))
         points = 2 * harmonics + 1  # enough for cubic products
         ends = np.where(np.arange(points + 1) % points == 0, 0.5, 1.0)
         self.table = np.cos(np.pi / points * np.outer(np.arange(points + 1), np.arange(points + 1)))
@@ -160,11 +178,17 @@ class Balance:
         slope[1:] /= 2  # coefficients of exp(i k theta), k of both signs
         stiffness = np.einsum("kj,pj,qj->kpq", slope, self.stretch, self.stretch, optimize=True)
         n, q = self.n[:, None], self.q[:, None]
-        J = -stiffness[abs(n - self.n), q, self.q] - np.where(n > 0, stiffness[n + self.n, q, self.q], 0.0) + np.diag(diagonal)
+        J = (
+            -stiffness[abs(n - self.n), q, self.q]
+            - np.where(n > 0, stiffness[n + self.n, q, self.q], 0.0)
+            + np.diag(diagonal)
+        )
         return diagonal * z[:-1] + force[self.n, self.q], np.column_stack([J, self.n**2 * z[:-1]])
 
     def newton(self, z: Floats, given: int | Condition) -> tuple[Floats, int]:
-        """The solution with the same z[given], or that meets a condition, and the number of steps; raises NoPeriodicOrbit."""
+        """The solution with the same z[given], or that meets a condition, and the number of
+        steps; raises NoPeriodicOrbit.
+        """
         free = np.arange(len(z)) if callable(given) else np.delete(np.arange(len(z)), given)
         best, least, before, size = z, np.inf, np.inf, float(np.max(np.abs(z[:-1])))
         for iteration in range(1, ITERATIONS + 1):
@@ -178,12 +202,16 @@ class Balance:
             try:
                 step = np.linalg.solve(jacobian[:, free], equations)
             except np.linalg.LinAlgError:
-                raise NoPeriodicOrbit(self, "the matrix of Newton's method is singular", best) from None
+                raise NoPeriodicOrbit(
+                    self, "the matrix of Newton's method is singular", best
+                ) from None
             z = z.copy()
             z[free] -= step
             reached = float(np.max(np.abs(z[:-1])))
             if not size / GROWTH < reached < size * GROWTH:
-                raise NoPeriodicOrbit(self, f"the largest coefficient goes from {size:.3g} to {reached:.3g}", best)
+                raise NoPeriodicOrbit(
+                    self, f"the largest coefficient goes from {size:.3g} to {reached:.3g}", best
+                )
             relative = float(np.max(np.abs(step[free < len(z) - 1]))) / reached
             if relative <= STEP or (relative < ROUNDING_STEP and relative > before / 2):
                 return z, iteration
@@ -202,7 +230,9 @@ def held_amplitude(balance: Balance) -> int:
 
 
 def residual(chain: Chain, omega: float, cosines: Floats) -> float:
-    """Largest |Q'' - force| at times between the collocation points, relative to the largest acceleration."""
+    """Largest |Q'' - force| at times between the collocation points, relative to the largest
+    acceleration.
+    """
     n, points = np.arange(len(cosines)), 6 * len(cosines)
     table = np.cos(np.outer(np.pi / points * (np.arange(points) + 1 / 3), n))
     force = chain.accelerations(table @ cosines)
@@ -210,7 +240,9 @@ def residual(chain: Chain, omega: float, cosines: Floats) -> float:
     return float(np.max(np.abs(table @ ((n[:, None] * omega) ** 2 * cosines) + force))) / largest
 
 
-def periodic_orbit(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = None) -> PeriodicOrbit:
+def periodic_orbit(
+    chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = None
+) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given frequency.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
@@ -239,19 +271,27 @@ def positive_frequency(frequency: Number) -> Fraction:
     """The exact number that a frequency denotes; raises InputError."""
     omega = exact(frequency, "frequency")
     if omega <= 0:
-        raise InputError("frequency", frequency, "a positive number", "take one near the linear frequency")
+        raise InputError(
+            "frequency", frequency, "a positive number", "take one near the linear frequency"
+        )
     return omega
 
 
 def detuning(chain: Chain, seed: int, omega: Fraction) -> tuple[float, float]:
     """omega - Omega_seed and sigma = omega^2 - Omega_seed^2, without loss of digits."""
     with mpmath.workdps(50):
-        linear, target = chain.linear_frequency(seed), mpmath.mpf(omega.numerator) / omega.denominator
+        linear, target = (
+            chain.linear_frequency(seed),
+            mpmath.mpf(omega.numerator) / omega.denominator,
+        )
         return float(target - linear), float((target - linear) * (target + linear))
 
 
 def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
-    """A > 0 whose lowest frequency correction is omega - Omega = shift; raises NoRealAmplitude or UndeterminedAmplitudes."""
+    """A > 0 whose lowest frequency correction is omega - Omega = shift.
+
+    Raises NoRealAmplitude or UndeterminedAmplitudes.
+    """
     coefficient, order = frequency_shift(chain, {seed: 1.0})[seed], 2 // chain.degree_step
     if coefficient == 0:
         raise UndeterminedAmplitudes((seed,), order)
@@ -260,7 +300,9 @@ def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
     return float((shift / coefficient) ** 0.5)
 
 
-def breather_at_amplitude(chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | None = None) -> PeriodicOrbit:
+def breather_at_amplitude(
+    chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | None = None
+) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given amplitude; its frequency is found.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
@@ -294,47 +336,98 @@ def _cosines(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
     except (TypeError, ValueError) as error:
         raise InputError("guess", guess, f"an array of shape {shape}", "pass numbers") from error
     if cosines.ndim != 2 or len(cosines) < 2 or cosines.shape[1] != chain.N - 1:
-        raise InputError("guess", cosines.shape, f"the shape {shape}, H from 1 up", "put the harmonics first, the modes last")
+        raise InputError(
+            "guess",
+            cosines.shape,
+            f"the shape {shape}, H from 1 up",
+            "put the harmonics first, the modes last",
+        )
     if not np.isfinite(cosines).all() or cosines[1, seed - 1] == 0:
-        raise InputError("guess", cosines[1, seed - 1], f"finite numbers, A = guess[1, {seed - 1}] not 0", "give the seed an amplitude")
+        raise InputError(
+            "guess",
+            cosines[1, seed - 1],
+            f"finite numbers, A = guess[1, {seed - 1}] not 0",
+            "give the seed an amplitude",
+        )
     return cosines
 
 
 @np.errstate(over="ignore", invalid="ignore")  # iterates that run away are refused by their size
 def orbit_near(
-    chain: Chain, seed: int, cosines: Floats, sigma: float, given: Callable[[Balance], int | Condition], reach: float = GROWTH
+    chain: Chain,
+    seed: int,
+    cosines: Floats,
+    sigma: float,
+    given: Callable[[Balance], int | Condition],
+    reach: float = GROWTH,
 ) -> PeriodicOrbit:
-    """The orbit near cosines and sigma, with as many harmonics as it needs, none of them changed by more than reach.
+    """The orbit near cosines and sigma, with as many harmonics as it needs, none of them changed by
+    more than reach.
 
-    given : of a balance, the place of what keeps its value, or the condition to meet. reach : relative to the largest coefficient.
-    Raises NoPeriodicOrbit.
+    given : of a balance, the place of what keeps its value, or the condition to meet. reach :
+    relative to the largest coefficient. Raises NoPeriodicOrbit.
     """
     guess, harmonics, iterations = cosines, max(8, len(cosines) - 1), 0
     if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
-        raise InputError("N, harmonics", (chain.N, harmonics), f"at most {2 * LARGEST_SYSTEM} as their product", "cut the guess")
+        raise InputError(
+            "N, harmonics",
+            (chain.N, harmonics),
+            f"at most {2 * LARGEST_SYSTEM} as their product",
+            "cut the guess",
+        )
     while True:
         balance = Balance(chain, seed, harmonics)
         z, steps = balance.newton(balance.vector(cosines, sigma), given(balance))
         cosines, sigma, iterations = balance.cosines(z), float(z[-1]), iterations + steps
         if balance.frequency(z) <= 0:
-            raise NoPeriodicOrbit(balance, f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2", z)
+            raise NoPeriodicOrbit(
+                balance,
+                f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2",
+                z,
+            )
         heights = np.max(np.abs(cosines), axis=1) / np.max(np.abs(cosines))
         if np.max(heights[-max(2, harmonics // 8) :]) <= TAIL:
             break
         harmonics *= 2
         if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
-            raise NoPeriodicOrbit(balance, f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g} of the largest", z)
-    change = float(np.max(np.abs(z - balance.vector(guess, sigma)))) / float(np.max(np.abs(cosines)))
+            raise NoPeriodicOrbit(
+                balance,
+                f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g} of the largest",
+                z,
+            )
+    change = float(np.max(np.abs(z - balance.vector(guess, sigma)))) / float(
+        np.max(np.abs(cosines))
+    )
     if change > reach or abs(cosines[1, seed - 1]) < np.max(np.abs(cosines)) / GROWTH:
-        raise NoPeriodicOrbit(balance, f"the orbit found is another one: a change by {change:.3g} of the largest coefficient", z)
-    cosines, omega = cosines[: int(np.flatnonzero(heights > TAIL / 100)[-1]) + 1], balance.frequency(z)
-    return PeriodicOrbit(chain, seed, exact(omega, "frequency"), cosines, residual(chain, omega, cosines), iterations, sigma)
+        raise NoPeriodicOrbit(
+            balance,
+            f"the orbit found is another one: a change by {change:.3g} of the largest coefficient",
+            z,
+        )
+    cosines, omega = (
+        cosines[: int(np.flatnonzero(heights > TAIL / 100)[-1]) + 1],
+        balance.frequency(z),
+    )
+    return PeriodicOrbit(
+        chain,
+        seed,
+        exact(omega, "frequency"),
+        cosines,
+        residual(chain, omega, cosines),
+        iterations,
+        sigma,
+    )
 
 
-def _walk(chain: Chain, seed: int, amplitude: float, sigma: float, *, by_amplitude: bool) -> PeriodicOrbit:
-    """The member at the end of the way from rest, on which A grows about with the part gone and sigma with its square."""
+def _walk(
+    chain: Chain, seed: int, amplitude: float, sigma: float, *, by_amplitude: bool
+) -> PeriodicOrbit:
+    """The member at the end of the way from rest, on which A grows about with the part gone and
+    sigma with its square.
+    """
     gone, step, iterations = 0.0, 1.0, 0
-    scale, cosines = 1.0, np.zeros((2, chain.N - 1))  # the guess is cosines, a member or the linear mode, scaled to the next part
+    # the guess is cosines, a member or the linear mode, scaled to the next part
+    scale, cosines = 1.0, np.zeros((2, chain.N - 1))
     cosines[1, seed - 1] = amplitude
     given = held_amplitude if by_amplitude else held_frequency
     while True:

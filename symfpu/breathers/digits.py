@@ -1,8 +1,10 @@
-"""Periodic orbits to any number of digits: harmonic balance in fixed point, corrected through a factored matrix of doubles.
+"""Periodic orbits to any number of digits: harmonic balance in fixed point, corrected through a
+factored matrix of doubles.
 
-One sweep takes the residual in fixed point, solves Newton's equations for it in doubles with the matrix at the orbit in doubles, and
-gains about as many digits as that orbit has. Harmonics beyond a block of the matrix have a diagonal n^2 omega^2 - Omega^2 far above
-the rest of their rows and are divided by it; then a sweep gains fewer digits.
+One sweep takes the residual in fixed point, solves Newton's equations for it in doubles with the
+matrix at the orbit in doubles, and gains about as many digits as that orbit has. Harmonics beyond
+a block of the matrix have a diagonal n^2 omega^2 - Omega^2 far above the rest of their rows and
+are divided by it; then a sweep gains fewer digits.
 """
 
 from __future__ import annotations
@@ -16,7 +18,14 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import Balance, NoPeriodicOrbit, PeriodicOrbit, breather_at_amplitude, periodic_orbit, unknowns
+from symfpu.breathers.balance import (
+    Balance,
+    NoPeriodicOrbit,
+    PeriodicOrbit,
+    breather_at_amplitude,
+    periodic_orbit,
+    unknowns,
+)
 from symfpu.breathers.fixed_force import FixedForce, Integers
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers
@@ -30,7 +39,8 @@ MOST_DIGITS = 1000
 MOST_HARMONICS = 4096
 SWEEPS = 400
 STALLED = 4  # sweeps without a smaller residual that end the search
-ROUNDING_BITS = 24  # of a residual in units of the last place that is rounding, before the last correction
+# of a residual in units of the last place that is rounding, before the last correction
+ROUNDING_BITS = 24
 CHECK_BITS = 64  # more than those of the orbit, in the check of its residual
 DOUBLE_BITS = 1000  # of an integer that goes into a double
 
@@ -87,7 +97,11 @@ class PreciseOrbit(FourierTorus):
 
 
 def periodic_orbit_digits(
-    orbit: PeriodicOrbit, digits: int, *, frequency: Number | None = None, amplitude: Number | None = None
+    orbit: PeriodicOrbit,
+    digits: int,
+    *,
+    frequency: Number | None = None,
+    amplitude: Number | None = None,
 ) -> PreciseOrbit:
     """A periodic orbit refined to so many digits of its largest coefficient.
 
@@ -106,14 +120,24 @@ def periodic_orbit_digits(
     0.0512121591740189630941015617011
     """
     if not isinstance(orbit, PeriodicOrbit):
-        raise InputError("orbit", type(orbit).__name__, "a PeriodicOrbit", "take one from periodic_orbit or breather_at_amplitude")
+        raise InputError(
+            "orbit",
+            type(orbit).__name__,
+            "a PeriodicOrbit",
+            "take one from periodic_orbit or breather_at_amplitude",
+        )
     if integer(digits, "digits", 1) > MOST_DIGITS:
         raise InputError("digits", digits, f"1..{MOST_DIGITS}", "take fewer")
     if frequency is not None and amplitude is not None:
-        raise InputError("frequency, amplitude", (frequency, amplitude), "one of them", "leave the other out")
+        raise InputError(
+            "frequency, amplitude", (frequency, amplitude), "one of them", "leave the other out"
+        )
     held = None
     if amplitude is not None:
-        held, orbit = exact(amplitude, "amplitude"), breather_at_amplitude(orbit.chain, orbit.seed, amplitude, orbit.cosines)
+        held, orbit = (
+            exact(amplitude, "amplitude"),
+            breather_at_amplitude(orbit.chain, orbit.seed, amplitude, orbit.cosines),
+        )
     elif frequency is not None:
         orbit = periodic_orbit(orbit.chain, orbit.seed, frequency, orbit.cosines)
     with mpmath.workdps(digits + 2 * GUARD_DIGITS):
@@ -128,7 +152,12 @@ def _refine(orbit: PeriodicOrbit, digits: int, amplitude: Fraction | None) -> Pr
     harmonics = max(8, last, math.ceil(1.1 * (digits + GUARD_DIGITS) / decades) + 2)
     while True:
         if harmonics > MOST_HARMONICS:
-            raise InputError("digits", digits, f"what {MOST_HARMONICS} harmonics can give", "take fewer digits or a smaller amplitude")
+            raise InputError(
+                "digits",
+                digits,
+                f"what {MOST_HARMONICS} harmonics can give",
+                "take fewer digits or a smaller amplitude",
+            )
         sweeps = Sweeps(orbit, harmonics, amplitude)
         number = sweeps.converge()
         if sweeps.tail() <= sweeps.size >> math.floor((digits + GUARD_DIGITS / 2) * math.log2(10)):
@@ -137,7 +166,10 @@ def _refine(orbit: PeriodicOrbit, digits: int, amplitude: Fraction | None) -> Pr
 
 
 class Sweeps:
-    """An orbit in fixed point, c and omega^2, and the factored matrix that corrects it; made at the working precision of mpmath."""
+    """An orbit in fixed point, c and omega^2, and the factored matrix that corrects it.
+
+    Made at the working precision of mpmath.
+    """
 
     def __init__(self, orbit: PeriodicOrbit, harmonics: int, amplitude: Fraction | None) -> None:
         self.orbit, self.chain, self.by_amplitude = orbit, orbit.chain, amplitude is not None
@@ -145,27 +177,38 @@ class Sweeps:
         self.force = FixedForce(self.chain, int(mpmath.mp.prec) - math.frexp(largest)[1])
         self.size = self.force.fixed(mpmath.mpf(largest))
         self.c: Integers = np.zeros((harmonics + 1, self.chain.N - 1), dtype=object)
-        self.c[: len(orbit.cosines)] = np.frompyfunc(lambda x: self.force.fixed(mpmath.mpf(x)), 1, 1)(orbit.cosines)
+        self.c[: len(orbit.cosines)] = np.frompyfunc(
+            lambda x: self.force.fixed(mpmath.mpf(x)), 1, 1
+        )(orbit.cosines)
         if amplitude is None:
             self.squared = self.force.fixed(orbit.frequency**2)
         else:
-            self.squared = int(self.force.squares[orbit.seed - 1]) + self.force.fixed(mpmath.mpf(orbit.sigma))
+            self.squared = int(self.force.squares[orbit.seed - 1]) + self.force.fixed(
+                mpmath.mpf(orbit.sigma)
+            )
             self.c[1, orbit.seed - 1] = self.force.fixed(amplitude)
         self.n, self.q = unknowns(self.chain, orbit.seed, harmonics)
         self._factor()
 
     def _factor(self) -> None:
-        """The matrix of the low harmonics at the orbit in doubles, and the diagonal of the high ones."""
+        """The matrix of the low harmonics at the orbit in doubles, and the diagonal of the high
+        ones.
+        """
         from scipy.linalg import lu_factor
 
         orbit, harmonics = self.orbit, len(self.c) - 1
-        block = min(harmonics, max(len(orbit.cosines) - 1, LARGEST_BLOCK * harmonics // len(self.n)))
+        block = min(
+            harmonics, max(len(orbit.cosines) - 1, LARGEST_BLOCK * harmonics // len(self.n))
+        )
         self.balance = Balance(self.chain, orbit.seed, block)
         self.z = self.balance.vector(orbit.cosines, orbit.sigma)
-        self.free = np.delete(np.arange(len(self.z)), self.balance.first if self.by_amplitude else len(self.z) - 1)
+        self.free = np.delete(
+            np.arange(len(self.z)), self.balance.first if self.by_amplitude else len(self.z) - 1
+        )
         self.matrix = lu_factor(self.balance.system(self.z)[1][:, self.free])
         diagonal = self.n**2 * float(orbit.frequency) ** 2 - self.chain.frequencies()[self.q] ** 2
-        self.diagonal = diagonal[len(self.balance.n) :]  # unknowns go by harmonic: those of the block come first
+        # unknowns go by harmonic: those of the block come first
+        self.diagonal = diagonal[len(self.balance.n) :]
 
     def converge(self) -> int:
         """Sweep until the residual is rounding; the number of sweeps. Raises NoPeriodicOrbit."""
@@ -180,14 +223,21 @@ class Sweeps:
             if stalled >= STALLED:
                 break
         digits = (self.size.bit_length() - least) * math.log10(2)
-        raise NoPeriodicOrbit(self.balance, f"the sweeps in fixed point stop at a residual of 1e-{digits:.0f}", self.z)
+        raise NoPeriodicOrbit(
+            self.balance, f"the sweeps in fixed point stop at a residual of 1e-{digits:.0f}", self.z
+        )
 
     def _correct(self, values: Integers, bits: int) -> None:
         from scipy.linalg import lu_solve
 
         exponent = max(bits - DOUBLE_BITS, 0)
-        scaled = np.array([math.ldexp(float(x >> exponent), -min(bits, DOUBLE_BITS)) for x in values])
-        low, changes = lu_solve(self.matrix, scaled[: len(self.balance.n)]), np.zeros(len(scaled) + 1)
+        scaled = np.array(
+            [math.ldexp(float(x >> exponent), -min(bits, DOUBLE_BITS)) for x in values]
+        )
+        low, changes = (
+            lu_solve(self.matrix, scaled[: len(self.balance.n)]),
+            np.zeros(len(scaled) + 1),
+        )
         high = scaled[len(self.balance.n) :] / self.diagonal
         changes[self.free] = low  # the place of sigma is the end of the block for now
         sigma = changes[len(self.balance.n)]
@@ -206,15 +256,27 @@ class Sweeps:
         if self.by_amplitude:
             omega = _fraction(mpmath.sqrt(mpmath.ldexp(self.squared, -bits)))
         c = self.c[: max(n for n, row in enumerate(self.c) if any(row)) + 1]
-        cosines, harmonics = from_integers(c, np.full(c.shape[1], -bits)), np.arange(len(c))[:, None]
+        cosines, harmonics = (
+            from_integers(c, np.full(c.shape[1], -bits)),
+            np.arange(len(c))[:, None],
+        )
         return PreciseOrbit(
-            self.chain, (seed,), (omega,), harmonics, cosines, {seed: 0}, digits, bound=self._bound(c, omega), sweeps=sweeps
+            self.chain,
+            (seed,),
+            (omega,),
+            harmonics,
+            cosines,
+            {seed: 0},
+            digits,
+            bound=self._bound(c, omega),
+            sweeps=sweeps,
         )
 
     def _bound(self, c: Integers, omega: Fraction) -> Any:
         finer = FixedForce(self.chain, self.force.bits + CHECK_BITS)
         equations = finer.equations(c << CHECK_BITS, finer.fixed(omega**2), 3 * len(c))
-        total = max(np.abs(equations).sum(axis=0)) + (1 << CHECK_BITS)  # one last place of the orbit for all roundings
+        # one last place of the orbit for all roundings
+        total = max(np.abs(equations).sum(axis=0)) + (1 << CHECK_BITS)
         t = np.linspace(0, np.pi / float(omega), 4 * len(self.orbit.cosines))
         largest = float(np.max(np.abs(self.chain.accelerations(self.orbit.positions(t)))))
         return mpmath.ldexp(total, -finer.bits) / largest
@@ -225,7 +287,9 @@ def _integers(values: Floats, exponent: int) -> Integers:
     mantissas, exponents = np.frexp(values)
     shifts = exponents.astype(object) + (exponent - 53)
     whole = np.ldexp(mantissas, 53).astype(np.int64).astype(object)
-    return np.array([m << s if s >= 0 else m >> -s for m, s in zip(whole, shifts, strict=True)], dtype=object)
+    return np.array(
+        [m << s if s >= 0 else m >> -s for m, s in zip(whole, shifts, strict=True)], dtype=object
+    )
 
 
 def _fraction(value: Any) -> Fraction:

@@ -1,7 +1,8 @@
 """Forces of cosine series in fixed point: integer polynomials multiplied exactly by FLINT.
 
-A series sum_n c_n cos(n theta), times two, is the palindromic Laurent polynomial sum_n d_|n| z^n with d_0 = 2 c_0, d_n = c_n.
-Every number is an integer times 2^-bits; a product is rounded down once.
+A series sum_n c_n cos(n theta), times two, is the palindromic Laurent polynomial sum_n d_|n| z^n
+with d_0 = 2 c_0, d_n = c_n. Every number is an integer times 2^-bits; a product is rounded down
+once.
 """
 
 from __future__ import annotations
@@ -31,8 +32,13 @@ class FixedForce:
             N, root = chain.N, mpmath.sqrt(mpmath.mpf(2) / chain.N)
             linear = [chain.linear_frequency(q) for q in range(1, N)]
             cosines = [root * mpmath.cospi(mpmath.mpf(k) / (2 * N)) for k in range(4 * N)]
-            rows = [[self.fixed(Omega * cosines[q * (2 * j + 1) % (4 * N)]) for j in range(N)] for q, Omega in enumerate(linear, 1)]
-            self.squares: Integers = np.array([self.fixed(Omega**2) for Omega in linear], dtype=object)
+            rows = [
+                [self.fixed(Omega * cosines[q * (2 * j + 1) % (4 * N)]) for j in range(N)]
+                for q, Omega in enumerate(linear, 1)
+            ]
+            self.squares: Integers = np.array(
+                [self.fixed(Omega**2) for Omega in linear], dtype=object
+            )
         self.stretch = flint.fmpz_mat(rows)  # of every bond by a unit of each mode
         self.modes = self.stretch.transpose()
 
@@ -43,7 +49,10 @@ class FixedForce:
         return int(mpmath.nint(mpmath.ldexp(value, self.bits)))
 
     def equations(self, c: Integers, squared: int, harmonics: int) -> Integers:
-        """n^2 omega^2 c + force for all modes, shape (H+1, N-1) to (harmonics+1, N-1); squared is omega^2."""
+        """n^2 omega^2 c + force for all modes, shape (H+1, N-1) to (harmonics+1, N-1).
+
+        Squared is omega^2.
+        """
         total = self._nonlinear(c, harmonics)
         n = np.arange(len(c)).astype(object)[:, None]
         total[: len(c)] += ((n**2 * squared - self.squares) * c) >> self.bits
@@ -58,7 +67,10 @@ class FixedForce:
         return np.negative(self._product(tension, self.modes))
 
     def _tension(self, r: Sequence[int], harmonics: int) -> list[int]:
-        """Cosine coefficients of c_3 r^2 + c_4 r^3 + ... of one bond: d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0."""
+        """Cosine coefficients of c_3 r^2 + c_4 r^3 + ...
+
+        Of one bond: d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0.
+        """
         degree, total = len(r) - 1, np.zeros(harmonics + 1, dtype=object)
         twice = flint.fmpz_poly([*r[:0:-1], 2 * r[0], *r[1:]])
         power = twice
@@ -66,7 +78,9 @@ class FixedForce:
             power = self._lowered(power * twice)
             if coupling:
                 part = power.coeffs()[k * degree : k * degree + harmonics + 1]
-                total[: len(part)] += [int(x) * 2 * coupling.numerator // (2**k * coupling.denominator) for x in part]
+                total[: len(part)] += [
+                    int(x) * 2 * coupling.numerator // (2**k * coupling.denominator) for x in part
+                ]
         total[0] //= 2
         return list(total)
 

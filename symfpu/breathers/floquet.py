@@ -1,9 +1,11 @@
 """Floquet multipliers of a q-breather: its tangent map over a period, and the stability that they decide.
 
-The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives M = R H^-1 R H with the symplectic
-inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with a = 1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in
-pairs with lambda + 1/lambda = 2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M, is a simple kappa = 0 whose
-left eigenvector is the acceleration at t = 0, B f = 0. So every pair is exactly reciprocal, and the double 1 costs no digits.
+The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives M = R
+H^-1 R H with the symplectic inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with a =
+1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in pairs with lambda + 1/lambda =
+2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M, is a simple kappa =
+0 whose left eigenvector is the acceleration at t = 0, B f = 0. So every pair is exactly
+reciprocal, and the double 1 costs no digits.
 """
 
 from __future__ import annotations
@@ -22,7 +24,8 @@ from symfpu.numbers.typed import decimal
 
 Floats = NDArray[np.float64]
 ACCURACY = 1e-12  # of the tangent map, relative to its largest entry
-FIRST_STEP = 0.1  # over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
+# over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
+FIRST_STEP = 0.1
 DOUBLINGS = 5
 SAFETY = 8  # times the error that a kappa may have: what it may be off the circle
 TRIVIAL, ELLIPTIC = "trivial", "on the circle"
@@ -62,7 +65,11 @@ class Floquet:
     trivial_error: float
 
     def __repr__(self) -> str:
-        verdict = "stable" if self.stable else "unstable: " + ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
+        verdict = (
+            "stable"
+            if self.stable
+            else "unstable: " + ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
+        )
         return (
             f"Floquet({repr(self.orbit.chain)[6:-1]}, seed {self.orbit.seed}, omega={decimal(self.orbit.frequency)}, {verdict}, "
             f"largest |multiplier| {self.largest:.12g}, symplecticity error {self.symplecticity:.1g})"
@@ -91,7 +98,10 @@ class Floquet:
 
 
 def monodromy(orbit: PeriodicOrbit) -> Floats:
-    """Tangent map over one period in mode coordinates and momenta, from t = 0; shape (2(N-1), 2(N-1)). Raises InputError."""
+    """Tangent map over one period in mode coordinates and momenta, from t = 0.
+
+    Shape (2(N-1), 2(N-1)). Raises InputError.
+    """
     return _whole(_half(_checked(orbit))[0])
 
 
@@ -116,12 +126,17 @@ def floquet(orbit: PeriodicOrbit) -> Floquet:
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]
     force = orbit.chain.accelerations(orbit.positions(0.0))
-    basis = np.linalg.svd(force[None, :])[2].T  # the acceleration, then an orthonormal basis of what is perpendicular to it
+    # the acceleration, then an orthonormal basis of what is perpendicular to it
+    basis = np.linalg.svd(force[None, :])[2].T
     flow, rest = basis[:, 0], basis[:, 1:]
     trivial = float(np.linalg.norm(C.T @ (B @ flow)))
     error = map_error * float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2)) + trivial
     kappa, left, right = eig(rest.T @ B.T @ C @ rest, left=True)
-    tolerance = SAFETY * error / np.maximum(np.abs(np.einsum("ij,ij->j", left.conj(), right)), np.finfo(float).tiny)
+    tolerance = (
+        SAFETY
+        * error
+        / np.maximum(np.abs(np.einsum("ij,ij->j", left.conj(), right)), np.finfo(float).tiny)
+    )
     kinds = [_kind(k, t) for k, t in zip(kappa, tolerance, strict=True)]
     pairs = np.array([_pair(k, kind) for k, kind in zip(kappa, kinds, strict=True)]).reshape(-1, 2)
     order = np.lexsort((np.angle(pairs[:, 0]), -np.abs(pairs[:, 0]).round(12)))
@@ -141,7 +156,12 @@ def floquet(orbit: PeriodicOrbit) -> Floquet:
 
 def _checked(orbit: PeriodicOrbit) -> PeriodicOrbit:
     if not isinstance(orbit, PeriodicOrbit):
-        raise InputError("orbit", type(orbit).__name__, "a PeriodicOrbit", "take one from periodic_orbit or breather_at_amplitude")
+        raise InputError(
+            "orbit",
+            type(orbit).__name__,
+            "a PeriodicOrbit",
+            "take one from periodic_orbit or breather_at_amplitude",
+        )
     return orbit
 
 
@@ -184,7 +204,10 @@ def _kind(kappa: complex, tolerance: float) -> str:
 
 
 def _pair(kappa: complex, kind: str) -> tuple[complex, complex]:
-    """(lambda, 1/lambda) with |lambda| >= 1 of lambda + 1/lambda = 2 + 4 kappa; on the circle exp(+-i angle)."""
+    """(lambda, 1/lambda) with |lambda| >= 1 of lambda + 1/lambda = 2 + 4 kappa.
+
+    On the circle exp(+-i angle).
+    """
     if kind == ELLIPTIC:
         angle = 2 * np.arcsin(np.sqrt(np.clip(-kappa.real, 0.0, 1.0)))
         return complex(np.cos(angle), np.sin(angle)), complex(np.cos(angle), -np.sin(angle))

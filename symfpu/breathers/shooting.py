@@ -14,14 +14,23 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.breathers.balance import GROWTH, ITERATIONS, ROUNDING_STEP, STEP, detuning, lowest_amplitude, positive_frequency
+from symfpu.breathers.balance import (
+    GROWTH,
+    ITERATIONS,
+    ROUNDING_STEP,
+    STEP,
+    detuning,
+    lowest_amplitude,
+    positive_frequency,
+)
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.kahan_li8 import ORDER, tangent_flow
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.typed import Number, decimal, seed_modes
 
 Floats = NDArray[np.float64]
-ACCURACY = 1e-15  # of the half period, relative to its largest number: a small omega - Omega magnifies errors
+# of the half period, relative to its largest number: a small omega - Omega magnifies errors
+ACCURACY = 1e-15
 FIRST_STEP = 0.1  # time of the coarser of the first two integrations
 DOUBLINGS = 5
 
@@ -114,38 +123,60 @@ def shoot(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = 
     else:
         start = _start(chain, seed, guess)
     modes = np.arange(1, chain.N)
-    allowed = (modes - seed) % 2 == 0 if chain.alpha == 0 or seed % 2 == 0 else np.full(len(modes), True)
+    allowed = (
+        (modes - seed) % 2 == 0 if chain.alpha == 0 or seed % 2 == 0 else np.full(len(modes), True)
+    )
     start = np.where(allowed, start, 0.0)
     half, rate = np.pi / float(omega), float(omega)
     steps = _steps(chain, seed, start, half)
     start, history = _newton(chain, seed, start, np.flatnonzero(allowed), half, steps)
     none = np.zeros((0, chain.N - 1))
     Q, P, *_ = tangent_flow(chain, start, 0 * start, none, none, 2 * half, 4 * steps)
-    residual = float(max(np.max(np.abs(Q - start)), np.max(np.abs(P)) / rate) / np.max(np.abs(start)))
+    residual = float(
+        max(np.max(np.abs(Q - start)), np.max(np.abs(P)) / rate) / np.max(np.abs(start))
+    )
     return ShotOrbit(chain, seed, omega, start, residual, history, steps)
 
 
-def _newton(chain: Chain, seed: int, start: Floats, free: NDArray[np.intp], half: float, steps: int) -> tuple[Floats, tuple[float, ...]]:
-    """The start at rest that is at rest after half a period, and the residuals on the way; raises ShootingFailed."""
+def _newton(
+    chain: Chain, seed: int, start: Floats, free: NDArray[np.intp], half: float, steps: int
+) -> tuple[Floats, tuple[float, ...]]:
+    """The start at rest that is at rest after half a period, and the residuals on the way.
+
+    Raises ShootingFailed.
+    """
     directions = np.eye(chain.N - 1)[free]
     size, before, history, best = float(np.max(np.abs(start))), np.inf, [], start
     for _ in range(ITERATIONS + 1):
-        _, P, _, slopes = tangent_flow(chain, start, 0 * start, directions, 0 * directions, half, steps)
+        _, P, _, slopes = tangent_flow(
+            chain, start, 0 * start, directions, 0 * directions, half, steps
+        )
         history.append(float(np.max(np.abs(P)) * half / (np.pi * np.max(np.abs(start)))))
         if not np.isfinite(history[-1]):
-            raise ShootingFailed(seed, "the motion runs away to infinity", best, tuple(history[:-1]))
+            raise ShootingFailed(
+                seed, "the motion runs away to infinity", best, tuple(history[:-1])
+            )
         best = start if history[-1] == min(history) else best
-        if before <= STEP or (before < ROUNDING_STEP and len(history) > 2 and history[-1] > history[-2] / 2):
+        if before <= STEP or (
+            before < ROUNDING_STEP and len(history) > 2 and history[-1] > history[-2] / 2
+        ):
             return best, tuple(history)
         try:
             step = np.linalg.solve(slopes[:, free].T, P[free])
         except np.linalg.LinAlgError:
-            raise ShootingFailed(seed, "the matrix of Newton's method is singular", best, tuple(history)) from None
+            raise ShootingFailed(
+                seed, "the matrix of Newton's method is singular", best, tuple(history)
+            ) from None
         start = start.copy()
         start[free] -= step
         reached = float(np.max(np.abs(start)))
         if not size / GROWTH < reached < size * GROWTH:
-            raise ShootingFailed(seed, f"the largest coordinate goes from {size:.3g} to {reached:.3g}", best, tuple(history))
+            raise ShootingFailed(
+                seed,
+                f"the largest coordinate goes from {size:.3g} to {reached:.3g}",
+                best,
+                tuple(history),
+            )
         before = float(np.max(np.abs(step))) / reached
     raise ShootingFailed(seed, f"no convergence in {ITERATIONS} steps", best, tuple(history))
 
@@ -154,11 +185,20 @@ def _start(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
     try:
         start = np.array(guess, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError("guess", guess, f"an array of shape ({chain.N - 1},)", "pass numbers") from error
+        raise InputError(
+            "guess", guess, f"an array of shape ({chain.N - 1},)", "pass numbers"
+        ) from error
     if start.shape != (chain.N - 1,):
-        raise InputError("guess", start.shape, f"the shape ({chain.N - 1},)", "pass the mode coordinates Q(0)")
+        raise InputError(
+            "guess", start.shape, f"the shape ({chain.N - 1},)", "pass the mode coordinates Q(0)"
+        )
     if not np.isfinite(start).all() or start[seed - 1] == 0:
-        raise InputError("guess", start[seed - 1], f"finite numbers, Q_{seed}(0) not 0", "give the seed an amplitude")
+        raise InputError(
+            "guess",
+            start[seed - 1],
+            f"finite numbers, Q_{seed}(0) not 0",
+            "give the seed an amplitude",
+        )
     return start
 
 

@@ -1,9 +1,11 @@
-"""A series and its torus, or a refined torus, in one file: a ZIP archive of bundle.json and of arrays that numpy.load reads.
+"""A series and its torus, or a refined torus, in one file: a ZIP archive of bundle.json and of
+arrays that numpy.load reads.
 
-Everything but the tables is in bundle.json: numbers that must come back exactly are strings, and a digest covers the whole.
-The tables are flat arrays, order after order and row after row: doubles, words of integers (symfpu.algebra.words), or places
-in the list of expressions. Their row counts follow from the number of seeds and the order (symfpu.algebra.grading).
-Loading executes nothing: it compares, splits and rebuilds, and checks every size before it allocates.
+Everything but the tables is in bundle.json: numbers that must come back exactly are strings, and
+a digest covers the whole. The tables are flat arrays, order after order and row after row:
+doubles, words of integers (symfpu.algebra.words), or places in the list of expressions. Their row
+counts follow from the number of seeds and the order (symfpu.algebra.grading). Loading executes
+nothing: it compares, splits and rebuilds, and checks every size before it allocates.
 """
 
 from __future__ import annotations
@@ -27,7 +29,16 @@ from symfpu.bundles.entries import number, number_entry
 from symfpu.bundles.refined import refined_entries, refined_from
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.files.archive import FORMAT, SCHEMA, Archive, BundleError, Json, digest_of, member_digest, write_archive
+from symfpu.files.archive import (
+    FORMAT,
+    SCHEMA,
+    Archive,
+    BundleError,
+    Json,
+    digest_of,
+    member_digest,
+    write_archive,
+)
 from symfpu.files.checkpoint import KINDS
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
@@ -41,7 +52,18 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus, RootCertificate
 
 Array = NDArray[Any]
-PACKAGES = ("symfpu", "numpy", "scipy", "mpmath", "symengine", "sympy", "python-flint", "gmpy2", "numba", "llvmlite")
+PACKAGES = (
+    "symfpu",
+    "numpy",
+    "scipy",
+    "mpmath",
+    "symengine",
+    "sympy",
+    "python-flint",
+    "gmpy2",
+    "numba",
+    "llvmlite",
+)
 RADII = "<f8"
 REFINED = "refined"  # kind of a torus without a series
 LONGEST_REASON = 160
@@ -49,7 +71,9 @@ LONG_RUN = 100  # periods of the slowest seed at which the last test vector is t
 
 
 class OrbitPoint(NamedTuple):
-    """A point of the torus for tests of other programs: t, and Q_1 .. Q_(N-1) and P_1 .. P_(N-1) at t, as decimals."""
+    """A point of the torus for tests of other programs: t, and Q_1 .. Q_(N-1) and P_1 .. P_(N-1)
+    at t, as decimals.
+    """
 
     t: str
     Q: tuple[str, ...]
@@ -82,7 +106,9 @@ class Bundle:
     def __repr__(self) -> str:
         torus = "no torus"
         if isinstance(self.torus, QTorus):
-            torus = f"QTorus of frequency order {self.torus.frequency_order}, order {self.torus.order}"
+            torus = (
+                f"QTorus of frequency order {self.torus.frequency_order}, order {self.torus.order}"
+            )
         verdict = "a verdict" if self.verdict is not None else "no verdict"
         saved = f"saved {self.provenance['created']} by symfpu {self.provenance['versions'].get('symfpu', 'of unknown version')}"
         held = f"{self.series!r}, {torus}" if self.series else repr(self.torus)
@@ -122,7 +148,10 @@ def save(
     else:
         series = result if isinstance(result, LindstedtSeries) else result.series
         members, layout = _tables(series)
-        parts = {"series": _series_entries(series) | layout, "torus": _torus_entries(result) if isinstance(result, QTorus) else None}
+        parts = {
+            "series": _series_entries(series) | layout,
+            "torus": _torus_entries(result) if isinstance(result, QTorus) else None,
+        }
     body: Json = {
         "format": FORMAT,
         "schema": SCHEMA,
@@ -131,7 +160,9 @@ def save(
         "versions": _versions(),
         **parts,
         "verdict": verdict,
-        "test_vectors": [] if isinstance(result, LindstedtSeries) else [point._asdict() for point in _test_vectors(result)],
+        "test_vectors": []
+        if isinstance(result, LindstedtSeries)
+        else [point._asdict() for point in _test_vectors(result)],
         "arrays": {name: member_digest(values) for name, values in members.items()},
     }
     write_archive(path, body | {"digest": digest_of(body)}, members)
@@ -162,9 +193,12 @@ def load(path: Path | str) -> Bundle:
             return _bundle(path, Archive(path, stream))
         except BundleError:
             raise
-        except Exception as error:  # whatever zipfile, zlib, json, numpy and our own checks say to a damaged or hostile file
+        # whatever zipfile, zlib, json, numpy and our own checks say to a damaged or hostile file
+        except Exception as error:
             reason = " ".join(f"{type(error).__name__} {error}".split())[:LONGEST_REASON]
-            raise BundleError(path, f"is damaged ({reason})", "restore it from a copy or compute it again") from None
+            raise BundleError(
+                path, f"is damaged ({reason})", "restore it from a copy or compute it again"
+            ) from None
 
 
 def _path(path: object) -> Path:
@@ -176,13 +210,23 @@ def _path(path: object) -> Path:
 def _require_arguments(result: object, verdict: object, command: object, created: object) -> None:
     if not isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)):
         allowed = "a LindstedtSeries, a QTorus or a RefinedTorus"
-        raise InputError("result", type(result).__name__, allowed, "pass what lindstedt, solve_amplitudes or refine gave")
+        raise InputError(
+            "result",
+            type(result).__name__,
+            allowed,
+            "pass what lindstedt, solve_amplitudes or refine gave",
+        )
     if command is not None and not isinstance(command, str):
         raise InputError("command", command, "a string or None", "join its words")
     if created is not None and not isinstance(created, datetime):
         raise InputError("created", created, "a datetime or None", "leave it out")
     if verdict is not None and not (isinstance(verdict, dict) and _json_keeps(verdict)):
-        raise InputError("verdict", verdict, "None or a dictionary that JSON gives back unchanged", "use strings as keys, and lists")
+        raise InputError(
+            "verdict",
+            verdict,
+            "None or a dictionary that JSON gives back unchanged",
+            "use strings as keys, and lists",
+        )
 
 
 def _json_keeps(value: Json) -> bool:
@@ -214,7 +258,8 @@ def _by_seed(entries: Mapping[str, Any], seeds: Sequence[int]) -> dict[int, Any]
 
 def _tables(series: LindstedtSeries) -> tuple[dict[str, Array], Json]:
     """The flat arrays by name, and what else is needed to cut them into tables again."""
-    parts = {"coordinates": series.coordinates, "corrections": series.corrections[1:]}  # order 0 has no corrections
+    # order 0 has no corrections
+    parts = {"coordinates": series.coordinates, "corrections": series.corrections[1:]}
     arrays, layout = series.tables.pack(parts)
     members = {name: _flat(tables, series.tables.dtype) for name, tables in arrays.items()}
     if series.radii:
@@ -236,7 +281,9 @@ def _series_entries(series: LindstedtSeries) -> Json:
         "alpha": fraction_text(series.chain.alpha),
         "beta": fraction_text(series.chain.beta),
         "seeds": list(series.seeds),
-        "frequencies": None if series.frequencies is None else [fraction_text(w) for w in series.frequencies],
+        "frequencies": None
+        if series.frequencies is None
+        else [fraction_text(w) for w in series.frequencies],
         "order": series.order,
         "ring": series.ring,
         "digits": series.digits,
@@ -244,7 +291,12 @@ def _series_entries(series: LindstedtSeries) -> Json:
         "unit": fraction_text(series.unit),
         "multiply_adds": str(series.multiply_adds),
         "smallest_divisors": [asdict(d) | {"size": repr(d.size)} for d in series.smallest_divisors],
-        "point": point and {"prime": str(point.prime), "root": str(point.root), "frequencies": list(map(str, point.frequencies))},
+        "point": point
+        and {
+            "prime": str(point.prime),
+            "root": str(point.root),
+            "frequencies": list(map(str, point.frequencies)),
+        },
     }
 
 
@@ -323,7 +375,9 @@ def _series(archive: Archive, body: Json) -> LindstedtSeries:
     seeds, order = seed_modes(body["seeds"], chain.N), integer(body["order"], "order", 0)
     chosen, point, digits = body["frequencies"], body["point"], body["digits"]
     frequencies = None if chosen is None else tuple(fraction(w) for w in chosen)
-    if list(seeds) != sorted(seeds) or (frequencies is not None and (len(frequencies) != len(seeds) or min(frequencies) <= 0)):
+    if list(seeds) != sorted(seeds) or (
+        frequencies is not None and (len(frequencies) != len(seeds) or min(frequencies) <= 0)
+    ):
         raise ValueError(f"seeds {seeds} and frequencies {chosen} do not go together")
     kind = _kind(body)
     expected = (kind.numeric, kind.name == FIXED_POINT.name, kind.exact_point)
@@ -339,13 +393,21 @@ def _series(archive: Archive, body: Json) -> LindstedtSeries:
         grading=shared_grading(len(seeds), 1 + chain.degree_step * order),
         unit=fraction(body["unit"]),
         smallest_divisors=tuple(
-            SmallDivisor(float(d["size"]), integer(d["mode"], "mode", 1), tuple(map(int, d["harmonic"])), integer(d["order"], "order", 0))
+            SmallDivisor(
+                float(d["size"]),
+                integer(d["mode"], "mode", 1),
+                tuple(map(int, d["harmonic"])),
+                integer(d["order"], "order", 0),
+            )
             for d in body["smallest_divisors"]
         ),
         multiply_adds=int(body["multiply_adds"]),
         digits=None if digits is None else integer(digits, "digits", 1),
         bits=integer(body["bits"], "bits", 0),
-        point=point and ResiduePoint(int(point["prime"]), int(point["root"]), tuple(int(w) for w in point["frequencies"])),
+        point=point
+        and ResiduePoint(
+            int(point["prime"]), int(point["root"]), tuple(int(w) for w in point["frequencies"])
+        ),
     )
 
 
@@ -361,15 +423,21 @@ def _torus_entries(torus: QTorus) -> Json:
         "order": torus.order,
         "history": {str(K): [number_entry(a) for a in row] for K, row in torus.history.items()},
         "root_residual": repr(float(torus.root_residual)),
-        "certificate": proof and asdict(proof) | {"radius": {str(q): number_entry(r) for q, r in proof.radius.items()}},
+        "certificate": proof
+        and asdict(proof) | {"radius": {str(q): number_entry(r) for q, r in proof.radius.items()}},
         "warnings": list(torus.warnings),
     }
 
 
 def _torus(body: Json, series: LindstedtSeries) -> QTorus:
-    proof, order, frequency_order = body["certificate"], *(integer(body[name], name, 0) for name in ("order", "frequency_order"))
+    proof, order, frequency_order = (
+        body["certificate"],
+        *(integer(body[name], name, 0) for name in ("order", "frequency_order")),
+    )
     if max(order, frequency_order) > series.order or series.frequencies is None:
-        raise ValueError(f"no torus of order {order} and frequency order {frequency_order} can come from this series")
+        raise ValueError(
+            f"no torus of order {order} and frequency order {frequency_order} can come from this series"
+        )
     return QTorus(
         series=series,
         amplitudes=_by_seed(body["amplitudes"], series.seeds),
@@ -378,7 +446,12 @@ def _torus(body: Json, series: LindstedtSeries) -> QTorus:
         order=order,
         history={int(K): tuple(map(number, row)) for K, row in body["history"].items()},
         root_residual=float(body["root_residual"]),
-        certificate=proof and RootCertificate(proof["certified"] is True, _by_seed(proof["radius"], series.seeds), str(proof["reason"])),
+        certificate=proof
+        and RootCertificate(
+            proof["certified"] is True,
+            _by_seed(proof["radius"], series.seeds),
+            str(proof["reason"]),
+        ),
         warnings=tuple(map(str, body["warnings"])),
     )
 
@@ -389,10 +462,13 @@ def _test_vectors(torus: QuasiPeriodic) -> list[OrbitPoint]:
     times = [0.0, float(f"{period:.4g}"), float(f"{LONG_RUN * period:.4g}")]
 
     def written(values: Array) -> tuple[str, ...]:
-        return tuple(repr(float(x)) if torus.digits is None else text(x, torus.digits) for x in values)
+        return tuple(
+            repr(float(x)) if torus.digits is None else text(x, torus.digits) for x in values
+        )
 
     return [
-        OrbitPoint(repr(t), written(Q), written(P)) for t, Q, P in zip(times, torus.positions(times), torus.momenta(times), strict=True)
+        OrbitPoint(repr(t), written(Q), written(P))
+        for t, Q, P in zip(times, torus.positions(times), torus.momenta(times), strict=True)
     ]
 
 
@@ -400,7 +476,11 @@ def _bundle(path: Path, archive: Archive) -> Bundle:
     body = archive.body
     if body.get("kind") in KINDS:
         kind = KINDS[body["kind"]]
-        raise BundleError(path, f"is a checkpoint of {kind.of}, which holds no torus", f"go on from it with {kind.resume}")
+        raise BundleError(
+            path,
+            f"is a checkpoint of {kind.of}, which holds no torus",
+            f"go on from it with {kind.resume}",
+        )
     series = None if body["series"] is None else _series(archive, body["series"])
     torus: QTorus | RefinedTorus | None = None
     if series is None:
@@ -414,5 +494,8 @@ def _bundle(path: Path, archive: Archive) -> Bundle:
         torus=torus,
         verdict=None if body["verdict"] is None else dict(body["verdict"]),
         provenance={name: body[name] for name in ("created", "command", "versions")},
-        test_vectors=tuple(OrbitPoint(str(v["t"]), tuple(map(str, v["Q"])), tuple(map(str, v["P"]))) for v in body["test_vectors"]),
+        test_vectors=tuple(
+            OrbitPoint(str(v["t"]), tuple(map(str, v["Q"])), tuple(map(str, v["P"])))
+            for v in body["test_vectors"]
+        ),
     )

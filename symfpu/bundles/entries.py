@@ -13,7 +13,10 @@ from symfpu.numbers.arithmetic import text
 
 
 def number_entry(value: Any) -> str | dict[str, str]:
-    """A double as its shortest decimal; an mpf as hexadecimal mantissa and binary exponent, with a decimal to read."""
+    """A double as its shortest decimal.
+
+    An mpf as hexadecimal mantissa and binary exponent, with a decimal to read.
+    """
     if not isinstance(value, mpmath.mpf):
         if float(value) != value:
             raise InputError("result", value, "doubles and mpf as its numbers", "convert them")
@@ -21,7 +24,10 @@ def number_entry(value: Any) -> str | dict[str, str]:
     if not mpmath.isfinite(value):
         raise InputError("result", value, "finite numbers", "solve for the amplitudes again")
     sign, mantissa, exponent, bits = value._mpf_
-    return {"exact": f"{'-' if sign else ''}{int(mantissa):#x}p{exponent}", "decimal": text(value, max(1, bits * 3 // 10))}
+    return {
+        "exact": f"{'-' if sign else ''}{int(mantissa):#x}p{exponent}",
+        "decimal": text(value, max(1, bits * 3 // 10)),
+    }
 
 
 def number(entry: Any) -> Any:

@@ -1,11 +1,14 @@
 """The scheme ABA864 of seven kicks, on T + V and on harmonic + anharmonic.
 
-S. Blanes, F. Casas, A. Farres, J. Laskar, J. Makazaga, A. Murua, Appl. Numer. Math. 68 (2013) 58, generalised order (8, 6, 4): for kicks
-of size epsilon, an error of epsilon h^8 + epsilon^2 h^6 + epsilon^3 h^4. T and V are of one size: the order is 4, with small constants.
+S. Blanes, F. Casas, A. Farres, J. Laskar, J. Makazaga, A. Murua, Appl. Numer. Math. 68 (2013) 58,
+generalised order (8, 6, 4): for kicks of size epsilon, an error of epsilon h^8 + epsilon^2 h^6 +
+epsilon^3 h^4. T and V are of one size: the order is 4, with small constants.
 
-On harmonic + anharmonic, in mode space, it is what it was made for, since the anharmonic kicks are small. There kicks are products of
-cosine polynomials by their coefficients (symfpu.dynamics.orbit_loops): they obey the selection rules, a mode that no product feeds
-stays exactly zero, and tail modes keep their relative accuracy. A kick costs about N^2 where T + V costs N.
+On harmonic + anharmonic, in mode space, it is what it was made for, since the anharmonic kicks
+are small. There kicks are products of cosine polynomials by their coefficients
+(symfpu.dynamics.orbit_loops): they obey the selection rules, a mode that no product feeds stays
+exactly zero, and tail modes keep their relative accuracy. A kick costs about N^2 where T + V
+costs N.
 """
 
 from __future__ import annotations
@@ -33,5 +36,14 @@ KICKS = palindrome(
 )
 
 SOURCE = "S. Blanes et al., Appl. Numer. Math. 68 (2013) 58, ABA864"
-ABA864 = Scheme(name="aba864", order=4, splitting="T + V", source=SOURCE, drifts=DRIFTS, kicks=KICKS)
-ABA864_MODES = Scheme(name="aba864_modes", order=4, splitting="harmonic + anharmonic", source=SOURCE, drifts=DRIFTS, kicks=KICKS)
+ABA864 = Scheme(
+    name="aba864", order=4, splitting="T + V", source=SOURCE, drifts=DRIFTS, kicks=KICKS
+)
+ABA864_MODES = Scheme(
+    name="aba864_modes",
+    order=4,
+    splitting="harmonic + anharmonic",
+    source=SOURCE,
+    drifts=DRIFTS,
+    kicks=KICKS,
+)

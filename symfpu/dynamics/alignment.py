@@ -1,11 +1,14 @@
-"""Alignment indices GALI_k of an orbit, all k at once and in logarithms, its maximal Lyapunov exponent, the dimension of its torus.
+"""Alignment indices GALI_k of an orbit, all k at once and in logarithms, its maximal Lyapunov
+exponent, the dimension of its torus.
 
 The paper's G_r of sections 3.2 and 4.
 
-GALI_k is the k-volume of k unit deviation vectors (Skokos, Bountis, Antonopoulos, Physica D 231 (2007) 30; Eur. Phys. J. Special
-Topics 165 (2008) 5). On a torus of dimension s in a phase space of dimension 2n, n = N - 1, it goes as
+GALI_k is the k-volume of k unit deviation vectors (Skokos, Bountis, Antonopoulos, Physica D 231
+(2007) 30; Eur. Phys. J. Special Topics 165 (2008) 5). On a torus of dimension s in a phase space
+of dimension 2n, n = N - 1, it goes as
     t^0 for k <= s,    t^-(k-s) for s < k <= 2n - s,    t^-2(k-n) for k > 2n - s,
-on a chaotic orbit as exp(-t sum_{j<=k} (chi_1 - chi_j)). Logarithms are to base 10, as in the captions of the paper.
+on a chaotic orbit as exp(-t sum_{j<=k} (chi_1 - chi_j)). Logarithms are to base 10, as in the
+captions of the paper.
 """
 
 from __future__ import annotations
@@ -19,7 +22,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain, require_chain
-from symfpu.dynamics.dimension import DECADES, FEWEST, Evidence, TorusDimension, fits, torus_dimension
+from symfpu.dynamics.dimension import (
+    DECADES,
+    FEWEST,
+    Evidence,
+    TorusDimension,
+    fits,
+    torus_dimension,
+)
 from symfpu.dynamics.frame_run import FrameRun, Progress, seconds_a_step
 from symfpu.dynamics.tangent import moving_frame, step_length
 from symfpu.errors import InputError
@@ -90,28 +100,37 @@ class AlignmentIndices:
     def slopes(self, decades: float = DECADES) -> tuple[Slope, ...]:
         """d log GALI_k / d log t over the last decades of time for k = 2 .. vectors.
 
-        The uncertainty is that of the delete-a-block jackknife over PARTS stretches of the window: it sees waves longer than the
-        samples are apart, and bends. decades : of time, cut to what the samples span and widened to FEWEST of them. Raises InputError.
+        The uncertainty is that of the delete-a-block jackknife over PARTS stretches of the
+        window: it sees waves longer than the samples are apart, and bends. decades : of time, cut
+        to what the samples span and widened to FEWEST of them. Raises InputError.
         """
-        return tuple(Slope(k, *found) for k, found in enumerate(fits(self.times, self.log10_gali, decades), start=2))
+        return tuple(
+            Slope(k, *found)
+            for k, found in enumerate(fits(self.times, self.log10_gali, decades), start=2)
+        )
 
     def dimension(self, decades: float = DECADES) -> TorusDimension:
-        """The dimension s of the torus by how each further vector changes the slope, chaos, or neither yet (sections 3.2, 4).
+        """The dimension s of the torus by how each further vector changes the slope, chaos, or
+        neither yet (sections 3.2, 4).
 
-        Chaotic is an orbit whose first vector has outgrown t^POWER by more than OUTGROWN e-foldings: that is never
-        taken back. Otherwise log GALI_j - log GALI_(j-1) has the slope 0 for j <= s, -1 for s < j <= 2n-s, -2 above,
-        and each s the weight exp(-chi^2/2) of these differences, whose uncertainties are at least FLOOR and are
-        enlarged where no s fits. Regular asks for the weight SURE, slopes within ODD of their integers in the window
-        and in its second half, and a first vector that grows as t, in every decade of the last LOW ones for a torus
-        of low dimension (an index falls, 2 s <= n) or with N = 2, of the last FULL ones for others: see
-        symfpu.dynamics.dimension. Undecided is everything else, and an orbit that has lost LOST_ENERGY of its
-        energy; the reason says what it would take. Raises InputError.
+        Chaotic is an orbit whose first vector has outgrown t^POWER by more than OUTGROWN
+        e-foldings: that is never taken back. Otherwise log GALI_j - log GALI_(j-1) has the slope
+        0 for j <= s, -1 for s < j <= 2n-s, -2 above, and each s the weight exp(-chi^2/2) of these
+        differences, whose uncertainties are at least FLOOR and are enlarged where no s fits.
+        Regular asks for the weight SURE, slopes within ODD of their integers in the window and in
+        its second half, and a first vector that grows as t, in every decade of the last LOW ones
+        for a torus of low dimension (an index falls, 2 s <= n) or with N = 2, of the last FULL
+        ones for others: see symfpu.dynamics.dimension. Undecided is everything else, and an orbit
+        that has lost LOST_ENERGY of its energy; the reason says what it would take. Raises
+        InputError.
         """
         if not self.energy_error <= LOST_ENERGY:
             reason = f"the orbit is off by {self.energy_error:.1g} of its energy: take a shorter step than {self.step:g}"
             return TorusDimension("undecided", None, math.nan, {}, reason)
         growth = self.lyapunov * self.times
-        return torus_dimension(Evidence(self.times, growth, self.log10_gali, self.chain.N - 1, decades))
+        return torus_dimension(
+            Evidence(self.times, growth, self.log10_gali, self.chain.N - 1, decades)
+        )
 
 
 def alignment_indices(
@@ -180,12 +199,17 @@ def alignment_indices(
     if file is not None:
         run.keep_in(checkpoint_path(file))
     run.go(progress or (lambda label, done: None))
-    times, volumes = np.asarray(run.marks * h, dtype=np.float64), np.cumsum(run.volumes, axis=1)[:, 1:] / math.log(10)
+    times, volumes = (
+        np.asarray(run.marks * h, dtype=np.float64),
+        np.cumsum(run.volumes, axis=1)[:, 1:] / math.log(10),
+    )
     error = abs(float(chain.energy(*frame.orbit())) - before) / abs(before)
     return AlignmentIndices(chain, times, volumes, run.growth / times, h, error)
 
 
-def seconds_needed(chain: Chain, T: float, *, vectors: int | None = None, step: float = STEP) -> float:
+def seconds_needed(
+    chain: Chain, T: float, *, vectors: int | None = None, step: float = STEP
+) -> float:
     """Processor time in seconds that `alignment_indices` of such a chain will take.
 
     chain : the model. T : the last time, step : of the integrator, both dimensionless.
@@ -203,29 +227,52 @@ def seconds_needed(chain: Chain, T: float, *, vectors: int | None = None, step: 
     n, h = chain.N - 1, abs(step_length(step))
     count, last = _vectors(n, vectors), _steps(T, h)
     small = np.where(np.arange(n) == 0, 1e-3, 0.0)
-    return last * seconds_a_step(moving_frame(chain, small, small, *_random_frame(count, n, 0), h), BLOCK)
+    return last * seconds_a_step(
+        moving_frame(chain, small, small, *_random_frame(count, n, 0), h), BLOCK
+    )
 
 
 def _samples(samples: int) -> int:
     count = integer(samples, "samples", FEWEST_SAMPLES)
     if count > MOST_SAMPLES:
-        raise InputError("samples", count, f"{FEWEST_SAMPLES} to {MOST_SAMPLES}", "a few hundred show all there is")
+        raise InputError(
+            "samples",
+            count,
+            f"{FEWEST_SAMPLES} to {MOST_SAMPLES}",
+            "a few hundred show all there is",
+        )
     return count
 
 
 def _vectors(n: int, vectors: int | None) -> int:
     count = min(VECTORS, 2 * n) if vectors is None else integer(vectors, "vectors", 2)
     if count > min(2 * n, MOST_VECTORS):
-        raise InputError("vectors", count, f"2 to {min(2 * n, MOST_VECTORS)}", "the phase space holds no more")
+        raise InputError(
+            "vectors", count, f"2 to {min(2 * n, MOST_VECTORS)}", "the phase space holds no more"
+        )
     return count
 
 
 def _steps(T: float, h: float) -> int:
     """Steps to T, the last one perhaps beyond it."""
-    if isinstance(T, bool) or not isinstance(T, Real) or not SHORTEST * max(1.0, h) <= float(T) < math.inf:
-        raise InputError("T", T, f"a finite time from {SHORTEST * max(1.0, h):g} up", "slopes need two decades of time")
+    if (
+        isinstance(T, bool)
+        or not isinstance(T, Real)
+        or not SHORTEST * max(1.0, h) <= float(T) < math.inf
+    ):
+        raise InputError(
+            "T",
+            T,
+            f"a finite time from {SHORTEST * max(1.0, h):g} up",
+            "slopes need two decades of time",
+        )
     if not float(T) / h <= MOST_STEPS:
-        raise InputError("T", T, f"at most 2^52 steps, {h * MOST_STEPS:.3g}", "take a shorter time, or a longer step")
+        raise InputError(
+            "T",
+            T,
+            f"at most 2^52 steps, {h * MOST_STEPS:.3g}",
+            "take a shorter time, or a longer step",
+        )
     return math.ceil(float(T) / h - 1e-9)
 
 

@@ -1,4 +1,6 @@
-"""Running time averages of the harmonic energies along orbits, by the trapezoid rule over looks at equal times."""
+"""Running time averages of the harmonic energies along orbits, by the trapezoid rule over looks
+at equal times.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,9 @@ from symfpu.chain.chain import Chain
 
 Floats = NDArray[np.float64]
 
-LOOK = 0.5  # time between two looks, at most, unless a step is longer: E_q has no frequency above 4, whose half period is 0.785
+# time between two looks, at most, unless a step is longer: E_q has no frequency above 4, whose
+# half period is 0.785
+LOOK = 0.5
 LOOKS = 256  # looks held at once
 
 
@@ -19,7 +23,10 @@ def steps_between_looks(step: float) -> int:
 
 
 class RunningAverages:
-    """Sums over the looks so far. total (M, N-1) : of E_q of M orbits, E_q(0) among them. start (M, N-1) : E_q(0)."""
+    """Sums over the looks so far.
+
+    Total (M, N-1) : of E_q of M orbits, E_q(0) among them. start (M, N-1) : E_q(0).
+    """
 
     def __init__(self, chain: Chain, Q: Floats, P: Floats) -> None:
         self.chain, self.start = chain, chain.harmonic_energies(Q, P)

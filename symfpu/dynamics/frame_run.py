@@ -1,4 +1,6 @@
-"""The run behind the alignment indices: a frame from mark to mark, kept on disk and taken up again bitwise, and the time it will take."""
+"""The run behind the alignment indices: a frame from mark to mark, kept on disk and taken up
+again bitwise, and the time it will take.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +15,22 @@ from numpy.typing import NDArray
 from symfpu.dynamics.tangent import MovingFrame
 from symfpu.errors import SymfpuError
 from symfpu.files.archive import BundleError
-from symfpu.files.checkpoint import ADVICE, ALIGNMENT, digest, marks_of, read_checkpoint, write_checkpoint
+from symfpu.files.checkpoint import (
+    ADVICE,
+    ALIGNMENT,
+    digest,
+    marks_of,
+    read_checkpoint,
+    write_checkpoint,
+)
 from symfpu.files.interruption import kept_run
 from symfpu.numbers.typed import decimal
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Progress = Callable[[str, float], None]
-PORTION = 6_400_000  # moves of a particle with its lanes between two looks at the clock: half a second, about
+# moves of a particle with its lanes between two looks at the clock: half a second, about
+PORTION = 6_400_000
 TRIAL = 0.2  # seconds of a measurement
 
 
@@ -34,17 +44,22 @@ class OrbitLost(SymfpuError):
 
     def __init__(self, time: float, step: float) -> None:
         self.time, self.step = time, step
-        super().__init__(f"the orbit is lost before t = {time:.6g} with steps of {step:g}; take less energy or a shorter step")
+        super().__init__(
+            f"the orbit is lost before t = {time:.6g} with steps of {step:g}; take less energy or a shorter step"
+        )
 
 
 class FrameRun:
     """A frame after so many steps, the product of its triangular factors, and the samples so far.
 
-    marks : numbers of steps at which there are samples, (S,). longest : block, in steps. volumes : log(R_jj / |R e_j|) at every mark,
-    (S, vectors), and growth : log R_11, (S,), natural logarithms. every : seconds between two checkpoints.
+    marks : numbers of steps at which there are samples, (S,). longest : block, in steps. volumes
+    : log(R_jj / |R e_j|) at every mark, (S, vectors), and growth : log R_11, (S,), natural
+    logarithms. every : seconds between two checkpoints.
     """
 
-    def __init__(self, frame: MovingFrame, marks: Ints, step: float, longest: int, every: float) -> None:
+    def __init__(
+        self, frame: MovingFrame, marks: Ints, step: float, longest: int, every: float
+    ) -> None:
         self.frame, self.step, self.longest, self.every = frame, step, longest, every
         m = frame.vectors
         self.portion = max(longest, PORTION // (frame.chain.N * len(frame.dx)))
@@ -77,11 +92,22 @@ class FrameRun:
         if kept is None:
             return
         done, arrays = kept
-        self._sample_at(marks_of(path, arrays.get("sampled", np.zeros(0)), done, self.marks, exact=False))
+        self._sample_at(
+            marks_of(path, arrays.get("sampled", np.zeros(0)), done, self.marks, exact=False)
+        )
         room, block = self._arrays(done), arrays.pop("block", np.zeros(0))
-        right = {name: values.shape for name, values in arrays.items()} == {name: values.shape for name, values in room.items()}
-        if not right or done > self.marks[-1] or block.shape != (1,) or not 1 <= block[0] <= self.longest:
-            raise BundleError(path, "is damaged (its arrays are not those of its parameters)", ADVICE)
+        right = {name: values.shape for name, values in arrays.items()} == {
+            name: values.shape for name, values in room.items()
+        }
+        if (
+            not right
+            or done > self.marks[-1]
+            or block.shape != (1,)
+            or not 1 <= block[0] <= self.longest
+        ):
+            raise BundleError(
+                path, "is damaged (its arrays are not those of its parameters)", ADVICE
+            )
         for name, values in room.items():
             values[...] = arrays[name]
         self.done, self.block = done, int(block[0])
@@ -103,8 +129,10 @@ class FrameRun:
         }
 
     def _ends(self) -> Iterator[int]:
-        """Where loops end: at marks, and between them after portions that depend on the arguments alone, since each end is also the end of
-        a block: so an interrupted run rounds like one that was not."""
+        """Where loops end: at marks, and between them after portions that depend on the arguments
+        alone, since each end is also the end of a block: so an interrupted run rounds like one
+        that was not.
+        """
         while self.done < self.marks[-1]:
             following = int(self.marks[np.searchsorted(self.marks, self.done, side="right")])
             yield min(following, (self.done // self.portion + 1) * self.portion)
@@ -119,7 +147,15 @@ class FrameRun:
                 look(place, end == last, partial(tell, f"t = {end * self.step:.3g}", end / last))
 
     def _move_to(self, end: int) -> None:
-        self.block = carried(self.frame, end - self.done, self.block, self.longest, self.columns, self.diagonal, self.norms)
+        self.block = carried(
+            self.frame,
+            end - self.done,
+            self.block,
+            self.longest,
+            self.columns,
+            self.diagonal,
+            self.norms,
+        )
         if not np.isfinite(self.norms).all():
             raise OrbitLost(float(end * self.step), self.step)
         self.done = end
@@ -130,19 +166,37 @@ class FrameRun:
     def _write(self) -> None:
         assert self.path is not None
         block = np.array([float(self.block)])
-        write_checkpoint(self.path, self.parameters, self.done, self._arrays(self.done) | {"block": block}, ALIGNMENT)
+        write_checkpoint(
+            self.path,
+            self.parameters,
+            self.done,
+            self._arrays(self.done) | {"block": block},
+            ALIGNMENT,
+        )
 
 
-def carried(frame: MovingFrame, steps: int, block: int, longest: int, columns: Floats, diagonal: Floats, norms: Floats) -> int:
+def carried(
+    frame: MovingFrame,
+    steps: int,
+    block: int,
+    longest: int,
+    columns: Floats,
+    diagonal: Floats,
+    norms: Floats,
+) -> int:
     """Moves a frame and the product of its factors; returns the block to go on with."""
-    from symfpu.dynamics.tangent_loops import carry_frame  # lazy: numba takes longer to import than all the rest
+    # lazy: numba takes longer to import than all the rest
+    from symfpu.dynamics.tangent_loops import carry_frame
 
     state = (frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts)
     return int(carry_frame(*state, steps, block, longest, columns, diagonal, norms))
 
 
 def seconds_a_step(frame: MovingFrame, block: int) -> float:
-    """Processor time of a step of a frame, from as many steps as take TRIAL seconds, about; the frame is moved."""
+    """Processor time of a step of a frame, from as many steps as take TRIAL seconds, about.
+
+    The frame is moved.
+    """
     m, steps = frame.vectors, block
     product = np.eye(m), np.zeros(m), np.zeros(m)
     carried(frame, block, block, block, *product)  # compiles

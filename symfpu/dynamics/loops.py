@@ -1,7 +1,8 @@
 """The compiled loops of the tangent maps: plain arrays in, moved in place. Importing this module imports numba.
 
-x and p are particle coordinates and momenta of k columns between two walls, shape (N+1, k), rows of the walls zero. A kick and the
-drift after it are one pass over the bonds: the tension of bond j needs x[j+1] before and x[j] before it moves.
+x and p are particle coordinates and momenta of k columns between two walls, shape (N+1, k), rows
+of the walls zero. A kick and the drift after it are one pass over the bonds: the tension of bond
+j needs x[j+1] before and x[j] before it moves.
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ _tension, _stiffness = _inlined(tension), _inlined(stiffness)
 
 @_compiled
 def _move(x: Any, p: Any, j: int, slope: float, tension: Any, kick: float, drift: float) -> None:
-    """Kick and drift particle j between the bond on its left, whose tension comes in, and the bond on its right, whose goes out."""
+    """Kick and drift particle j between the bond on its left, whose tension comes in, and the
+    bond on its right, whose goes out.
+    """
     for c in range(x.shape[1]):
         right = slope * (x[j + 1, c] - x[j, c])
         p[j, c] += kick * (right - tension[c])
@@ -29,7 +32,10 @@ def _move(x: Any, p: Any, j: int, slope: float, tension: Any, kick: float, drift
 
 @_compiled
 def carry(x: Any, p: Any, slopes: Any, kicks: Any, drifts: Any) -> None:
-    """Deviations under bonds of stiffness slopes[i, j] at the i-th kick; slopes (stages, N), kicks and drifts of one step."""
+    """Deviations under bonds of stiffness slopes[i, j] at the i-th kick.
+
+    Slopes (stages, N), kicks and drifts of one step.
+    """
     bonds = x.shape[0] - 1
     for i in range(slopes.shape[0]):
         tension = slopes[i, 0] * x[1]

@@ -1,4 +1,6 @@
-"""Many orbits as one array that a compiled loop moves: in the coordinates of the splitting of a scheme."""
+"""Many orbits as one array that a compiled loop moves: in the coordinates of the splitting of a
+scheme.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,10 @@ Floats = NDArray[np.float64]
 
 
 class Motion:
-    """Coordinates of M orbits, shape (M, 2, length), and how they move. bounds : of the bond stretches, for each orbit."""
+    """Coordinates of M orbits, shape (M, 2, length), and how they move.
+
+    Bounds : of the bond stretches, for each orbit.
+    """
 
     def __init__(self, chain: Chain, scheme: Scheme, step: float, bounds: Floats) -> None:
         self.chain, self.scheme, self.bounds = chain, scheme, bounds
@@ -38,26 +43,42 @@ class Motion:
         """Mode coordinates and momenta (M, N-1)."""
         if self.scheme.in_modes:
             return state[:, 0, 1:] * self.unit / self.Omega[1:], state[:, 1, 1:] * self.unit
-        return np.asarray(self.chain.modes(state[:, 0, 1:-1])), np.asarray(self.chain.modes(state[:, 1, 1:-1]))
+        return np.asarray(self.chain.modes(state[:, 0, 1:-1])), np.asarray(
+            self.chain.modes(state[:, 1, 1:-1])
+        )
 
     def advance(self, state: Floats, steps: int, each: Callable[..., Any]) -> list[int]:
-        """Moves all orbits; each : a map, perhaps of several threads. Returns the steps done by each orbit before it had to stop."""
+        """Moves all orbits; each : a map, perhaps of several threads. Returns the steps done by
+        each orbit before it had to stop.
+        """
         return list(each(lambda row, bounds: self.move(row, bounds, steps), state, self.bounds))
 
     def move(self, row: Floats, bounds: Floats, steps: int) -> int:
         """Moves one orbit."""
-        from symfpu.dynamics.orbit_loops import move_modes, move_particles  # lazy: numba takes longer to import than all the rest
+        # lazy: numba takes longer to import than all the rest
+        from symfpu.dynamics.orbit_loops import move_modes, move_particles
 
         loop: Any = move_modes if self.scheme.in_modes else move_particles
         return int(loop(*self._arguments(row, bounds, steps)))
 
-    def look(self, state: Floats, looks: int, stride: int, each: Callable[..., Any]) -> tuple[list[int], Floats, Floats]:
-        """Moves all orbits and looks at them every `stride` steps: steps done, and the Q and P seen, shapes (M, looks, N-1)."""
+    def look(
+        self, state: Floats, looks: int, stride: int, each: Callable[..., Any]
+    ) -> tuple[list[int], Floats, Floats]:
+        """Moves all orbits and looks at them every `stride` steps: steps done, and the Q and P
+        seen, shapes (M, looks, N-1).
+        """
         from symfpu.dynamics.orbit_loops import look_at_modes, look_at_particles
 
         loop: Any = look_at_modes if self.scheme.in_modes else look_at_particles
         seen = np.zeros((len(state), looks, *state.shape[1:]))
-        done = list(each(lambda row, bounds, rows: int(loop(*self._arguments(row, bounds, stride), rows)), state, self.bounds, seen))
+        done = list(
+            each(
+                lambda row, bounds, rows: int(loop(*self._arguments(row, bounds, stride), rows)),
+                state,
+                self.bounds,
+                seen,
+            )
+        )
         Q, P = self.modes(seen.reshape(-1, *state.shape[1:]))
         return done, Q.reshape(len(state), looks, -1), P.reshape(len(state), looks, -1)
 

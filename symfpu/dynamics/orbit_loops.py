@@ -1,8 +1,9 @@
 """The compiled loops of orbits: plain arrays in, moved in place. Importing this module imports numba.
 
-No fast-math: what comes out does not depend on how loops are cut into vectors. Indices are unsigned, since an index that may be negative
-costs a comparison. Every step ends with a look at the state: a loop stops
-after the first one with a bond stretch out of bounds or not a number, and returns the number of steps done.
+No fast-math: what comes out does not depend on how loops are cut into vectors. Indices are
+unsigned, since an index that may be negative costs a comparison. Every step ends with a look at
+the state: a loop stops after the first one with a bond stretch out of bounds or not a number, and
+returns the number of steps done.
 """
 
 from __future__ import annotations
@@ -20,10 +21,22 @@ _tension = compiled(error_model="numpy", keep=False)(tension)
 
 
 @_compiled
-def move_particles(x: Any, p: Any, law: Any, steps: int, entry: float, kicks: Any, drifts: Any, least: float, most: float) -> int:
-    """Displacements and momenta between walls, shape (N+1,), rows of the walls zero, under the forces of all springs.
+def move_particles(
+    x: Any,
+    p: Any,
+    law: Any,
+    steps: int,
+    entry: float,
+    kicks: Any,
+    drifts: Any,
+    least: float,
+    most: float,
+) -> int:
+    """Displacements and momenta between walls, shape (N+1,), rows of the walls zero, under the
+    forces of all springs.
 
-    Kick and drift are one pass: the tension of a bond needs both its ends before they move, and is carried to the next particle.
+    Kick and drift are one pass: the tension of a bond needs both its ends before they move, and
+    is carried to the next particle.
     """
     one, bonds = _ONE, np.uint64(x.shape[0] - 1)
     done = 0
@@ -55,9 +68,20 @@ def move_particles(x: Any, p: Any, law: Any, steps: int, entry: float, kicks: An
 
 @_compiled
 def look_at_particles(
-    x: Any, p: Any, law: Any, stride: int, entry: float, kicks: Any, drifts: Any, least: float, most: float, seen: Any
+    x: Any,
+    p: Any,
+    law: Any,
+    stride: int,
+    entry: float,
+    kicks: Any,
+    drifts: Any,
+    least: float,
+    most: float,
+    seen: Any,
 ) -> int:
-    """Moves as many times as `seen`, shape (looks, 2, N+1), has rows, by `stride` steps, and copies the state there each time."""
+    """Moves as many times as `seen`, shape (looks, 2, N+1), has rows, by `stride` steps, and
+    copies the state there each time.
+    """
     for i in range(seen.shape[0]):
         done = move_particles(x, p, law, stride, entry, kicks, drifts, least, most)
         seen[i, 0] = x
@@ -69,8 +93,9 @@ def look_at_particles(
 
 @_compiled
 def _product(first: Any, wide: Any, out: Any) -> None:
-    """Coefficients of the product of two cosine polynomials sum_k a_k e^(ik theta), a_-k = a_k, at the N bonds, where
-    e^(2iN theta) = -1: first[k], k = 0 .. N-1, a_0 = 0, and the other one extended, wide[k + N] = b_k for k = -N .. 2N.
+    """Coefficients of the product of two cosine polynomials sum_k a_k e^(ik theta), a_-k = a_k, at
+    the N bonds, where e^(2iN theta) = -1: first[k], k = 0 .. N-1, a_0 = 0, and the other one
+    extended, wide[k + N] = b_k for k = -N .. 2N.
 
     Two terms at a time; a polynomial of few modes has few terms.
     """
@@ -83,7 +108,9 @@ def _product(first: Any, wide: Any, out: Any) -> None:
         if a != 0.0 or b != 0.0:
             lower, upper = N - m, N + m
             for k in range(N):
-                out[k] += a * (wide[lower + k] + wide[upper + k]) + b * (wide[lower - one + k] + wide[upper + one + k])
+                out[k] += a * (wide[lower + k] + wide[upper + k]) + b * (
+                    wide[lower - one + k] + wide[upper + one + k]
+                )
         m += one + one
 
 
@@ -101,8 +128,10 @@ def _extend(b: Any, wide: Any) -> None:
 
 @_compiled
 def _rotate(v: Any, w: Any, halves: Any, sines: Any) -> None:
-    """Rotation by angles phi as three shears, tan(phi/2), sin(phi), tan(phi/2): each keeps areas exactly, whatever the rounding of
-    its coefficient, where cosines and sines that do not quite have squares of sum 1 would add up to a growth of 1e-16 a drift."""
+    """Rotation by angles phi as three shears, tan(phi/2), sin(phi), tan(phi/2): each keeps areas
+    exactly, whatever the rounding of its coefficient, where cosines and sines that do not quite
+    have squares of sum 1 would add up to a growth of 1e-16 a drift.
+    """
     for q in range(v.shape[0]):
         a = v[q] + halves[q] * w[q]
         b = w[q] - sines[q] * a
@@ -111,9 +140,21 @@ def _rotate(v: Any, w: Any, halves: Any, sines: Any) -> None:
 
 
 @_compiled
-def move_modes(v: Any, w: Any, law: Any, steps: int, entry: float, kicks: Any, drifts: Any, Omega: Any, most: float) -> int:
-    """v_q = Omega_q Q_q / sqrt(2N) and w_q = P_q / sqrt(2N), shape (N,) with entries 0 for q = 0: the coefficients of the bond stretches
-    are v, those of tensions beyond the harmonic ones g = c_3 v v + c_4 v v v + ..., and dw_q/dt = -Omega_q (v_q + g_q)."""
+def move_modes(
+    v: Any,
+    w: Any,
+    law: Any,
+    steps: int,
+    entry: float,
+    kicks: Any,
+    drifts: Any,
+    Omega: Any,
+    most: float,
+) -> int:
+    """v_q = Omega_q Q_q / sqrt(2N) and w_q = P_q / sqrt(2N), shape (N,) with entries 0 for q = 0:
+    the coefficients of the bond stretches are v, those of tensions beyond the harmonic ones g =
+    c_3 v v + c_4 v v v + ..., and dw_q/dt = -Omega_q (v_q + g_q).
+    """
     N, stages = v.shape[0], kicks.shape[0]
     halves, sines = np.empty((stages + 1, N)), np.empty((stages + 1, N))
     for i in range(stages + 1):
@@ -150,7 +191,18 @@ def move_modes(v: Any, w: Any, law: Any, steps: int, entry: float, kicks: Any, d
 
 
 @_compiled
-def look_at_modes(v: Any, w: Any, law: Any, stride: int, entry: float, kicks: Any, drifts: Any, Omega: Any, most: float, seen: Any) -> int:
+def look_at_modes(
+    v: Any,
+    w: Any,
+    law: Any,
+    stride: int,
+    entry: float,
+    kicks: Any,
+    drifts: Any,
+    Omega: Any,
+    most: float,
+    seen: Any,
+) -> int:
     """The same for modes; seen (looks, 2, N)."""
     for i in range(seen.shape[0]):
         done = move_modes(v, w, law, stride, entry, kicks, drifts, Omega, most)

@@ -1,4 +1,6 @@
-"""Orbits of the chain for long times: many at once, sampled at log-spaced times, with checkpoints from which they go on bitwise."""
+"""Orbits of the chain for long times: many at once, sampled at log-spaced times, with checkpoints
+from which they go on bitwise.
+"""
 
 from __future__ import annotations
 
@@ -23,18 +25,36 @@ from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
 from symfpu.dynamics.motion import Motion
 from symfpu.dynamics.scheme import Scheme
-from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep, require_stable, stretch_bounds
+from symfpu.dynamics.stopping import (
+    EscapedOrbit,
+    OrbitStopped,
+    UnstableStep,
+    require_stable,
+    stretch_bounds,
+)
 from symfpu.dynamics.yoshida4 import YOSHIDA4
 from symfpu.errors import InputError
 from symfpu.files.archive import BundleError
-from symfpu.files.checkpoint import ADVICE, checkpoint_path, digest, marks_of, read_checkpoint, seconds_between, write_checkpoint
+from symfpu.files.checkpoint import (
+    ADVICE,
+    checkpoint_path,
+    digest,
+    marks_of,
+    read_checkpoint,
+    seconds_between,
+    write_checkpoint,
+)
 from symfpu.files.interruption import kept_run
 from symfpu.numbers.typed import decimal, integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-SCHEMES = {scheme.name: scheme for scheme in (YOSHIDA4, ABA864, BLANES_MOAN6, KAHAN_LI8, ABA864_MODES)}
-BLOCK = 50_000_000  # moves of one particle, or products of two modes, between two looks at the clock: a tenth of a second, about
+SCHEMES = {
+    scheme.name: scheme for scheme in (YOSHIDA4, ABA864, BLANES_MOAN6, KAHAN_LI8, ABA864_MODES)
+}
+# moves of one particle, or products of two modes, between two looks at the clock: a tenth of a
+# second, about
+BLOCK = 50_000_000
 MOST_STEPS = 2**52
 WHOLE = 1e-9  # of a step: a time that is a multiple of the step but for rounding
 
@@ -75,7 +95,10 @@ class Orbit:
 
     @property
     def energy_error(self) -> float:
-        """Largest relative deviation |H(t)/H(0) - 1| of all samples and orbits; absolute for orbits at rest."""
+        """Largest relative deviation |H(t)/H(0) - 1| of all samples and orbits.
+
+        Absolute for orbits at rest.
+        """
         start = np.where(self.energies[0] == 0, 1.0, np.abs(self.energies[0]))
         return float(np.max(np.abs(self.energies - self.energies[0]) / start))
 
@@ -141,14 +164,26 @@ def integrate(
     if file is not None:
         run.keep_in(checkpoint_path(file), seconds, exact=not _is_count(samples))
     with ThreadPoolExecutor(workers) as pool:
-        run.go(map if workers == 1 or run.orbits == 1 else pool.map, progress or (lambda done, total: None))
+        run.go(
+            map if workers == 1 or run.orbits == 1 else pool.map,
+            progress or (lambda done, total: None),
+        )
     return run.result()
 
 
 class _Run:
     """The state of an integration: its coordinates after so many steps, and the samples so far."""
 
-    def __init__(self, chain: Chain, scheme: Scheme, T: float, steps: int, sampled: Ints, Q: Floats, P: Floats) -> None:
+    def __init__(
+        self,
+        chain: Chain,
+        scheme: Scheme,
+        T: float,
+        steps: int,
+        sampled: Ints,
+        Q: Floats,
+        P: Floats,
+    ) -> None:
         self.chain, self.scheme, self.T, self.steps, self.shape = chain, scheme, T, steps, Q.shape
         self.step = T / steps
         Q, P = Q.reshape(-1, chain.N - 1), P.reshape(-1, chain.N - 1)
@@ -159,7 +194,9 @@ class _Run:
         for energy in energies:
             require_stable(chain, scheme, self.step, float(energy))
         limits = [stretch_bounds(chain, float(energy)) for energy in energies]
-        self.escapes = [limit[2] or energy < 0 for limit, energy in zip(limits, energies, strict=True)]
+        self.escapes = [
+            limit[2] or energy < 0 for limit, energy in zip(limits, energies, strict=True)
+        ]
         self.start = chain.harmonic_energies(Q, P)
         bounds = np.array([limit[:2] for limit in limits]).reshape(-1, 2)
         self.motion = Motion(chain, scheme, self.step, bounds)
@@ -173,7 +210,9 @@ class _Run:
 
     def _sample_at(self, sampled: Ints) -> None:
         self.sampled = sampled
-        self.Q, self.P, self.averages = (np.zeros((len(sampled), self.orbits, self.chain.N - 1)) for _ in range(3))
+        self.Q, self.P, self.averages = (
+            np.zeros((len(sampled), self.orbits, self.chain.N - 1)) for _ in range(3)
+        )
 
     def take_averages(self, stride: int) -> None:
         """Looks at the orbits every so many steps."""
@@ -181,7 +220,10 @@ class _Run:
         self.averages[0] = self.running.start
 
     def keep_in(self, path: Path, every: float, *, exact: bool) -> None:
-        """Goes on from the file, if there is one, which may hold a shorter run. exact : as for `marks_of`."""
+        """Goes on from the file, if there is one, which may hold a shorter run.
+
+        Exact : as for `marks_of`.
+        """
         self.path, self.every = path, every
         chain, scheme = self.chain, self.scheme
         self.parameters = {
@@ -199,11 +241,19 @@ class _Run:
         kept = read_checkpoint(path, self.parameters)
         if kept is not None:
             self.done, arrays = kept
-            self._sample_at(marks_of(path, arrays.get("sampled", np.zeros(0)), self.done, self.sampled, exact=exact))
+            self._sample_at(
+                marks_of(
+                    path, arrays.get("sampled", np.zeros(0)), self.done, self.sampled, exact=exact
+                )
+            )
             known = int(np.searchsorted(self.sampled, self.done, side="right"))
             due = {name: values.shape for name, values in self._kept(known).items()}
-            if {name: values.shape for name, values in arrays.items()} != due or self.done > self.steps:
-                raise BundleError(path, "is damaged (its arrays are not those of its parameters)", ADVICE)
+            if {
+                name: values.shape for name, values in arrays.items()
+            } != due or self.done > self.steps:
+                raise BundleError(
+                    path, "is damaged (its arrays are not those of its parameters)", ADVICE
+                )
             for name, values in self._kept(known).items():
                 values[...] = arrays[name]
             if self.stride:
@@ -213,12 +263,21 @@ class _Run:
         """What a checkpoint holds after so many samples, as views of it."""
         marks = self.sampled[:known].astype(np.float64)
         kept = {"sampled": marks, "Q": self.Q[:known], "P": self.P[:known], "state": self.state}
-        return kept | {"averages": self.averages[:known], "total": self.running.total} if self.stride else kept
+        return (
+            kept | {"averages": self.averages[:known], "total": self.running.total}
+            if self.stride
+            else kept
+        )
 
     def _ends(self) -> Iterator[int]:
-        """Where loops end: at samples and after blocks of steps that depend on the chain and the scheme alone, so that an interrupted run
-        rounds like one that was not."""
-        size = self.chain.N if not self.scheme.in_modes else self.chain.N**2 * (2 if self.chain.beta else 1)
+        """Where loops end: at samples and after blocks of steps that depend on the chain and the
+        scheme alone, so that an interrupted run rounds like one that was not.
+        """
+        size = (
+            self.chain.N
+            if not self.scheme.in_modes
+            else self.chain.N**2 * (2 if self.chain.beta else 1)
+        )
         block = max(1, BLOCK // (size * self.scheme.stages))
         if self.stride:
             block = self.stride * min(LOOKS, max(1, block // self.stride))
@@ -227,7 +286,10 @@ class _Run:
             yield min(following, (self.done // block + 1) * block)
 
     def go(self, each: Callable[..., Any], progress: Callable[[int, int], None]) -> None:
-        """To the last step. Raises OrbitStopped; RunInterrupted where the run is kept in a file."""
+        """To the last step. Raises OrbitStopped.
+
+        RunInterrupted where the run is kept in a file.
+        """
         with kept_run(self.path, self.every, self._write) as look:
             for end in self._ends():
                 self._move_to(end, each)
@@ -272,33 +334,76 @@ class _Run:
         Q, P = (part[0] for part in self.motion.modes(self.state[row : row + 1]))
         growth = np.abs(self.chain.harmonic_energies(Q, P) - (self.start[row] if steps else 0.0))
         kind: type[OrbitStopped]
-        kind, reason, advice = UnstableStep, f"a step of {abs(self.step):.6g} of {self.scheme.name} loses the energy", "take a shorter step"
+        kind, reason, advice = (
+            UnstableStep,
+            f"a step of {abs(self.step):.6g} of {self.scheme.name} loses the energy",
+            "take a shorter step",
+        )
         if escaped:
-            kind, reason, advice = EscapedOrbit, "a bond passes the barrier of its potential", "start from a state of less energy"
-        place = tuple(int(i) for i in np.unravel_index(row, self.shape[:-1])) if len(self.shape) > 1 else ()
+            kind, reason, advice = (
+                EscapedOrbit,
+                "a bond passes the barrier of its potential",
+                "start from a state of less energy",
+            )
+        place = (
+            tuple(int(i) for i in np.unravel_index(row, self.shape[:-1]))
+            if len(self.shape) > 1
+            else ()
+        )
         energy, mode = float(self.chain.energy(Q, P)), int(np.argmax(growth)) + 1
-        raise kind(reason, advice, time=self.T * (steps / self.steps), mode=mode, energy=energy, orbit=place)
+        raise kind(
+            reason,
+            advice,
+            time=self.T * (steps / self.steps),
+            mode=mode,
+            energy=energy,
+            orbit=place,
+        )
 
     def result(self) -> Orbit:
         Q, P = (part.reshape(len(self.sampled), *self.shape) for part in (self.Q, self.P))
         energies = np.asarray(self.chain.energy(Q, P))
         times = np.asarray(self.T * (self.sampled / self.steps), dtype=np.float64)
         averages = self.averages.reshape(Q.shape) if self.stride else None
-        return Orbit(self.chain, self.scheme, self.step, times, Q, P, energies, averages, time.perf_counter() - self.begun)
+        return Orbit(
+            self.chain,
+            self.scheme,
+            self.step,
+            times,
+            Q,
+            P,
+            energies,
+            averages,
+            time.perf_counter() - self.begun,
+        )
 
 
-def _start(chain: Chain, Q: ArrayLike, P: ArrayLike, T: float, step: float) -> tuple[Floats, Floats, float, float]:
+def _start(
+    chain: Chain, Q: ArrayLike, P: ArrayLike, T: float, step: float
+) -> tuple[Floats, Floats, float, float]:
     """The arguments as numbers; raises InputError."""
     require_chain(chain)
     chain.positions(Q), chain.positions(P)  # refuses other shapes
     Q, P = np.array(Q, dtype=np.float64), np.array(P, dtype=np.float64)
     if Q.shape != P.shape:
-        raise InputError("P", P.shape, f"the shape of Q, {Q.shape}", "pass one momentum for each coordinate")
+        raise InputError(
+            "P", P.shape, f"the shape of Q, {Q.shape}", "pass one momentum for each coordinate"
+        )
     with np.errstate(over="ignore", invalid="ignore"):
         if not Q.size or not np.isfinite(chain.energy(Q, P)).all():
-            raise InputError("Q, P", "a state whose energy is not finite" if Q.size else (), "finite numbers", "start from a finite state")
+            raise InputError(
+                "Q, P",
+                "a state whose energy is not finite" if Q.size else (),
+                "finite numbers",
+                "start from a finite state",
+            )
     for name, value in (("T", T), ("step", step)):
-        if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(float(value)) or value == 0:
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, Real)
+            or not math.isfinite(float(value))
+            or value == 0
+        ):
             raise InputError(name, value, "a finite number other than 0", "pass a time")
     if step < 0:
         raise InputError("step", step, "a positive number", "for the past take a negative T")
@@ -307,9 +412,18 @@ def _start(chain: Chain, Q: ArrayLike, P: ArrayLike, T: float, step: float) -> t
 
 def _whole_steps(T: float, step: float) -> int:
     if not abs(T) / step <= MOST_STEPS:
-        raise InputError("T", T, f"at most 2^52 steps, {step * MOST_STEPS:.3g}", "take a shorter time, or a longer step")
+        raise InputError(
+            "T",
+            T,
+            f"at most 2^52 steps, {step * MOST_STEPS:.3g}",
+            "take a shorter time, or a longer step",
+        )
     ratio = abs(T) / step
-    whole = round(ratio) if abs(ratio - round(ratio)) <= max(WHOLE, 4 * np.finfo(float).eps * ratio) else math.ceil(ratio)
+    whole = (
+        round(ratio)
+        if abs(ratio - round(ratio)) <= max(WHOLE, 4 * np.finfo(float).eps * ratio)
+        else math.ceil(ratio)
+    )
     return max(1, whole)
 
 
@@ -333,7 +447,14 @@ def _sample_steps(T: float, steps: int, samples: object) -> Ints:
         try:
             inner = np.rint(np.asarray(samples, dtype=np.float64) / T * steps)
         except (TypeError, ValueError) as error:
-            raise InputError("samples", samples, "a whole number, or times between 0 and T", "pass one of them") from error
+            raise InputError(
+                "samples", samples, "a whole number, or times between 0 and T", "pass one of them"
+            ) from error
         if inner.ndim != 1 or not ((inner >= 0) & (inner <= steps)).all():
-            raise InputError("samples", samples, f"a whole number, or times between 0 and T = {T:.10g}", "leave out the others")
+            raise InputError(
+                "samples",
+                samples,
+                f"a whole number, or times between 0 and T = {T:.10g}",
+                "leave out the others",
+            )
     return np.unique(np.concatenate([[0], inner, [steps]]).astype(np.int64))

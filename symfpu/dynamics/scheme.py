@@ -1,4 +1,6 @@
-"""What an integrator is: drifts and kicks by turns, symmetric, of one splitting of the Hamiltonian."""
+"""What an integrator is: drifts and kicks by turns, symmetric, of one splitting of the
+Hamiltonian.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 SCAN = 1e-3  # of the phase step * Omega, at which stability is looked for
-FURTHEST = 8.0  # no explicit scheme of fewer than a hundred stages is stable beyond, with steps that are worth their force evaluations
+# no explicit scheme of fewer than a hundred stages is stable beyond, with steps that are worth
+# their force evaluations
+FURTHEST = 8.0
 SLACK = 1e-9  # of the half trace: rounding
 
 
@@ -21,8 +25,9 @@ SLACK = 1e-9  # of the half trace: rounding
 class Scheme:
     """A composition of `stages` kicks with a drift before, between and after them; step 1.
 
-    splitting : "T + V", drifts move the particles and kicks are of all springs; or "harmonic + anharmonic", drifts are exact rotations of
-    the harmonic modes and kicks are of the couplings between them. order : of the error of a step of a chain without small parameters.
+    splitting : "T + V", drifts move the particles and kicks are of all springs; or "harmonic +
+    anharmonic", drifts are exact rotations of the harmonic modes and kicks are of the couplings
+    between them. order : of the error of a step of a chain without small parameters.
     source : where the coefficients are from.
     """
 
@@ -43,16 +48,19 @@ class Scheme:
         return self.splitting != "T + V"
 
     def merged(self, step: float) -> tuple[float, Floats, Floats]:
-        """First drift, kicks, and the drift after each kick in a row of steps of this length: the last one leads into the next step."""
+        """First drift, kicks, and the drift after each kick in a row of steps of this length: the
+        last one leads into the next step.
+        """
         drifts = step * np.array([*self.drifts[1:-1], self.drifts[-1] + self.drifts[0]])
         return step * self.drifts[0], step * np.array(self.kicks), drifts
 
     @cached_property
     def stable_phase(self) -> float:
-        """The largest z to which a mode with step * Omega below z stays bounded, by the trace of the step of the harmonic chain.
+        """The largest z to which a mode with step * Omega below z stays bounded, by the trace of the
+        step of the harmonic chain.
 
-        Exact rotations are stable at any step; we stop where one of them passes a right angle, since steps of half a period
-        resonate with the kicks.
+        Exact rotations are stable at any step; we stop where one of them passes a right angle,
+        since steps of half a period resonate with the kicks.
         """
         if self.in_modes:
             return float(np.pi / 2 / max(map(abs, self.drifts)))
@@ -62,8 +70,12 @@ class Scheme:
 
 
 def half_trace(scheme: Scheme, z: Floats) -> Floats:
-    """Half the trace of the step matrix of an oscillator of frequency z, T + V; beyond -1..1 it is unstable."""
-    a, b, c, d = np.ones_like(z), np.zeros_like(z), np.zeros_like(z), np.ones_like(z)  # rows (a b), (c d)
+    """Half the trace of the step matrix of an oscillator of frequency z, T + V.
+
+    Beyond -1..1 it is unstable.
+    """
+    # rows (a b), (c d)
+    a, b, c, d = np.ones_like(z), np.zeros_like(z), np.zeros_like(z), np.ones_like(z)
     for drift, kick in itertools.zip_longest(scheme.drifts, scheme.kicks, fillvalue=0.0):
         a, b = a + drift * z * c, b + drift * z * d
         c, d = c - kick * z * a, d - kick * z * b
@@ -71,5 +83,7 @@ def half_trace(scheme: Scheme, z: Floats) -> Floats:
 
 
 def palindrome(half: Sequence[float], *, middle: bool) -> tuple[float, ...]:
-    """A symmetric row of coefficients from its first half, whose last entry is the middle one or occurs twice."""
+    """A symmetric row of coefficients from its first half, whose last entry is the middle one or
+    occurs twice.
+    """
     return (*half, *reversed(half[:-1] if middle else half))

@@ -1,4 +1,6 @@
-"""When an orbit is stopped: a step beyond stability, an escape over a barrier of the potential of the bonds, numbers that overflow."""
+"""When an orbit is stopped: a step beyond stability, an escape over a barrier of the potential of
+the bonds, numbers that overflow.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +17,11 @@ from symfpu.errors import SymfpuError
 
 Floats = NDArray[np.float64]
 
-FACTOR = 4.0  # by which the energy of one bond may exceed the total: far beyond the error of any step worth taking
-FURTHEST = 1e100  # bond stretches, where nothing else bounds them: fourth powers do not overflow much before
+# by which the energy of one bond may exceed the total: far beyond the error of any step worth
+# taking
+FACTOR = 4.0
+# bond stretches, where nothing else bounds them: fourth powers do not overflow much before
+FURTHEST = 1e100
 BISECTIONS = 60
 
 
@@ -29,10 +34,21 @@ class OrbitStopped(SymfpuError):
     orbit : its place among several, () for one.
     """
 
-    def __init__(self, reason: str, advice: str, *, time: float, mode: int, energy: float, orbit: tuple[int, ...] = ()) -> None:
+    def __init__(
+        self,
+        reason: str,
+        advice: str,
+        *,
+        time: float,
+        mode: int,
+        energy: float,
+        orbit: tuple[int, ...] = (),
+    ) -> None:
         self.time, self.mode, self.energy, self.orbit = time, mode, energy, orbit
         place = f" of orbit {orbit}" if orbit else ""
-        super().__init__(f"{reason} at time {time:.10g} in mode {mode}{place}, energy {energy:.6g}; {advice}")
+        super().__init__(
+            f"{reason} at time {time:.10g} in mode {mode}{place}, energy {energy:.6g}; {advice}"
+        )
 
 
 class EscapedOrbit(OrbitStopped):
@@ -74,10 +90,12 @@ def potential(chain: Chain, r: float) -> float:
 
 
 def stretch_bounds(chain: Chain, energy: float) -> tuple[float, float, bool]:
-    """Stretches that no bond of an orbit of this energy leaves unless it escapes or the step is too coarse; whether it can escape.
+    """Stretches that no bond of an orbit of this energy leaves unless it escapes or the step is too
+    coarse; whether it can escape.
 
-    While all bonds are inside their wells each holds no more than the whole energy: it stays where V <= energy. Where that is beyond
-    a barrier, the bond may pass, and has passed for good where V < 0. With beta > 0 there are no such barriers: V is bounded below.
+    While all bonds are inside their wells each holds no more than the whole energy: it stays
+    where V <= energy. Where that is beyond a barrier, the bond may pass, and has passed for good
+    where V < 0. With beta > 0 there are no such barriers: V is bounded below.
     """
     left, right = (_bound(chain, energy, side) for side in (-1.0, 1.0))
     return -left[0], right[0], left[1] or right[1]
@@ -101,7 +119,9 @@ def _bound(chain: Chain, energy: float, side: float) -> tuple[float, bool]:
 
 
 def _first(reached: Callable[[float], bool], low: float, high: float) -> float:
-    """Where a condition begins to hold between low and high, by bisection in the logarithm while the numbers are far apart."""
+    """Where a condition begins to hold between low and high, by bisection in the logarithm while
+    the numbers are far apart.
+    """
     for _ in range(2 * BISECTIONS):
         middle = math.sqrt(max(low, 1e-200) * high) if high > 2 * low else 0.5 * (low + high)
         low, high = (low, middle) if reached(middle) else (middle, high)

@@ -1,7 +1,8 @@
-"""Orbits with deviation vectors: a symmetric splitting on T + V and its exact derivative, O(N) for a vector and a step.
+"""Orbits with deviation vectors: a symmetric splitting on T + V and its exact derivative, O(N) for a
+vector and a step.
 
-The table is that of S. Blanes and P. C. Moan in symfpu.dynamics.blanes_moan6: fourteen kicks a step, order 6, symplectic and reversible.
-Others can be passed.
+The table is that of S. Blanes and P. C. Moan in symfpu.dynamics.blanes_moan6: fourteen kicks a
+step, order 6, symplectic and reversible. Others can be passed.
 """
 
 from __future__ import annotations
@@ -27,7 +28,8 @@ Floats = NDArray[np.float64]
 class MovingFrame:
     """An orbit and its deviation vectors as the compiled loops want them; the arrays are moved in place.
 
-    Made by `moving_frame`. x, p : (N+1,) with the walls; dx, dp : (blocks, N+1, LANES). vectors : how many lanes are used.
+    Made by `moving_frame`. x, p : (N+1,) with the walls; dx, dp : (blocks, N+1, LANES). vectors :
+    how many lanes are used.
     kicks, drifts : of one step, as lengths of time.
     """
 
@@ -47,7 +49,9 @@ class MovingFrame:
 
     def orbit(self) -> tuple[Floats, Floats]:
         """Mode coordinates and momenta of the orbit, (N-1,) each."""
-        return np.asarray(self.chain.modes(self.x[1:-1])), np.asarray(self.chain.modes(self.p[1:-1]))
+        return np.asarray(self.chain.modes(self.x[1:-1])), np.asarray(
+            self.chain.modes(self.p[1:-1])
+        )
 
     def deviations(self) -> tuple[Floats, Floats]:
         """Mode coordinates and momenta of the deviations, (vectors, N-1) each."""
@@ -72,15 +76,18 @@ def tangent_steps(
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """A state some steps later, and its deviations moved by the exact derivative of the step.
 
-    Q, P : one state, (N-1,). dQ, dP : m deviations, (m, N-1). Returns all four. step : length in time, negative for the past.
-    drifts, kicks : fractions of a step, one drift more than kicks. The derivative is that of the map in exact arithmetic: it is
-    symplectic to rounding at every step length. Raises InputError.
+    Q, P : one state, (N-1,). dQ, dP : m deviations, (m, N-1). Returns all four. step : length in
+    time, negative for the past.
+    drifts, kicks : fractions of a step, one drift more than kicks. The derivative is that of the
+    map in exact arithmetic: it is symplectic to rounding at every step length. Raises InputError.
 
     >>> one = [[1.0]], [[0.0]]
-    >>> tangent_steps(Chain(N=2, beta=1), [0.0], [0.0], *one, 0.1, 1)[2].round(6)  # cos(sqrt(2) t)
+    # cos(sqrt(2) t)
+    >>> tangent_steps(Chain(N=2, beta=1), [0.0], [0.0], *one, 0.1, 1)[2].round(6)
     array([[0.990017]])
     """
-    from symfpu.dynamics.tangent_loops import advance  # lazy: numba takes longer to import than all the rest
+    # lazy: numba takes longer to import than all the rest
+    from symfpu.dynamics.tangent_loops import advance
 
     frame = moving_frame(chain, Q, P, dQ, dP, step, drifts=drifts, kicks=kicks)
     count = integer(steps, "steps", 0)
@@ -99,17 +106,30 @@ def moving_frame(
     drifts: Sequence[float] = DRIFTS,
     kicks: Sequence[float] = KICKS,
 ) -> MovingFrame:
-    """State and deviations for the compiled loops; arguments and errors as those of `tangent_steps`."""
+    """State and deviations for the compiled loops.
+
+    Arguments and errors as those of `tangent_steps`.
+    """
     from symfpu.dynamics.tangent_loops import LANES
 
     if len(drifts) != len(kicks) + 1:
-        raise InputError("drifts", len(drifts), f"one more than kicks, {len(kicks) + 1}", "begin and end a step with a drift")
+        raise InputError(
+            "drifts",
+            len(drifts),
+            f"one more than kicks, {len(kicks) + 1}",
+            "begin and end a step with a drift",
+        )
     n, vectors = chain.N - 1, np.shape(dQ)[0] if np.ndim(dQ) == 2 else 0
     given = {"Q": (Q, (n,)), "P": (P, (n,)), "dQ": (dQ, (vectors, n)), "dP": (dP, (vectors, n))}
     particles = []
     for name, (values, shape) in given.items():
         if np.shape(values) != shape:
-            raise InputError(name, np.shape(values), f"the shape {shape}", "pass one state and as many deviations dQ as dP")
+            raise InputError(
+                name,
+                np.shape(values),
+                f"the shape {shape}",
+                "pass one state and as many deviations dQ as dP",
+            )
         particles.append(np.asarray(chain.positions(np.asarray(values, dtype=float))))
         if not np.isfinite(particles[-1]).all():
             raise InputError(name, values, "finite numbers", "start from a finite state")
@@ -125,6 +145,11 @@ def moving_frame(
 
 def step_length(step: float) -> float:
     """The step as a float; InputError if it is no finite number other than zero."""
-    if isinstance(step, bool) or not isinstance(step, Real) or not math.isfinite(float(step)) or step == 0:
+    if (
+        isinstance(step, bool)
+        or not isinstance(step, Real)
+        or not math.isfinite(float(step))
+        or step == 0
+    ):
         raise InputError("step", step, "a finite time, not zero", "pass a number such as 0.25")
     return float(step)

@@ -1,8 +1,10 @@
-"""The compiled loops of orbits with deviation vectors: plain arrays, moved in place. Importing this module imports numba.
+"""The compiled loops of orbits with deviation vectors: plain arrays, moved in place. Importing this
+module imports numba.
 
-x, p : displacements and momenta of one orbit with its two walls, (N+1,), zero at the walls. dx, dp : deviations from it, blocks of
-LANES vectors, (blocks, N+1, LANES), zero at the walls and in lanes that are not used. The lanes are the last axis and their
-number is fixed, so that the loop over them is one or two machine instructions.
+x, p : displacements and momenta of one orbit with its two walls, (N+1,), zero at the walls. dx,
+dp : deviations from it, blocks of LANES vectors, (blocks, N+1, LANES), zero at the walls and in
+lanes that are not used. The lanes are the last axis and their number is fixed, so that the loop
+over them is one or two machine instructions.
 """
 
 from __future__ import annotations
@@ -15,19 +17,24 @@ from symfpu.chain.bonds import stiffness, tension
 from symfpu.compiled import compiled
 
 LANES = 8  # deviation vectors moved by one instruction stream
-LENGTHEN, SHORTEN = 1e-3, 1e-5  # least ratio of a diagonal entry of R to its column, above and below which the block changes
+# least ratio of a diagonal entry of R to its column, above and below which the block changes
+LENGTHEN, SHORTEN = 1e-3, 1e-5
 
 _compiled, _inlined = compiled(error_model="numpy"), compiled(error_model="numpy", keep=False)
 _tension, _stiffness = _inlined(tension), _inlined(stiffness)
 
 
 @_compiled
-def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, law: Any, kick: float, drift: float, forces: Any) -> None:
-    """One kick, one drift, and their derivatives: bond j has the tension r + alpha r^2 + beta r^3, its slope 1 + 2 alpha r + 3 beta r^2.
+def kick_and_drift(
+    x: Any, p: Any, dx: Any, dp: Any, law: Any, kick: float, drift: float, forces: Any
+) -> None:
+    """One kick, one drift, and their derivatives: bond j has the tension r + alpha r^2 + beta r^3,
+    its slope 1 + 2 alpha r + 3 beta r^2.
 
-    dx, dp : flat blocks, (blocks, (N+1) LANES). forces : room for the impulses of the bonds on the orbit (N,) and on the lanes
-    (N LANES,), for slopes (N,) and (N LANES,). Every loop runs along one flat axis and writes to an array that it reads in the same place
-    only, so that the compiler can vectorise it.
+    dx, dp : flat blocks, (blocks, (N+1) LANES). forces : room for the impulses of the bonds on
+    the orbit (N,) and on the lanes (N LANES,), for slopes (N,) and (N LANES,). Every loop runs
+    along one flat axis and writes to an array that it reads in the same place only, so that the
+    compiler can vectorise it.
     """
     tension, pull, stiffness, slope = forces
     bonds, last = len(tension), (len(tension) - 1) * LANES
@@ -54,8 +61,13 @@ def kick_and_drift(x: Any, p: Any, dx: Any, dp: Any, law: Any, kick: float, drif
 
 
 @_compiled
-def advance(x: Any, p: Any, dx: Any, dp: Any, law: Any, kicks: Any, drifts: Any, steps: int) -> None:
-    """So many steps of a splitting; kicks (stages,) and drifts (stages + 1,) are lengths of time, drifts that meet are one."""
+def advance(
+    x: Any, p: Any, dx: Any, dp: Any, law: Any, kicks: Any, drifts: Any, steps: int
+) -> None:
+    """So many steps of a splitting.
+
+    Kicks (stages,) and drifts (stages + 1,) are lengths of time, drifts that meet are one.
+    """
     bonds, blocks = len(x) - 1, dx.shape[0]
     forces = (np.empty(bonds), np.empty(bonds * LANES), np.empty(bonds), np.empty(bonds * LANES))
     if steps == 0:
@@ -63,7 +75,10 @@ def advance(x: Any, p: Any, dx: Any, dp: Any, law: Any, kicks: Any, drifts: Any,
     x += drifts[0] * p
     dx += drifts[0] * dp
     # a reshape is a call: once, not at every kick
-    flat_dx, flat_dp = dx.reshape(blocks, (bonds + 1) * LANES), dp.reshape(blocks, (bonds + 1) * LANES)
+    flat_dx, flat_dp = (
+        dx.reshape(blocks, (bonds + 1) * LANES),
+        dp.reshape(blocks, (bonds + 1) * LANES),
+    )
     for step in range(steps):
         for i in range(len(kicks)):
             drift = drifts[i + 1]
@@ -74,10 +89,11 @@ def advance(x: Any, p: Any, dx: Any, dp: Any, law: Any, kicks: Any, drifts: Any,
 
 @_compiled
 def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any) -> float:
-    """Replace the first m vectors by their orthonormal basis, V = basis R; returns the least R_jj / |column j of R|.
+    """Replace the first m vectors by their orthonormal basis, V = basis R; returns the least R_jj /
+    |column j of R|.
 
-    rows : room for the vectors, (m, 2(N-1)). R : upper triangular, positive diagonal, (m, m). Gram-Schmidt with a second pass, after
-    which the basis is orthonormal to rounding.
+    rows : room for the vectors, (m, 2(N-1)). R : upper triangular, positive diagonal, (m, m).
+    Gram-Schmidt with a second pass, after which the basis is orthonormal to rounding.
     """
     n, least = dx.shape[1] - 2, 1.0
     for j in range(len(rows)):
@@ -105,7 +121,8 @@ def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any) -> float:
 
 @_compiled
 def accumulate(R: Any, columns: Any, diagonal: Any, norms: Any) -> None:
-    """Multiply the product of triangular factors by R from the left: columns are unit vectors, norms the logarithms of their lengths.
+    """Multiply the product of triangular factors by R from the left: columns are unit vectors, norms
+    the logarithms of their lengths.
 
     diagonal : logarithms of the diagonal of the product.
     """
@@ -138,7 +155,8 @@ def carry_frame(
     diagonal: Any,
     norms: Any,
 ) -> int:
-    """Steps with a frame made orthonormal again after every block; the block is halved where the frame is squeezed too much.
+    """Steps with a frame made orthonormal again after every block; the block is halved where the
+    frame is squeezed too much.
 
     Returns the block to go on with.
     """

@@ -1,4 +1,6 @@
-"""Quasi-periodic solutions given by their cosine coefficients: orbit, energies, averages and residuals."""
+"""Quasi-periodic solutions given by their cosine coefficients: orbit, energies, averages and
+residuals.
+"""
 
 from __future__ import annotations
 
@@ -29,9 +31,9 @@ GRID_POINTS_DIGITS = 16  # the same for numbers of many digits
 class QuasiPeriodic:
     """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)): what every torus and breather can do.
 
-    seeds, frequencies, phases : the s angles. harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : c_q[nu];
-    shape (H, N-1). With digits, results are mpf or arrays of them, evaluated with that many digits
-    and more, which print that many; else doubles.
+    seeds, frequencies, phases : the s angles. harmonics : the nu, one of each pair +-nu; shape
+    (H, s). cosines : c_q[nu]; shape (H, N-1). With digits, results are mpf or arrays of them,
+    evaluated with that many digits and more, which print that many; else doubles.
     """
 
     chain: Chain
@@ -62,30 +64,51 @@ class QuasiPeriodic:
     def in_doubles(self) -> FourierTorus:
         """The same solution with its coefficients rounded to doubles."""
         phases = {q: float(phi) for q, phi in self.phases.items()}
-        return FourierTorus(self.chain, self.seeds, self.frequencies, self.harmonics, self.cosines.astype(float), phases)
+        return FourierTorus(
+            self.chain,
+            self.seeds,
+            self.frequencies,
+            self.harmonics,
+            self.cosines.astype(float),
+            phases,
+        )
 
     def positions(self, t: ArrayLike) -> Numbers:
         """Mode coordinates Q_q(t); t a number or an array (T,), result (N-1,) or (T, N-1)."""
         return with_digits(self._positions(t), self.digits)
 
     def _positions(self, t: ArrayLike) -> Numbers:
-        return self._along(t, lambda angles: self.numbers.dot(self.numbers.cos(angles), self.cosines))
+        return self._along(
+            t, lambda angles: self.numbers.dot(self.numbers.cos(angles), self.cosines)
+        )
 
     def momenta(self, t: ArrayLike) -> Numbers:
-        """Mode momenta P_q(t) = dQ_q/dt; t a number or an array (T,), result (N-1,) or (T, N-1)."""
+        """Mode momenta P_q(t) = dQ_q/dt.
+
+        T a number or an array (T,), result (N-1,) or (T, N-1).
+        """
         return with_digits(self._momenta(t), self.digits)
 
     def _momenta(self, t: ArrayLike) -> Numbers:
-        return self._along(t, lambda angles: self.numbers.dot(self.numbers.sin(angles), -self._rates[:, None] * self.cosines))
+        return self._along(
+            t,
+            lambda angles: self.numbers.dot(
+                self.numbers.sin(angles), -self._rates[:, None] * self.cosines
+            ),
+        )
 
     def _along(self, t: ArrayLike, evaluate: Callable[[Numbers], Numbers]) -> Numbers:
         with self._context():
             try:
                 times = self.numbers.array(t)
             except (TypeError, ValueError) as error:
-                raise InputError("t", t, "a finite number or an array of them", "pass real numbers") from error
+                raise InputError(
+                    "t", t, "a finite number or an array of them", "pass real numbers"
+                ) from error
             if times.ndim > 1 or not self.numbers.finite(times):
-                raise InputError("t", t, "a finite number or a one-dimensional array of them", "flatten it")
+                raise InputError(
+                    "t", t, "a finite number or a one-dimensional array of them", "flatten it"
+                )
             theta = times.reshape(-1, 1) * self._omega + self._offsets()
             values = self._at_angles(theta, evaluate)
             return values[0] if times.ndim == 0 else values
@@ -95,11 +118,16 @@ class QuasiPeriodic:
 
     def _at_angles(self, theta: Numbers, evaluate: Callable[[Numbers], Numbers]) -> Numbers:
         step = max(1, CHUNK // len(self.harmonics))
-        parts = [evaluate(theta[i : i + step] @ self.harmonics.T) for i in range(0, len(theta), step)]
+        parts = [
+            evaluate(theta[i : i + step] @ self.harmonics.T) for i in range(0, len(theta), step)
+        ]
         return np.concatenate(parts) if parts else np.zeros((0, self.chain.N - 1))
 
     def energy(self, t: ArrayLike = 0.0) -> Any:
-        """Total energy H at t, a number or (T,), in the shape of t; constant in time for an exact torus."""
+        """Total energy H at t, a number or (T,), in the shape of t.
+
+        Constant in time for an exact torus.
+        """
         with self._context():
             energy = self.chain.energy(self._positions(t), self._momenta(t))
             return with_digits(energy[()], self.digits)
@@ -111,7 +139,9 @@ class QuasiPeriodic:
             return with_digits(energies, self.digits)
 
     def energy_error(self, t: ArrayLike, *, harmonic: bool = False) -> Numbers:
-        """Relative error (E(t) - E(0)) / E(0) of the total energy, or of the harmonic one, sum E_q (section 3.2)."""
+        """Relative error (E(t) - E(0)) / E(0) of the total energy, or of the harmonic one, sum
+        E_q (section 3.2).
+        """
         with self._context():
             values = self.harmonic_energies(t).sum(axis=-1) if harmonic else self.energy(t)
             start = self.harmonic_energies().sum() if harmonic else self.energy()
@@ -120,8 +150,9 @@ class QuasiPeriodic:
     def average_spectrum(self, T: float | None = None) -> Numbers:
         """Time averages of the harmonic energies E_q, in closed form; shape (N-1,).
 
-        T : averaging time from t = 0, computed in doubles; None for the infinite-time average, (1/4) sum c^2 ((nu.omega)^2 +
-        Omega^2) over nu != 0 plus the constant term. With the factor 1/2 of E_q that the paper's section 3.2 leaves out.
+        T : averaging time from t = 0, computed in doubles; None for the infinite-time average,
+        (1/4) sum c^2 ((nu.omega)^2 + Omega^2) over nu != 0 plus the constant term. With the
+        factor 1/2 of E_q that the paper's section 3.2 leaves out.
         """
         if T is not None:
             return self._finite_average(T)
@@ -146,7 +177,9 @@ class QuasiPeriodic:
             difference = mean_cosine(rates[rows, None] - rates, psi[rows, None] - psi, T)
             total_ = mean_cosine(rates[rows, None] + rates, psi[rows, None] + psi, T)
             total += np.einsum("hq,hq->q", velocity[rows], (difference - total_) @ velocity)
-            total += linear**2 * np.einsum("hq,hq->q", cosines[rows], (difference + total_) @ cosines)
+            total += linear**2 * np.einsum(
+                "hq,hq->q", cosines[rows], (difference + total_) @ cosines
+            )
         return total / 4
 
     @property
@@ -154,10 +187,12 @@ class QuasiPeriodic:
         return np.asarray(-(self._rates[:, None] ** 2) * self.cosines)
 
     def residuals(self, points: int | None = None) -> Numbers:
-        """Largest |d^2Q_q/dt^2 - force| of each mode on a grid of angles; zero for an exact torus; shape (N-1,).
+        """Largest |d^2Q_q/dt^2 - force| of each mode on a grid of angles; shape (N-1,).
 
-        points : grid points for each of the s angles; default such that the grid has about 4096. With digits, where doubles
-        cannot see the residual, about 16.
+        Zero for an exact torus.
+
+        points : grid points for each of the s angles; default such that the grid has about 4096.
+        With digits, where doubles cannot see the residual, about 16.
         """
         return with_digits(self._residuals(points)[0], self.digits)
 
@@ -183,12 +218,21 @@ class QuasiPeriodic:
             if residuals.max() > SEEN_BY_DOUBLES * largest:
                 return residuals, largest
         wanted = GRID_POINTS if self.digits is None else GRID_POINTS_DIGITS
-        number = integer(points, "points", 1) if points is not None else max(2, min(64, round(wanted ** (1 / len(self.seeds)))))
+        number = (
+            integer(points, "points", 1)
+            if points is not None
+            else max(2, min(64, round(wanted ** (1 / len(self.seeds)))))
+        )
         with self._context():
             worst, largest = np.zeros(self.chain.N - 1), 0.0
             for theta in self.angle_grid(number):
-                Q = self._at_angles(theta, lambda angles: self.numbers.dot(self.numbers.cos(angles), self.cosines))
-                second = self._at_angles(theta, lambda angles: self.numbers.dot(self.numbers.cos(angles), self._curvatures))
+                Q = self._at_angles(
+                    theta, lambda angles: self.numbers.dot(self.numbers.cos(angles), self.cosines)
+                )
+                second = self._at_angles(
+                    theta,
+                    lambda angles: self.numbers.dot(self.numbers.cos(angles), self._curvatures),
+                )
                 force = self.chain.accelerations(Q)
                 worst = np.maximum(worst, np.abs(second - force).max(axis=0))
                 largest = max(largest, np.abs(force).max())

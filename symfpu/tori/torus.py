@@ -79,7 +79,13 @@ class QTorus(QuasiPeriodic):
         places = self.digits or 12
         amplitudes = ", ".join(f"A_{q}={text(a, places)}" for q, a in self.amplitudes.items())
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        proof = "" if self.certificate is None else ", certified" if self.certificate.certified else ", not certified"
+        proof = (
+            ""
+            if self.certificate is None
+            else ", certified"
+            if self.certificate.certified
+            else ", not certified"
+        )
         doubts = "".join(f"; {warning}" for warning in self.warnings)
         return (
             f"QTorus({chain}, {amplitudes}, frequency order {self.frequency_order}, order {self.order}, "
