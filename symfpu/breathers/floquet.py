@@ -1,11 +1,9 @@
 """Floquet multipliers of a q-breather: its tangent map over a period, and the stability that they decide.
 
-The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives M = R
-H^-1 R H with the symplectic inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with a =
-1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in pairs with lambda + 1/lambda =
-2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M, is a simple kappa =
-0 whose left eigenvector is the acceleration at t = 0, B f = 0. So every pair is exactly
-reciprocal, and the double 1 costs no digits.
+The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives M = R H^-1 R H with the symplectic
+inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with a = 1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in
+pairs with lambda + 1/lambda = 2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M, is a simple kappa = 0 whose
+left eigenvector is the acceleration at t = 0, B f = 0. So every pair is exactly reciprocal, and the double 1 costs no digits.
 """
 
 from __future__ import annotations
@@ -18,14 +16,15 @@ from numpy.typing import NDArray
 
 from symfpu.breathers.balance import PeriodicOrbit
 from symfpu.chain import bonds
-from symfpu.dynamics.kahan_li8 import ORDER, tangent_map_along
+from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.schemes import particle_scheme
+from symfpu.dynamics.tangent import tangent_map_along
 from symfpu.errors import InputError
 from symfpu.numbers.typed import decimal
 
 Floats = NDArray[np.float64]
 ACCURACY = 1e-12  # of the tangent map, relative to its largest entry
-# over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
-FIRST_STEP = 0.1
+FIRST_STEP = 0.1  # over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
 DOUBLINGS = 5
 SAFETY = 8  # times the error that a kappa may have: what it may be off the circle
 TRIVIAL, ELLIPTIC = "trivial", "on the circle"
@@ -97,18 +96,19 @@ class Floquet:
         return 1.0 if self.stable else float(np.max(np.abs(self.pairs)))
 
 
-def monodromy(orbit: PeriodicOrbit) -> Floats:
+def monodromy(orbit: PeriodicOrbit, *, scheme: str = "kahan_li8") -> Floats:
     """Tangent map over one period in mode coordinates and momenta, from t = 0.
 
-    Shape (2(N-1), 2(N-1)). Raises InputError.
+    scheme : of the integrator, on T + V. Returns shape (2(N-1), 2(N-1)). Raises InputError.
     """
-    return _whole(_half(_checked(orbit))[0])
+    return _whole(_half(_checked(orbit), particle_scheme(scheme))[0])
 
 
-def floquet(orbit: PeriodicOrbit) -> Floquet:
+def floquet(orbit: PeriodicOrbit, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
     orbit : from `periodic_orbit` or its sisters; dimensionless.
+    scheme : of the integrator, on T + V; with one of lower order errors and tolerances are larger.
 
     The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time; ours. A
     kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its
@@ -122,12 +122,13 @@ def floquet(orbit: PeriodicOrbit) -> Floquet:
     """
     from scipy.linalg import eig
 
-    half, map_error = _half(_checked(orbit))
+    half, map_error = _half(_checked(orbit), particle_scheme(scheme))
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]
     force = orbit.chain.accelerations(orbit.positions(0.0))
-    # the acceleration, then an orthonormal basis of what is perpendicular to it
-    basis = np.linalg.svd(force[None, :])[2].T
+    basis = np.linalg.svd(force[None, :])[
+        2
+    ].T  # the acceleration, then an orthonormal basis of what is perpendicular to it
     flow, rest = basis[:, 0], basis[:, 1:]
     trivial = float(np.linalg.norm(C.T @ (B @ flow)))
     error = map_error * float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2)) + trivial
@@ -165,7 +166,7 @@ def _checked(orbit: PeriodicOrbit) -> PeriodicOrbit:
     return orbit
 
 
-def _half(orbit: PeriodicOrbit) -> tuple[Floats, float]:
+def _half(orbit: PeriodicOrbit, scheme: Scheme) -> tuple[Floats, float]:
     """The tangent map over half a period and its estimated error, in the spectral norm."""
     chain, duration = orbit.chain, np.pi / float(orbit.frequency)
     r = chain.stretches(orbit.positions(np.linspace(0, duration, 2 * len(orbit.cosines))))
@@ -177,11 +178,11 @@ def _half(orbit: PeriodicOrbit) -> tuple[Floats, float]:
     def stretches(t: Floats) -> Floats:
         return np.asarray(np.cos(np.multiply.outer(t, rates)) @ coefficients)
 
-    coarse = tangent_map_along(chain, stretches, duration, steps)
+    coarse = tangent_map_along(chain, stretches, duration, steps, scheme=scheme)
     for _ in range(DOUBLINGS):
         steps *= 2
-        fine = tangent_map_along(chain, stretches, duration, steps)
-        error = float(np.linalg.norm(fine - coarse, 2)) / (2**ORDER - 1)
+        fine = tangent_map_along(chain, stretches, duration, steps, scheme=scheme)
+        error = float(np.linalg.norm(fine - coarse, 2)) / (2**scheme.order - 1)
         if error <= ACCURACY * max(1.0, float(np.max(np.abs(fine)))):
             break
         coarse = fine
@@ -204,10 +205,7 @@ def _kind(kappa: complex, tolerance: float) -> str:
 
 
 def _pair(kappa: complex, kind: str) -> tuple[complex, complex]:
-    """(lambda, 1/lambda) with |lambda| >= 1 of lambda + 1/lambda = 2 + 4 kappa.
-
-    On the circle exp(+-i angle).
-    """
+    """(lambda, 1/lambda) with |lambda| >= 1 of lambda + 1/lambda = 2 + 4 kappa; on the circle exp(+-i angle)."""
     if kind == ELLIPTIC:
         angle = 2 * np.arcsin(np.sqrt(np.clip(-kappa.real, 0.0, 1.0)))
         return complex(np.cos(angle), np.sin(angle)), complex(np.cos(angle), -np.sin(angle))

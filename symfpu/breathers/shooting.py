@@ -24,13 +24,14 @@ from symfpu.breathers.balance import (
     positive_frequency,
 )
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.kahan_li8 import ORDER, tangent_flow
+from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.schemes import particle_scheme
+from symfpu.dynamics.tangent import tangent_steps
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.typed import Number, decimal, seed_modes
 
 Floats = NDArray[np.float64]
-# of the half period, relative to its largest number: a small omega - Omega magnifies errors
-ACCURACY = 1e-15
+ACCURACY = 1e-15  # of the half period, relative to its largest number: a small omega - Omega magnifies errors
 FIRST_STEP = 0.1  # time of the coarser of the first two integrations
 DOUBLINGS = 5
 
@@ -100,13 +101,21 @@ class ShotOrbit:
 
 
 @np.errstate(over="ignore", invalid="ignore")  # motions that run away are refused
-def shoot(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = None) -> ShotOrbit:
+def shoot(
+    chain: Chain,
+    seed: int,
+    frequency: Number,
+    guess: ArrayLike | None = None,
+    *,
+    scheme: str = "kahan_li8",
+) -> ShotOrbit:
     """The q-breather of a seed mode with the given frequency, by Newton's method on Q(0).
 
     chain, seed : the model and the mode; all quantities are dimensionless.
     frequency : omega, an exact number.
     guess : Q(0), shape (N-1,), of which the modes that the symmetry forbids are dropped; None for the seed
         alone with the amplitude of the lowest order, good for small ones.
+    scheme : of the integrator, on T + V; with one of lower order the residual is larger.
 
     Integrates Eq. eqmo from rest over half a period, at whose end an orbit is at rest again. Ours: an
     independent check of `periodic_orbit`. Raises InputError; without a guess NoRealAmplitude or
@@ -117,6 +126,7 @@ def shoot(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = 
     (0.004649999361, True)
     """
     (seed,), omega = seed_modes((seed,), chain.N), positive_frequency(frequency)
+    integrator = particle_scheme(scheme)
     if guess is None:
         start = np.zeros(chain.N - 1)
         start[seed - 1] = lowest_amplitude(chain, seed, detuning(chain, seed, omega)[0])
@@ -128,10 +138,13 @@ def shoot(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = 
     )
     start = np.where(allowed, start, 0.0)
     half, rate = np.pi / float(omega), float(omega)
-    steps = _steps(chain, seed, start, half)
-    start, history = _newton(chain, seed, start, np.flatnonzero(allowed), half, steps)
+    steps = _steps(chain, integrator, seed, start, half)
+    start, history = _newton(chain, integrator, seed, start, np.flatnonzero(allowed), half, steps)
     none = np.zeros((0, chain.N - 1))
-    Q, P, *_ = tangent_flow(chain, start, 0 * start, none, none, 2 * half, 4 * steps)
+    step = half / (2 * steps)
+    Q, P, *_ = tangent_steps(
+        chain, start, 0 * start, none, none, step, 4 * steps, scheme=integrator
+    )
     residual = float(
         max(np.max(np.abs(Q - start)), np.max(np.abs(P)) / rate) / np.max(np.abs(start))
     )
@@ -139,18 +152,22 @@ def shoot(chain: Chain, seed: int, frequency: Number, guess: ArrayLike | None = 
 
 
 def _newton(
-    chain: Chain, seed: int, start: Floats, free: NDArray[np.intp], half: float, steps: int
+    chain: Chain,
+    scheme: Scheme,
+    seed: int,
+    start: Floats,
+    free: NDArray[np.intp],
+    half: float,
+    steps: int,
 ) -> tuple[Floats, tuple[float, ...]]:
-    """The start at rest that is at rest after half a period, and the residuals on the way.
-
-    Raises ShootingFailed.
-    """
+    """The start at rest that is at rest after half a period, and the residuals on the way; raises ShootingFailed."""
     directions = np.eye(chain.N - 1)[free]
+    still = 0 * directions
     size, before, history, best = float(np.max(np.abs(start))), np.inf, [], start
     for _ in range(ITERATIONS + 1):
-        _, P, _, slopes = tangent_flow(
-            chain, start, 0 * start, directions, 0 * directions, half, steps
-        )
+        state = start, 0 * start
+        moved = tangent_steps(chain, *state, directions, still, half / steps, steps, scheme=scheme)
+        _, P, _, slopes = moved
         history.append(float(np.max(np.abs(P)) * half / (np.pi * np.max(np.abs(start)))))
         if not np.isfinite(history[-1]):
             raise ShootingFailed(
@@ -202,12 +219,15 @@ def _start(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
     return start
 
 
-def _steps(chain: Chain, seed: int, start: Floats, half: float) -> int:
+def _steps(chain: Chain, scheme: Scheme, seed: int, start: Floats, half: float) -> int:
     """Steps with which half a period from the guess is integrated to ACCURACY."""
     steps, none = int(np.ceil(half / FIRST_STEP)), np.zeros((0, chain.N - 1))
 
     def end(steps: int) -> Floats:
-        return np.concatenate(tangent_flow(chain, start, 0 * start, none, none, half, steps)[:2])
+        Q, P, *_ = tangent_steps(
+            chain, start, 0 * start, none, none, half / steps, steps, scheme=scheme
+        )
+        return np.concatenate([Q, P])
 
     coarse = end(steps)
     for _ in range(DOUBLINGS):
@@ -215,7 +235,7 @@ def _steps(chain: Chain, seed: int, start: Floats, half: float) -> int:
         fine = end(steps)
         if not np.isfinite(fine).all():
             raise ShootingFailed(seed, "the motion from the guess runs away to infinity", start, ())
-        if np.max(np.abs(fine - coarse)) <= (2**ORDER - 1) * ACCURACY * np.max(np.abs(fine)):
+        if np.max(np.abs(fine - coarse)) <= (2**scheme.order - 1) * ACCURACY * np.max(np.abs(fine)):
             break
         coarse = fine
     return steps

@@ -23,12 +23,14 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.dynamics.alignment import (
     SAMPLES,
+    SCHEME,
     STEP,
     VECTORS,
     AlignmentIndices,
     alignment_indices,
     seconds_needed,
 )
+from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
@@ -55,6 +57,9 @@ def gali(
         ),
     ] = None,
     step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(STEP),
+    scheme: Annotated[
+        str, typer.Option(help=f"{', '.join(PARTICLE_SCHEMES)}.", metavar="SCHEME")
+    ] = SCHEME,
     samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(
         SAMPLES
     ),
@@ -92,7 +97,7 @@ def gali(
     h = number("step", step)
     count = optional("vectors", vectors)
     if estimate:
-        seconds = seconds_needed(torus.chain, T, vectors=count, step=h)
+        seconds = seconds_needed(torus.chain, T, vectors=count, step=h, scheme=scheme)
         _print_estimate(seconds, as_json)
         return
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
@@ -105,6 +110,7 @@ def gali(
             T,
             vectors=count,
             step=h,
+            scheme=scheme,
             samples=whole("samples", samples),
             seed=whole("seed", seed),
             file=kept,
@@ -148,6 +154,7 @@ def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
         "beta": decimal(chain.beta),
         "seeds": list(seeds),
         "time": fifteen_digits(float(found.times[-1])),
+        "scheme": found.scheme.name,
         "step": fifteen_digits(found.step),
         "slopes": slopes,
         "log10_gali": indices,

@@ -23,7 +23,8 @@ from symfpu.cli.terminal import (
     whole,
 )
 from symfpu.cli.verbs import app
-from symfpu.dynamics.orbits import SCHEMES, Orbit, integrate
+from symfpu.dynamics.orbits import Orbit, integrate
+from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.reports.tables import fifteen_digits

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain, require_chain
+from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.dimension import (
     DECADES,
     FEWEST,
@@ -31,6 +32,8 @@ from symfpu.dynamics.dimension import (
     torus_dimension,
 )
 from symfpu.dynamics.frame_run import FrameRun, Progress, seconds_a_step
+from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.schemes import particle_scheme
 from symfpu.dynamics.tangent import moving_frame, step_length
 from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path, seconds_between
@@ -40,6 +43,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 STEP, SAMPLES, VECTORS, BLOCK = 0.4, 400, 7, 40
+SCHEME = BLANES_MOAN6.name
 MOST_VECTORS, MOST_SAMPLES, MOST_STEPS = 64, 1_000_000, 2**52
 LOST_ENERGY = 1e-3  # relative: an orbit that has lost so much is not one of the chain
 FEWEST_SAMPLES = 2 * FEWEST  # in all: rounding to steps unites some of the first
@@ -66,7 +70,7 @@ class AlignmentIndices:
 
     chain : the model. times : (S,), spaced evenly in log t.
     log10_gali : (S, vectors-1), for k = 2 .. vectors. lyapunov : (S,), log |v_1| / t of the first vector.
-    step : of the integrator. energy_error : |H(T) - H(0)| / H(0) of the orbit.
+    step : of the integrator. energy_error : |H(T) - H(0)| / H(0) of the orbit. scheme : its coefficients.
 
     Its methods look at the last decades of time.
 
@@ -84,13 +88,17 @@ class AlignmentIndices:
     lyapunov: Floats
     step: float
     energy_error: float
+    scheme: Scheme = BLANES_MOAN6
 
     def __repr__(self) -> str:
-        slopes = ", ".join(f"{s.value:.2f}" for s in self.slopes())
-        return (
-            f"AlignmentIndices({repr(self.chain)[6:-1]}, t = {self.times[-1]:.3g}, {self.dimension().verdict}: slopes of "
-            f"GALI_2..{self.vectors} {slopes}, Lyapunov exponent {self.lyapunov[-1]:.2g}, energy error {self.energy_error:.1g})"
-        )
+        model = repr(self.chain)[6:-1]
+        verdict = self.dimension().verdict
+        values = ", ".join(f"{s.value:.2f}" for s in self.slopes())
+        slopes = f"slopes of GALI_2..{self.vectors} {values}"
+        exponent = f"Lyapunov exponent {self.lyapunov[-1]:.2g}"
+        error = f"energy error {self.energy_error:.1g}"
+        answer = f"t = {self.times[-1]:.3g}, {verdict}: {slopes}, {exponent}, {error}"
+        return f"AlignmentIndices({model}, {answer})"
 
     @property
     def vectors(self) -> int:
@@ -125,7 +133,8 @@ class AlignmentIndices:
         InputError.
         """
         if not self.energy_error <= LOST_ENERGY:
-            reason = f"the orbit is off by {self.energy_error:.1g} of its energy: take a shorter step than {self.step:g}"
+            lost = f"the orbit is off by {self.energy_error:.1g} of its energy"
+            reason = f"{lost}: take a shorter step than {self.step:g}"
             return TorusDimension("undecided", None, math.nan, {}, reason)
         growth = self.lyapunov * self.times
         return torus_dimension(
@@ -141,6 +150,7 @@ def alignment_indices(
     *,
     vectors: int | None = None,
     step: float = STEP,
+    scheme: str = SCHEME,
     samples: int = SAMPLES,
     seed: int = 0,
     block: int = BLOCK,
@@ -154,9 +164,10 @@ def alignment_indices(
     Q, P : the state, mode coordinates and momenta, (N-1,).
     T : the last time.
     vectors : 2 to 2(N-1), default VECTORS or as many as there are, orthonormal at random at t = 0.
-    step : of the integrator, Blanes-Moan 6 on T + V. Its orbit lies on tori of the integrator, off those of
-        the chain by a part step^6: near a torus of low dimension it shows this dimension up to some time
-        only, a longer one with a shorter step; the energy error is in the result.
+    step : of the integrator. Its orbit lies on tori of the integrator, off those of the chain by a part
+        step^6, or step^order of another scheme: near a torus of low dimension it shows this dimension up to
+        some time only, a longer one with a shorter step; the energy error is in the result.
+    scheme : of the integrator, on T + V: those of symfpu.dynamics.schemes but for aba864_modes.
     samples : times, even in log t from 1 to T; each is a whole number of steps.
     seed : of numpy's default generator, for the vectors.
     block : the most steps between two orthonormalisations, halved where the frame is squeezed.
@@ -187,11 +198,12 @@ def alignment_indices(
     True
     """
     require_chain(chain)
-    n, h = chain.N - 1, abs(step_length(step))
+    n, h, integrator = chain.N - 1, abs(step_length(step)), particle_scheme(scheme)
     count, last = _vectors(n, vectors), _steps(T, h)
     longest = integer(block, "block", 1)
     marks = _marks(last, h, _samples(samples))
-    frame = moving_frame(chain, Q, P, *_random_frame(count, n, integer(seed, "seed", 0)), h)
+    vectors_at_start = _random_frame(count, n, integer(seed, "seed", 0))
+    frame = moving_frame(chain, Q, P, *vectors_at_start, h, scheme=integrator)
     if not np.any(frame.x) and not np.any(frame.p):
         raise InputError("Q, P", 0.0, "a state other than the equilibrium", "start from an orbit")
     before = float(chain.energy(*frame.orbit()))
@@ -199,21 +211,25 @@ def alignment_indices(
     if file is not None:
         run.keep_in(checkpoint_path(file))
     run.go(progress or (lambda label, done: None))
-    times, volumes = (
-        np.asarray(run.marks * h, dtype=np.float64),
-        np.cumsum(run.volumes, axis=1)[:, 1:] / math.log(10),
-    )
+    times = np.asarray(run.marks * h, dtype=np.float64)
+    logarithms = np.cumsum(run.volumes, axis=1)
+    volumes = logarithms[:, 1:] / math.log(10)
     error = abs(float(chain.energy(*frame.orbit())) - before) / abs(before)
-    return AlignmentIndices(chain, times, volumes, run.growth / times, h, error)
+    return AlignmentIndices(chain, times, volumes, run.growth / times, h, error, integrator)
 
 
 def seconds_needed(
-    chain: Chain, T: float, *, vectors: int | None = None, step: float = STEP
+    chain: Chain,
+    T: float,
+    *,
+    vectors: int | None = None,
+    step: float = STEP,
+    scheme: str = SCHEME,
 ) -> float:
     """Processor time in seconds that `alignment_indices` of such a chain will take.
 
     chain : the model. T : the last time, step : of the integrator, both dimensionless.
-    vectors : 2 to 2(N-1), default as there.
+    vectors : 2 to 2(N-1), default as there. scheme : as there.
 
     From a trial of a fraction of a second, a small oscillation: an orbit so chaotic that it squeezes the
     frame within BLOCK steps takes longer. Ours.
@@ -224,12 +240,11 @@ def seconds_needed(
     True
     """
     require_chain(chain)
-    n, h = chain.N - 1, abs(step_length(step))
+    n, h, integrator = chain.N - 1, abs(step_length(step)), particle_scheme(scheme)
     count, last = _vectors(n, vectors), _steps(T, h)
     small = np.where(np.arange(n) == 0, 1e-3, 0.0)
-    return last * seconds_a_step(
-        moving_frame(chain, small, small, *_random_frame(count, n, 0), h), BLOCK
-    )
+    frame = moving_frame(chain, small, small, *_random_frame(count, n, 0), h, scheme=integrator)
+    return last * seconds_a_step(frame, BLOCK)
 
 
 def _samples(samples: int) -> int:
@@ -278,11 +293,14 @@ def _steps(T: float, h: float) -> int:
 
 def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
     """Orthonormal vectors of a phase space of dimension 2n as rows."""
-    rows = np.linalg.qr(np.random.default_rng(seed).normal(size=(2 * n, vectors)))[0].T
+    random = np.random.default_rng(seed)
+    columns = random.normal(size=(2 * n, vectors))
+    rows = np.linalg.qr(columns)[0].T
     return rows[:, :n], rows[:, n:]
 
 
 def _marks(last: int, h: float, samples: int) -> Ints:
     """Numbers of steps at which there are samples."""
-    found: Ints = np.unique(np.geomspace(max(1.0, 1 / h), last, samples).round().astype(np.int64))
+    even_in_log = np.geomspace(max(1.0, 1 / h), last, samples)
+    found: Ints = np.unique(even_in_log.round().astype(np.int64))
     return found

@@ -25,8 +25,7 @@ Ints = NDArray[np.int64]
 DECADES = 1.5  # of time, the last ones, in which slopes are fitted
 PARTS = 8  # of that range, left out one at a time for the uncertainty of a slope
 FEWEST = 4 * PARTS  # samples in it
-# least uncertainty of a slope in the choice of a dimension: for what one window cannot show
-FLOOR = 0.1
+FLOOR = 0.1  # least uncertainty of a slope in the choice of a dimension: for what one window cannot show
 ODD = 1 / 3  # a slope so far from every integer it should be decides nothing
 SURE = 0.95  # weight of a dimension that is called decided
 POWER = 3  # of t: no regular orbit has a |v| that outgrows it
@@ -77,8 +76,7 @@ class Evidence:
         return fits(self.times, self.growth[:, None] / math.log(10), self.decades)[0]
 
     def steps(self, decades: float) -> Floats:
-        """Slopes of log GALI_j - log GALI_(j-1), j = 2 .. vectors, with errors; (vectors-1, 2).
-        """
+        """Slopes of log GALI_j - log GALI_(j-1), j = 2 .. vectors, with errors; (vectors-1, 2)."""
         return np.array(fits(self.times, np.diff(self.log10_gali, axis=1, prepend=0.0), decades))
 
 
@@ -144,12 +142,19 @@ def linear_decades(times: Floats, growth: Floats) -> float:
 def fits(times: Floats, values: Floats, decades: float) -> list[tuple[float, float]]:
     """Slopes of columns (S, k) against log10 t over the last decades, with jackknife errors."""
     x = np.log10(times)
-    first = min(int(np.searchsorted(x, x[-1] - _span(x, decades) - 1e-9)), max(0, len(x) - FEWEST))
-    x, values = x[first:], values[first:]
+    begin = x[-1] - _span(x, decades) - 1e-9
+    first = min(int(np.searchsorted(x, begin)), max(0, len(x) - FEWEST))
+    x = x[first:]
+    values = values[first:]
     part = np.arange(len(x)) * PARTS // len(x)
     whole = np.polyfit(x, values, 1)[0]
-    without = np.array([np.polyfit(x[part != i], values[part != i], 1)[0] for i in range(PARTS)])
-    errors = np.sqrt((PARTS - 1) / PARTS * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
+    partial = []
+    for i in range(PARTS):
+        others = part != i
+        partial.append(np.polyfit(x[others], values[others], 1)[0])
+    without = np.array(partial)
+    squares = (without - without.mean(axis=0)) ** 2
+    errors = np.sqrt((PARTS - 1) / PARTS * np.sum(squares, axis=0))
     return list(zip(whole.tolist(), errors.tolist(), strict=True))
 
 
@@ -177,10 +182,7 @@ def _weights(steps: Floats, seen: Evidence) -> tuple[dict[int, float], int]:
 
 
 def _growth_doubt(seen: Evidence, outgrown: float) -> tuple[str, str]:
-    """How |v| grows, and why this is not, or not yet, as on a torus.
-
-    The second is empty if it is.
-    """
+    """How |v| grows, and why this is not, or not yet, as on a torus; the second is empty if it is."""
     exponent, error = seen.exponent()
     reason = f"|v| grows as t^{exponent:.2f} +- {error:.2f}"
     if exponent > 1 + ODD:
@@ -215,10 +217,7 @@ def _slope_doubt(seen: Evidence, steps: Floats, best: int, weight: float) -> tup
 
 
 def _length_doubt(seen: Evidence, s: int) -> str:
-    """Whether |v| has grown as t for too short a time to believe in a torus of dimension s.
-
-    Empty if not.
-    """
+    """Whether |v| has grown as t for too short a time to believe in a torus of dimension s; empty if not."""
     special = (
         s < seen.vectors and 2 * s <= seen.freedom
     )  # an index falls, and more will not come to join s soon

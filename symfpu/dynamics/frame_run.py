@@ -44,9 +44,8 @@ class OrbitLost(SymfpuError):
 
     def __init__(self, time: float, step: float) -> None:
         self.time, self.step = time, step
-        super().__init__(
-            f"the orbit is lost before t = {time:.6g} with steps of {step:g}; take less energy or a shorter step"
-        )
+        lost = f"the orbit is lost before t = {time:.6g} with steps of {step:g}"
+        super().__init__(f"{lost}; take less energy or a shorter step")
 
 
 class FrameRun:
@@ -80,6 +79,7 @@ class FrameRun:
             "alpha": decimal(frame.chain.alpha),
             "beta": decimal(frame.chain.beta),
             "vectors": frame.vectors,
+            "scheme": frame.scheme.name,
             "step": repr(self.step),
             "steps": int(self.marks[-1]),
             "sampled steps": digest(self.marks),
@@ -92,29 +92,30 @@ class FrameRun:
         if kept is None:
             return
         done, arrays = kept
-        self._sample_at(
-            marks_of(path, arrays.get("sampled", np.zeros(0)), done, self.marks, exact=False)
-        )
-        room, block = self._arrays(done), arrays.pop("block", np.zeros(0))
-        right = {name: values.shape for name, values in arrays.items()} == {
-            name: values.shape for name, values in room.items()
-        }
-        if (
-            not right
-            or done > self.marks[-1]
-            or block.shape != (1,)
-            or not 1 <= block[0] <= self.longest
-        ):
-            raise BundleError(
-                path, "is damaged (its arrays are not those of its parameters)", ADVICE
-            )
+        arrays.setdefault("sampled", self._known_marks(done))  # not in files of version 0.1
+        marks = marks_of(path, arrays["sampled"], done, self.marks, exact=False)
+        self._sample_at(marks)
+        block = arrays.pop("block", np.zeros(0))
+        block_is_one = block.shape == (1,) and 1 <= block[0] <= self.longest
+        room = self._arrays(done)
+        shapes = {name: values.shape for name, values in arrays.items()}
+        due = {name: values.shape for name, values in room.items()}
+        if shapes != due or done > self.marks[-1] or not block_is_one:
+            reason = "is damaged (its arrays are not those of its parameters)"
+            raise BundleError(path, reason, ADVICE)
         for name, values in room.items():
             values[...] = arrays[name]
-        self.done, self.block = done, int(block[0])
+        self.done = done
+        self.block = int(block[0])
+
+    def _known_marks(self, done: int) -> Floats:
+        """Numbers of steps at which there are samples after so many, as a checkpoint holds them."""
+        return self.marks[self.marks <= done].astype(np.float64)
 
     def _arrays(self, done: int) -> dict[str, Floats]:
         """Everything that the run is after so many steps, but for the block."""
-        known, frame = int(np.searchsorted(self.marks, done, side="right")), self.frame
+        frame, marks = self.frame, self._known_marks(done)
+        known = len(marks)
         return {
             "x": frame.x,
             "p": frame.p,
@@ -123,7 +124,7 @@ class FrameRun:
             "columns": self.columns,
             "diagonal": self.diagonal,
             "norms": self.norms,
-            "sampled": self.marks[:known].astype(np.float64),
+            "sampled": marks,
             "volumes": self.volumes[:known],
             "growth": self.growth[:known],
         }

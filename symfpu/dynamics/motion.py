@@ -33,23 +33,28 @@ class Motion:
         """Of mode coordinates and momenta (M, N-1)."""
         if self.scheme.in_modes:
             state = np.zeros((len(Q), 2, self.chain.N))
-            state[:, 0, 1:], state[:, 1, 1:] = self.Omega[1:] * Q / self.unit, P / self.unit
+            state[:, 0, 1:] = self.Omega[1:] * Q / self.unit
+            state[:, 1, 1:] = P / self.unit
         else:
             state = np.zeros((len(Q), 2, self.chain.N + 1))
-            state[:, 0, 1:-1], state[:, 1, 1:-1] = self.chain.positions(Q), self.chain.positions(P)
+            state[:, 0, 1:-1] = self.chain.positions(Q)
+            state[:, 1, 1:-1] = self.chain.positions(P)
         return state
 
     def modes(self, state: Floats) -> tuple[Floats, Floats]:
         """Mode coordinates and momenta (M, N-1)."""
         if self.scheme.in_modes:
-            return state[:, 0, 1:] * self.unit / self.Omega[1:], state[:, 1, 1:] * self.unit
-        return np.asarray(self.chain.modes(state[:, 0, 1:-1])), np.asarray(
-            self.chain.modes(state[:, 1, 1:-1])
-        )
+            Q = state[:, 0, 1:] * self.unit / self.Omega[1:]
+            P = state[:, 1, 1:] * self.unit
+        else:
+            Q = np.asarray(self.chain.modes(state[:, 0, 1:-1]))
+            P = np.asarray(self.chain.modes(state[:, 1, 1:-1]))
+        return Q, P
 
     def advance(self, state: Floats, steps: int, each: Callable[..., Any]) -> list[int]:
-        """Moves all orbits; each : a map, perhaps of several threads. Returns the steps done by
-        each orbit before it had to stop.
+        """Moves all orbits; returns the steps done by each of them before it had to stop.
+
+        each : a map, perhaps of several threads.
         """
         return list(each(lambda row, bounds: self.move(row, bounds, steps), state, self.bounds))
 

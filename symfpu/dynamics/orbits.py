@@ -19,12 +19,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain, require_chain
-from symfpu.dynamics.aba864 import ABA864, ABA864_MODES
 from symfpu.dynamics.averages import LOOKS, RunningAverages, steps_between_looks
-from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
-from symfpu.dynamics.kahan_li8 import KAHAN_LI8
 from symfpu.dynamics.motion import Motion
 from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.schemes import scheme_named
 from symfpu.dynamics.stopping import (
     EscapedOrbit,
     OrbitStopped,
@@ -32,7 +30,6 @@ from symfpu.dynamics.stopping import (
     require_stable,
     stretch_bounds,
 )
-from symfpu.dynamics.yoshida4 import YOSHIDA4
 from symfpu.errors import InputError
 from symfpu.files.archive import BundleError
 from symfpu.files.checkpoint import (
@@ -49,9 +46,6 @@ from symfpu.numbers.typed import decimal, integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-SCHEMES = {
-    scheme.name: scheme for scheme in (YOSHIDA4, ABA864, BLANES_MOAN6, KAHAN_LI8, ABA864_MODES)
-}
 # moves of one particle, or products of two modes, between two looks at the clock: a tenth of a
 # second, about
 BLOCK = 50_000_000
@@ -87,11 +81,15 @@ class Orbit:
     seconds: float = field(repr=False, default=0.0)
 
     def __repr__(self) -> str:
-        many = f"{math.prod(self.Q.shape[1:-1])} orbits, " if self.Q.ndim > 2 else ""
-        return (
-            f"Orbit({repr(self.chain)[6:-1]}, {many}T={self.times[-1]:.10g}, {self.scheme.name}, step {abs(self.step):.6g}, "
-            f"{len(self.times)} samples, H={np.ravel(self.energies)[0]:.12g}, energy error {self.energy_error:.2g})"
-        )
+        model = repr(self.chain)[6:-1]
+        orbits = math.prod(self.Q.shape[1:-1])
+        many = f"{orbits} orbits, " if self.Q.ndim > 2 else ""
+        end = f"{many}T={self.times[-1]:.10g}"
+        integrator = f"{self.scheme.name}, step {abs(self.step):.6g}"
+        first_energy = np.ravel(self.energies)[0]
+        samples = f"{len(self.times)} samples, H={first_energy:.12g}"
+        error = f"energy error {self.energy_error:.2g}"
+        return f"Orbit({model}, {end}, {integrator}, {samples}, {error})"
 
     @property
     def energy_error(self) -> float:
@@ -99,8 +97,10 @@ class Orbit:
 
         Absolute for orbits at rest.
         """
-        start = np.where(self.energies[0] == 0, 1.0, np.abs(self.energies[0]))
-        return float(np.max(np.abs(self.energies - self.energies[0]) / start))
+        first = self.energies[0]
+        scale = np.where(first == 0, 1.0, np.abs(first))
+        deviations = np.abs(self.energies - first) / scale
+        return float(np.max(deviations))
 
     def harmonic_energies(self) -> Floats:
         """E_q of every sample; shape (S, ..., N-1)."""
@@ -128,7 +128,7 @@ def integrate(
     Q, P : shapes (..., N-1), many orbits at once.
     T : a time, negative for the past.
     step : its length is cut to a whole number of steps.
-    scheme : of SCHEMES; aba864_modes splits harmonic + anharmonic, others T + V.
+    scheme : of symfpu.dynamics.schemes; aba864_modes splits harmonic + anharmonic, others T + V.
     samples : about how many, log-spaced from one step to T and 0; or times between 0 and T, shape (S,), each
         moved to the nearest step.
     averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if longer;
@@ -152,7 +152,7 @@ def integrate(
     array([  0.   ,   0.125,   1.125,  10.75 , 100.   ])
     """
     Q, P, T, step = _start(chain, Q, P, T, step)
-    found, workers = _scheme(scheme), integer(workers, "workers", 1)
+    found, workers = scheme_named(scheme), integer(workers, "workers", 1)
     if not isinstance(averages, bool):
         raise InputError("averages", averages, "True or False", "leave it out")
     stride = steps_between_looks(step) if averages else 1
@@ -222,7 +222,7 @@ class _Run:
     def keep_in(self, path: Path, every: float, *, exact: bool) -> None:
         """Goes on from the file, if there is one, which may hold a shorter run.
 
-        Exact : as for `marks_of`.
+        exact : as for `marks_of`.
         """
         self.path, self.every = path, every
         chain, scheme = self.chain, self.scheme
@@ -239,35 +239,36 @@ class _Run:
             "start": digest(np.stack([self.Q[0], self.P[0]])),
         }
         kept = read_checkpoint(path, self.parameters)
-        if kept is not None:
-            self.done, arrays = kept
-            self._sample_at(
-                marks_of(
-                    path, arrays.get("sampled", np.zeros(0)), self.done, self.sampled, exact=exact
-                )
-            )
-            known = int(np.searchsorted(self.sampled, self.done, side="right"))
-            due = {name: values.shape for name, values in self._kept(known).items()}
-            if {
-                name: values.shape for name, values in arrays.items()
-            } != due or self.done > self.steps:
-                raise BundleError(
-                    path, "is damaged (its arrays are not those of its parameters)", ADVICE
-                )
-            for name, values in self._kept(known).items():
-                values[...] = arrays[name]
-            if self.stride:
-                self.running.looks = self.done // self.stride
+        if kept is None:
+            return
+        self.done, arrays = kept
+        arrays.setdefault("sampled", self._known_marks())  # not in files of version 0.1
+        marks = marks_of(path, arrays["sampled"], self.done, self.sampled, exact=exact)
+        self._sample_at(marks)
+        room = self._kept()
+        shapes = {name: values.shape for name, values in arrays.items()}
+        due = {name: values.shape for name, values in room.items()}
+        if shapes != due or self.done > self.steps:
+            reason = "is damaged (its arrays are not those of its parameters)"
+            raise BundleError(path, reason, ADVICE)
+        for name, values in room.items():
+            values[...] = arrays[name]
+        if self.stride:
+            self.running.looks = self.done // self.stride
 
-    def _kept(self, known: int) -> dict[str, Floats]:
-        """What a checkpoint holds after so many samples, as views of it."""
-        marks = self.sampled[:known].astype(np.float64)
+    def _known_marks(self) -> Floats:
+        """Numbers of steps at which there are samples by now, as a checkpoint holds them."""
+        return self.sampled[self.sampled <= self.done].astype(np.float64)
+
+    def _kept(self) -> dict[str, Floats]:
+        """What a checkpoint holds, but for its first array as views of it."""
+        marks = self._known_marks()
+        known = len(marks)
         kept = {"sampled": marks, "Q": self.Q[:known], "P": self.P[:known], "state": self.state}
-        return (
-            kept | {"averages": self.averages[:known], "total": self.running.total}
-            if self.stride
-            else kept
-        )
+        if self.stride:
+            kept["averages"] = self.averages[:known]
+            kept["total"] = self.running.total
+        return kept
 
     def _ends(self) -> Iterator[int]:
         """Where loops end: at samples and after blocks of steps that depend on the chain and the
@@ -311,8 +312,7 @@ class _Run:
 
     def _write(self) -> None:
         assert self.path is not None
-        known = int(np.searchsorted(self.sampled, self.done, side="right"))
-        write_checkpoint(self.path, self.parameters, self.done, self._kept(known))
+        write_checkpoint(self.path, self.parameters, self.done, self._kept())
 
     def _moved(self, steps: int, each: Callable[..., Any]) -> list[int]:
         """The steps done by each orbit."""
@@ -333,35 +333,29 @@ class _Run:
     def _stop(self, row: int, steps: int, *, escaped: bool) -> None:
         Q, P = (part[0] for part in self.motion.modes(self.state[row : row + 1]))
         growth = np.abs(self.chain.harmonic_energies(Q, P) - (self.start[row] if steps else 0.0))
-        kind: type[OrbitStopped]
-        kind, reason, advice = (
-            UnstableStep,
-            f"a step of {abs(self.step):.6g} of {self.scheme.name} loses the energy",
-            "take a shorter step",
-        )
+        place: tuple[int, ...] = ()
+        if len(self.shape) > 1:
+            place = tuple(int(i) for i in np.unravel_index(row, self.shape[:-1]))
+        kind: type[OrbitStopped] = UnstableStep
+        reason = f"a step of {abs(self.step):.6g} of {self.scheme.name} loses the energy"
+        advice = "take a shorter step"
         if escaped:
-            kind, reason, advice = (
-                EscapedOrbit,
-                "a bond passes the barrier of its potential",
-                "start from a state of less energy",
-            )
-        place = (
-            tuple(int(i) for i in np.unravel_index(row, self.shape[:-1]))
-            if len(self.shape) > 1
-            else ()
-        )
-        energy, mode = float(self.chain.energy(Q, P)), int(np.argmax(growth)) + 1
+            kind = EscapedOrbit
+            reason = "a bond passes the barrier of its potential"
+            advice = "start from a state of less energy"
         raise kind(
             reason,
             advice,
             time=self.T * (steps / self.steps),
-            mode=mode,
-            energy=energy,
+            mode=int(np.argmax(growth)) + 1,
+            energy=float(self.chain.energy(Q, P)),
             orbit=place,
         )
 
     def result(self) -> Orbit:
-        Q, P = (part.reshape(len(self.sampled), *self.shape) for part in (self.Q, self.P))
+        shape = len(self.sampled), *self.shape
+        Q = self.Q.reshape(shape)
+        P = self.P.reshape(shape)
         energies = np.asarray(self.chain.energy(Q, P))
         times = np.asarray(self.T * (self.sampled / self.steps), dtype=np.float64)
         averages = self.averages.reshape(Q.shape) if self.stride else None
@@ -425,12 +419,6 @@ def _whole_steps(T: float, step: float) -> int:
         else math.ceil(ratio)
     )
     return max(1, whole)
-
-
-def _scheme(name: object) -> Scheme:
-    if not isinstance(name, str) or name not in SCHEMES:
-        raise InputError("scheme", name, ", ".join(SCHEMES), "choose one of them")
-    return SCHEMES[name]
 
 
 def _is_count(samples: object) -> TypeGuard[int]:

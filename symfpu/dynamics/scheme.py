@@ -51,8 +51,10 @@ class Scheme:
         """First drift, kicks, and the drift after each kick in a row of steps of this length: the
         last one leads into the next step.
         """
-        drifts = step * np.array([*self.drifts[1:-1], self.drifts[-1] + self.drifts[0]])
-        return step * self.drifts[0], step * np.array(self.kicks), drifts
+        first, *between, last = self.drifts
+        kicks = step * np.array(self.kicks)
+        drifts = step * np.array([*between, last + first])
+        return step * first, kicks, drifts
 
     @cached_property
     def stable_phase(self) -> float:

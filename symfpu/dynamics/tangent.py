@@ -1,39 +1,44 @@
-"""Orbits with deviation vectors: a symmetric splitting on T + V and its exact derivative, O(N) for a
-vector and a step.
+"""Orbits with deviation vectors: a splitting on T + V and its exact derivative.
 
-The table is that of S. Blanes and P. C. Moan in symfpu.dynamics.blanes_moan6: fourteen kicks a
-step, order 6, symplectic and reversible. Others can be passed.
+The work is O(N) for a vector and a step. Any scheme on T + V can move them
+(symfpu.dynamics.schemes): they are symmetric compositions of drifts and kicks, so that orbit and
+deviations are moved by maps that are symplectic to rounding and reversible at every step length.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from symfpu.chain import bonds
 from symfpu.chain.bonds import Law
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.blanes_moan6 import DRIFTS, KICKS
+from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
+from symfpu.dynamics.kahan_li8 import KAHAN_LI8
+from symfpu.dynamics.scheme import Scheme
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
+TABLE = 4_000_000  # entries of a table of stretches held at once
 
 
 @dataclass(frozen=True, eq=False)
 class MovingFrame:
-    """An orbit and its deviation vectors as the compiled loops want them; the arrays are moved in place.
+    """An orbit and its deviation vectors as the compiled loops want them.
 
-    Made by `moving_frame`. x, p : (N+1,) with the walls; dx, dp : (blocks, N+1, LANES). vectors :
-    how many lanes are used.
-    kicks, drifts : of one step, as lengths of time.
+    Made by `moving_frame`; the arrays are moved in place. x, p : (N+1,) with the walls; dx, dp :
+    (blocks, N+1, LANES). vectors : how many lanes are used. kicks, drifts : of one step of the
+    scheme, as lengths of time.
     """
 
     chain: Chain
+    scheme: Scheme
     vectors: int
     x: Floats
     p: Floats
@@ -49,17 +54,15 @@ class MovingFrame:
 
     def orbit(self) -> tuple[Floats, Floats]:
         """Mode coordinates and momenta of the orbit, (N-1,) each."""
-        return np.asarray(self.chain.modes(self.x[1:-1])), np.asarray(
-            self.chain.modes(self.p[1:-1])
-        )
+        Q = np.asarray(self.chain.modes(self.x[1:-1]))
+        P = np.asarray(self.chain.modes(self.p[1:-1]))
+        return Q, P
 
     def deviations(self) -> tuple[Floats, Floats]:
         """Mode coordinates and momenta of the deviations, (vectors, N-1) each."""
-        return self._vectors(self.dx), self._vectors(self.dp)
-
-    def _vectors(self, lanes: Floats) -> Floats:
-        columns = lanes[:, 1:-1].transpose(0, 2, 1).reshape(-1, self.chain.N - 1)[: self.vectors]
-        return np.asarray(self.chain.modes(columns))
+        dQ = _out_of_lanes(self.chain, self.dx, self.vectors)
+        dP = _out_of_lanes(self.chain, self.dp, self.vectors)
+        return dQ, dP
 
 
 def tangent_steps(
@@ -71,28 +74,64 @@ def tangent_steps(
     step: float,
     steps: int,
     *,
-    drifts: Sequence[float] = DRIFTS,
-    kicks: Sequence[float] = KICKS,
+    scheme: Scheme = BLANES_MOAN6,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """A state some steps later, and its deviations moved by the exact derivative of the step.
 
-    Q, P : one state, (N-1,). dQ, dP : m deviations, (m, N-1). Returns all four. step : length in
-    time, negative for the past.
-    drifts, kicks : fractions of a step, one drift more than kicks. The derivative is that of the
+    Q, P : one state, (N-1,). dQ, dP : m deviations, (m, N-1), m = 0 allowed. Returns all four.
+    step : length in time, negative for the past. scheme : on T + V. The derivative is that of the
     map in exact arithmetic: it is symplectic to rounding at every step length. Raises InputError.
 
     >>> one = [[1.0]], [[0.0]]
-    # cos(sqrt(2) t)
-    >>> tangent_steps(Chain(N=2, beta=1), [0.0], [0.0], *one, 0.1, 1)[2].round(6)
+    >>> dQ = tangent_steps(Chain(N=2, beta=1), [0.0], [0.0], *one, 0.1, 1)[2]
+    >>> dQ.round(6)  # cos(sqrt(2) t)
     array([[0.990017]])
     """
     # lazy: numba takes longer to import than all the rest
     from symfpu.dynamics.tangent_loops import advance
 
-    frame = moving_frame(chain, Q, P, dQ, dP, step, drifts=drifts, kicks=kicks)
+    frame = moving_frame(chain, Q, P, dQ, dP, step, scheme=scheme)
     count = integer(steps, "steps", 0)
     advance(frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts, count)
     return *frame.orbit(), *frame.deviations()
+
+
+def tangent_map_along(
+    chain: Chain,
+    stretches: Callable[[Floats], Floats],
+    duration: float,
+    steps: int,
+    *,
+    scheme: Scheme = KAHAN_LI8,
+) -> Floats:
+    """Tangent map of mode coordinates and momenta along a given orbit, from time 0 to duration.
+
+    stretches : bond stretches r_j of the orbit at times (T,), shape (T, N), as often as wanted.
+    scheme : on T + V; time runs with its drifts, so that forces given as functions of time keep
+    the order. Returns shape (2(N-1), 2(N-1)): rows and columns are Q_1 .. Q_(N-1), P_1 ..
+    P_(N-1). Raises InputError.
+    """
+    from symfpu.dynamics.tangent_loops import carry_along
+
+    n = chain.N - 1
+    count = integer(steps, "steps", 1)
+    h = step_length(duration, "duration") / count
+    entry, kicks, drifts = scheme.merged(h)
+    identity = np.eye(2 * n)
+    dx = _in_lanes(chain, chain.positions(identity[:, :n]))
+    dp = _in_lanes(chain, chain.positions(identity[:, n:]))
+    inside = np.cumsum(scheme.drifts[:-1])  # times of the kicks in a step of length 1
+    portion = max(1, TABLE // (scheme.stages * chain.N))
+    dx += entry * dp
+    for first in range(0, count, portion):
+        starts = np.arange(first, min(first + portion, count))
+        times = h * np.add.outer(starts, inside).reshape(-1)
+        slopes = bonds.stiffness(chain.law(), stretches(times))
+        carry_along(dx, dp, slopes, kicks, drifts)
+    dx -= entry * dp
+    dQ = _out_of_lanes(chain, dx, 2 * n)
+    dP = _out_of_lanes(chain, dp, 2 * n)
+    return np.vstack([dQ.T, dP.T])
 
 
 def moving_frame(
@@ -103,53 +142,61 @@ def moving_frame(
     dP: ArrayLike,
     step: float,
     *,
-    drifts: Sequence[float] = DRIFTS,
-    kicks: Sequence[float] = KICKS,
+    scheme: Scheme = BLANES_MOAN6,
 ) -> MovingFrame:
-    """State and deviations for the compiled loops.
+    """State and deviations for the compiled loops; arguments as those of `tangent_steps`."""
+    n = chain.N - 1
+    vectors = np.shape(dQ)[0] if np.ndim(dQ) == 2 else 0
+    x = _particles(chain, "Q", Q, (n,))
+    p = _particles(chain, "P", P, (n,))
+    dx = _particles(chain, "dQ", dQ, (vectors, n))
+    dp = _particles(chain, "dP", dP, (vectors, n))
+    h = step_length(step)
+    return MovingFrame(
+        chain=chain,
+        scheme=scheme,
+        vectors=vectors,
+        x=np.pad(x, 1),
+        p=np.pad(p, 1),
+        dx=_in_lanes(chain, dx),
+        dp=_in_lanes(chain, dp),
+        kicks=h * np.array(scheme.kicks, dtype=float),
+        drifts=h * np.array(scheme.drifts, dtype=float),
+    )
 
-    Arguments and errors as those of `tangent_steps`.
-    """
+
+def step_length(step: float, name: str = "step") -> float:
+    """The step as a float; InputError if it is no finite number other than zero."""
+    is_number = isinstance(step, Real) and not isinstance(step, bool)
+    if not is_number or not math.isfinite(float(step)) or step == 0:
+        raise InputError(name, step, "a finite time, not zero", "pass a number such as 0.25")
+    return float(step)
+
+
+def _particles(chain: Chain, name: str, values: ArrayLike, shape: tuple[int, ...]) -> Floats:
+    """Of modes to particles, both of this shape; raises InputError."""
+    given = np.shape(values)
+    if given != shape:
+        advice = "pass one state and as many deviations dQ as dP"
+        raise InputError(name, given, f"the shape {shape}", advice)
+    particles = np.asarray(chain.positions(np.asarray(values, dtype=float)))
+    if not np.isfinite(particles).all():
+        raise InputError(name, values, "finite numbers", "start from a finite state")
+    return particles
+
+
+def _in_lanes(chain: Chain, rows: Floats) -> Floats:
+    """Deviations of particles, (m, N-1), as blocks of lanes between walls."""
     from symfpu.dynamics.tangent_loops import LANES
 
-    if len(drifts) != len(kicks) + 1:
-        raise InputError(
-            "drifts",
-            len(drifts),
-            f"one more than kicks, {len(kicks) + 1}",
-            "begin and end a step with a drift",
-        )
-    n, vectors = chain.N - 1, np.shape(dQ)[0] if np.ndim(dQ) == 2 else 0
-    given = {"Q": (Q, (n,)), "P": (P, (n,)), "dQ": (dQ, (vectors, n)), "dP": (dP, (vectors, n))}
-    particles = []
-    for name, (values, shape) in given.items():
-        if np.shape(values) != shape:
-            raise InputError(
-                name,
-                np.shape(values),
-                f"the shape {shape}",
-                "pass one state and as many deviations dQ as dP",
-            )
-        particles.append(np.asarray(chain.positions(np.asarray(values, dtype=float))))
-        if not np.isfinite(particles[-1]).all():
-            raise InputError(name, values, "finite numbers", "start from a finite state")
-    h = step_length(step)
-    x, p, dx, dp = particles
-    lanes = [np.zeros((-(-vectors // LANES), chain.N + 1, LANES)) for _ in range(2)]
-    for room, columns in zip(lanes, (dx, dp), strict=True):
-        for i, column in enumerate(columns):
-            room[i // LANES, 1:-1, i % LANES] = column
-    stages = h * np.array(kicks, dtype=float), h * np.array(drifts, dtype=float)
-    return MovingFrame(chain, vectors, np.pad(x, 1), np.pad(p, 1), lanes[0], lanes[1], *stages)
+    blocks = -(-len(rows) // LANES)
+    lanes = np.zeros((blocks, chain.N + 1, LANES))
+    for i, row in enumerate(rows):
+        lanes[i // LANES, 1:-1, i % LANES] = row
+    return lanes
 
 
-def step_length(step: float) -> float:
-    """The step as a float; InputError if it is no finite number other than zero."""
-    if (
-        isinstance(step, bool)
-        or not isinstance(step, Real)
-        or not math.isfinite(float(step))
-        or step == 0
-    ):
-        raise InputError("step", step, "a finite time, not zero", "pass a number such as 0.25")
-    return float(step)
+def _out_of_lanes(chain: Chain, lanes: Floats, vectors: int) -> Floats:
+    """The first deviations of blocks of lanes in mode coordinates, (vectors, N-1)."""
+    rows = lanes[:, 1:-1].transpose(0, 2, 1).reshape(-1, chain.N - 1)
+    return np.asarray(chain.modes(rows[:vectors]))

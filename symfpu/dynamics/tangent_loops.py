@@ -1,10 +1,9 @@
-"""The compiled loops of orbits with deviation vectors: plain arrays, moved in place. Importing this
-module imports numba.
+"""The compiled loops of orbits with deviation vectors: plain arrays, moved in place.
 
-x, p : displacements and momenta of one orbit with its two walls, (N+1,), zero at the walls. dx,
-dp : deviations from it, blocks of LANES vectors, (blocks, N+1, LANES), zero at the walls and in
-lanes that are not used. The lanes are the last axis and their number is fixed, so that the loop
-over them is one or two machine instructions.
+Importing this module imports numba. x, p : displacements and momenta of one orbit with its two
+walls, (N+1,), zero at the walls. dx, dp : deviations from it, blocks of LANES vectors, (blocks,
+N+1, LANES), zero at the walls and in lanes that are not used. The lanes are the last axis and
+their number is fixed, so that the loop over them is one or two machine instructions.
 """
 
 from __future__ import annotations
@@ -22,31 +21,18 @@ LENGTHEN, SHORTEN = 1e-3, 1e-5
 
 _compiled, _inlined = compiled(error_model="numpy"), compiled(error_model="numpy", keep=False)
 _tension, _stiffness = _inlined(tension), _inlined(stiffness)
+# a call at every kick costs some per cent of a short chain
+_always_inlined = compiled(error_model="numpy", forceinline=True)
 
 
-@_compiled
-def kick_and_drift(
-    x: Any, p: Any, dx: Any, dp: Any, law: Any, kick: float, drift: float, forces: Any
-) -> None:
-    """One kick, one drift, and their derivatives: bond j has the tension r + alpha r^2 + beta r^3,
-    its slope 1 + 2 alpha r + 3 beta r^2.
+@_always_inlined
+def move_lanes(dx: Any, dp: Any, stiffness: Any, drift: float, pull: Any, slope: Any) -> None:
+    """A kick of all deviations by bonds of this stiffness times the kick, (N,), and a drift.
 
-    dx, dp : flat blocks, (blocks, (N+1) LANES). forces : room for the impulses of the bonds on
-    the orbit (N,) and on the lanes (N LANES,), for slopes (N,) and (N LANES,). Every loop runs
-    along one flat axis and writes to an array that it reads in the same place only, so that the
-    compiler can vectorise it.
+    dx, dp, pull, slope : as for `kick_and_drift`.
     """
-    tension, pull, stiffness, slope = forces
-    bonds, last = len(tension), (len(tension) - 1) * LANES
-    ahead = x[1:]
-    for j in range(bonds):
-        r = ahead[j] - x[j]
-        tension[j] = kick * _tension(law, r)
-        stiffness[j] = kick * _stiffness(law, r)
-    inner_x, inner_p, after = x[1:], p[1:], tension[1:]
-    for j in range(bonds - 1):
-        inner_p[j] += after[j] - tension[j]
-        inner_x[j] += drift * inner_p[j]
+    bonds = len(stiffness)
+    last = (bonds - 1) * LANES
     for j in range(bonds):
         for c in range(LANES):
             slope[j * LANES + c] = stiffness[j]
@@ -61,30 +47,70 @@ def kick_and_drift(
 
 
 @_compiled
+def kick_and_drift(
+    x: Any, p: Any, dx: Any, dp: Any, law: Any, kick: float, drift: float, forces: Any
+) -> None:
+    """One kick, one drift, and their derivatives.
+
+    Bond j has the tension V'(r), its slope is V''(r). dx, dp : flat blocks, (blocks, (N+1) LANES).
+    forces : room for the impulses of the bonds on the orbit (N,) and on the lanes (N LANES,), for
+    slopes (N,) and (N LANES,). Every loop runs along one flat axis and writes to an array that it
+    reads in the same place only, so that the compiler can vectorise it.
+    """
+    tension, pull, stiffness, slope = forces
+    bonds = len(tension)
+    ahead = x[1:]
+    for j in range(bonds):
+        r = ahead[j] - x[j]
+        tension[j] = kick * _tension(law, r)
+        stiffness[j] = kick * _stiffness(law, r)
+    inner_x, inner_p, after = x[1:], p[1:], tension[1:]
+    for j in range(bonds - 1):
+        inner_p[j] += after[j] - tension[j]
+        inner_x[j] += drift * inner_p[j]
+    move_lanes(dx, dp, stiffness, drift, pull, slope)
+
+
+@_compiled
 def advance(
     x: Any, p: Any, dx: Any, dp: Any, law: Any, kicks: Any, drifts: Any, steps: int
 ) -> None:
-    """So many steps of a splitting.
+    """So many steps of a splitting, of an orbit and its deviations.
 
-    Kicks (stages,) and drifts (stages + 1,) are lengths of time, drifts that meet are one.
+    kicks (stages,) and drifts (stages + 1,) are lengths of time, drifts that meet are one.
     """
-    bonds, blocks = len(x) - 1, dx.shape[0]
-    forces = (np.empty(bonds), np.empty(bonds * LANES), np.empty(bonds), np.empty(bonds * LANES))
     if steps == 0:
         return
+    bonds, blocks = len(x) - 1, dx.shape[0]
+    on_orbit = np.empty(bonds), np.empty(bonds)
+    on_lanes = np.empty(bonds * LANES), np.empty(bonds * LANES)
+    forces = (on_orbit[0], on_lanes[0], on_orbit[1], on_lanes[1])
     x += drifts[0] * p
     dx += drifts[0] * dp
     # a reshape is a call: once, not at every kick
-    flat_dx, flat_dp = (
-        dx.reshape(blocks, (bonds + 1) * LANES),
-        dp.reshape(blocks, (bonds + 1) * LANES),
-    )
+    flat_dx = dx.reshape(blocks, (bonds + 1) * LANES)
+    flat_dp = dp.reshape(blocks, (bonds + 1) * LANES)
     for step in range(steps):
         for i in range(len(kicks)):
             drift = drifts[i + 1]
             if i == len(kicks) - 1 and step < steps - 1:
                 drift += drifts[0]
             kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces)
+
+
+@_compiled
+def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any) -> None:
+    """Deviations under bonds of stiffness slopes[i, j] at the i-th kick, slopes (kicks in all, N).
+
+    kicks : of one step, drifts : after each of them, as lengths of time.
+    """
+    blocks, bonds = dx.shape[0], dx.shape[1] - 1
+    pull, slope = np.empty(bonds * LANES), np.empty(bonds * LANES)
+    flat_dx = dx.reshape(blocks, (bonds + 1) * LANES)
+    flat_dp = dp.reshape(blocks, (bonds + 1) * LANES)
+    for i in range(slopes.shape[0]):
+        stage = i % len(kicks)
+        move_lanes(flat_dx, flat_dp, kicks[stage] * slopes[i], drifts[stage], pull, slope)
 
 
 @_compiled

@@ -19,8 +19,7 @@ FEW_DECADES = 0.5  # least height of the picture, for indices that stay where th
 
 
 def plot_alignment(found: AlignmentIndices, ax: Axes) -> Axes:
-    """log10 GALI_k against log10 t, k = 2 .. vectors, with the fitted slopes in the legend; both logarithms to base 10.
-    """
+    """log10 GALI_k against log10 t, k = 2 .. vectors, with the fitted slopes in the legend; both logarithms to base 10."""
     ax = plot_panel(alignment_panel("gali", "alignment indices", found), ax)
     bottom, top = ax.get_ylim()
     ax.set_ylim(min(bottom, top - FEW_DECADES), top)

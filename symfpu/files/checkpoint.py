@@ -36,11 +36,15 @@ LENGTH = ("steps", "sampled steps")
 
 
 class Kind(NamedTuple):
-    """What a checkpoint is of: its name in the file, with its article, and what goes on from it."""
+    """What a checkpoint is of: its name in the file, with its article, and what goes on from it.
+
+    implied : parameters that older files do not name, and what they were.
+    """
 
     name: str
     of: str
     resume: str
+    implied: tuple[tuple[str, str], ...] = ()
 
 
 ORBIT = Kind("orbit", "an orbit", "integrate(..., file=...) or symfpu orbit --checkpoint")
@@ -48,6 +52,7 @@ ALIGNMENT = Kind(
     "alignment indices",
     "alignment indices",
     "alignment_indices(..., file=...) or symfpu gali --checkpoint",
+    implied=(("scheme", "blanes_moan6"),),
 )
 KINDS = {kind.name: kind for kind in (ORBIT, ALIGNMENT)}
 
@@ -120,6 +125,8 @@ def read_checkpoint(
                 raise BundleError(path, f"is not a checkpoint of {kind.of}", ADVICE)
             _require_same(path, archive.body["parameters"], parameters, kind)
             arrays = _arrays(archive)
+            if "sampled" not in arrays:
+                _require_same_samples(path, archive.body["parameters"], parameters)
             return integer(archive.body["steps"], "steps", 0), arrays
         except (BundleError, Refused):
             raise
@@ -169,12 +176,24 @@ def marks_of(path: Path, known: Floats, done: int, asked: Ints, *, exact: bool) 
     return np.concatenate([marks, asked[asked > done]])
 
 
+def _require_same_samples(path: Path, found: Json, parameters: Json) -> None:
+    """A file of version 0.1 does not hold where its samples are.
+
+    They are those asked for, or there is no going on from it.
+    """
+    if found["sampled steps"] != parameters["sampled steps"]:
+        length = "a checkpoint of a run of this length"
+        allowed = f"{length} (it is of version 0.1, and goes on to its own end only)"
+        raise Refused("file", str(path), allowed, ADVICE)
+
+
 def _require_same(path: Path, found: Json, parameters: Json, kind: Kind) -> None:
     longer = integer(found["steps"], "steps", 0) < parameters["steps"]
+    known = dict(kind.implied) | found
     for name, value in parameters.items():
         goes_on = longer and name in LENGTH
-        if found.get(name) != value and not goes_on:
-            was = str(found.get(name))[:40]
+        if known.get(name) != value and not goes_on:
+            was = str(known.get(name))[:40]
             now = str(value)[:40]
             same = f"a checkpoint of the same {kind.name}"
             allowed = f"{same} ({name} is {was} in it, {now} here)"

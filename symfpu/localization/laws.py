@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain, require_chain
-from symfpu.dynamics.orbits import SCHEMES
+from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer, seed_modes
 

@@ -389,8 +389,7 @@ class ScalingStudy:
 
 
 def scaling_study(torus: RefinedTorus, label: str, step: Step = unheard) -> ScalingStudy:
-    """The errors of the orders SCALED_ORDERS at an exact torus and at those of 1/2, 1/4, ... of its amplitudes.
-    """
+    """The errors of the orders SCALED_ORDERS at an exact torus and at those of 1/2, 1/4, ... of its amplitudes."""
     scales = tuple(0.5**j for j in range(HALVINGS + 1))
     given: dict[int, list[float]] = {}
     solved: dict[int, list[float]] = {}

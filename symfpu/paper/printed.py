@@ -199,8 +199,7 @@ FIG1_CLAIMS = {
 
 @dataclass(frozen=True)
 class PrintedExcitation:
-    """A sequence of mode excitations D_1, D_2, ... printed in sections 6.2 and 6.4.2, alpha model.
-    """
+    """A sequence of mode excitations D_1, D_2, ... printed in sections 6.2 and 6.4.2, alpha model."""
 
     label: str
     N: int

@@ -104,8 +104,7 @@ def _breathers() -> Claim:
 
 
 def _formula(N: int, q: int, model: str) -> Iterator[tuple[int, ...]]:
-    """The modes q_k of one seed as printed (Eq. qbre), each at the first order that it is there for.
-    """
+    """The modes q_k of one seed as printed (Eq. qbre), each at the first order that it is there for."""
     seen = {0, N}
     for k in range(LINES + 1):
         r = k + 1 if model == "alpha" else 2 * k + 1

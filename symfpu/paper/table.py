@@ -1,7 +1,4 @@
-"""The paper's numbers (Eq. table1) from its printed frequencies, beside the printed amplitudes and energies.
-
-No interpretation.
-"""
+"""The paper's numbers (Eq. Table1) computed anew from the printed frequencies, beside the printed ones."""
 
 from __future__ import annotations
 
@@ -129,8 +126,7 @@ def _energy_orders(torus: QTorus, printed: str) -> dict[str, tuple[int, ...]]:
 
 
 def amplitude_table(step: Step = unheard) -> Iterator[AmplitudeRow]:
-    """Every torus of Appendix F (Eq. table1) and the pair of Fig. 1; `step` is told which one comes next.
-    """
+    """Every torus of Appendix F (Eq. table1) and the pair of Fig. 1; `step` is told which one comes next."""
     for printed in (TWO_TORUS, *APPENDIX_F):
         step(f"table: {printed.label}")
         yield amplitude_row(printed)

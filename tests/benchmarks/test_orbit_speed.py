@@ -12,7 +12,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.orbits import SCHEMES, integrate
+from symfpu.dynamics.orbits import integrate
+from symfpu.dynamics.schemes import SCHEMES
 from symfpu.paper.printed import APPENDIX_F
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes

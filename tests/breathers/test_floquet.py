@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
 from symfpu.breathers.floquet import DOUBLING, ELLIPTIC, QUADRUPLE, TANGENT, TRIVIAL, floquet, monodromy
 from symfpu.chain.chain import Chain
+from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.errors import InputError
 
 FIG7 = (Chain(N=32, alpha="0.33"), 1, "0.0981410995944860")
@@ -19,6 +20,9 @@ SYMPLECTIC = 1e-11
 
 # Multipliers at amplitude 1e-4 differ from those of rest by (alpha A)^2 / N and the like, times T.
 AT_REST = 1e-7
+
+# Multipliers of two schemes: five halvings of the step leave 1e-10 of the map by a scheme of order 4, and some tens of that.
+BY_SCHEME = 1e-8
 
 UNSTABLE = (
     (Chain(6, beta=1), 5, "1", {TANGENT: 1}),
@@ -126,6 +130,37 @@ def test_the_answer_is_in_the_repr():
     assert repr(stable).startswith("Floquet(N=4, beta=1, seed 2, omega=1.4")
     assert ", stable, largest |multiplier| 1, symplecticity error " in repr(stable)
     assert ", unstable: 1 real > 0, largest |multiplier| 1.201" in repr(unstable)
+
+
+@pytest.mark.parametrize("name", PARTICLE_SCHEMES)
+def test_multipliers_by_another_scheme_agree_within_the_errors(name):
+    """A chain of eight bonds, two of whose multipliers are off the circle; the estimated errors are those found."""
+    orbit = breather_at_amplitude(*UNSTABLE[3][:3])
+    one, other = floquet(orbit), floquet(orbit, scheme=name)
+    assert other.instabilities == one.instabilities
+    assert nearest(other.multipliers[2:], one.multipliers) < BY_SCHEME
+    assert np.linalg.norm(other.monodromy - one.monodromy, 2) < 20 * (one.map_error + other.map_error)
+    assert np.array_equal(monodromy(orbit, scheme=name), other.monodromy)
+
+
+def test_the_error_of_the_tangent_map_falls_as_the_order_of_the_scheme(monkeypatch):
+    orbit = breather_at_amplitude(*UNSTABLE[3][:3])
+    exact = monodromy(orbit)
+    monkeypatch.setattr("symfpu.breathers.floquet.DOUBLINGS", 1)
+    for name, scheme in PARTICLE_SCHEMES.items():
+        errors = []
+        for step in (0.8, 0.4):
+            monkeypatch.setattr("symfpu.breathers.floquet.FIRST_STEP", step)
+            errors.append(np.max(np.abs(monodromy(orbit, scheme=name) - exact)))
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(scheme.order, abs=0.5), name
+
+
+@pytest.mark.parametrize("function", [floquet, monodromy])
+def test_schemes_in_modes_move_no_deviations(function):
+    orbit = breather_at_amplitude(Chain(4, beta=1), 2, "0.1")
+    for name in ("aba864_modes", "rk4"):
+        with pytest.raises(InputError, match=r"^scheme = .*choose one of them"):
+            function(orbit, scheme=name)
 
 
 @pytest.mark.parametrize("function", [floquet, monodromy])

@@ -9,6 +9,7 @@ import pytest
 from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
 from symfpu.breathers.shooting import ShootingFailed, shoot
 from symfpu.chain.chain import Chain
+from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
 from tests.oracles.oscillators import duffing
 
@@ -60,6 +61,30 @@ def test_one_mode_of_beta_turns_where_the_duffing_oscillator_turns(N, seed):
     assert shot.start == pytest.approx(expected, abs=1e-12)
 
 
+@pytest.mark.parametrize(("name", "agree"), [("blanes_moan6", 1e-11), ("aba864", 1e-10), ("yoshida4", 1e-7)])
+def test_another_scheme_finds_the_same_orbit(name, agree):
+    """To the error of its shortest steps, which the residual shows."""
+    problem = Chain(8, alpha="0.4", beta="0.1"), 3, "1.1137547"
+    one, other = shoot(*problem), shoot(*problem, scheme=name)
+    assert other.start == pytest.approx(one.start, abs=agree)
+    assert other.residual < agree
+    assert other.history[-1] < 1e-12
+
+
+def test_the_error_of_shooting_falls_as_the_order_of_the_scheme(monkeypatch):
+    problem = Chain(8, alpha="0.4", beta="0.1"), 3, "1.1137547"
+    exact = shoot(*problem).start
+    monkeypatch.setattr("symfpu.breathers.shooting.DOUBLINGS", 0)
+    for name, scheme in PARTICLE_SCHEMES.items():
+        shots = []
+        for step in (0.4, 0.2):
+            monkeypatch.setattr("symfpu.breathers.shooting.FIRST_STEP", step)
+            shots.append(shoot(*problem, scheme=name))
+        coarse, fine = (np.max(np.abs(shot.start - exact)) for shot in shots)
+        order = np.log(coarse / fine) / np.log(shots[1].steps / shots[0].steps)
+        assert order == pytest.approx(scheme.order, abs=0.5), name
+
+
 def test_a_guess_leads_to_an_orbit_far_from_rest():
     orbit = breather_at_amplitude(ALPHA, 1, "1.27")
     shot = shoot(ALPHA, 1, orbit.frequency, 1.01 * orbit.positions(0.0))
@@ -79,6 +104,12 @@ def test_modes_that_the_symmetry_forbids_stay_zero():
 def test_bad_guesses_are_refused(guess):
     with pytest.raises(InputError, match=r"^guess = "):
         shoot(ALPHA, 1, "0.0982", guess)
+
+
+@pytest.mark.parametrize("scheme", ["aba864_modes", "rk4", 8])
+def test_schemes_that_move_no_deviations_are_refused(scheme):
+    with pytest.raises(InputError, match=r"^scheme = .*choose one of them"):
+        shoot(ALPHA, 1, "0.0982", scheme=scheme)
 
 
 def test_bad_seeds_and_frequencies_are_refused():

@@ -11,6 +11,7 @@ from symfpu.bundles.bundle import load
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import alignment_indices
 from symfpu.dynamics.orbits import integrate
+from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import text
 from symfpu.proofs.verify import verify
 from tests.tolerances import AMPLITUDE, COEFFICIENT
@@ -62,6 +63,17 @@ def test_finished_indices_are_taken_from_their_file(tmp_path):
     found = alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, file=file)
     assert found.times[-1] == 500.0
     assert found.log10_gali[-1, -1] == pytest.approx(float(FACTS["gali.npz"]["last"]), rel=AMPLITUDE)
+
+
+def test_indices_of_a_file_without_a_scheme_are_of_the_default(tmp_path):
+    """Nor does it hold where its samples are: it is not gone on from to a longer time."""
+    file = shutil.copy(DATA / "gali.npz", tmp_path)
+    with pytest.raises(InputError, match=r"scheme is blanes_moan6 in it, kahan_li8 here"):
+        alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, scheme="kahan_li8", file=file)
+    with pytest.raises(InputError, match=r"of version 0\.1, and goes on to its own end only"):
+        alignment_indices(ALPHA, ONE_MODE, AT_REST, 600.0, vectors=3, file=file)
+    named = alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, scheme="blanes_moan6", file=file)
+    assert named.times[-1] == 500.0
 
 
 def test_members_of_a_family_load():

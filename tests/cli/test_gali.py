@@ -61,6 +61,20 @@ def test_json_has_slopes_and_dimension(capsys, kept):
     assert (record["N"], record["beta"], record["seeds"], record["time"]) == (8, "1", [4], 50000.0)
 
 
+def test_a_scheme_is_chosen_by_name(capsys, kept):
+    words = ("gali", str(kept), "--time", "200", "--samples", "64", "--vectors", "3")
+    records = {name: json.loads(run(capsys, *words, "--scheme", name, "--json")[1]) for name in ("blanes_moan6", "kahan_li8")}
+    assert json.loads(run(capsys, *words, "--json")[1]) == records["blanes_moan6"]
+    assert [record["scheme"] for record in records.values()] == list(records)
+    ends = [list(record["log10_gali"].values()) for record in records.values()]
+    assert ends[0] == pytest.approx(ends[1], abs=1e-4)
+    assert ends[0] != ends[1]
+    code, out, err = run(capsys, *words, "--scheme", "aba864_modes")
+    assert (code, out) == (2, "")
+    assert "scheme" in err
+    assert "yoshida4, aba864, blanes_moan6, kahan_li8" in err
+
+
 def test_a_folder_gets_the_table_and_the_pictures(capsys, kept, tmp_path):
     out_folder = tmp_path / "out"
     code, out, err = run(capsys, "gali", str(kept), "--time", "1000", "--samples", "64", "-o", str(out_folder))
@@ -89,7 +103,7 @@ def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, kept, tmp_
     assert "a checkpoint of the same alignment indices (steps is 750 in it, 500 here)" in err
     assert (tmp_path / "run").stat().st_mtime_ns == begun
     code, out, err = run(capsys, "gali", str(tmp_path / "run"), "--time", "200")
-    assert (code, out) == (1, "")
+    assert (code, out) == (2, "")
     assert "is a checkpoint of alignment indices" in err
 
 

@@ -9,6 +9,7 @@ import pytest
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import _random_frame, alignment_indices
 from symfpu.dynamics.dimension import expected_steps
+from symfpu.dynamics.schemes import particle_scheme
 from symfpu.dynamics.tangent import tangent_steps
 from symfpu.errors import InputError, SymfpuError
 from symfpu.refinement.tori import refine
@@ -163,6 +164,8 @@ def test_an_orbit_over_the_barrier_of_the_alpha_model_is_lost():
         ({"vectors": 1}, "vectors"),
         ({"vectors": 15}, "vectors"),
         ({"step": 0.0}, "step"),
+        ({"scheme": "aba864_modes"}, "scheme"),
+        ({"scheme": "euler"}, "scheme"),
         ({"samples": 10}, "samples"),
         ({"seed": -1}, "seed"),
         ({"block": 0}, "block"),
@@ -174,6 +177,29 @@ def test_bad_input_is_refused(changes, name):
     arguments = {"Q": [0.1] * 7, "P": [0.0] * 7, "T": 100.0} | changes
     with pytest.raises(InputError, match=rf"^{name} = "):
         alignment_indices(BETA, **arguments)
+
+
+@pytest.mark.parametrize(("name", "steps"), [("blanes_moan6", (0.4, 0.2)), ("kahan_li8", (0.4, 0.2)), ("aba864", (0.2, 0.1))])
+def test_indices_by_another_scheme_differ_by_its_error(name, steps):
+    """From those of the scheme of order 8 with short steps; the difference falls as step^order of the scheme."""
+
+    def indices(step, scheme):
+        run = alignment_indices(BETA, 0.1 * np.ones(7), np.zeros(7), 100.0, step=step, scheme=scheme, samples=64, vectors=4)
+        return np.append(run.log10_gali[-1], run.lyapunov[-1])
+
+    exact = indices(0.05, "kahan_li8")
+    errors = [np.max(np.abs(indices(step, name) - exact)) for step in steps]
+    order = np.log2(errors[0] / errors[1])
+    assert errors[0] < 1e-3
+    assert order == pytest.approx(particle_scheme(name).order, abs=0.5)
+
+
+def test_the_default_is_blanes_and_moan_and_the_result_names_its_scheme():
+    run = BETA, chaotic_state()[0], np.zeros(7), 100.0
+    one, other = (alignment_indices(*run, samples=64, **scheme) for scheme in ({}, {"scheme": "blanes_moan6"}))
+    assert np.array_equal(one.log10_gali, other.log10_gali)
+    assert one.scheme.name == other.scheme.name == "blanes_moan6"
+    assert alignment_indices(*run, samples=64, scheme="aba864").scheme.name == "aba864"
 
 
 def test_bad_decades_are_refused():

@@ -5,7 +5,8 @@ import pytest
 
 from symfpu.chain.chain import Chain
 from symfpu.dynamics import averages as looks
-from symfpu.dynamics.orbits import SCHEMES, integrate
+from symfpu.dynamics.orbits import integrate
+from symfpu.dynamics.schemes import SCHEMES
 from symfpu.dynamics.stopping import OrbitStopped
 from symfpu.errors import InputError
 from symfpu.refinement.tori import refine

@@ -19,7 +19,8 @@ from scipy.integrate import solve_ivp
 
 from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.orbits import SCHEMES, integrate
+from symfpu.dynamics.orbits import integrate
+from symfpu.dynamics.schemes import SCHEMES
 from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep, potential, stretch_bounds
 from symfpu.errors import InputError, RunInterrupted
 from symfpu.files.archive import BundleError

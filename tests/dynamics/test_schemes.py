@@ -8,7 +8,8 @@ from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipj
 
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.orbits import SCHEMES, integrate
+from symfpu.dynamics.orbits import integrate
+from symfpu.dynamics.schemes import SCHEMES
 from symfpu.tori.frequencies import torus_at_amplitudes
 
 EVERY = pytest.mark.parametrize("name", SCHEMES)

@@ -1,21 +1,32 @@
-"""The step with deviation vectors: order of the table, exact derivative, symplecticity, work that grows as N."""
+"""The step with deviation vectors by every scheme on T + V: orders, exact derivative, symplecticity, work that grows as N."""
 
 import time
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.blanes_moan6 import DRIFTS, KICKS
-from symfpu.dynamics.kahan_li8 import flow
-from symfpu.dynamics.tangent import moving_frame, tangent_steps
+from symfpu.dynamics.kahan_li8 import KAHAN_LI8
+from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.schemes import PARTICLE_SCHEMES, SCHEMES, particle_scheme
+from symfpu.dynamics.tangent import moving_frame, tangent_map_along, tangent_steps
 from symfpu.errors import InputError
 
 MIXED = Chain(7, alpha="0.3", beta="0.2")
 EYE = np.eye(12)
 
-# A dozen coefficients, each rounded to a double.
-COEFFICIENTS = 1e-15
+NONE = np.zeros((0, 6))
+EVERY = pytest.mark.parametrize("scheme", PARTICLE_SCHEMES.values(), ids=PARTICLE_SCHEMES)
+LEAPFROG = Scheme("leapfrog", 2, "T + V", "Verlet", drifts=(0.5, 0.5), kicks=(1.0,))
+
+# Steps of a time of 4 over which the error of a scheme is between rounding and a few per cent.
+STEPS = {
+    "yoshida4": (80, 100, 130, 160, 200),
+    "aba864": (32, 40, 52, 64, 80),
+    "blanes_moan6": (16, 20, 26, 32, 40),
+    "kahan_li8": (8, 10, 13, 16, 20),
+}
 
 # What the tangent map promises: some dozen stages with rounded products of matrices of norm about one.
 SYMPLECTIC = 1e-13
@@ -24,7 +35,10 @@ SYMPLECTIC = 1e-13
 ROUNDED = 1e-13
 
 # Slopes of errors over a few halvings: the next order changes them by less.
-ORDER_SLOPE = 0.1
+ORDER_SLOPE = 0.2
+
+# The same over half the time, with steps cut to whole numbers.
+ALONG_SLOPE = 0.4
 
 # Seconds of a loop on a machine with other work; the work itself is linear.
 LINEAR = 0.35
@@ -36,33 +50,68 @@ def state():
     return random.normal(scale=0.3, size=6), random.normal(scale=0.3, size=6)
 
 
-def tangent_map(state, step, steps, **table):
-    return np.hstack(tangent_steps(MIXED, *state, EYE[:, :6], EYE[:, 6:], step, steps, **table)[2:]).T
+def tangent_map(state, step, steps, **scheme):
+    return np.hstack(tangent_steps(MIXED, *state, EYE[:, :6], EYE[:, 6:], step, steps, **scheme)[2:]).T
 
 
-def moved(state, step, steps):
-    return np.append(*tangent_steps(MIXED, *state, np.zeros((1, 6)), np.zeros((1, 6)), step, steps)[:2])
+def moved(state, step, steps, **scheme):
+    return np.append(*tangent_steps(MIXED, *state, NONE, NONE, step, steps, **scheme)[:2])
 
 
-def test_the_table_is_symmetric_and_consistent():
-    assert len(DRIFTS) == len(KICKS) + 1 == 15
-    assert DRIFTS[::-1] == DRIFTS
-    assert KICKS[::-1] == KICKS
-    assert sum(DRIFTS) == pytest.approx(1, abs=COEFFICIENTS)
-    assert sum(KICKS) == pytest.approx(1, abs=COEFFICIENTS)
+def order_of(errors, steps):
+    return -np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
-def test_the_observed_order_is_six(state):
-    exact = np.append(*flow(MIXED, *state, 4.0, 200))
-    steps = np.array([16, 20, 26, 32, 40])
-    errors = [np.max(np.abs(moved(state, 4.0 / n, int(n)) - exact)) for n in steps]
-    assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(6, abs=ORDER_SLOPE)
+def dop853(state):
+    """The orbit as a function of time."""
+    motion = solve_ivp(
+        lambda t, y: np.append(y[6:], MIXED.accelerations(y[:6])),
+        (0, 4.1),
+        np.append(*state),
+        "DOP853",
+        rtol=1e-13,
+        atol=1e-15,
+        dense_output=True,
+    )
+    return motion.sol
 
 
-def test_the_step_is_reversible(state):
-    there = tangent_steps(MIXED, *state, EYE[:, :6], EYE[:, 6:], 0.3, 20)
-    back = np.hstack(tangent_steps(MIXED, *there, -0.3, 20)[2:])
+@EVERY
+def test_the_observed_order_of_orbit_and_deviations_is_that_of_the_scheme(state, scheme):
+    """Against steps of the scheme of order 8 so short that only rounding is left."""
+    orbit, deviations = (f(state, 0.02, 200, scheme=KAHAN_LI8) for f in (moved, tangent_map))
+    steps = np.array(STEPS[scheme.name])
+    for f, exact in ((moved, orbit), (tangent_map, deviations)):
+        errors = [np.max(np.abs(f(state, 4.0 / n, int(n), scheme=scheme) - exact)) for n in steps]
+        assert order_of(errors, steps) == pytest.approx(scheme.order, abs=ORDER_SLOPE)
+    assert orbit == pytest.approx(dop853(state)(4.0), abs=1e-9)
+
+
+@EVERY
+def test_the_step_is_reversible(state, scheme):
+    there = tangent_steps(MIXED, *state, EYE[:, :6], EYE[:, 6:], 0.3, 20, scheme=scheme)
+    back = np.hstack(tangent_steps(MIXED, *there, -0.3, 20, scheme=scheme)[2:])
     assert back == pytest.approx(EYE, abs=ROUNDED)
+
+
+@EVERY
+def test_the_tangent_map_along_an_orbit_is_that_of_the_motion(state, scheme, monkeypatch):
+    """Deviations that do not see the orbit move, only its stretches at the times of the kicks."""
+    track = dop853(state)
+
+    def stretches(t):
+        return MIXED.stretches(track(t)[:6].T)
+
+    exact = tangent_map(state, 0.01, 200, scheme=KAHAN_LI8)
+    # the dense output of DOP853 is of order 7
+    along = tangent_map_along(MIXED, stretches, 2.0, 60, scheme=KAHAN_LI8)
+    assert along == pytest.approx(exact, abs=1e-9)
+    steps = np.array(STEPS[scheme.name]) // 2
+    errors = [np.max(np.abs(tangent_map_along(MIXED, stretches, 2.0, int(n), scheme=scheme) - exact)) for n in steps]
+    assert order_of(errors, steps) == pytest.approx(scheme.order, abs=ALONG_SLOPE)
+    whole = tangent_map_along(MIXED, stretches, 2.0, 60, scheme=scheme)
+    monkeypatch.setattr("symfpu.dynamics.tangent.TABLE", scheme.stages * 7 * 7)  # portions of seven steps
+    assert np.array_equal(tangent_map_along(MIXED, stretches, 2.0, 60, scheme=scheme), whole)
 
 
 @pytest.mark.parametrize("steps", [1, 7])
@@ -81,10 +130,13 @@ def test_the_tangent_map_is_the_derivative_of_the_step(state, steps):
     assert np.max(np.abs((4 * slopes(0.005) - slopes(0.01)) / 3 - M)) < 1e-3 * errors[-1]
 
 
-@pytest.mark.parametrize("step", [0.05, 0.25, 0.7])
-def test_the_tangent_map_is_symplectic(state, step):
+@EVERY
+@pytest.mark.parametrize("share", [0.03, 0.15, 0.4])
+def test_the_tangent_map_is_symplectic(state, share, scheme):
+    """At small shares of the longest step that is stable, and at large ones."""
+    step = share * scheme.stable_phase / MIXED.frequencies()[-1]
     J = np.kron([[0, 1], [-1, 0]], np.eye(6))
-    M = tangent_map(state, step, 5)
+    M = tangent_map(state, step, 5, scheme=scheme)
     assert np.max(np.abs(M.T @ J @ M - J)) < SYMPLECTIC
 
 
@@ -100,13 +152,13 @@ def test_vectors_do_not_know_of_each_other(state):
     assert tangent_map(state, 0.25, 0) == pytest.approx(EYE, abs=ROUNDED)
 
 
-def test_another_table_can_be_passed(state):
+def test_another_scheme_can_be_passed(state):
     """The leapfrog by hand."""
     Q, P = state
     h = 0.1
     middle = Q + h / 2 * P
     after = P + h * MIXED.accelerations(middle)
-    found = tangent_steps(MIXED, Q, P, EYE[:, :6], EYE[:, 6:], h, 1, drifts=(0.5, 0.5), kicks=(1.0,))
+    found = tangent_steps(MIXED, Q, P, EYE[:, :6], EYE[:, 6:], h, 1, scheme=LEAPFROG)
     assert found[0] == pytest.approx(middle + h / 2 * after, abs=ROUNDED)
     assert found[1] == pytest.approx(after, abs=ROUNDED)
 
@@ -122,7 +174,7 @@ def test_the_work_grows_as_the_chain():
         spent = []
         for _ in range(15):
             start = time.process_time()
-            advance(frame.x, frame.p, frame.dx, frame.dp, *frame.couplings, frame.kicks, frame.drifts, 40)
+            advance(frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts, 40)
             spent.append(time.process_time() - start)
         seconds.append(min(spent))
     assert np.polyfit(np.log(lengths), np.log(seconds), 1)[0] == pytest.approx(1, abs=LINEAR)
@@ -139,10 +191,25 @@ def test_the_work_grows_as_the_chain():
         ({"step": 0}, "step"),
         ({"step": np.inf}, "step"),
         ({"steps": 1.5}, "steps"),
-        ({"kicks": (1.0,)}, "drifts"),
     ],
 )
 def test_bad_input_is_refused(state, changes, name):
     arguments = {"Q": state[0], "P": state[1], "dQ": EYE[:2, :6], "dP": EYE[:2, 6:], "step": 0.1, "steps": 3} | changes
     with pytest.raises(InputError, match=rf"^{name} = "):
         tangent_steps(MIXED, **arguments)
+
+
+def test_bad_times_along_an_orbit_are_refused():
+    for duration, steps, name in ((np.nan, 4, "duration"), ("1", 4, "duration"), (1.0, 0, "steps"), (1.0, 2.5, "steps")):
+        with pytest.raises(InputError, match=rf"^{name} = "):
+            tangent_map_along(MIXED, lambda t: np.zeros((len(t), 7)), duration, steps)
+
+
+def test_deviations_move_on_particles_only():
+    assert [particle_scheme(name).name for name in PARTICLE_SCHEMES] == [*STEPS]
+    assert [name for name in SCHEMES if name not in PARTICLE_SCHEMES] == ["aba864_modes"]
+    with pytest.raises(InputError, match=r"^scheme = .*aba864_modes.*yoshida4, .*choose one of them.*integrate"):
+        particle_scheme("aba864_modes")
+    for name in ("verlet", 8, None, KAHAN_LI8):
+        with pytest.raises(InputError, match=r"^scheme = .*choose one of them"):
+            particle_scheme(name)

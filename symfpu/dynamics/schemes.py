@@ -1,0 +1,31 @@
+"""The list of schemes, by name: a new one is a file with its coefficients, and an entry here."""
+
+from __future__ import annotations
+
+from symfpu.dynamics.aba864 import ABA864, ABA864_MODES
+from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
+from symfpu.dynamics.kahan_li8 import KAHAN_LI8
+from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.yoshida4 import YOSHIDA4
+from symfpu.errors import InputError
+
+_LIST = (YOSHIDA4, ABA864, BLANES_MOAN6, KAHAN_LI8, ABA864_MODES)
+SCHEMES = {scheme.name: scheme for scheme in _LIST}
+PARTICLE_SCHEMES = {name: scheme for name, scheme in SCHEMES.items() if not scheme.in_modes}
+
+
+def scheme_named(name: object) -> Scheme:
+    """Any scheme; raises InputError."""
+    if not isinstance(name, str) or name not in SCHEMES:
+        raise InputError("scheme", name, ", ".join(SCHEMES), "choose one of them")
+    return SCHEMES[name]
+
+
+def particle_scheme(name: object) -> Scheme:
+    """A scheme on T + V, as deviations from an orbit need one; raises InputError."""
+    if isinstance(name, str) and name in PARTICLE_SCHEMES:
+        return PARTICLE_SCHEMES[name]
+    advice = "choose one of them: deviations are moved on T + V"
+    if isinstance(name, str) and name in SCHEMES:
+        advice += f"; {name} is for integrate alone"
+    raise InputError("scheme", name, ", ".join(PARTICLE_SCHEMES), advice)
