@@ -126,7 +126,7 @@ def _energy_orders(torus: QTorus, printed: str) -> dict[str, tuple[int, ...]]:
 
 
 def amplitude_table(step: Step = unheard) -> Iterator[AmplitudeRow]:
-    """Every torus of Appendix F (Eq. table1) and the pair of Fig. 1; `step` is told which one comes next."""
+    """Every torus of Appendix F (Eq. Table1) and the pair of Fig. 1; `step` is told which one comes next."""
     for printed in (TWO_TORUS, *APPENDIX_F):
         step(f"table: {printed.label}")
         yield amplitude_row(printed)
