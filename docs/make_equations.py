@@ -55,7 +55,11 @@ def cited(text: str, order: list[str]) -> list[str]:
     for match in SEVERAL.finditer(words):
         labels += _listed(words, match.end(), order)
     labels += NAMED.findall(words)
-    labels += [f"section {number}" for found in SECTIONS.findall(words) for number in re.split(", | and ", found)]
+    labels += [
+        f"section {number}"
+        for found in SECTIONS.findall(words)
+        for number in re.split(", | and ", found)
+    ]
     return list(dict.fromkeys(labels))
 
 
@@ -138,7 +142,12 @@ def page() -> str:
     where = citations()
     lines = [HEAD.format(source=source)]
     for part in found:
-        lines += [f"## {part['title']}", "", "| label | what | lives in | cited by, too |", "| --- | --- | --- | --- |"]
+        lines += [
+            f"## {part['title']}",
+            "",
+            "| label | what | lives in | cited by, too |",
+            "| --- | --- | --- | --- |",
+        ]
         lines += [_row(item, where.get(item["label"], [])) for item in part["items"]]
         lines.append("")
     return "\n".join(lines)

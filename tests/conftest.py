@@ -13,3 +13,9 @@ settings.load_profile("suite")
 def no_lines_of_progress(monkeypatch):
     """They come after seconds, more of them on a slow machine; the tests of these lines ask for them."""
     monkeypatch.setattr("symfpu.cli.terminal.PATIENCE", math.inf)
+
+
+@pytest.fixture(autouse=True)
+def lines_of_any_length(monkeypatch):
+    """As where output is piped; workers of a parallel run hand their width down, and lines would be folded at it."""
+    monkeypatch.delenv("COLUMNS", raising=False)

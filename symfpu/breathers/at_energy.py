@@ -1,4 +1,6 @@
-"""The q-breather of a prescribed energy: harmonic balance bordered by the energy, along the family from rest."""
+"""The q-breather of a prescribed energy: harmonic balance bordered by the energy, along the
+family from rest.
+"""
 
 from __future__ import annotations
 
@@ -66,7 +68,9 @@ class NoBreatherAtEnergy(SymfpuError):
 
 @dataclass(frozen=True)
 class Level:
-    """The condition that H, or the harmonic energy at t = 0, has a given value: momenta vanish, Q_q(0) = sum_n c[n, q]."""
+    """The condition that H, or the harmonic energy at t = 0, has a given value: momenta vanish,
+    Q_q(0) = sum_n c[n, q].
+    """
 
     chain: Chain
     energy: float

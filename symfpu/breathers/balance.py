@@ -1,8 +1,9 @@
 """Exact q-breathers: time-periodic orbits by harmonic balance and Newton's method, in doubles.
 
-Q_q(t) = sum_n c[n, q-1] cos(n omega t) solves Q'' = chain.accelerations(Q). The unknowns are c and sigma = omega^2 - Omega^2 of
-the seed, so that a small shift loses no digits; one of them, sigma or A = c[1, seed-1], is given. Reflection of the chain with a
-change of sign is half a period of the family: only c with q - n seed even (and n odd if alpha = 0) are unknowns.
+Q_q(t) = sum_n c[n, q-1] cos(n omega t) solves Q'' = chain.accelerations(Q). The unknowns are c
+and sigma = omega^2 - Omega^2 of the seed, so that a small shift loses no digits; one of them,
+sigma or A = c[1, seed-1], is given. Reflection of the chain with a change of sign is half a
+period of the family: only c with q - n seed even (and n odd if alpha = 0) are unknowns.
 """
 
 from __future__ import annotations
@@ -121,14 +122,18 @@ def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicO
 
 
 def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Harmonics n and places q - 1 of the coefficients that the symmetry allows, in the order of the vectors z."""
+    """Harmonics n and places q - 1 of the coefficients that the symmetry allows, in the order of
+    the vectors z.
+    """
     n, q = np.indices((harmonics + 1, chain.N - 1))
     places = np.nonzero(((q + 1 - n * seed) % 2 == 0) & ((n % 2 == 1) | (chain.alpha != 0)))
     return places[0], places[1]
 
 
 class Balance:
-    """The equations n^2 omega^2 c + force = 0 up to a number of harmonics, for vectors z = (the c that are unknowns, sigma)."""
+    """The equations n^2 omega^2 c + force = 0 up to a number of harmonics, for vectors z = (the c
+    that are unknowns, sigma).
+    """
 
     def __init__(self, chain: Chain, seed: int, harmonics: int) -> None:
         self.chain, self.seed, self.harmonics = chain, seed, harmonics
@@ -136,7 +141,8 @@ class Balance:
         linear = chain.frequencies()
         self.detuning = self.n**2 * linear[seed - 1] ** 2 - linear[self.q] ** 2
         self.first = int(np.flatnonzero((self.n == 1) & (self.q == seed - 1))[0])
-        self.stretch = chain.stretches(np.eye(chain.N - 1))  # of every bond by a unit of each mode
+        # of every bond by a unit of each mode
+        self.stretch = chain.stretches(np.eye(chain.N - 1))
         points = 2 * harmonics + 1  # enough for cubic products
         ends = np.where(np.arange(points + 1) % points == 0, 0.5, 1.0)
         self.table = np.cos(np.pi / points * np.outer(np.arange(points + 1), np.arange(points + 1)))
@@ -174,7 +180,9 @@ class Balance:
         return diagonal * z[:-1] + force[self.n, self.q], np.column_stack([J, self.n**2 * z[:-1]])
 
     def newton(self, z: Floats, given: int | Condition) -> tuple[Floats, int]:
-        """The solution with the same z[given], or that meets a condition, and the number of steps; raises NoPeriodicOrbit."""
+        """The solution with the same z[given], or that meets a condition, and the number of
+        steps; raises NoPeriodicOrbit.
+        """
         free = np.arange(len(z)) if callable(given) else np.delete(np.arange(len(z)), given)
         best, least, before, size = z, np.inf, np.inf, float(np.max(np.abs(z[:-1])))
         for iteration in range(1, ITERATIONS + 1):
@@ -216,7 +224,9 @@ def held_amplitude(balance: Balance) -> int:
 
 
 def residual(chain: Chain, omega: float, cosines: Floats) -> float:
-    """Largest |Q'' - force| at times between the collocation points, relative to the largest acceleration."""
+    """Largest |Q'' - force| at times between the collocation points, relative to the largest
+    acceleration.
+    """
     n, points = np.arange(len(cosines)), 6 * len(cosines)
     table = np.cos(np.outer(np.pi / points * (np.arange(points) + 1 / 3), n))
     force = chain.accelerations(table @ cosines)
@@ -274,7 +284,10 @@ def detuning(chain: Chain, seed: int, omega: Fraction) -> tuple[float, float]:
 
 
 def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
-    """A > 0 whose lowest frequency correction is omega - Omega = shift; raises NoRealAmplitude or UndeterminedAmplitudes."""
+    """A > 0 whose lowest frequency correction is omega - Omega = shift.
+
+    Raises NoRealAmplitude or UndeterminedAmplitudes.
+    """
     coefficient, order = frequency_shift(chain, {seed: 1.0})[seed], 2 // chain.degree_step
     if coefficient == 0:
         raise UndeterminedAmplitudes((seed,), order)
@@ -347,10 +360,11 @@ def orbit_near(
     given: Callable[[Balance], int | Condition],
     reach: float = GROWTH,
 ) -> PeriodicOrbit:
-    """The orbit near cosines and sigma, with as many harmonics as it needs, none of them changed by more than reach.
+    """The orbit near cosines and sigma, with as many harmonics as it needs, none of them changed by
+    more than reach.
 
-    given : of a balance, the place of what keeps its value, or the condition to meet. reach : relative to the largest coefficient.
-    Raises NoPeriodicOrbit.
+    given : of a balance, the place of what keeps its value, or the condition to meet. reach :
+    relative to the largest coefficient. Raises NoPeriodicOrbit.
     """
     guess, harmonics, iterations = cosines, max(8, len(cosines) - 1), 0
     if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:

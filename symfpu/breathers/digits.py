@@ -1,8 +1,10 @@
-"""Periodic orbits to any number of digits: harmonic balance in fixed point, corrected through a factored matrix of doubles.
+"""Periodic orbits to any number of digits: harmonic balance in fixed point, corrected through a
+factored matrix of doubles.
 
-One sweep takes the residual in fixed point, solves Newton's equations for it in doubles with the matrix at the orbit in doubles, and
-gains about as many digits as that orbit has. Harmonics beyond a block of the matrix have a diagonal n^2 omega^2 - Omega^2 far above
-the rest of their rows and are divided by it; then a sweep gains fewer digits.
+One sweep takes the residual in fixed point, solves Newton's equations for it in doubles with the
+matrix at the orbit in doubles, and gains about as many digits as that orbit has. Harmonics beyond
+a block of the matrix have a diagonal n^2 omega^2 - Omega^2 far above the rest of their rows and
+are divided by it; then a sweep gains fewer digits.
 """
 
 from __future__ import annotations
@@ -144,7 +146,10 @@ def _refine(orbit: PeriodicOrbit, digits: int, amplitude: Fraction | None) -> Pr
 
 
 class Sweeps:
-    """An orbit in fixed point, c and omega^2, and the factored matrix that corrects it; made at the working precision of mpmath."""
+    """An orbit in fixed point, c and omega^2, and the factored matrix that corrects it.
+
+    Made at the working precision of mpmath.
+    """
 
     def __init__(self, orbit: PeriodicOrbit, harmonics: int, amplitude: Fraction | None) -> None:
         self.orbit, self.chain, self.by_amplitude = orbit, orbit.chain, amplitude is not None
@@ -153,7 +158,9 @@ class Sweeps:
         self.size = self.force.fixed(mpmath.mpf(largest))
         self.c: Integers = np.zeros((harmonics + 1, self.chain.N - 1), dtype=object)
         self.n, self.q = unknowns(self.chain, orbit.seed, harmonics)
-        known = self.n < len(orbit.cosines)  # what the symmetry forbids, rounding if any, stays zero
+        known = self.n < len(
+            orbit.cosines
+        )  # what the symmetry forbids, rounding if any, stays zero
         n, q = self.n[known], self.q[known]
         fixed = np.frompyfunc(lambda x: self.force.fixed(mpmath.mpf(x)), 1, 1)
         self.c[n, q] = fixed(orbit.cosines[n, q])
@@ -167,7 +174,9 @@ class Sweeps:
         self._factor()
 
     def _factor(self) -> None:
-        """The matrix of the low harmonics at the orbit in doubles, and the diagonal of the high ones."""
+        """The matrix of the low harmonics at the orbit in doubles, and the diagonal of the high
+        ones.
+        """
         from scipy.linalg import lu_factor
 
         orbit, harmonics = self.orbit, len(self.c) - 1

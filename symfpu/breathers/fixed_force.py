@@ -1,7 +1,8 @@
 """Forces of cosine series in fixed point: integer polynomials multiplied exactly by FLINT.
 
-A series sum_n c_n cos(n theta), times two, is the palindromic Laurent polynomial sum_n d_|n| z^n with d_0 = 2 c_0, d_n = c_n.
-Every number is an integer times 2^-bits; a product is rounded down once.
+A series sum_n c_n cos(n theta), times two, is the palindromic Laurent polynomial sum_n d_|n| z^n
+with d_0 = 2 c_0, d_n = c_n. Every number is an integer times 2^-bits; a product is rounded down
+once.
 """
 
 from __future__ import annotations
@@ -48,7 +49,10 @@ class FixedForce:
         return int(mpmath.nint(mpmath.ldexp(value, self.bits)))
 
     def equations(self, c: Integers, squared: int, harmonics: int) -> Integers:
-        """n^2 omega^2 c + force for all modes, shape (H+1, N-1) to (harmonics+1, N-1); squared is omega^2."""
+        """n^2 omega^2 c + force for all modes, shape (H+1, N-1) to (harmonics+1, N-1).
+
+        Squared is omega^2.
+        """
         total = self._nonlinear(c, harmonics)
         n = np.arange(len(c)).astype(object)[:, None]
         total[: len(c)] += ((n**2 * squared - self.squares) * c) >> self.bits
@@ -63,7 +67,10 @@ class FixedForce:
         return np.negative(self._product(tension, self.modes))
 
     def _tension(self, r: Sequence[int], harmonics: int) -> list[int]:
-        """Cosine coefficients of c_3 r^2 + c_4 r^3 + ... of one bond: d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0."""
+        """Cosine coefficients of c_3 r^2 + c_4 r^3 + ...
+
+        Of one bond: d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0.
+        """
         degree, total = len(r) - 1, np.zeros(harmonics + 1, dtype=object)
         twice = flint.fmpz_poly([*r[:0:-1], 2 * r[0], *r[1:]])
         power = twice

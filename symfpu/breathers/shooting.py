@@ -291,7 +291,9 @@ def _steps(chain: Chain, scheme: Scheme, seed: int, start: Floats, half: float) 
     steps, none = int(np.ceil(half / FIRST_STEP)), np.zeros((0, chain.N - 1))
 
     def end(steps: int) -> Floats:
-        Q, P, *_ = tangent_steps(chain, start, 0 * start, none, none, half / steps, steps, scheme=scheme)
+        Q, P, *_ = tangent_steps(
+            chain, start, 0 * start, none, none, half / steps, steps, scheme=scheme
+        )
         return np.concatenate([Q, P])
 
     coarse = end(steps)

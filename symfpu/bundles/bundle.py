@@ -1,9 +1,10 @@
 """A series and its torus, or any other solution, in one file: a ZIP archive of bundle.json and of arrays that numpy.load reads.
 
-Everything but the tables is in bundle.json: numbers that must come back exactly are strings, and a digest covers the whole.
-The tables are flat arrays, order after order and row after row: doubles, words of integers (symfpu.algebra.words), or places
-in the list of expressions. Their row counts follow from the number of seeds and the order (symfpu.algebra.grading).
-Loading executes nothing: it compares, splits and rebuilds, and checks every size before it allocates.
+Everything but the tables is in bundle.json: numbers that must come back exactly are strings, and
+a digest covers the whole. The tables are flat arrays, order after order and row after row:
+doubles, words of integers (symfpu.algebra.words), or places in the list of expressions. Their row
+counts follow from the number of seeds and the order (symfpu.algebra.grading). Loading executes
+nothing: it compares, splits and rebuilds, and checks every size before it allocates.
 """
 
 from __future__ import annotations
@@ -70,7 +71,9 @@ LONG_RUN = 100  # periods of the slowest seed at which the last test vector is t
 
 
 class OrbitPoint(NamedTuple):
-    """A point of the torus for tests of other programs: t, and Q_1 .. Q_(N-1) and P_1 .. P_(N-1) at t, as decimals."""
+    """A point of the torus for tests of other programs: t, and Q_1 .. Q_(N-1) and P_1 .. P_(N-1)
+    at t, as decimals.
+    """
 
     t: str
     Q: tuple[str, ...]
@@ -201,7 +204,8 @@ def load(path: Path | str) -> Bundle:
             return _bundle(path, Archive(path, stream))
         except BundleError:
             raise
-        except Exception as error:  # whatever zipfile, zlib, json, numpy and our own checks say to a damaged or hostile file
+        # whatever zipfile, zlib, json, numpy and our own checks say to a damaged or hostile file
+        except Exception as error:
             reason = " ".join(f"{type(error).__name__} {error}".split())[:LONGEST_REASON]
             raise BundleError(
                 path, f"is damaged ({reason})", "restore it from a copy or compute it again"

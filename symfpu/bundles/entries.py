@@ -16,7 +16,10 @@ from symfpu.numbers.typed import fraction, fraction_text, integer
 
 
 def number_entry(value: Any) -> str | dict[str, str]:
-    """A double as its shortest decimal; an mpf as hexadecimal mantissa and binary exponent, with a decimal to read."""
+    """A double as its shortest decimal.
+
+    An mpf as hexadecimal mantissa and binary exponent, with a decimal to read.
+    """
     if not isinstance(value, mpmath.mpf):
         if float(value) != value:
             raise InputError("result", value, "doubles and mpf as its numbers", "convert them")

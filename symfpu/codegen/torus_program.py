@@ -122,7 +122,9 @@ def _require_parity(torus: QuasiPeriodic, rows: Ints, others: NDArray[np.bool_])
     strange = np.abs(torus.cosines[rows][:, others]).max(initial=0)
     if strange > TOLERANCE * largest:
         allowed = "harmonics nu in modes q with nu.seeds - q even, as equations of motion make them"
-        raise InputError("solution", f"a coefficient {float(strange):.2g}", allowed, "refine it first")
+        raise InputError(
+            "solution", f"a coefficient {float(strange):.2g}", allowed, "refine it first"
+        )
 
 
 def highest_numbers(harmonics: Sequence[Ints], s: int) -> tuple[int, ...]:

@@ -244,7 +244,8 @@ def family(
     that cannot be followed to its goal is returned as far as it went; `ending` says where and why
     it ended. One that comes back to the linear limit ends there.
     Raises InputError for arguments out of range and for a folder that holds another family; where there is no
-    first member, NoTorus, or NotInFamily if the family turns or ends below `from_energy`.
+    first member, NoTorus, or NotInFamily if the family turns or ends below `from_energy`; RunInterrupted, a
+    KeyboardInterrupt, where there is a folder.
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> [round(member.energy, 6) for member in tori.members]

@@ -1,4 +1,6 @@
-"""Pictures from results: functions take axes and return them; nothing is computed here. Matplotlib is loaded when needed."""
+"""Pictures from results: functions take axes and return them; nothing is computed here.
+Matplotlib is loaded when needed.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,8 @@ from symfpu.figures.panels import Panel
 
 Floats = NDArray[np.float64]
 Axes = Any
-FEW_CURVES, FEW_LINES = 5, 3  # with more of them, or of lines among them, the legend goes beside the picture
+# with more of them, or of lines among them, the legend goes beside the picture
+FEW_CURVES, FEW_LINES = 5, 3
 
 CURVE_STYLES: Mapping[str, dict[str, Any]] = {
     "line": {"lw": 1.2},
@@ -26,10 +29,13 @@ CURVE_STYLES: Mapping[str, dict[str, Any]] = {
 }
 
 
-def plot_spectrum(spectrum: Floats, ax: Axes, *, label: str = "", marker: str = "o", floor: Floats | float = 0.0) -> Axes:
+def plot_spectrum(
+    spectrum: Floats, ax: Axes, *, label: str = "", marker: str = "o", floor: Floats | float = 0.0
+) -> Axes:
     """Normalised average energies of the modes against q, on a logarithmic scale; spectrum (N-1,).
 
-    floor : in the unit of the spectrum, (N-1,) or one for all, as from `spectrum_floor`; modes at or below it are not drawn.
+    floor : in the unit of the spectrum, (N-1,) or one for all, as from `spectrum_floor`; modes at
+    or below it are not drawn.
     """
     q = np.arange(1, len(spectrum) + 1)
     known = spectrum > floor
@@ -42,15 +48,32 @@ def plot_spectrum(spectrum: Floats, ax: Axes, *, label: str = "", marker: str = 
 def plot_panel(panel: Panel, ax: Axes) -> Axes:
     """A panel of curves; of points that lie on each other the first ones are the largest."""
     for i, curve in enumerate(panel.curves):
-        shown = np.isfinite(curve.x) & np.isfinite(curve.y) & ((curve.x > 0) | (not panel.log_x)) & ((curve.y > 0) | (not panel.log_y))
+        shown = (
+            np.isfinite(curve.x)
+            & np.isfinite(curve.y)
+            & ((curve.x > 0) | (not panel.log_x))
+            & ((curve.y > 0) | (not panel.log_y))
+        )
         look = dict(CURVE_STYLES[curve.style])
         if look.get("marker"):
             look["ms"] *= 1 - 0.5 * i / len(panel.curves)
-        color = "black" if curve.style == "law" else f"C{(i if curve.group is None else curve.group) % 5}"
-        known = curve.group is not None and curve.group in [earlier.group for earlier in panel.curves[:i]]
+        color = (
+            "black"
+            if curve.style == "law"
+            else f"C{(i if curve.group is None else curve.group) % 5}"
+        )
+        known = curve.group is not None and curve.group in [
+            earlier.group for earlier in panel.curves[:i]
+        ]
         if curve.style == "line" and curve.group is None and i >= FEW_CURVES:
             look["ls"] = "--"  # colours come round
-        ax.plot(curve.x[shown], curve.y[shown], color=color, label=None if known else curve.label, **look)
+        ax.plot(
+            curve.x[shown],
+            curve.y[shown],
+            color=color,
+            label=None if known else curve.label,
+            **look,
+        )
     ax.set_xscale("log" if panel.log_x else "linear")
     ax.set_yscale("log" if panel.log_y else "linear")
     if panel.bottom is not None:
@@ -59,7 +82,13 @@ def plot_panel(panel: Panel, ax: Axes) -> Axes:
     ax.set_ylabel(panel.y_label)
     lines = sum(curve.style == "line" and curve.group is None for curve in panel.curves)
     many = len(ax.get_legend_handles_labels()[0]) > FEW_CURVES or lines > FEW_LINES
-    ax.legend(**({"fontsize": "small", "loc": "center left", "bbox_to_anchor": (1.0, 0.5)} if many else {}))
+    ax.legend(
+        **(
+            {"fontsize": "small", "loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
+            if many
+            else {}
+        )
+    )
     return ax
 
 

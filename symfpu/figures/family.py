@@ -1,4 +1,6 @@
-"""Pictures of a family: energy against frequency, amplitudes, multipliers, spectra. Nothing is computed here."""
+"""Pictures of a family: energy against frequency, amplitudes, multipliers, spectra. Nothing is
+computed here.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,10 @@ SPECTRA = 5  # as many as the style has colours
 
 
 def plot_shifts(found: Family, ax: Axes) -> Axes:
-    """H against omega_q / Omega_q - 1 of every seed, in powers of ten on both sides of zero; folds as lines."""
+    """H against omega_q / Omega_q - 1 of every seed, in powers of ten on both sides of zero.
+
+    Folds as lines.
+    """
     energies = np.array([m.energy for m in found.members])
     linear, smallest = found.chain.frequencies(), np.inf
     for i, q in enumerate(found.seeds):
@@ -43,11 +48,18 @@ def plot_amplitudes(found: Family, ax: Axes) -> Axes:
     """Amplitudes against H; resonances as ticks below, changes of stability as lines."""
     energies = [m.energy for m in found.members]
     for q in found.seeds:
-        ax.loglog(energies, [abs(m.amplitudes[q]) for m in found.members], marker=".", label=rf"$A_{{{q}}}$")
+        ax.loglog(
+            energies,
+            [abs(m.amplitudes[q]) for m in found.members],
+            marker=".",
+            label=rf"$A_{{{q}}}$",
+        )
     for i, event in enumerate(e for e in found.events if e.kind == "resonance"):
         ax.axvline(event.energy, ymax=0.04, color="C3", lw=1, label=None if i else "resonance")
     for i, event in enumerate(e for e in found.events if e.kind == "stability"):
-        ax.axvline(event.energy, color="0.5", ls=":", lw=1, label=None if i else "change of stability")
+        ax.axvline(
+            event.energy, color="0.5", ls=":", lw=1, label=None if i else "change of stability"
+        )
     ax.set_xlabel(r"$H$")
     ax.set_ylabel(r"$A_q$")
     ax.legend()
@@ -55,7 +67,9 @@ def plot_amplitudes(found: Family, ax: Axes) -> Axes:
 
 
 def plot_multipliers(found: Family, ax: Axes) -> Axes:
-    """Angles of the multipliers on the unit circle against H, and the moduli of those off it as crosses on a second axis."""
+    """Angles of the multipliers on the unit circle against H, and the moduli of those off it as
+    crosses on a second axis.
+    """
     known = [(m.energy, m.multipliers) for m in found.members if m.multipliers is not None]
     off: list[tuple[float, float]] = []
     for energy, multipliers in known:
@@ -75,12 +89,21 @@ def plot_multipliers(found: Family, ax: Axes) -> Axes:
 
 
 def plot_spectra(found: Family, ax: Axes) -> Axes:
-    """Average spectra of some members, normalised; modes at or below the `spectrum_floor` of their member are not drawn."""
+    """Average spectra of some members, normalised.
+
+    Modes at or below the `spectrum_floor` of their member are not drawn.
+    """
     chosen = np.unique(np.linspace(0, len(found.members) - 1, SPECTRA).round().astype(int))
     for i, m in enumerate(found.members[k] for k in chosen):
         spectrum = np.asarray(m.torus.average_spectrum(), dtype=float)
         q = np.flatnonzero(spectrum > spectrum_floor(m.torus))
-        ax.semilogy(q + 1, spectrum[q] / spectrum.sum(), marker=".", color=f"C{i}", label=f"$H$ = {m.energy:.2g}")
+        ax.semilogy(
+            q + 1,
+            spectrum[q] / spectrum.sum(),
+            marker=".",
+            color=f"C{i}",
+            label=f"$H$ = {m.energy:.2g}",
+        )
     ax.set_xlabel(r"$q$")
     ax.set_ylabel(r"$\overline{E}_q / E$")
     ax.legend(fontsize="small")

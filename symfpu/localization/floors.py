@@ -134,7 +134,10 @@ def _along_the_family(
 
 
 def _of_newton(torus: QuasiPeriodic) -> _Errors:
-    """One more step of Newton's method, on more harmonics; that of the amplitudes goes along the family."""
+    """One more step of Newton's method, on more harmonics.
+
+    That of the amplitudes goes along the family.
+    """
     equation = InvarianceEquation(torus.chain, torus.seeds, _harmonics(torus))
     shifts, cosines = shifts_of(torus), _on(torus, equation.harmonics)
     divisors = np.where(equation.mask, equation.divisors(shifts), 1)
@@ -160,7 +163,10 @@ def _of_newton(torus: QuasiPeriodic) -> _Errors:
 
 
 def _harmonics(torus: QuasiPeriodic) -> Ints:
-    """The harmonics of a torus, one of each pair; of one angle also those up to WIDER times as large."""
+    """The harmonics of a torus, one of each pair.
+
+    Of one angle also those up to WIDER times as large.
+    """
     own = _canonical_signs(np.asarray(torus.harmonics))
     if len(torus.seeds) == 1:
         own = np.arange(int(WIDER * own.max()) + 1)[:, None]
@@ -170,7 +176,9 @@ def _harmonics(torus: QuasiPeriodic) -> Ints:
 def _left_out(
     equation: InvarianceEquation, shifts: Floats, cosines: Floats, rounding: Floats
 ) -> tuple[Ints, Floats, Floats]:
-    """Harmonics next to those of the equation, their frequencies, and the coefficients by their forces."""
+    """Harmonics next to those of the equation, their frequencies, and the coefficients by their
+    forces.
+    """
     known = set(map(tuple, equation.harmonics.tolist()))
     around = np.unique(_canonical_signs(dilated(equation.harmonics, OVERSAMPLING / 2)), axis=0)
     harmonics = around[[nu not in known for nu in map(tuple, around.tolist())]]
@@ -263,7 +271,10 @@ def _of_amplitudes(torus: QTorus) -> float:
 
 
 def _of_digits(orbit: PreciseOrbit) -> _Errors:
-    """The bound of the residual over the divisors; that of the amplitude goes along the family."""
+    """The bound of the residual over the divisors.
+
+    That of the amplitude goes along the family.
+    """
     chain, omega = orbit.chain, float(orbit.frequency)
     cosines, doubles = orbit.cosines.astype(float), orbit.in_doubles()
     half = np.linspace(0, np.pi / omega, 4 * len(cosines))

@@ -15,7 +15,8 @@ VERDICTS = (HOLDS, PARTLY, FAILS, OPEN)
 class Claim:
     """A statement or number of the paper and what became of it.
 
-    section : where the paper says it. text : what it says. printed : its number, if there is one. ours : what we find, with numbers.
+    section : where the paper says it. text : what it says. printed : its number, if there is one.
+    ours : what we find, with numbers.
     verdict : one of VERDICTS.
     """
 
@@ -31,7 +32,9 @@ class Claim:
 
     def record(self) -> dict[str, str]:
         """For JSON."""
-        return {name: getattr(self, name) for name in ("section", "text", "printed", "ours", "verdict")}
+        return {
+            name: getattr(self, name) for name in ("section", "text", "printed", "ours", "verdict")
+        }
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,11 @@ class PaperFigure:
     remarks: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
-        counts = ", ".join(f"{n} {verdict}" for verdict in VERDICTS if (n := sum(c.verdict == verdict for c in self.claims)))
+        counts = ", ".join(
+            f"{n} {verdict}"
+            for verdict in VERDICTS
+            if (n := sum(c.verdict == verdict for c in self.claims))
+        )
         return f"PaperFigure({self.name}, panels {', '.join(panel.name for panel in self.panels)}; claims: {counts or 'none'})"
 
 

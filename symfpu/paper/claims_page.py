@@ -20,7 +20,10 @@ def figure_markdown(figure: PaperFigure) -> str:
 
 def claims_table(claims: Iterable[Claim]) -> str:
     """One row for each claim."""
-    rows = [[_cell(text) for text in (c.section, c.text, c.printed or "-", c.ours, f"**{c.verdict}**")] for c in claims]
+    rows = [
+        [_cell(text) for text in (c.section, c.text, c.printed or "-", c.ours, f"**{c.verdict}**")]
+        for c in claims
+    ]
     return markdown_table(["section", "the paper says", "printed", "found here", "verdict"], rows)
 
 
@@ -34,7 +37,14 @@ def claims_markdown(figures: Sequence[PaperFigure]) -> str:
     counts = Counter(claim.verdict for figure in figures for claim in figure.claims)
     summary = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS if counts[verdict])
     rows = [
-        [figure.title, *(str(sum(claim.verdict == verdict for claim in figure.claims) or "") for verdict in VERDICTS)] for figure in figures
+        [
+            figure.title,
+            *(
+                str(sum(claim.verdict == verdict for claim in figure.claims) or "")
+                for verdict in VERDICTS
+            ),
+        ]
+        for figure in figures
     ]
     return f"## Claims\n\n{summary}.\n\n{markdown_table(['figure', *VERDICTS], rows)}\n"
 

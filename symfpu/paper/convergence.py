@@ -1,8 +1,9 @@
 """Two questions that the paper leaves open about the convergence of its series, settled with numbers.
 
-(i) Fig. 1(b, c): why the amplitudes stop settling near order 24 and the cancellations stop improving after order 14. The paper
-offers frequencies that become commensurable at that precision, and the finite precision of the amplitudes. (ii) Fig. 9: is
-the amplitude found at order 242 that of a periodic orbit with the printed frequency?
+(i) Fig. 1(b, c): why the amplitudes stop settling near order 24 and the cancellations stop
+improving after order 14. The paper offers frequencies that become commensurable at that
+precision, and the finite precision of the amplitudes. (ii) Fig. 9: is the amplitude found at
+order 242 that of a periodic orbit with the printed frequency?
 """
 
 from __future__ import annotations
@@ -42,8 +43,10 @@ RESONANT_MODE, RESONANT_HARMONIC = 3, (5, -4)
 PROBE_SHIFTS = ("1e-6", "1e-7")  # of the probe frequency from the resonance, to extrapolate to it
 PROBE_ORDER = 14
 REAL = 1e-9  # imaginary part below which a root of the probe counts as real
-INCOMMENSURABLE = ("0.19626000014142135623730950488", "0.39046000017320508075688772935")  # printed digits, then sqrt 2, sqrt 3
-DETUNED = ("0.19626", "0.39056")  # the divisor of the resonance 12.6 times larger, of the other sign
+# printed digits, then sqrt 2, sqrt 3
+INCOMMENSURABLE = ("0.19626000014142135623730950488", "0.39046000017320508075688772935")
+# the divisor of the resonance 12.6 times larger, of the other sign
+DETUNED = ("0.19626", "0.39056")
 BREATHER_DIGITS = 30
 SINGULARITY_TERMS = 60  # last terms of the frequency series to which its singularity is fitted
 LIMIT_ORDER = 160  # of the series whose ends are followed along a family
@@ -53,7 +56,10 @@ LIMIT_POINTS = 14
 
 @dataclass(frozen=True)
 class Variant:
-    """One way to compute Fig. 1(b, c). differences : Delta A(k) of all seeds; sums : mu^k S_2(k) of mode 1, order 0 first."""
+    """One way to compute Fig.
+
+    1(b, c). differences : Delta A(k) of all seeds; sums : mu^k S_2(k) of mode 1, order 0 first.
+    """
 
     name: str
     differences: dict[int, tuple[float, ...]]
@@ -63,12 +69,15 @@ class Variant:
 
 @dataclass(frozen=True)
 class CancellationStudy:
-    """Question (i). variants : the printed case in doubles, with digits, with rounded amplitudes, with other frequencies.
+    """Question (i). variants : the printed case in doubles, with digits, with rounded amplitudes,
+    with other frequencies.
 
-    coincidence : the first harmonic that the printed frequencies bring to rest. ratios : by order, how much the coefficient of
-    the resonant harmonic grows from two orders before. divisor : its divisor. pole : mu^2 in units of the actual one at which
-    mode 3's own frequency on the torus meets the harmonic; 1/pole is the ratio that this predicts. residuals, resummed : of
-    truncated and of resummed tori, by order. amplitudes : by frequency order, truncated and resummed roots.
+    coincidence : the first harmonic that the printed frequencies bring to rest. ratios : by
+    order, how much the coefficient of the resonant harmonic grows from two orders before. divisor
+    : its divisor. pole : mu^2 in units of the actual one at which mode 3's own frequency on the
+    torus meets the harmonic; 1/pole is the ratio that this predicts. residuals, resummed : of
+    truncated and of resummed tori, by order. amplitudes : by frequency order, truncated and
+    resummed roots.
     """
 
     variants: tuple[Variant, ...]
@@ -92,11 +101,17 @@ def cancellation_study(step: Step = unheard) -> CancellationStudy:
     assessment = assess(series, torus)
     variants = list(_variants(step))
     step("convergence: resummation")
-    resummed = {k: t.residual() for k, t in zip(SHOWN_ORDERS, resum_by_order(torus, SHOWN_ORDERS), strict=True)}
+    resummed = {
+        k: t.residual()
+        for k, t in zip(SHOWN_ORDERS, resum_by_order(torus, SHOWN_ORDERS), strict=True)
+    }
     amplitudes = {}
     for K in SHOWN_ORDERS:
         root = pade_amplitudes(series, torus.amplitudes, K)
-        amplitudes[K] = (tuple(map(float, torus.history[K])), tuple(float(a) for a in root.values()))
+        amplitudes[K] = (
+            tuple(map(float, torus.history[K])),
+            tuple(float(a) for a in root.values()),
+        )
     return CancellationStudy(
         variants=tuple(variants),
         coincidence=_coincidence(series),
@@ -115,7 +130,12 @@ def _variants(step: Step) -> list[Variant]:
     cases: tuple[tuple[str, Sequence[str], int | None, int | None], ...] = (
         ("doubles", TWO_TORUS.frequencies, None, None),
         (f"{MORE_DIGITS} digits", TWO_TORUS.frequencies, MORE_DIGITS, None),
-        (f"amplitudes rounded to {PRINTED_DIGITS} digits", TWO_TORUS.frequencies, MORE_DIGITS, PRINTED_DIGITS),
+        (
+            f"amplitudes rounded to {PRINTED_DIGITS} digits",
+            TWO_TORUS.frequencies,
+            MORE_DIGITS,
+            PRINTED_DIGITS,
+        ),
         ("incommensurable digits appended", INCOMMENSURABLE, MORE_DIGITS, None),
         (f"omega_2 = {DETUNED[1]}", DETUNED, None, None),
     )
@@ -124,10 +144,17 @@ def _variants(step: Step) -> list[Variant]:
         step(f"convergence: {name}")
         key = (tuple(frequencies), digits)
         if key not in known:
-            known[key] = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, frequencies, TWO_TORUS.order, digits=digits)
+            known[key] = lindstedt(
+                TWO_TORUS.chain, TWO_TORUS.seeds, frequencies, TWO_TORUS.order, digits=digits
+            )
         torus = solve_amplitudes(known[key], frequency_order=FIG1_AMPLITUDE_ORDER)
         if rounded:
-            torus = replace(torus, amplitudes={q: mpmath.mpf(mpmath.nstr(a, rounded)) for q, a in torus.amplitudes.items()})
+            torus = replace(
+                torus,
+                amplitudes={
+                    q: mpmath.mpf(mpmath.nstr(a, rounded)) for q, a in torus.amplitudes.items()
+                },
+            )
         found = assess(known[key], torus, resummed=False)
         variants.append(Variant(name, dict(found.differences), found.sums[1][1], found.residuals))
     return variants
@@ -155,30 +182,46 @@ def _ratios(torus: QTorus) -> dict[int, float]:
 
 
 def _pole(torus: QTorus) -> float:
-    """Where the frequency of small oscillations of mode 3 on the torus, a series in mu^2, equals |nu.omega| of the resonance.
+    """Where the frequency of small oscillations of mode 3 on the torus, a series in mu^2, equals
+    |nu.omega| of the resonance.
 
-    The mode is made a third seed of amplitude zero with a frequency ever closer to the harmonic's: its frequency series then
-    starts at Omega_3, and its divisors are those of the harmonic.
+    The mode is made a third seed of amplitude zero with a frequency ever closer to the
+    harmonic's: its frequency series then starts at Omega_3, and its divisors are those of the
+    harmonic.
     """
-    drive = abs(sum((n * w for n, w in zip(RESONANT_HARMONIC, torus.frequencies, strict=True)), start=Fraction(0)))
+    drive = abs(
+        sum(
+            (n * w for n, w in zip(RESONANT_HARMONIC, torus.frequencies, strict=True)),
+            start=Fraction(0),
+        )
+    )
     found = []
     for shift in PROBE_SHIFTS:
-        probe = lindstedt(torus.chain, (*torus.seeds, RESONANT_MODE), (*torus.frequencies, drive + Fraction(shift)), PROBE_ORDER)
+        probe = lindstedt(
+            torus.chain,
+            (*torus.seeds, RESONANT_MODE),
+            (*torus.frequencies, drive + Fraction(shift)),
+            PROBE_ORDER,
+        )
         squares = [float(torus.amplitudes[q]) ** 2 for q in torus.seeds]
         terms, _ = probe.frequency_terms([*squares, 0.0])
         coefficients = terms[[0, *frequency_orders(probe)], 2].copy()
         coefficients[0] -= float(drive)
         roots = np.polynomial.Polynomial(coefficients).roots()
-        found.append(min(float(r.real) for r in roots if abs(float(r.imag)) < REAL and float(r.real) > 0))
+        found.append(
+            min(float(r.real) for r in roots if abs(float(r.imag)) < REAL and float(r.real) > 0)
+        )
     far, near = (float(shift) for shift in PROBE_SHIFTS)
     return found[1] + (found[1] - found[0]) * near / (far - near)
 
 
 @dataclass(frozen=True)
 class BreatherStudy:
-    """Question (ii). orbit : the periodic orbit with the printed frequency, by Newton. at_printed : the one with the printed
-    amplitude. amplitudes : A(K). singularity : amplitude at which the frequency series with these divisors ends, from the
-    ratios of its terms, with the spread of the fit. assessment : of the series at the printed order."""
+    """Question (ii). orbit : the periodic orbit with the printed frequency, by Newton. at_printed :
+    the one with the printed amplitude. amplitudes : A(K). singularity : amplitude at which the
+    frequency series with these divisors ends, from the ratios of its terms, with the spread of
+    the fit. assessment : of the series at the printed order.
+    """
 
     orbit: PeriodicOrbit
     at_printed: PeriodicOrbit
@@ -194,9 +237,10 @@ class BreatherStudy:
 class SchemeLimit:
     """Where the series with chosen frequencies in its divisors ceases to find a family of breathers.
 
-    For a chosen omega the frequency series in A ends at a fold. Up to omega_limit it reaches omega before; beyond, the breather lies
-    behind the fold. orbit : the breather there. frequencies, amplitudes : of the family; ends : amplitude at which the series with
-    these divisors ends. family : on both sides of the limit.
+    For a chosen omega the frequency series in A ends at a fold. Up to omega_limit it reaches
+    omega before; beyond, the breather lies behind the fold. orbit : the breather there.
+    frequencies, amplitudes : of the family; ends : amplitude at which the series with these
+    divisors ends. family : on both sides of the limit.
     """
 
     orbit: PeriodicOrbit
@@ -211,7 +255,9 @@ def breather_study(step: Step = unheard) -> BreatherStudy:
     printed = FIG9_BREATHER
     (seed,), (omega,) = printed.seeds, printed.frequencies
     step("convergence: breather series")
-    series = lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order, digits=BREATHER_DIGITS)
+    series = lindstedt(
+        printed.chain, printed.seeds, printed.frequencies, printed.order, digits=BREATHER_DIGITS
+    )
     torus = solve_amplitudes(series)
     step("convergence: breather verdict")
     assessment = assess(series, torus)
@@ -229,30 +275,50 @@ def breather_study(step: Step = unheard) -> BreatherStudy:
     )
 
 
-def scheme_limit(chain: Chain, seed: int, energies: tuple[str, str], step: Step = unheard) -> SchemeLimit:
-    """Follow the breathers of a seed between two energies, and find where their fixed-frequency series stop to reach them.
+def scheme_limit(
+    chain: Chain, seed: int, energies: tuple[str, str], step: Step = unheard
+) -> SchemeLimit:
+    """Follow the breathers of a seed between two energies, and find where their fixed-frequency
+    series stop to reach them.
 
     Raises InputError where the limit does not lie between them.
     """
     step("convergence: family of breathers")
     found = family(chain, (seed,), energies[1], from_energy=energies[0])
-    chosen = [found.members[k] for k in np.unique(np.linspace(0, len(found.members) - 1, LIMIT_POINTS).round().astype(int))]
+    chosen = [
+        found.members[k]
+        for k in np.unique(np.linspace(0, len(found.members) - 1, LIMIT_POINTS).round().astype(int))
+    ]
     rates = [float(m.torus.frequencies[0]) for m in chosen]
     step("convergence: ends of the series along the family")
     ends = [series_end(chain, seed, w) for w in rates]
     gaps = [reached - w for (_, reached), w in zip(ends, rates, strict=True)]
     if gaps[0] <= 0 or gaps[-1] >= 0:
-        raise InputError("energies", energies, "two with the limit between them", "take the first smaller or the second larger")
+        raise InputError(
+            "energies",
+            energies,
+            "two with the limit between them",
+            "take the first smaller or the second larger",
+        )
     from scipy.optimize import brentq
 
     k = next(k for k, gap in enumerate(gaps) if gap < 0)
-    omega = brentq(lambda w: series_end(chain, seed, w)[1] - w, rates[k - 1], rates[k], xtol=1e-12, rtol=1e-12)
+    omega = brentq(
+        lambda w: series_end(chain, seed, w)[1] - w, rates[k - 1], rates[k], xtol=1e-12, rtol=1e-12
+    )
     orbit = periodic_orbit(chain, seed, omega, chosen[k - 1].torus)
-    return SchemeLimit(orbit, tuple(rates), tuple(m.amplitudes[seed] for m in chosen), tuple(a for a, _ in ends), found)
+    return SchemeLimit(
+        orbit,
+        tuple(rates),
+        tuple(m.amplitudes[seed] for m in chosen),
+        tuple(a for a, _ in ends),
+        found,
+    )
 
 
 def series_end(chain: Chain, seed: int, omega: Number) -> tuple[float, float]:
-    """The amplitude at which the frequency series with omega in its divisors ends, and the frequency that it has reached there.
+    """The amplitude at which the frequency series with omega in its divisors ends, and the frequency
+    that it has reached there.
 
     At its square-root end the terms fall as k^(-3/2); the sum is extrapolated in powers of k^(-1/2).
     """
@@ -268,15 +334,21 @@ def series_end(chain: Chain, seed: int, omega: Number) -> tuple[float, float]:
 
 
 def _singularity(series: LindstedtSeries) -> tuple[float, float, float]:
-    """Amplitude, its spread, and exponent g of the singularity (x_c - A^2)^g of the frequency series, from ratios of terms.
+    """Amplitude, its spread, and exponent g of the singularity (x_c - A^2)^g of the frequency
+    series, from ratios of terms.
 
-    a_k / a_(k-1) = (1 - (1 + g) / k + O(1/k^2)) / x_c (Domb and Sykes, Proc. R. Soc. A 240 (1957) 214), k counting powers of A^2.
+    a_k / a_(k-1) = (1 - (1 + g) / k + O(1/k^2)) / x_c (Domb and Sykes, Proc. R. Soc. A 240 (1957)
+    214), k counting powers of A^2.
     """
     orders = frequency_orders(series)
     with mpmath.workdps(BREATHER_DIGITS):
-        unit = mpmath.mpf(1) / series.seed_factors[0] ** 2 if series.digits is None else mpmath.mpf(1)
+        unit = (
+            mpmath.mpf(1) / series.seed_factors[0] ** 2 if series.digits is None else mpmath.mpf(1)
+        )
         terms, _ = series.frequency_terms([unit])
-        ratios = np.array([float(terms[b, 0] / terms[a, 0] / unit) for a, b in itertools.pairwise(orders)])
+        ratios = np.array(
+            [float(terms[b, 0] / terms[a, 0] / unit) for a, b in itertools.pairwise(orders)]
+        )
     n = np.arange(2, len(ratios) + 2, dtype=float)
     estimates = []
     for last in (SINGULARITY_TERMS, SINGULARITY_TERMS // 2):

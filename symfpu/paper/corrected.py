@@ -1,4 +1,6 @@
-"""The paper's examples corrected: exact tori of the printed frequencies by Newton's method, and the errors of the series against them."""
+"""The paper's examples corrected: exact tori of the printed frequencies by Newton's method, and
+the errors of the series against them.
+"""
 
 from __future__ import annotations
 
@@ -25,16 +27,22 @@ from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-TOLERANCES = (1e-10, 1e-13)  # of two refinements with different harmonics: the digits in which they agree are converged
+# of two refinements with different harmonics: the digits in which they agree are converged
+TOLERANCES = (1e-10, 1e-13)
 GUESS_ORDER = 8  # of the series from which Newton's method starts
-MOST_DIGITS, FEW_DIGITS = 12, 8  # shown of an amplitude, at most and where only the first refinement succeeds
-LIMIT, HEAVY_LIMIT = 420.0, 3600.0  # seconds for the refinement of one row, looked at between the steps of Newton's method
-HEAVY: dict[str, tuple[tuple[float, ...], int]] = {  # rows that take minutes, with --full only: their own tolerances and guess order
+# shown of an amplitude, at most and where only the first refinement succeeds
+MOST_DIGITS, FEW_DIGITS = 12, 8
+# seconds for the refinement of one row, looked at between the steps of Newton's method
+LIMIT, HEAVY_LIMIT = 420.0, 3600.0
+# rows that take minutes, with --full only: their own tolerances and guess order
+HEAVY: dict[str, tuple[tuple[float, ...], int]] = {
     "Fig. 5d": ((1e-9, 1e-11), 4),
 }
-FLOOR = 1e-12  # relative error of coefficients that doubles may leave: below it a series has arrived
+# relative error of coefficients that doubles may leave: below it a series has arrived
+FLOOR = 1e-12
 ARRIVED = 10.0  # times the least error below FLOOR: the first order within has arrived
-LEVEL, GROWN = 1.02, 2.0  # times the least error: no longer falling from the first order within, and growing again
+# times the least error: no longer falling from the first order within, and growing again
+LEVEL, GROWN = 1.02, 2.0
 SLOW, CHANGED = 0.9, 0.25  # factors shown with more digits, and change of the factor that is told
 NEAR_END = 0.9  # of the longest order: an error that is least beyond still falls
 LONG_SERIES, STRIDE = 60, 10  # beyond this order only every tenth one is compared
@@ -46,16 +54,20 @@ class TimeIsUp(SymfpuError):
     """A refinement took longer than it may."""
 
     def __init__(self, limit: float, line: str) -> None:
-        super().__init__(f"more than {limit:.0f} s, the last step being: {line}; allow more time by LIMIT")
+        super().__init__(
+            f"more than {limit:.0f} s, the last step being: {line}; allow more time by LIMIT"
+        )
 
 
 @dataclass(frozen=True)
 class Decay:
-    """How an error falls with the order. factor : an order, by regression over the falling part (NaN for fewer than two orders).
+    """How an error falls with the order. factor : an order, by regression over the falling part (NaN
+    for fewer than two orders).
 
-    late : the same over the second half of the falling part. last : the first order of the least error, to LEVEL, or at which
-    rounding is reached. least : the error there. longest : the last order that was computed. at_end : the error there. rounding :
-    whether the least error is one of doubles.
+    late : the same over the second half of the falling part. last : the first order of the least
+    error, to LEVEL, or at which rounding is reached. least : the error there. longest : the last
+    order that was computed. at_end : the error there. rounding : whether the least error is one
+    of doubles.
     """
 
     factor: float
@@ -67,7 +79,9 @@ class Decay:
     rounding: bool
 
     def __str__(self) -> str:
-        factor = f"{self.factor:.2g} an order" if self.factor < SLOW else f"{self.factor:.3f} an order"
+        factor = (
+            f"{self.factor:.2g} an order" if self.factor < SLOW else f"{self.factor:.3f} an order"
+        )
         if abs(self.late / self.factor - 1) > CHANGED:
             factor += f" ({self.late:.2g} in the second half)"
         if self.rounding:
@@ -81,10 +95,12 @@ class Decay:
 
 @dataclass(frozen=True)
 class SeriesErrors:
-    """Errors of the truncated series against the exact torus, by order K of coordinates and frequencies; none where A(K) has no root.
+    """Errors of the truncated series against the exact torus, by order K of coordinates and
+    frequencies; none where A(K) has no root.
 
-    solved : largest Omega_q |c_q^PL[nu] - c_q[nu]| with the amplitudes A(K) of the truncated frequency series, relative to the
-    largest Omega_q |c_q[nu]|. given : the same with the amplitudes of the exact torus. amplitudes : largest |A_q(K) / A_q - 1|.
+    solved : largest Omega_q |c_q^PL[nu] - c_q[nu]| with the amplitudes A(K) of the truncated
+    frequency series, relative to the largest Omega_q |c_q[nu]|. given : the same with the
+    amplitudes of the exact torus. amplitudes : largest |A_q(K) / A_q - 1|.
     """
 
     solved: Mapping[int, float]
@@ -96,7 +112,8 @@ class SeriesErrors:
 class CorrectedRow:
     """One printed torus beside the exact one of the same frequencies.
 
-    torus : by Newton's method, or None with the reason. digits : of the amplitudes that are converged, at most MOST_DIGITS.
+    torus : by Newton's method, or None with the reason. digits : of the amplitudes that are
+    converged, at most MOST_DIGITS.
     deviations : printed / exact - 1, of each amplitude. energies : by name, as in the table of the series.
     """
 
@@ -112,11 +129,16 @@ class CorrectedRow:
     @property
     def energy_deviations(self) -> dict[str, float]:
         """Printed / exact - 1 of every energy that may be meant."""
-        return {name: float(self.printed.energy) / value - 1 for name, value in self.energies.items()}
+        return {
+            name: float(self.printed.energy) / value - 1 for name, value in self.energies.items()
+        }
 
     @property
     def decays(self) -> dict[str, Decay]:
-        """How the error falls, with the amplitudes `solved` and `given`; empty where nothing was refined."""
+        """How the error falls, with the amplitudes `solved` and `given`.
+
+        Empty where nothing was refined.
+        """
         if self.errors is None:
             return {}
         return {"solved": decay(self.errors.solved), "given": decay(self.errors.given)}
@@ -133,11 +155,14 @@ class CorrectedRow:
         return f"{found}; {error}" + (f"; {self.reason}" if self.reason else "")
 
 
-def corrected_row(printed: PrintedTorus, step: Step = unheard, *, series: LindstedtSeries | None = None) -> CorrectedRow:
-    """The exact torus of the printed frequencies, and the errors of the series of the printed order at every order.
+def corrected_row(
+    printed: PrintedTorus, step: Step = unheard, *, series: LindstedtSeries | None = None
+) -> CorrectedRow:
+    """The exact torus of the printed frequencies, and the errors of the series of the printed order
+    at every order.
 
-    series : that series, if it is known already. step : told of every step of Newton's method. A row that takes more than LIMIT
-    seconds or does not converge has no torus, and says why.
+    series : that series, if it is known already. step : told of every step of Newton's method. A
+    row that takes more than LIMIT seconds or does not converge has no torus, and says why.
     """
 
     def tell(line: str) -> None:
@@ -154,7 +179,10 @@ def corrected_row(printed: PrintedTorus, step: Step = unheard, *, series: Lindst
         torus=torus,
         reason=reason,
         digits=digits,
-        deviations={q: float(a) / torus.amplitudes[q] - 1 for q, a in zip(printed.seeds, printed.amplitudes, strict=True)},
+        deviations={
+            q: float(a) / torus.amplitudes[q] - 1
+            for q, a in zip(printed.seeds, printed.amplitudes, strict=True)
+        },
         energies={
             "H": float(torus.energy()),
             "harmonic energy at t = 0": float(torus.harmonic_energies().sum()),
@@ -202,7 +230,9 @@ def _refined(printed: PrintedTorus, tell: Report) -> tuple[RefinedTorus | None, 
 
 
 def _guess(printed: PrintedTorus, order: int, tell: Report) -> QuasiPeriodic:
-    """Where Newton's method starts: a short series, or for one seed the periodic orbit, which needs none."""
+    """Where Newton's method starts: a short series, or for one seed the periodic orbit, which
+    needs none.
+    """
     chain, seeds = printed.chain, printed.seeds
     if len(seeds) == 1:
         tell("periodic orbit")
@@ -212,7 +242,10 @@ def _guess(printed: PrintedTorus, order: int, tell: Report) -> QuasiPeriodic:
 
 
 class _Comparison:
-    """Coefficients of a series, order by order, in one table with those of an exact torus; rows are harmonics, one of each pair +-nu."""
+    """Coefficients of a series, order by order, in one table with those of an exact torus.
+
+    Rows are harmonics, one of each pair +-nu.
+    """
 
     def __init__(self, series: LindstedtSeries, torus: QuasiPeriodic) -> None:
         self.series, self.linear = series, series.chain.frequencies()
@@ -221,13 +254,18 @@ class _Comparison:
         self.places = []
         for k in range(series.order + 1):
             harmonics = _positive(series.harmonic_terms(unit, k)[0]).tolist()
-            self.places.append(np.array([rows.setdefault(tuple(nu), len(rows)) for nu in harmonics]))
+            self.places.append(
+                np.array([rows.setdefault(tuple(nu), len(rows)) for nu in harmonics])
+            )
         self.exact = np.zeros((len(rows), series.chain.N - 1))
         self.exact[: len(torus.harmonics)] = torus.cosines.astype(float)
         self.size = float((self.linear * np.abs(self.exact)).max())
 
     def errors(self, amplitudes: list[float], orders: range) -> list[float]:
-        """The error of the series cut at each of some orders; the first one includes all orders before it."""
+        """The error of the series cut at each of some orders.
+
+        The first one includes all orders before it.
+        """
         difference, found = -self.exact, []
         for k in range(orders.stop):
             difference[self.places[k]] += self.series.harmonic_terms(amplitudes, k)[1]
@@ -242,7 +280,9 @@ def _positive(harmonics: Ints) -> Ints:
     return np.asarray(harmonics * np.where(lead < 0, -1, 1)[:, None])
 
 
-def series_errors(series: LindstedtSeries, torus: RefinedTorus, tell: Report = unheard) -> SeriesErrors:
+def series_errors(
+    series: LindstedtSeries, torus: RefinedTorus, tell: Report = unheard
+) -> SeriesErrors:
     """Errors of a series against the exact torus of its frequencies, by order from 1 on."""
     history, compared = amplitude_history(series), _Comparison(series, torus)
     exact_ = [torus.amplitudes[q] for q in series.seeds]
@@ -257,7 +297,10 @@ def series_errors(series: LindstedtSeries, torus: RefinedTorus, tell: Report = u
         values = _amplitudes_at(history, K)
         if values is not None:
             solved[K] = compared.errors(list(values), range(K, K + 1))[0]
-    amplitudes = {k: max(abs(float(a) / b - 1) for a, b in zip(values, exact_, strict=True)) for k, values in history.amplitudes.items()}
+    amplitudes = {
+        k: max(abs(float(a) / b - 1) for a, b in zip(values, exact_, strict=True))
+        for k, values in history.amplitudes.items()
+    }
     return SeriesErrors(solved, given, amplitudes)
 
 
@@ -271,18 +314,34 @@ def decay(errors: Mapping[int, float]) -> Decay:
     """How errors fall with the order, over the orders up to the least one."""
     least = min(errors, key=lambda k: errors[k])
     rounding = errors[least] < FLOOR
-    last = next(k for k, e in errors.items() if e <= (ARRIVED if rounding else LEVEL) * errors[least])
+    last = next(
+        k for k, e in errors.items() if e <= (ARRIVED if rounding else LEVEL) * errors[least]
+    )
     falling = np.array([(k, np.log(e)) for k, e in errors.items() if k <= last and e > 0])
     longest = max(errors)
-    return Decay(_factor(falling), _factor(falling[len(falling) // 2 :]), last, errors[last], longest, errors[longest], rounding)
+    return Decay(
+        _factor(falling),
+        _factor(falling[len(falling) // 2 :]),
+        last,
+        errors[last],
+        longest,
+        errors[longest],
+        rounding,
+    )
 
 
 def _factor(logarithms: Floats) -> float:
     """exp of the slope of (order, logarithm) pairs (n, 2)."""
-    return float(np.exp(np.polyfit(logarithms[:, 0], logarithms[:, 1], 1)[0])) if len(logarithms) > 1 else np.nan
+    return (
+        float(np.exp(np.polyfit(logarithms[:, 0], logarithms[:, 1], 1)[0]))
+        if len(logarithms) > 1
+        else np.nan
+    )
 
 
-def corrected_rows(known: Mapping[PrintedTorus, LindstedtSeries], step: Step = unheard, *, full: bool = False) -> Iterator[CorrectedRow]:
+def corrected_rows(
+    known: Mapping[PrintedTorus, LindstedtSeries], step: Step = unheard, *, full: bool = False
+) -> Iterator[CorrectedRow]:
     """The corrected row of each printed torus with its series; those of HEAVY only if full."""
     for printed, series in known.items():
         if printed.label in HEAVY and not full:
@@ -293,9 +352,11 @@ def corrected_rows(known: Mapping[PrintedTorus, LindstedtSeries], step: Step = u
 
 @dataclass(frozen=True)
 class ScalingStudy:
-    """Does the error of order K fall as mu^(K+1)? Errors of the series at tori whose amplitudes are halved again and again.
+    """Does the error of order K fall as mu^(K+1)? Errors of the series at tori whose amplitudes are
+    halved again and again.
 
-    What counts is mu A (the couplings and amplitudes enter the alpha model as their product), so scaling A is scaling mu.
+    What counts is mu A (the couplings and amplitudes enter the alpha model as their product), so
+    scaling A is scaling mu.
     scales : of the amplitudes. given, solved : errors by order, along the scales, as in SeriesErrors.
     """
 
@@ -305,7 +366,9 @@ class ScalingStudy:
     solved: Mapping[int, tuple[float, ...]]
 
     def rate(self, errors: tuple[float, ...]) -> float:
-        """The exponent of mu: the slope between the two smallest scales at which the error is above rounding."""
+        """The exponent of mu: the slope between the two smallest scales at which the error is
+        above rounding.
+        """
         seen = [(x, e) for x, e in zip(self.scales, errors, strict=True) if e > ARRIVED * FLOOR]
         if len(seen) < 2:
             return np.nan
@@ -314,8 +377,13 @@ class ScalingStudy:
 
     @property
     def rates(self) -> dict[int, tuple[float, float]]:
-        """Exponents by order, with given and with solved amplitudes (NaN where the frequency series has no term)."""
-        return {K: (self.rate(e), self.rate(self.solved[K]) if K in self.solved else np.nan) for K, e in self.given.items()}
+        """Exponents by order, with given and with solved amplitudes (NaN where the frequency
+        series has no term).
+        """
+        return {
+            K: (self.rate(e), self.rate(self.solved[K]) if K in self.solved else np.nan)
+            for K, e in self.given.items()
+        }
 
 
 def scaling_study(torus: RefinedTorus, label: str, step: Step = unheard) -> ScalingStudy:
@@ -332,15 +400,29 @@ def scaling_study(torus: RefinedTorus, label: str, step: Step = unheard) -> Scal
             given.setdefault(K, []).append(errors.given[K])
             if K in errors.solved:
                 solved.setdefault(K, []).append(errors.solved[K])
-    return ScalingStudy(label, scales, {K: tuple(e) for K, e in given.items()}, {K: tuple(e) for K, e in solved.items()})
+    return ScalingStudy(
+        label,
+        scales,
+        {K: tuple(e) for K, e in given.items()},
+        {K: tuple(e) for K, e in solved.items()},
+    )
 
 
 def _scaled(torus: RefinedTorus, scale: float) -> RefinedTorus:
-    """The exact torus with scaled amplitudes; its guess has c[nu] scaled by scale^|nu| and, at nu = 0, by its square."""
+    """The exact torus with scaled amplitudes.
+
+    Its guess has c[nu] scaled by scale^|nu| and, at nu = 0, by its square.
+    """
     lengths = np.abs(torus.harmonics).sum(axis=1)
     powers = np.where(lengths == 0, 2, lengths)
-    with_digits = [exact(repr(float(w)), "frequency") for w in torus.chain.frequencies()[np.array(torus.seeds) - 1]]
-    rates = tuple(w + (x - w) * exact(scale**2, "scale") for w, x in zip(with_digits, torus.frequencies, strict=True))
+    with_digits = [
+        exact(repr(float(w)), "frequency")
+        for w in torus.chain.frequencies()[np.array(torus.seeds) - 1]
+    ]
+    rates = tuple(
+        w + (x - w) * exact(scale**2, "scale")
+        for w, x in zip(with_digits, torus.frequencies, strict=True)
+    )
     cosines = torus.cosines * scale ** powers[:, None]
     guess = FourierTorus(torus.chain, torus.seeds, rates, torus.harmonics, cosines, torus.phases)
     return refine_at_amplitudes(guess, {q: a * scale for q, a in torus.amplitudes.items()})

@@ -1,4 +1,6 @@
-"""The corrected table as text: Markdown, JSON and CSV of exact tori beside the printed ones. Computes nothing."""
+"""The corrected table as text: Markdown, JSON and CSV of exact tori beside the printed ones.
+Computes nothing.
+"""
 
 from __future__ import annotations
 
@@ -33,8 +35,14 @@ SCALING = (
 
 
 def corrected_markdown(rows: Sequence[CorrectedRow], studies: Sequence[ScalingStudy]) -> str:
-    """The corrected table: amplitudes, energies, errors by order, exponents, and where the pictures are."""
-    refined = [(row, row.torus, row.errors) for row in rows if row.torus is not None and row.errors is not None]
+    """The corrected table: amplitudes, energies, errors by order, exponents, and where the
+    pictures are.
+    """
+    refined = [
+        (row, row.torus, row.errors)
+        for row in rows
+        if row.torus is not None and row.errors is not None
+    ]
     names = ["corrected-a", "corrected-b", *(f"corrected-{c}" for c in "cdef"[: len(studies)])]
     parts = [
         HEADING,
@@ -44,18 +52,31 @@ def corrected_markdown(rows: Sequence[CorrectedRow], studies: Sequence[ScalingSt
             [line for row, torus, _ in refined for line in _amplitude_lines(row, torus)],
         ),
         markdown_table(
-            ["torus", "printed E", "H", "harmonic E(0)", "average", "printed E is, or nearest", "residual", "harmonics"],
+            [
+                "torus",
+                "printed E",
+                "H",
+                "harmonic E(0)",
+                "average",
+                "printed E is, or nearest",
+                "residual",
+                "harmonics",
+            ],
             [_energy_line(row, torus) for row, torus, _ in refined],
         ),
         "### The error of the series by order",
         ERRORS,
         markdown_table(
-            ["torus", "amplitudes", *map(str, SHOWN_ORDERS)], [line for row, _, errors in refined for line in _error_lines(row, errors)]
+            ["torus", "amplitudes", *map(str, SHOWN_ORDERS)],
+            [line for row, _, errors in refined for line in _error_lines(row, errors)],
         ),
         "\n".join(f"- {row.printed.label}: {row.verdict}." for row in rows),
         "### Does the error of order K fall as mu^(K+1)?",
         SCALING,
-        markdown_table(["torus", "K", "exponent, A exact", "expected", "exponent, A(K)", "expected"], _exponent_lines(studies)),
+        markdown_table(
+            ["torus", "K", "exponent, A exact", "expected", "exponent, A(K)", "expected"],
+            _exponent_lines(studies),
+        ),
         "\n\n".join(f"![{name}]({name}.png)" for name in names),
     ]
     return "\n\n".join(parts) + "\n"
@@ -69,7 +90,13 @@ def amplitude_text(row: CorrectedRow, value: float) -> str:
 def _amplitude_lines(row: CorrectedRow, torus: RefinedTorus) -> list[list[str]]:
     printed = dict(zip(row.printed.seeds, row.printed.amplitudes, strict=True))
     return [
-        [row.printed.label if q == row.printed.seeds[0] else "", str(q), printed[q], amplitude_text(row, a), f"{row.deviations[q]:+.1e}"]
+        [
+            row.printed.label if q == row.printed.seeds[0] else "",
+            str(q),
+            printed[q],
+            amplitude_text(row, a),
+            f"{row.deviations[q]:+.1e}",
+        ]
         for q, a in torus.amplitudes.items()
     ]
 
@@ -79,20 +106,37 @@ def _energy_line(row: CorrectedRow, torus: RefinedTorus) -> list[str]:
     nearest = min(row.energy_deviations.items(), key=lambda item: abs(item[1]))
     said = " and ".join(met) or f"none; {nearest[0]} {nearest[1]:+.1e}"
     values = [f"{value:.12g}" for value in row.energies.values()]
-    return [row.printed.label, row.printed.energy, *values, said, f"{row.residual:.0e}", str(len(torus.harmonics))]
+    return [
+        row.printed.label,
+        row.printed.energy,
+        *values,
+        said,
+        f"{row.residual:.0e}",
+        str(len(torus.harmonics)),
+    ]
 
 
 def _error_lines(row: CorrectedRow, errors: SeriesErrors) -> list[list[str]]:
     both = (("A(K)", errors.solved), ("A exact", errors.given))
     return [
-        [row.printed.label if i == 0 else "", name, *(f"{values[K]:.0e}" if K in values else "" for K in SHOWN_ORDERS)]
+        [
+            row.printed.label if i == 0 else "",
+            name,
+            *(f"{values[K]:.0e}" if K in values else "" for K in SHOWN_ORDERS),
+        ]
         for i, (name, values) in enumerate(both)
     ]
 
 
 def _exponent_lines(studies: Sequence[ScalingStudy]) -> list[list[str]]:
     return [
-        [study.label, str(K), f"{given:.3f}", str(K + 1), *(("", "") if math.isnan(solved) else (f"{solved:.3f}", str(K - K % 2)))]
+        [
+            study.label,
+            str(K),
+            f"{given:.3f}",
+            str(K + 1),
+            *(("", "") if math.isnan(solved) else (f"{solved:.3f}", str(K - K % 2))),
+        ]
         for study in studies
         for K, (given, solved) in study.rates.items()
     ]
@@ -102,7 +146,11 @@ def corrected_record(row: CorrectedRow, study: ScalingStudy | None = None) -> di
     """A corrected row for JSON: numbers of more than 15 digits as strings, errors by order."""
     if row.torus is None or row.errors is None:
         return {"refined": False, "verdict": row.verdict}
-    errors = {"solved": row.errors.solved, "given": row.errors.given, "amplitudes": row.errors.amplitudes}
+    errors = {
+        "solved": row.errors.solved,
+        "given": row.errors.given,
+        "amplitudes": row.errors.amplitudes,
+    }
     decays = {
         name: {
             "factor": None if math.isnan(d.factor) else fifteen_digits(d.factor),
@@ -124,7 +172,10 @@ def corrected_record(row: CorrectedRow, study: ScalingStudy | None = None) -> di
         "energy_deviations": {name: fifteen_digits(x) for name, x in row.energy_deviations.items()},
         "residual": fifteen_digits(row.residual),
         "harmonics": len(row.torus.harmonics),
-        "errors": {name: {str(K): fifteen_digits(e) for K, e in values.items()} for name, values in errors.items()},
+        "errors": {
+            name: {str(K): fifteen_digits(e) for K, e in values.items()}
+            for name, values in errors.items()
+        },
         "decays": decays,
         "exponents_of_mu": None if study is None else _exponents_record(study),
         "verdict": row.verdict,
@@ -133,7 +184,10 @@ def corrected_record(row: CorrectedRow, study: ScalingStudy | None = None) -> di
 
 def _exponents_record(study: ScalingStudy) -> dict[str, Any]:
     return {
-        str(K): {name: None if math.isnan(x) else fifteen_digits(x) for name, x in zip(("given", "solved"), rates, strict=True)}
+        str(K): {
+            name: None if math.isnan(x) else fifteen_digits(x)
+            for name, x in zip(("given", "solved"), rates, strict=True)
+        }
         for K, rates in study.rates.items()
     }
 
@@ -142,11 +196,15 @@ def corrected_text(row: CorrectedRow) -> str:
     """A corrected row for the terminal, beside the lines of the table."""
     if row.torus is None:
         return f"  corrected: {row.verdict}"
-    amplitudes = ", ".join(f"A_{q} = {amplitude_text(row, a)}" for q, a in row.torus.amplitudes.items())
+    amplitudes = ", ".join(
+        f"A_{q} = {amplitude_text(row, a)}" for q, a in row.torus.amplitudes.items()
+    )
     return f"  exact torus: {amplitudes}, H = {row.energies['H']:.12g}, residual {row.residual:.0e}\n  {row.verdict}"
 
 
-def write_corrected_csv(rows: Sequence[CorrectedRow], studies: Sequence[ScalingStudy], folder: Path) -> list[Path]:
+def write_corrected_csv(
+    rows: Sequence[CorrectedRow], studies: Sequence[ScalingStudy], folder: Path
+) -> list[Path]:
     """The data behind the pictures of the corrected table, one CSV file each."""
     known = {row.printed.label: row.errors for row in rows if row.errors is not None}
     solved = {label: errors.solved for label, errors in known.items()}
@@ -154,9 +212,16 @@ def write_corrected_csv(rows: Sequence[CorrectedRow], studies: Sequence[ScalingS
     tables: dict[str, tuple[list[str], list[list[Any]]]] = {}
     for name, errors in (("corrected-a", solved), ("corrected-b", given)):
         orders = sorted({*itertools.chain.from_iterable(errors.values())})
-        tables[name] = (["K", *errors], [[K, *(values.get(K, "") for values in errors.values())] for K in orders])
+        tables[name] = (
+            ["K", *errors],
+            [[K, *(values.get(K, "") for values in errors.values())] for K in orders],
+        )
     for letter, study in zip("cdef", studies, strict=False):
-        columns = {f"{name}_{K}": e for name, part in (("given", study.given), ("solved", study.solved)) for K, e in part.items()}
+        columns = {
+            f"{name}_{K}": e
+            for name, part in (("given", study.given), ("solved", study.solved))
+            for K, e in part.items()
+        }
         lines = [[x, *(e[i] for e in columns.values())] for i, x in enumerate(study.scales)]
         tables[f"corrected-{letter}"] = (["scale", *columns], lines)
     return write_csv(tables, folder)

@@ -13,18 +13,25 @@ from symfpu.paper.steps import Step
 
 Floats = NDArray[np.float64]
 TIME, FULL_TIME = 1e7, 1e9  # default; the paper's, with --full
-VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}  # by figure: whose chain, and how many vectors
+# by figure: whose chain, and how many vectors
+VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}
 GALI_STEP = 0.4  # of the tangent map
 
 
 def full_seconds(figure: str) -> float:
-    """Processor time that the alignment indices of a figure will take with --full, from a short trial."""
+    """Processor time that the alignment indices of a figure will take with --full, from a short
+    trial.
+    """
     label, vectors = VECTORS[figure]
     return seconds_needed(printed_row(label).chain, FULL_TIME, vectors=vectors, step=GALI_STEP)
 
 
-def indices(name: str, start: tuple[Floats, Floats], tell: Step, folder: Path, *, full: bool) -> AlignmentIndices:
-    """GALI_2, ... of an orbit of a figure to TIME, or to FULL_TIME with a checkpoint in the folder."""
+def indices(
+    name: str, start: tuple[Floats, Floats], tell: Step, folder: Path, *, full: bool
+) -> AlignmentIndices:
+    """GALI_2, ... of an orbit of a figure to TIME, or to FULL_TIME with a checkpoint in the
+    folder.
+    """
     label, vectors = VECTORS[name]
     chain = printed_row(label).chain
     T = FULL_TIME if full else TIME
@@ -50,4 +57,6 @@ def settled_after(found: AlignmentIndices, k: int, decades: float = 0.3) -> floa
     """The time after which log10 G_k stays within so many decades of its last value."""
     values = found.log10_gali[:, k - 2]
     off = np.abs(values - values[-1]) > decades
-    return float(found.times[int(np.flatnonzero(off)[-1]) + 1]) if off.any() else float(found.times[0])
+    return (
+        float(found.times[int(np.flatnonzero(off)[-1]) + 1]) if off.any() else float(found.times[0])
+    )

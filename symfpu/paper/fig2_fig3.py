@@ -15,8 +15,8 @@ from symfpu.chain.propagation import excitation_sequence
 from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Curve, Panel
-from symfpu.localization.growth import GroupGrowth, GrowthExponents, growth_exponents
 from symfpu.localization.floors import spectrum_floor
+from symfpu.localization.growth import GroupGrowth, GrowthExponents, growth_exponents
 from symfpu.localization.laws import fit_profile, middle_modes
 from symfpu.localization.profiles import fpu_trajectory, normalised_averages, profile_distance
 from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_line
@@ -55,7 +55,9 @@ PAPER_EXPONENT = 1.5  # c_q(k) = (3/2) k + eps_q
 PLATEAU = 3e7  # the time of stabilization of G_4, after which G_5 falls
 FOUND = 1e-10  # a residual of the equations of motion that no truncated series of this torus has
 EARLY = (1.0, 100.0)  # the window in which a line reads (3/2) k
-SMALL, READ = 0.3, 0.1  # spread of exponents in a group, far below the distance of groups; distance of an exponent per order from 3/2
+# spread of exponents in a group, far below the distance of groups; distance of an exponent per
+# order from 3/2
+SMALL, READ = 0.3, 0.1
 DECADE = 10**0.5  # factor within which a size is the printed power of ten
 GROUPS_SEEN = 4  # D_1 .. D_4 have room to grow before they saturate
 
@@ -78,17 +80,40 @@ def figure2(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     sums = torus.series.absolute_sums(1, list(torus.amplitudes.values()), with_mu=True)
     panels = (
         profile_panel(
-            "fig2a", "Fig. 2(a): the 4-torus, average spectrum", row.chain, profiles, *_lines(line), floors=floors
+            "fig2a",
+            "Fig. 2(a): the 4-torus, average spectrum",
+            row.chain,
+            profiles,
+            *_lines(line),
+            floors=floors,
         ),
         alignment_panel("fig2b", "Fig. 2(b): alignment indices of PLn", found),
         sums_panel("fig2c", "Fig. 2(c): cancellations in the series of mode 1", 1, sums),
     )
     H = float(torus.energy())
-    meant = {f"the total energy H = {H:.9f} for E, and + 2 log kappa": law_of(line, row.chain, specific_energy=H / row.chain.N)}
-    settled = f"; G_4 within 0.3 decades of its last value from t = {settled_after(found, 4):.0e} on"
+    meant = {
+        f"the total energy H = {H:.9f} for E, and + 2 log kappa": law_of(
+            line, row.chain, specific_energy=H / row.chain.N
+        )
+    }
+    settled = (
+        f"; G_4 within 0.3 decades of its last value from t = {settled_after(found, 4):.0e} on"
+    )
     claims = (
-        same_profile("4", "PL and PLn have no distinguishable difference in their profiles", profiles, "PL", "PLn"),
-        same_profile("4", "the truncated series shows the profile of a q-torus", profiles, "PL", "exact torus"),
+        same_profile(
+            "4",
+            "PL and PLn have no distinguishable difference in their profiles",
+            profiles,
+            "PL",
+            "PLn",
+        ),
+        same_profile(
+            "4",
+            "the truncated series shows the profile of a q-torus",
+            profiles,
+            "PL",
+            "exact torus",
+        ),
         _identical(torus, orbit),
         _exponential(exact),
         caption_claim(line, "4", meant),
@@ -103,7 +128,13 @@ def figure2(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
             more=settled,
         ),
         _both_fall(sums, row.order),
-        cancellation_claim("4", "cancellations make about two orders of magnitude between S_1 and S_2 at k = 11", 2.0, sums, row.order),
+        cancellation_claim(
+            "4",
+            "cancellations make about two orders of magnitude between S_1 and S_2 at k = 11",
+            2.0,
+            sums,
+            row.order,
+        ),
         _root_finding(exact),
     )
     return PaperFigure("fig2", "Fig. 2: the 4-torus of N = 32, seeds 1 to 4", panels, claims)
@@ -123,7 +154,13 @@ def _identical(torus: QTorus, orbit: Orbit) -> Claim:
     ours = f"they part by {off[1]:.0e} of the largest coordinate at t = {orbit.times[1]:.2g}, {off[-1]:.1e} at t = {orbit.times[-1]:.0e}"
     ours += f", more than {IDENTICAL:g} from t = {late[0]:.1e} on" if late.size else ""
     text = "the solutions themselves, PL(t) and PLn(t), are almost identical"
-    return Claim("4, note", text, "", ours, judged(not late.size, bool(late.size and late[0] > orbit.times[-1] / 10)))
+    return Claim(
+        "4, note",
+        text,
+        "",
+        ours,
+        judged(not late.size, bool(late.size and late[0] > orbit.times[-1] / 10)),
+    )
 
 
 def _exponential(exact: RefinedTorus) -> Claim:
@@ -131,7 +168,13 @@ def _exponential(exact: RefinedTorus) -> Claim:
     spectrum = np.asarray(exact.average_spectrum(), dtype=float)
     fit = fit_profile(exact.chain, spectrum, len(exact.seeds), floor=spectrum_floor(exact))
     text = "strong localization in the first four modes, then an exponential decay of e_kappa with kappa"
-    return Claim("4", text, "", f"{fit!r} (exact torus)", judged(-fit.line.slope > 3 * fit.errors[0] and fit.scatter <= SIMILAR))
+    return Claim(
+        "4",
+        text,
+        "",
+        f"{fit!r} (exact torus)",
+        judged(-fit.line.slope > 3 * fit.errors[0] and fit.scatter <= SIMILAR),
+    )
 
 
 def _line_fits(line: PrintedLine, spectrum: Floats) -> Claim:
@@ -140,7 +183,9 @@ def _line_fits(line: PrintedLine, spectrum: Floats) -> Claim:
     middle = np.array(middle_modes(chain, line.seeds(chain)))
     levels, law = np.log10(spectrum[middle - 1]), law_of(line, chain)
     printed = np.log10(caption_curve(line, middle / chain.N).y)
-    off, meant = (float(np.max(np.abs(levels - values))) for values in (printed, law(middle / chain.N)))
+    off, meant = (
+        float(np.max(np.abs(levels - values))) for values in (printed, law(middle / chain.N))
+    )
     ours = f"middle modes {', '.join(map(str, middle))}: off by up to {off:.2g} decades as printed, {meant:.2g} from Eq. eksa2"
     text = "the theoretical line of Fig. 2(a) predicts the localization profile"
     return Claim("4", text, "", ours, judged(off <= SIMILAR, meant <= SIMILAR))
@@ -150,33 +195,63 @@ def _both_fall(sums: tuple[Floats, Floats], order: int) -> Claim:
     upper, lower = (falls(values, order) for values in sums)
     words = {True: "falls", False: "does not fall"}
     ours = f"from every k to k + 2, S_1 {words[upper]}, S_2 {words[lower]}"
-    return Claim("4", "both sums decay up to k = 11", "", ours, judged(upper and lower, upper or lower))
+    return Claim(
+        "4", "both sums decay up to k = 11", "", ours, judged(upper and lower, upper or lower)
+    )
 
 
 def _root_finding(exact: RefinedTorus) -> Claim:
     residual = exact.residual()
     ours = f"Newton's method in Fourier space has found this 4-torus, residual {residual:.0e}"
     text = "a root-finding determination is possible only for q-breathers, not for tori of dimension above one"
-    return Claim("6.4", text, "", ours if residual < FOUND else f"{ours}: not found", judged(residual >= FOUND))
+    return Claim(
+        "6.4",
+        text,
+        "",
+        ours if residual < FOUND else f"{ours}: not found",
+        judged(residual >= FOUND),
+    )
 
 
 def figure3(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
-    """The FPU-trajectory of the same seeds: growth of the groups, and its spectrum beside that of the torus."""
+    """The FPU-trajectory of the same seeds: growth of the groups, and its spectrum beside that of
+    the torus.
+    """
     row = printed_row("Fig. 2")
     torus = printed_torus(row)
-    orbit = follow("fig3 FPU-trajectory", row.chain, fpu_trajectory(row.chain, printed_amplitudes(row)), TIME, step, samples=600)
+    orbit = follow(
+        "fig3 FPU-trajectory",
+        row.chain,
+        fpu_trajectory(row.chain, printed_amplitudes(row)),
+        TIME,
+        step,
+        samples=600,
+    )
     shares = normalised_averages(orbit)
     groups = excitation_sequence(row.chain.N, row.seeds, (row.chain.N - 1) // len(row.seeds))
-    growth = [growth_exponents(row.chain, orbit.times, shares, groups, window=window) for window in (None, EARLY)]
-    profiles = {"torus (PL)": np.asarray(torus.average_spectrum() / torus.energy()), "FPU-trajectory": shares[-1]}
+    growth = [
+        growth_exponents(row.chain, orbit.times, shares, groups, window=window)
+        for window in (None, EARLY)
+    ]
+    profiles = {
+        "torus (PL)": np.asarray(torus.average_spectrum() / torus.energy()),
+        "FPU-trajectory": shares[-1],
+    }
     floors = {"torus (PL)": normalised_floor(torus)}
     curves = tuple(
-        Curve(f"$D_{{{k}}}$", orbit.times, shares[:, q - 1], group=k, name=f"D_{k} q={q}") for k, modes in enumerate(groups) for q in modes
+        Curve(f"$D_{{{k}}}$", orbit.times, shares[:, q - 1], group=k, name=f"D_{k} q={q}")
+        for k, modes in enumerate(groups)
+        for q in modes
     )
-    axes, title = ("t", "average_energy_over_H"), "Fig. 3(a): FPU-trajectory, running averages by mode"
+    axes, title = (
+        ("t", "average_energy_over_H"),
+        "Fig. 3(a): FPU-trajectory, running averages by mode",
+    )
     panels = (
         Panel("fig3a", title, r"$t$", r"$\overline{E}_q(t) / E$", curves, axes, log_x=True),
-        profile_panel("fig3b", "Fig. 3(b): torus and FPU-trajectory", row.chain, profiles, floors=floors),
+        profile_panel(
+            "fig3b", "Fig. 3(b): torus and FPU-trajectory", row.chain, profiles, floors=floors
+        ),
     )
     text = "the FPU-trajectory settles to a profile very similar to that of the torus"
     claims = (
@@ -185,28 +260,44 @@ def figure3(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
         _steady_seeds(shares, row),
         _persists(orbit.times, shares),
         same_profile("4.1", text, profiles, *profiles, within=SIMILAR),
-        groups_claim("4.1", "the groups D_k are well distinguished in the spectrum of the FPU-trajectory", groups, shares[-1]),
+        groups_claim(
+            "4.1",
+            "the groups D_k are well distinguished in the spectrum of the FPU-trajectory",
+            groups,
+            shares[-1],
+        ),
     )
     return PaperFigure("fig3", "Fig. 3: the FPU-trajectory near the 4-torus", panels, claims)
 
 
 def _distance(torus: QTorus, Q: Floats) -> Claim:
-    """Between the initial conditions, as a part of the largest coordinate. Q : of the FPU-trajectory."""
+    """Between the initial conditions, as a part of the largest coordinate.
+
+    Q : of the FPU-trajectory.
+    """
     mu = torus.series.chain.mu
     off = float(np.abs(np.asarray(torus.positions(0.0), dtype=float) - Q).max() / np.abs(Q).max())
-    ours = f"mu = {mu:.5f}; they begin {off:.2g} = {off / mu:.2g} mu of the largest coordinate apart"
+    ours = (
+        f"mu = {mu:.5f}; they begin {off:.2g} = {off / mu:.2g} mu of the largest coordinate apart"
+    )
     text = "the initial distance of FPU-trajectory and torus is O(mu), mu about 4e-2"
-    return Claim("4.1", text, "4e-2", ours, judged(rounds_to(mu, "0.04") and off <= 10 * mu, off <= 10 * mu))
+    return Claim(
+        "4.1", text, "4e-2", ours, judged(rounds_to(mu, "0.04") and off <= 10 * mu, off <= 10 * mu)
+    )
 
 
 def _growth_claims(own: GrowthExponents, early: GrowthExponents) -> tuple[Claim, ...]:
-    first, second = ([group for group in growth.groups if group.order <= GROUPS_SEEN] for growth in (own, early))
+    first, second = (
+        [group for group in growth.groups if group.order <= GROUPS_SEEN] for growth in (own, early)
+    )
     return (_alike(second), _exponents(first, second), _times(first))
 
 
 def _alike(groups: list[GroupGrowth]) -> Claim:
     """Modes of one group grow alike, and groups differ."""
-    ours = "; ".join(f"D_{g.order} = {runs(g.modes)}: {g.mean:.2f} +- {g.spread:.2f}" for g in groups)
+    ours = "; ".join(
+        f"D_{g.order} = {runs(g.modes)}: {g.mean:.2f} +- {g.spread:.2f}" for g in groups
+    )
     apart = min(b.mean - a.mean for a, b in itertools.pairwise(groups))
     text = "during the first stage the modes of a group D_k = {ks+1 .. (k+1)s} grow by almost the same power of t"
     holds = all(g.spread <= SMALL for g in groups) and apart > 2 * SMALL
@@ -217,7 +308,9 @@ def _alike(groups: list[GroupGrowth]) -> Claim:
 def _exponents(own: list[GroupGrowth], early: list[GroupGrowth]) -> Claim:
     """The paper's exponent is that of a line through two stages, each of which has another one."""
     stages, line = ([g.mean / g.order for g in groups] for groups in (own, early))
-    read = [g.order for g, rate in zip(early, line, strict=True) if abs(rate - PAPER_EXPONENT) <= READ]
+    read = [
+        g.order for g, rate in zip(early, line, strict=True) if abs(rate - PAPER_EXPONENT) <= READ
+    ]
     by_order, by_stage = (", ".join(f"{rate:.2f}" for rate in rates) for rates in (line, stages))
     ours = (
         f"exponents for each order k = 1 .. {len(line)}: {by_order} of a line through t = {EARLY[0]:g} .. {EARLY[1]:g}, "
@@ -225,7 +318,13 @@ def _exponents(own: list[GroupGrowth], early: list[GroupGrowth]) -> Claim:
         "Perturbation theory has two stages: t^(4k-2) before t = 1/Omega_q, t^(2k) until one over the detuning"
     )
     holds = all(abs(rate - PAPER_EXPONENT) <= READ for rate in (*stages, *line))
-    return Claim("4.1", "the exponents are c_q(k) = (3/2) k + eps_q, |eps_q| << 1", "3/2 k", ours, judged(holds, len(read) > 1))
+    return Claim(
+        "4.1",
+        "the exponents are c_q(k) = (3/2) k + eps_q, |eps_q| << 1",
+        "3/2 k",
+        ours,
+        judged(holds, len(read) > 1),
+    )
 
 
 def _times(groups: list[GroupGrowth]) -> Claim:
@@ -250,4 +349,10 @@ def _steady_seeds(shares: Floats, row: PrintedTorus) -> Claim:
     seeds = shares[:, np.array(row.seeds) - 1]
     change = float(np.max(np.abs(seeds[1:] - seeds[0])))
     ours = f"largest change of a seed's average, over E: {change:.1e}; energy that reaches the other modes: {1 - seeds[-1].sum():.1e}"
-    return Claim("4.1", "the averages of the seeds vary only by about 1e-4", "1e-4", ours, judged(3e-5 < change < 3e-4))
+    return Claim(
+        "4.1",
+        "the averages of the seeds vary only by about 1e-4",
+        "1e-4",
+        ours,
+        judged(3e-5 < change < 3e-4),
+    )

@@ -20,7 +20,11 @@ def _intervals(data: Figure6, panel: str) -> Claim:
     center, width = (seeds[0] + seeds[-1]) // 2, (seeds[-1] - seeds[0]) // 2
     last = N // (4 * width) - 1  # before the intervals meet
     sets = reachable_modes(N, seeds, last)
-    wrong = [k for k in range(1, last + 1) if set(sets[k]) != _interval_modes(N, center, width * (k + 1), k)]
+    wrong = [
+        k
+        for k in range(1, last + 1)
+        if set(sets[k]) != _interval_modes(N, center, width * (k + 1), k)
+    ]
     ours = f"N = {N}, packets of {len(seeds)} modes: M_k as stated for {'all' if not wrong else f'all but {wrong} of'} k = 1 .. {last}"
     text = f"kappa_0 = {center / N:g}: M_k are intervals of half-width epsilon (k+1) around the places listed"
     return Claim("6.3", text, "", ours, judged(not wrong))
@@ -39,14 +43,20 @@ def _interval_modes(N: int, center: int, half: int, k: int) -> set[int]:
 
 @dataclass(frozen=True)
 class Figure6:
-    """Order at which each mode is first excited by packets around N/4, N/2, 3N/4 (alpha); seeds and orders by panel."""
+    """Order at which each mode is first excited by packets around N/4, N/2, 3N/4 (alpha).
+
+    Seeds and orders by panel.
+    """
 
     N: int
     panels: dict[str, tuple[tuple[int, ...], dict[int, int]]]
 
 
 def figure6() -> Figure6:
-    """Compute the data of Fig. 6: packets of half-width FIG6_WIDTH modes, up to the order that excites every mode."""
+    """Compute the data of Fig.
+
+    6: packets of half-width FIG6_WIDTH modes, up to the order that excites every mode.
+    """
     N, w = FIG6_CHAIN, FIG6_WIDTH
     panels = {}
     for panel, quarter in zip("abc", (1, 2, 3), strict=True):

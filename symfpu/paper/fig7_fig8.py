@@ -1,4 +1,5 @@
-"""Figs. 7 and 8: q-breathers by the series, by integration and by Newton's method, beside their FPU-trajectories.
+"""Figs. 7 and 8: q-breathers by the series, by integration and by Newton's method, beside their
+FPU-trajectories.
 
 The claims are those of sections 6.4.1 and 6.4.2.
 """
@@ -54,30 +55,54 @@ LEFT = 0.1  # of the mean energy of a mode: the integration has left the series
 def figure7(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     """The breather of seed 1 and its FPU-trajectory, N = 32."""
     row = printed_row("Fig. 7")
-    torus, newton = printed_torus(row), periodic_orbit_digits(periodic_orbit(row.chain, 1, row.frequencies[0]), NEWTON_DIGITS)
+    torus, newton = (
+        printed_torus(row),
+        periodic_orbit_digits(periodic_orbit(row.chain, 1, row.frequencies[0]), NEWTON_DIGITS),
+    )
     fpu = fpu_trajectory(row.chain, printed_amplitudes(row))
     starts: dict[str, QuasiPeriodic | tuple[Floats, Floats]] = {"PLn": torus, "FPU-trajectory": fpu}
     moments = np.linspace(0.0, TIME_7, 2001)
-    orbits = {name: follow(f"fig7 {name}", row.chain, start, TIME_7, step, samples=moments) for name, start in starts.items()}
+    orbits = {
+        name: follow(f"fig7 {name}", row.chain, start, TIME_7, step, samples=moments)
+        for name, start in starts.items()
+    }
     times = orbits["PLn"].times
     shares = {"PL": np.asarray(torus.harmonic_energies(times) / torus.energy(), dtype=float)}
-    shares |= {name: orbit.harmonic_energies() / orbit.energies[0] for name, orbit in orbits.items()}
-    profiles = profiles_of(torus, orbits) | {"Newton": np.asarray(newton.average_spectrum() / newton.energy(), dtype=float)}
+    shares |= {
+        name: orbit.harmonic_energies() / orbit.energies[0] for name, orbit in orbits.items()
+    }
+    profiles = profiles_of(torus, orbits) | {
+        "Newton": np.asarray(newton.average_spectrum() / newton.energy(), dtype=float)
+    }
     modes = tuple(range(1, SHOWN + 1))
     bottom = 1e-3 * float(shares["PL"][:, SHOWN - 1].min())
     panels = tuple(
-        energies_panel(f"fig7{letter}", f"Fig. 7({letter}): {name}", times, shares[name], modes, bottom=bottom)
+        energies_panel(
+            f"fig7{letter}", f"Fig. 7({letter}): {name}", times, shares[name], modes, bottom=bottom
+        )
         for letter, name in zip("abc", shares, strict=True)
     )
     law = law_curve(row, float(torus.energy()), profiles["PL"])
     floors = {"PL": normalised_floor(torus), "Newton": normalised_floor(newton)}
-    panels += (profile_panel("fig7d", "Fig. 7(d): average spectra", row.chain, profiles, law, floors=floors),)
+    panels += (
+        profile_panel(
+            "fig7d", "Fig. 7(d): average spectra", row.chain, profiles, law, floors=floors
+        ),
+    )
     claims = (
         _return(row, torus),
         _constancy(shares["PL"], shares["FPU-trajectory"]),
         _means(shares["PL"], shares["FPU-trajectory"]),
-        same_profile("6.4.1", f"the spectra of PL and PLn are the same {SHOWN_ONLY}", profiles, "PL", "PLn"),
-        same_profile("6.4.1", f"the spectrum by Newton's method is that of the series {SHOWN_ONLY}", profiles, "PL", "Newton"),
+        same_profile(
+            "6.4.1", f"the spectra of PL and PLn are the same {SHOWN_ONLY}", profiles, "PL", "PLn"
+        ),
+        same_profile(
+            "6.4.1",
+            f"the spectrum by Newton's method is that of the series {SHOWN_ONLY}",
+            profiles,
+            "PL",
+            "Newton",
+        ),
         same_profile("6.4", f"{ALIKE}, mode 1", profiles, "PL", "FPU-trajectory", within=SIMILAR),
         _hierarchy(profiles, list(range(1, row.chain.N)), "6.4.2, of Fig. 7(d)"),
         law_claim("6.4.1", profiles["PL"], law),
@@ -94,23 +119,45 @@ def profiles_of(torus: QTorus, orbits: dict[str, Orbit]) -> dict[str, Floats]:
 def law_curve(row: PrintedTorus, energy: float, spectrum: Floats) -> Curve:
     """Eq. brelaw through the energy of mode 1."""
     chain = row.chain
-    return Curve("Eq. brelaw", np.arange(1.0, chain.N) / chain.N, breather_law(chain, energy, spectrum[0] * energy) / energy, "law")
+    return Curve(
+        "Eq. brelaw",
+        np.arange(1.0, chain.N) / chain.N,
+        breather_law(chain, energy, spectrum[0] * energy) / energy,
+        "law",
+    )
 
 
 def law_claim(section: str, spectrum: Floats, law: Curve) -> Claim:
     """How far the law E_q = gamma^(q-1) q^2 E_1 is from a spectrum."""
-    found, low = profile_distance(spectrum, law.y, 1e-28), profile_distance(spectrum[:SHOWN], law.y[:SHOWN], 1e-28)
+    found, low = (
+        profile_distance(spectrum, law.y, 1e-28),
+        profile_distance(spectrum[:SHOWN], law.y[:SHOWN], 1e-28),
+    )
     deep = f"by {found.distance:.2g} (mode {found.mode}) in the {found.modes} above 1e-28"
     ours = f"off by up to {low.distance:.2g} decades in modes 1 to {SHOWN}, {deep}"
     text = "the law E_q = gamma^(q-1) q^2 E_1 fits the spectrum"
-    return Claim(section, text, "", ours, judged(found.distance <= SIMILAR, low.distance <= SIMILAR))
+    return Claim(
+        section, text, "", ours, judged(found.distance <= SIMILAR, low.distance <= SIMILAR)
+    )
 
 
 def _return(row: PrintedTorus, torus: QTorus) -> Claim:
     """Back at its start after a period, by integration."""
     period = 2 * math.pi / float(row.frequencies[0])
-    orbit = follow("fig7 period", row.chain, torus, period, unheard, step=RETURN_STEP, samples=1, averages=False)
-    off = float(max(np.abs(orbit.Q[-1] - orbit.Q[0]).max(), np.abs(orbit.P[-1] - orbit.P[0]).max()) / np.abs(orbit.Q[0]).max())
+    orbit = follow(
+        "fig7 period",
+        row.chain,
+        torus,
+        period,
+        unheard,
+        step=RETURN_STEP,
+        samples=1,
+        averages=False,
+    )
+    off = float(
+        max(np.abs(orbit.Q[-1] - orbit.Q[0]).max(), np.abs(orbit.P[-1] - orbit.P[0]).max())
+        / np.abs(orbit.Q[0]).max()
+    )
     digits = -math.log10(max(off, EPS))
     ours = f"to {digits:.1f} digits of the largest coordinate, with the amplitude that belongs to the printed frequency"
     text = "the series at k_0 = 51 returns to its start after a period up to 10 significant digits"
@@ -123,7 +170,8 @@ def variation(shares: Floats) -> Floats:
 
 
 def _constancy(breather: Floats, fpu: Floats) -> Claim:
-    still, moving = variation(breather[:, :SHOWN]), variation(fpu[1:, 1:SHOWN])  # an FPU-trajectory begins without energy elsewhere
+    # an FPU-trajectory begins without energy elsewhere
+    still, moving = variation(breather[:, :SHOWN]), variation(fpu[1:, 1:SHOWN])
     ours = (
         f"E_q(t) of the breather varies by {still.max():.2g} decades in modes 1 to {SHOWN}, of the FPU-trajectory by {moving.min():.2g} to "
         f"{moving.max():.2g} in modes 2 to {SHOWN}"
@@ -138,43 +186,98 @@ def _means(breather: Floats, fpu: Floats) -> Claim:
     off = np.abs(np.log10(fpu[:, :SHOWN].mean(axis=0) / breather[:, :SHOWN].mean(axis=0)))
     ours = f"decades between the means in modes 1 to {SHOWN}: {', '.join(f'{value:.2f}' for value in off)}"
     text = "E_q(t) of the FPU-trajectory oscillate around means that follow closely the energies of the breather"
-    return Claim("6.4.1", text, "", ours, judged(bool(off.max() <= CLOSE), bool(off[: SHOWN // 2].max() <= CLOSE)))
+    return Claim(
+        "6.4.1",
+        text,
+        "",
+        ours,
+        judged(bool(off.max() <= CLOSE), bool(off[: SHOWN // 2].max() <= CLOSE)),
+    )
 
 
 def figure8(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     """The breather of seed 25, integrated in mode space and as in the paper."""
     row = printed_row("Fig. 8")
     torus = printed_torus(row)
-    sequence = [modes[0] for modes in excitation_sequence(row.chain.N, row.seeds, row.order) if modes]
+    sequence = [
+        modes[0] for modes in excitation_sequence(row.chain.N, row.seeds, row.order) if modes
+    ]
     moments = np.linspace(0.0, TIME_8, 1001)
-    deep = follow("fig8 PLn", row.chain, torus, TIME_8, step, samples=moments, averages=False, step=BREATHER_STEP)
-    paper = follow("fig8 PLn T+V", row.chain, torus, TIME_8, step, samples=moments, averages=False, scheme="yoshida4", step=0.05)
+    deep = follow(
+        "fig8 PLn",
+        row.chain,
+        torus,
+        TIME_8,
+        step,
+        samples=moments,
+        averages=False,
+        step=BREATHER_STEP,
+    )
+    paper = follow(
+        "fig8 PLn T+V",
+        row.chain,
+        torus,
+        TIME_8,
+        step,
+        samples=moments,
+        averages=False,
+        scheme="yoshida4",
+        step=0.05,
+    )
     E = float(torus.energy())
     series = np.asarray(torus.harmonic_energies(deep.times) / E, dtype=float)
-    orbits = {"PLn, Yoshida 4": paper, "PLn, mode space": deep}  # times of samples are those of the nearest steps
-    by_route = {name: (orbit.times, orbit.harmonic_energies() / E) for name, orbit in orbits.items()} | {"PL": (deep.times, series)}
+    # times of samples are those of the nearest steps
+    orbits = {"PLn, Yoshida 4": paper, "PLn, mode space": deep}
+    by_route = {
+        name: (orbit.times, orbit.harmonic_energies() / E) for name, orbit in orbits.items()
+    } | {"PL": (deep.times, series)}
     seen = tuple(sequence[:7])
     curves = tuple(
-        Curve(name, times, values[:, q - 1], "line" if name == "PL" else "dots", group=i, name=f"{name} q={q}")
+        Curve(
+            name,
+            times,
+            values[:, q - 1],
+            "line" if name == "PL" else "dots",
+            group=i,
+            name=f"{name} q={q}",
+        )
         for i, (name, (times, values)) in enumerate(by_route.items())
         for q in seen
     )
     long = {
-        "PLn": follow("fig8 PLn", row.chain, torus, AVERAGING, step, samples=20, step=BREATHER_STEP),
+        "PLn": follow(
+            "fig8 PLn", row.chain, torus, AVERAGING, step, samples=20, step=BREATHER_STEP
+        ),
         "FPU-trajectory": follow(
-            "fig8 FPU-trajectory", row.chain, fpu_trajectory(row.chain, printed_amplitudes(row)), AVERAGING, step, samples=20
+            "fig8 FPU-trajectory",
+            row.chain,
+            fpu_trajectory(row.chain, printed_amplitudes(row)),
+            AVERAGING,
+            step,
+            samples=20,
         ),
     }
     profiles = profiles_of(torus, long)
     floors = {"PL": normalised_floor(torus)}
     title = f"Fig. 8(a): energies of modes {', '.join(map(str, seen))}"
     panels = (
-        Panel("fig8a", title, r"$t$", r"$E_q(t) / E$", curves, ("t", "energy_over_H"), bottom=1e-40),
-        profile_panel("fig8b", "Fig. 8(b): average spectra, seed 25", row.chain, profiles, by_kappa=False, floors=floors),
+        Panel(
+            "fig8a", title, r"$t$", r"$E_q(t) / E$", curves, ("t", "energy_over_H"), bottom=1e-40
+        ),
+        profile_panel(
+            "fig8b",
+            "Fig. 8(b): average spectra, seed 25",
+            row.chain,
+            profiles,
+            by_kappa=False,
+            floors=floors,
+        ),
     )
     claims = (
         _rounding({name: values for name, (_, values) in by_route.items()}, seen),
-        same_profile("6.4.2", f"the spectra of PL and PLn are the same {SHOWN_ONLY}", profiles, "PL", "PLn"),
+        same_profile(
+            "6.4.2", f"the spectra of PL and PLn are the same {SHOWN_ONLY}", profiles, "PL", "PLn"
+        ),
         same_profile("6.4", f"{ALIKE}, mode 25", profiles, "PL", "FPU-trajectory", within=SIMILAR),
         _hierarchy(profiles, sequence),
     )
@@ -184,22 +287,40 @@ def figure8(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
 def _rounding(routes: dict[str, Floats], modes: tuple[int, ...]) -> Claim:
     """At which energy the integrations leave the series."""
     columns = np.array(modes) - 1
-    means = {name: values[len(values) // 2 :, columns].mean(axis=0) for name, values in routes.items()}  # which do not see phases
+    # which do not see phases
+    means = {
+        name: values[len(values) // 2 :, columns].mean(axis=0) for name, values in routes.items()
+    }
     expected = means["PL"]
     levels = {}
     for name, values in means.items():
         left = np.abs(values / expected - 1) > LEFT
         levels[name] = float(expected[left].max()) if left.any() else 0.0
     nowhere = f"nowhere down to {expected.min():.0e}"
-    parts = (f"{name}: {f'at {level:.0e} of E' if level else nowhere}" for name, level in levels.items() if name != "PL")
-    ours = f"means of E_q over the second half leave the series by more than {LEFT:.0%} - " + "; ".join(parts)
+    parts = (
+        f"{name}: {f'at {level:.0e} of E' if level else nowhere}"
+        for name, level in levels.items()
+        if name != "PL"
+    )
+    ours = (
+        f"means of E_q over the second half leave the series by more than {LEFT:.0%} - "
+        + "; ".join(parts)
+    )
     text = "below 1e-15 of the energy the integrated orbit shows small oscillations: integration cannot keep the analytical construction"
     paper = levels["PLn, Yoshida 4"]
-    return Claim("6.4.2", text, "1e-15", ours, judged(bool(paper and DEEP / 100 < paper < DEEP * 100), paper > 0))
+    return Claim(
+        "6.4.2",
+        text,
+        "1e-15",
+        ours,
+        judged(bool(paper and DEEP / 100 < paper < DEEP * 100), paper > 0),
+    )
 
 
 def _hierarchy(profiles: dict[str, Floats], sequence: list[int], section: str = "6.4.2") -> Claim:
-    """The FPU-trajectory leaves the breather's spectrum at later modes of the sequence, in the same order."""
+    """The FPU-trajectory leaves the breather's spectrum at later modes of the sequence, in the
+    same order.
+    """
     fpu, breather = (profiles[name][np.array(sequence) - 1] for name in ("FPU-trajectory", "PL"))
     ratios = np.log10(fpu / breather)
     seen = int(np.sum(breather > 1e-28))

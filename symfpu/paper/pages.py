@@ -38,8 +38,16 @@ def row_record(row: AmplitudeRow) -> dict[str, Any]:
 def figure1_record(data: Figure1) -> dict[str, Any]:
     """The claims about Fig. 1 for JSON."""
     ours = data.claims()
-    judged = {"digits": data.torus.digits, "rounding_of_doubles": fifteen_digits(data.rounding), "assessment": data.assessment.record()}
-    return {"best_order": data.best_order, **judged, "claims": {key: {"printed": FIG1_CLAIMS[key], "computed": ours[key]} for key in ours}}
+    judged = {
+        "digits": data.torus.digits,
+        "rounding_of_doubles": fifteen_digits(data.rounding),
+        "assessment": data.assessment.record(),
+    }
+    return {
+        "best_order": data.best_order,
+        **judged,
+        "claims": {key: {"printed": FIG1_CLAIMS[key], "computed": ours[key]} for key in ours},
+    }
 
 
 def table_markdown(rows: Sequence[AmplitudeRow]) -> str:
@@ -49,7 +57,20 @@ def table_markdown(rows: Sequence[AmplitudeRow]) -> str:
         "Digits are those of the worst amplitude, -log10 |ours/printed - 1|. Two truncation orders: K of the frequency series "
         "that gives the amplitudes, `order` of the coordinates that give the energies.",
         markdown_table(
-            ["torus", "N", "alpha", "seeds", "order", "met at K", "digits", "printed E", "H(0)", "harmonic E(0)", "average", "residual"],
+            [
+                "torus",
+                "N",
+                "alpha",
+                "seeds",
+                "order",
+                "met at K",
+                "digits",
+                "printed E",
+                "H(0)",
+                "harmonic E(0)",
+                "average",
+                "residual",
+            ],
             [_summary(row) for row in rows],
         ),
     ]
@@ -57,7 +78,10 @@ def table_markdown(rows: Sequence[AmplitudeRow]) -> str:
         printed = row.printed
         head = f"### {printed.label} (Appendix F: {printed.printed_label}), {printed.chain!r}, seeds {printed.seeds}"
         lines = [["printed", *printed.amplitudes, ""]]
-        lines += [[str(k), *(repr(a) for a in row.history.amplitudes[k]), f"{row.digits[k]:.1f}"] for k in _shown(row)]
+        lines += [
+            [str(k), *(repr(a) for a in row.history.amplitudes[k]), f"{row.digits[k]:.1f}"]
+            for k in _shown(row)
+        ]
         columns = ["K", *(f"A_{q}" for q in printed.seeds), "digits"]
         failures = [f"K = {k}: {failure}" for k, failure in row.history.failures.items()]
         parts += [head, f"Verdict: {row.verdict}.", markdown_table(columns, lines), *failures]
@@ -69,16 +93,36 @@ def _summary(row: AmplitudeRow) -> list[str]:
     met = ", ".join(map(str, row.met)) or f"none (nearest {row.best})"
     values = [f"{value:.8g}" for value in row.energies.values()]
     seeds = ",".join(map(str, printed.seeds))
-    fixed = [printed.label, str(printed.chain.N), decimal(printed.chain.alpha), seeds, str(printed.order)]
-    return [*fixed, met, f"{row.digits[row.best]:.1f}", printed.energy, *values, f"{row.residual:.1e}"]
+    fixed = [
+        printed.label,
+        str(printed.chain.N),
+        decimal(printed.chain.alpha),
+        seeds,
+        str(printed.order),
+    ]
+    return [
+        *fixed,
+        met,
+        f"{row.digits[row.best]:.1f}",
+        printed.energy,
+        *values,
+        f"{row.residual:.1e}",
+    ]
 
 
 def _shown(row: AmplitudeRow) -> list[int]:
-    """All orders of a short history; of a long one the beginning, the end, what is met and every tenth."""
+    """All orders of a short history.
+
+    Of a long one the beginning, the end, what is met and every tenth.
+    """
     orders = list(row.digits)
     if len(orders) <= 30:
         return orders
-    return [k for i, k in enumerate(orders) if i < 5 or i >= len(orders) - 5 or k in (*row.met, row.best) or i % 10 == 9]
+    return [
+        k
+        for i, k in enumerate(orders)
+        if i < 5 or i >= len(orders) - 5 or k in (*row.met, row.best) or i % 10 == 9
+    ]
 
 
 def figure1_markdown(data: Figure1) -> str:
@@ -107,14 +151,20 @@ def write_figure1_csv(data: Figure1, folder: Path) -> list[Path]:
             ["q", *(f"average_energy_over_H_order_{k}" for k in data.spectra)],
             ([q, *(float(s[q - 1]) for s in data.spectra.values())] for q in modes),
         ),
-        "fig1b": (["k", *(f"delta_A{q}" for q in seeds)], ([k, *d] for k, d in data.differences.items())),
+        "fig1b": (
+            ["k", *(f"delta_A{q}" for q in seeds)],
+            ([k, *d] for k, d in data.differences.items()),
+        ),
         "fig1c": (
             ["k", "mu_k_S1", "mu_k_S2"],
             ([k, float(a), float(b)] for k, (a, b) in enumerate(zip(*data.sums, strict=True))),
         ),
         "fig1d": (
             ["t", *(f"{name}_order_{k}" for k in data.errors for name in ("total", "harmonic"))],
-            ([float(t), *(float(e[i]) for pair in data.errors.values() for e in pair)] for i, t in enumerate(data.times)),
+            (
+                [float(t), *(float(e[i]) for pair in data.errors.values() for e in pair)]
+                for i, t in enumerate(data.times)
+            ),
         ),
     }
     return write_csv(tables, folder)
@@ -124,7 +174,10 @@ def write_figure6_csv(data: Figure6, folder: Path) -> list[Path]:
     """The data behind the panels of Fig. 6, one CSV file each."""
     return write_csv(
         {
-            f"fig6{panel}": (["q", "kappa", "order"], [[q, q / data.N, orders[q]] for q in sorted(orders)])
+            f"fig6{panel}": (
+                ["q", "kappa", "order"],
+                [[q, q / data.N, orders[q]] for q in sorted(orders)],
+            )
             for panel, (_, orders) in data.panels.items()
         },
         folder,
@@ -134,7 +187,8 @@ def write_figure6_csv(data: Figure6, folder: Path) -> list[Path]:
 def figure6_markdown(data: Figure6) -> str:
     """What Fig. 6 shows, and where the pictures are."""
     lines = [
-        [panel, f"{seeds[0]}..{seeds[-1]}", str(len(orders)), str(max(orders.values()))] for panel, (seeds, orders) in data.panels.items()
+        [panel, f"{seeds[0]}..{seeds[-1]}", str(len(orders)), str(max(orders.values()))]
+        for panel, (seeds, orders) in data.panels.items()
     ]
     pictures = "\n\n".join(f"![Fig. 6({panel})](fig6{panel}.png)" for panel in data.panels)
     table = markdown_table(["panel", "seeds", "modes excited", "at order, at the latest"], lines)
@@ -145,13 +199,25 @@ def cancellation_markdown(data: CancellationStudy) -> str:
     """Question (i) of the convergence study: what was tested, what came out."""
     shown = (14, 20, 24, 28)
     rows = [
-        [v.name, *(f"{max(v.differences[k]):.2e}" for k in shown), *(f"{v.sums[k]:.2e}" for k in (14, 30)), f"{v.residuals.min():.1e}"]
+        [
+            v.name,
+            *(f"{max(v.differences[k]):.2e}" for k in shown),
+            *(f"{v.sums[k]:.2e}" for k in (14, 30)),
+            f"{v.residuals.min():.1e}",
+        ]
         for v in data.variants
     ]
-    table = markdown_table(["case", *(f"dA({k})" for k in shown), "S_2(14)", "S_2(30)", "least residual"], rows)
+    table = markdown_table(
+        ["case", *(f"dA({k})" for k in shown), "S_2(14)", "S_2(30)", "least residual"], rows
+    )
     ratios = ", ".join(f"{k}: {r:.6f}" for k, r in data.ratios.items() if k >= 20)
     by_order = [
-        [str(k), f"{data.residuals[k]:.1e}", f"{data.resummed[k]:.1e}", *(f"{a:.10f}" for pair in data.amplitudes[k] for a in pair)]
+        [
+            str(k),
+            f"{data.residuals[k]:.1e}",
+            f"{data.resummed[k]:.1e}",
+            *(f"{a:.10f}" for pair in data.amplitudes[k] for a in pair),
+        ]
         for k in data.resummed
     ]
     columns = ["order", "residual", "resummed", "A_1", "A_2", "A_1 resummed", "A_2 resummed"]
@@ -178,12 +244,18 @@ def breather_markdown(data: BreatherStudy) -> str:
         motion = [f"{float(orbit.frequency):.14f}", f"{orbit.amplitude:.11f}"]
         energies = [f"{orbit.energy():.10f}", f"{harmonic:.10f}"]
         rows.append([name, *motion, *energies, f"{orbit.residual():.0e}"])
-    orders = [k for k in data.amplitudes if k in (2, 10, 50, 100, 150, 200) or k == max(data.amplitudes)]
+    orders = [
+        k for k in data.amplitudes if k in (2, 10, 50, 100, 150, 200) or k == max(data.amplitudes)
+    ]
     return "\n\n".join(
         [
             "## Question (ii): the breather of E = 0.014915",
-            markdown_table(["periodic orbit with the", "omega", "A", "H", "harmonic E(0)", "residual"], rows),
-            "A(K) of the truncated series: " + ", ".join(f"{k}: {data.amplitudes[k]:.8f}" for k in orders) + ".",
+            markdown_table(
+                ["periodic orbit with the", "omega", "A", "H", "harmonic E(0)", "residual"], rows
+            ),
+            "A(K) of the truncated series: "
+            + ", ".join(f"{k}: {data.amplitudes[k]:.8f}" for k in orders)
+            + ".",
             f"The frequency series with these divisors ends at A = {data.singularity:.9f} (spread of the fit {data.spread:.0e}) in a "
             f"singularity of exponent {data.exponent:.4f}.",
             f"The breathers lie behind such an end, out of reach of the series, from A = {data.limit.orbit.amplitude:.6f}, omega = "
@@ -196,8 +268,13 @@ def breather_markdown(data: BreatherStudy) -> str:
 
 def convergence_markdown(cancellation: CancellationStudy, breather: BreatherStudy) -> str:
     """Both questions, and where the pictures are."""
-    pictures = "\n\n".join(f"![{name}]({name}.png)" for name in (f"convergence-{x}" for x in "abcde"))
-    return "\n\n".join([cancellation_markdown(cancellation), breather_markdown(breather), pictures]) + "\n"
+    pictures = "\n\n".join(
+        f"![{name}]({name}.png)" for name in (f"convergence-{x}" for x in "abcde")
+    )
+    return (
+        "\n\n".join([cancellation_markdown(cancellation), breather_markdown(breather), pictures])
+        + "\n"
+    )
 
 
 def convergence_record(cancellation: CancellationStudy, breather: BreatherStudy) -> dict[str, Any]:
@@ -209,7 +286,10 @@ def convergence_record(cancellation: CancellationStudy, breather: BreatherStudy)
         "ratios": {str(k): fifteen_digits(r) for k, r in cancellation.ratios.items()},
         "resummed_residuals": {str(k): fifteen_digits(r) for k, r in cancellation.resummed.items()},
         "torus": cancellation.assessment.record(),
-        "orbit": {"frequency": decimal(breather.orbit.frequency), "amplitude": repr(breather.orbit.amplitude)},
+        "orbit": {
+            "frequency": decimal(breather.orbit.frequency),
+            "amplitude": repr(breather.orbit.amplitude),
+        },
         "orbit_energy": repr(float(breather.orbit.energy())),
         "singularity": fifteen_digits(breather.singularity),
         "limit": {
@@ -221,16 +301,26 @@ def convergence_record(cancellation: CancellationStudy, breather: BreatherStudy)
     }
 
 
-def write_convergence_csv(cancellation: CancellationStudy, breather: BreatherStudy, folder: Path) -> list[Path]:
+def write_convergence_csv(
+    cancellation: CancellationStudy, breather: BreatherStudy, folder: Path
+) -> list[Path]:
     """The data behind the pictures of the convergence study."""
     names = [v.name for v in cancellation.variants]
     orders = list(cancellation.variants[0].differences)
     return write_csv(
         {
-            "convergence-a": (["k", *names], ([k, *(max(v.differences[k]) for v in cancellation.variants)] for k in orders)),
+            "convergence-a": (
+                ["k", *names],
+                ([k, *(max(v.differences[k]) for v in cancellation.variants)] for k in orders),
+            ),
             "convergence-b": (
                 ["k", *names],
-                ([k, *row] for k, row in enumerate(zip(*(v.sums for v in cancellation.variants), strict=True))),
+                (
+                    [k, *row]
+                    for k, row in enumerate(
+                        zip(*(v.sums for v in cancellation.variants), strict=True)
+                    )
+                ),
             ),
             "convergence-c": (
                 ["order", "truncated", "resummed"],
@@ -239,7 +329,12 @@ def write_convergence_csv(cancellation: CancellationStudy, breather: BreatherStu
             "convergence-d": (["K", "A"], ([k, a] for k, a in breather.amplitudes.items())),
             "convergence-e": (
                 ["omega", "A", "A at the end of the series"],
-                zip(breather.limit.frequencies, breather.limit.amplitudes, breather.limit.ends, strict=True),
+                zip(
+                    breather.limit.frequencies,
+                    breather.limit.amplitudes,
+                    breather.limit.ends,
+                    strict=True,
+                ),
             ),
         },
         folder,

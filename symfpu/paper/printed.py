@@ -1,4 +1,5 @@
-"""Examples and printed numbers of Christodoulidi & Efthymiopoulos, "Low-dimensional q-tori in FPU lattices", Physica D (2013).
+"""Examples and printed numbers of Christodoulidi & Efthymiopoulos, "Low-dimensional q-tori in FPU
+lattices", Physica D (2013).
 
 Data only. Frequencies, amplitudes and energies are the digits printed in Appendix F (Eq. Table1) and in the
 text. `label` names the figure that shows the example; Appendix F's own labels, `printed_label`, are off by
@@ -15,7 +16,9 @@ from symfpu.chain.chain import Chain
 
 @dataclass(frozen=True)
 class PrintedTorus:
-    """One example: its chain, seeds, chosen frequencies and coordinate order, with the printed amplitudes and energy."""
+    """One example: its chain, seeds, chosen frequencies and coordinate order, with the printed
+    amplitudes and energy.
+    """
 
     label: str
     printed_label: str
@@ -46,9 +49,19 @@ APPENDIX_F = (
         printed_label="Fig.1",
         chain=Chain(N=32, alpha="0.33"),
         seeds=(1, 2, 3, 4),
-        frequencies=("0.09813690483108113", "0.19603499627351076", "0.29346131418681830", "0.39018079936090050"),
+        frequencies=(
+            "0.09813690483108113",
+            "0.19603499627351076",
+            "0.29346131418681830",
+            "0.39018079936090050",
+        ),
         order=11,
-        amplitudes=("0.098097447281306230", "0.048959912346992665", "0.032444239210574590", "0.023892612612360370"),
+        amplitudes=(
+            "0.098097447281306230",
+            "0.048959912346992665",
+            "0.032444239210574590",
+            "0.023892612612360370",
+        ),
         energy="0.000182466",
         energy_source="caption of Fig. 2, 'E'",
     ),
@@ -57,9 +70,19 @@ APPENDIX_F = (
         printed_label="Fig.4a",
         chain=Chain(N=32, alpha="0.33"),
         seeds=(1, 11, 21, 31),
-        frequencies=("0.09814720863898445", "1.0282023436963477", "1.7154505429645952", "1.9975829222954775"),
+        frequencies=(
+            "0.09814720863898445",
+            "1.0282023436963477",
+            "1.7154505429645952",
+            "1.9975829222954775",
+        ),
         order=11,
-        amplitudes=("0.2699420271816366000", "0.027437337334704704", "0.015901830855243902", "0.014550407721151376"),
+        amplitudes=(
+            "0.2699420271816366000",
+            "0.027437337334704704",
+            "0.015901830855243902",
+            "0.014550407721151376",
+        ),
         energy="0.001563",
         energy_source="section 6.2, Example 1, 'total energy'",
     ),
@@ -68,9 +91,19 @@ APPENDIX_F = (
         printed_label="Fig.4b",
         chain=Chain(N=64, alpha=1),
         seeds=(60, 61, 62, 63),
-        frequencies=("1.9903455323483594", "1.9945569202421924", "1.9975668544869103", "1.9993735255838023"),
+        frequencies=(
+            "1.9903455323483594",
+            "1.9945569202421924",
+            "1.9975668544869103",
+            "1.9993735255838023",
+        ),
         order=8,
-        amplitudes=("0.010626655362545707", "0.010540492500677328", "0.010486090307194270", "0.010462240436802113"),
+        amplitudes=(
+            "0.010626655362545707",
+            "0.010540492500677328",
+            "0.010486090307194270",
+            "0.010462240436802113",
+        ),
         energy="0.000883",
         energy_source="section 6.2, Example 2, 'energy'",
     ),
@@ -145,10 +178,15 @@ APPENDIX_F = (
 
 FIG9_BREATHER = APPENDIX_F[-1]
 
-FIG1_AMPLITUDE_ORDER = 24  # "in subsequent calculations we use the values of the amplitudes found at the order k=24"
-FIG1_CANCELLATION_ORDER = 14  # "the cancellation takes place up to four orders of magnitude ... at the order k=14"
+FIG1_AMPLITUDE_ORDER = (
+    24  # "in subsequent calculations we use the values of the amplitudes found at the order k=24"
+)
+FIG1_CANCELLATION_ORDER = (
+    14  # "the cancellation takes place up to four orders of magnitude ... at the order k=14"
+)
 
-FIG1_DIGITS = 20  # our choice: doubles lose some of their digits in the cancellations of Fig. 1(c)
+# our choice: doubles lose some of their digits in the cancellations of Fig. 1(c)
+FIG1_DIGITS = 20
 
 FIG1_CLAIMS = {
     "best_difference": "1e-8 .. 1e-7, at k = 24",
@@ -178,10 +216,25 @@ EXCITATIONS = (
         "Example 1",
         32,
         (1, 11, 21, 31),
-        ((2, 10, 12, 20, 22, 30), (3, 9, 13, 19, 23, 29), (4, 8, 14, 18, 24, 28), (5, 7, 15, 17, 25, 27)),
+        (
+            (2, 10, 12, 20, 22, 30),
+            (3, 9, 13, 19, 23, 29),
+            (4, 8, 14, 18, 24, 28),
+            (5, 7, 15, 17, 25, 27),
+        ),
     ),
-    PrintedExcitation("Example 2", 64, (60, 61, 62, 63), (_modes((1, 8)), _modes((52, 59)), _modes((9, 16)), _modes((44, 51)))),
-    PrintedExcitation("Example 3", 128, (63, 64, 65), ((1, 2, 126, 127), (61, 62, 66, 67), (3, 4, 124, 125), (59, 60, 68, 69))),
+    PrintedExcitation(
+        "Example 2",
+        64,
+        (60, 61, 62, 63),
+        (_modes((1, 8)), _modes((52, 59)), _modes((9, 16)), _modes((44, 51))),
+    ),
+    PrintedExcitation(
+        "Example 3",
+        128,
+        (63, 64, 65),
+        ((1, 2, 126, 127), (61, 62, 66, 67), (3, 4, 124, 125), (59, 60, 68, 69)),
+    ),
     PrintedExcitation(
         "Example 4",
         128,
@@ -189,14 +242,18 @@ EXCITATIONS = (
         (
             _modes((1, 4), (60, 68)),
             _modes((26, 38), (90, 93), (99, 102)),
-            _modes((5, 8), (56, 59), (69, 72), (120, 127)),  # printed 56 .. 72, which repeats modes of D_1
+            # printed 56 .. 72, which repeats modes of D_1
+            _modes((5, 8), (56, 59), (69, 72), (120, 127)),
             _modes((22, 25), (39, 42), (86, 89), (103, 106)),
         ),
     ),
-    PrintedExcitation("q = 25", 32, (25,), tuple((q,) for q in (14, 11, 28, 3, 22, 17, 8, 31, 6, 19))),
+    PrintedExcitation(
+        "q = 25", 32, (25,), tuple((q,) for q in (14, 11, 28, 3, 22, 17, 8, 31, 6, 19))
+    ),
 )
 
-FIG6_CHAIN, FIG6_WIDTH = 256, 4  # our choice: modes and half-width of the packets around N/4, N/2, 3N/4
+# our choice: modes and half-width of the packets around N/4, N/2, 3N/4
+FIG6_CHAIN, FIG6_WIDTH = 256, 4
 
 
 @dataclass(frozen=True)
@@ -221,10 +278,37 @@ class PrintedLine:
 
 _SIZES = (64, 128, 256, 512)
 LINES = (
-    PrintedLine("Fig. 2a", "-36.6613", "3.49545", -2, (Chain(32, alpha="0.33"),), Fraction(1, 8), 0.000182466 / 32),
-    PrintedLine("Fig. 4a", "-56.27", "4.46", 2, tuple(Chain(N, alpha="0.33") for N in _SIZES), Fraction(1, 8), 1.5625e-8),
-    PrintedLine("Fig. 4b", "-78.64", "-1.204", 0, tuple(Chain(N, beta="0.3") for N in _SIZES), Fraction(1, 16), 1.5625e-6),
+    PrintedLine(
+        "Fig. 2a",
+        "-36.6613",
+        "3.49545",
+        -2,
+        (Chain(32, alpha="0.33"),),
+        Fraction(1, 8),
+        0.000182466 / 32,
+    ),
+    PrintedLine(
+        "Fig. 4a",
+        "-56.27",
+        "4.46",
+        2,
+        tuple(Chain(N, alpha="0.33") for N in _SIZES),
+        Fraction(1, 8),
+        1.5625e-8,
+    ),
+    PrintedLine(
+        "Fig. 4b",
+        "-78.64",
+        "-1.204",
+        0,
+        tuple(Chain(N, beta="0.3") for N in _SIZES),
+        Fraction(1, 16),
+        1.5625e-6,
+    ),
 )
 
-FIG9_RECURRENCE = 12000.0  # section 6.4.3, "a nearly complete return to their initial values at the time t=12000"
-FIG9_PACKETS = {"1/4": "2.7", "1/5": "4.43"}  # section 6.4.3, widths by the power of eps in the estimate
+FIG9_RECURRENCE = (
+    12000.0  # section 6.4.3, "a nearly complete return to their initial values at the time t=12000"
+)
+# section 6.4.3, widths by the power of eps in the estimate
+FIG9_PACKETS = {"1/4": "2.7", "1/5": "4.43"}

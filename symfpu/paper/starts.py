@@ -1,4 +1,6 @@
-"""What all figures of orbits begin with: the paper's tori from its printed frequencies, their orbits, and profiles beside each other."""
+"""What all figures of orbits begin with: the paper's tori from its printed frequencies, their
+orbits, and profiles beside each other.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,19 @@ from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
 
-# frequency orders that give the printed amplitudes (docs/reproduction.md); the last one for those that are met by none
-AMPLITUDE_ORDERS = {"Fig. 1": 24, "Fig. 2": 4, "Fig. 5a": 6, "Fig. 5b": 6, "Fig. 5c": 6, "Fig. 5d": 4, "Fig. 9": 242}
-SCHEME, MODE_STEP = "aba864_modes", 0.7  # tails far below the rounding of the largest mode; two looks in a period of E_q
+# frequency orders that give the printed amplitudes (docs/reproduction.md); the last one for those
+# that are met by none
+AMPLITUDE_ORDERS = {
+    "Fig. 1": 24,
+    "Fig. 2": 4,
+    "Fig. 5a": 6,
+    "Fig. 5b": 6,
+    "Fig. 5c": 6,
+    "Fig. 5d": 4,
+    "Fig. 9": 242,
+}
+# tails far below the rounding of the largest mode; two looks in a period of E_q
+SCHEME, MODE_STEP = "aba864_modes", 0.7
 
 
 def printed_row(label: str) -> PrintedTorus:
@@ -33,7 +45,9 @@ def printed_row(label: str) -> PrintedTorus:
 
 
 def printed_torus(row: PrintedTorus) -> QTorus:
-    """The truncated series of the printed frequencies and order, with amplitudes of the frequency order that gives the printed ones."""
+    """The truncated series of the printed frequencies and order, with amplitudes of the frequency
+    order that gives the printed ones.
+    """
     series = lindstedt(row.chain, row.seeds, row.frequencies, row.order)
     return solve_amplitudes(series, frequency_order=AMPLITUDE_ORDERS.get(row.label))
 
@@ -102,7 +116,17 @@ def normalised_floor(solution: QuasiPeriodic) -> Floats:
     return np.asarray(spectrum_floor(solution) / float(solution.energy()))
 
 
-def energies_panel(name: str, title: str, times: Floats, energies: Floats, modes: tuple[int, ...], *, bottom: float | None = None) -> Panel:
+def energies_panel(
+    name: str,
+    title: str,
+    times: Floats,
+    energies: Floats,
+    modes: tuple[int, ...],
+    *,
+    bottom: float | None = None,
+) -> Panel:
     """Instantaneous E_q(t)/E of some modes; energies (S, N-1), normalised."""
     curves = tuple(Curve(f"$q = {q}$", times, energies[:, q - 1], name=f"q={q}") for q in modes)
-    return Panel(name, title, r"$t$", r"$E_q(t) / E$", curves, ("t", "energy_over_H"), bottom=bottom)
+    return Panel(
+        name, title, r"$t$", r"$E_q(t) / E$", curves, ("t", "energy_over_H"), bottom=bottom
+    )

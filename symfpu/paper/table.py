@@ -15,7 +15,8 @@ from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
 from symfpu.tori.torus import QTorus
 
-MET_DIGITS = 8.5  # agreement, in digits of the worst amplitude, from which a printed row counts as met
+# agreement, in digits of the worst amplitude, from which a printed row counts as met
+MET_DIGITS = 8.5
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,8 @@ class AmplitudeRow:
     met : orders at which the printed amplitudes are met: to every printed digit, or to MET_DIGITS digits.
     torus : ours at the best of those orders (the whole series if none), with the paper's coordinate order.
     energies : name -> value, for H at t = 0, harmonic energy at t = 0 and its time average.
-    energy_matches : the names whose value rounds to the printed energy. energy_orders : if none does, name -> other
-    coordinate orders at which it would.
+    energy_matches : the names whose value rounds to the printed energy. energy_orders : if none
+    does, name -> other coordinate orders at which it would.
     """
 
     printed: PrintedTorus
@@ -59,7 +60,10 @@ class AmplitudeRow:
         if self.energy_matches:
             energy = f"printed E is {' and '.join(self.energy_matches)}"
         elif self.energy_orders:
-            cuts = [f"{name} of coordinate orders {', '.join(map(str, orders))}" for name, orders in self.energy_orders.items()]
+            cuts = [
+                f"{name} of coordinate orders {', '.join(map(str, orders))}"
+                for name, orders in self.energy_orders.items()
+            ]
             energy = f"printed E is not that of the printed order {self.printed.order}, but {' and '.join(cuts)}"
         else:
             energy = f"printed E = {self.printed.energy} is none of ours: unexplained"
@@ -81,21 +85,26 @@ def rounds_to(ours: float, printed: str) -> bool:
 
 
 def amplitude_row(printed: PrintedTorus) -> AmplitudeRow:
-    """Series, amplitudes at every frequency order, and energies of one printed torus, from its frequencies alone."""
+    """Series, amplitudes at every frequency order, and energies of one printed torus, from its
+    frequencies alone.
+    """
     series = lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order)
     history = amplitude_history(series)
     digits = {k: agreement_digits(a, printed.amplitudes) for k, a in history.amplitudes.items()}
     met = tuple(
         k
         for k, values in history.amplitudes.items()
-        if digits[k] >= MET_DIGITS or all(rounds_to(a, p) for a, p in zip(values, printed.amplitudes, strict=True))
+        if digits[k] >= MET_DIGITS
+        or all(rounds_to(a, p) for a, p in zip(values, printed.amplitudes, strict=True))
     )
     chosen = max(met, key=lambda k: digits[k]) if met else None
     torus = solve_amplitudes(series, frequency_order=chosen)
     values = energies(torus)
     matches = tuple(name for name, value in values.items() if rounds_to(value, printed.energy))
     other = {} if matches else _energy_orders(torus, printed.energy)
-    return AmplitudeRow(printed, series, history, digits, met, torus, values, matches, other, torus.residual())
+    return AmplitudeRow(
+        printed, series, history, digits, met, torus, values, matches, other, torus.residual()
+    )
 
 
 def energies(torus: QTorus) -> dict[str, float]:

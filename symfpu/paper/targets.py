@@ -1,4 +1,6 @@
-"""What `symfpu reproduce` can compute: each target with its numbers, its page and its pictures. A new one is one more line."""
+"""What `symfpu reproduce` can compute: each target with its numbers, its page and its pictures. A
+new one is one more line.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +13,20 @@ from symfpu.paper.claims import PaperFigure
 from symfpu.paper.claims_page import figure_markdown, figure_record, write_panel_csv
 from symfpu.paper.convergence import breather_study, cancellation_study
 from symfpu.paper.corrected import corrected_rows, scaling_study
-from symfpu.paper.corrected_page import corrected_markdown, corrected_record, corrected_text, write_corrected_csv
+from symfpu.paper.corrected_page import (
+    corrected_markdown,
+    corrected_record,
+    corrected_text,
+    write_corrected_csv,
+)
 from symfpu.paper.dimensions import VECTORS, full_seconds
-from symfpu.paper.drawings import draw_convergence, draw_corrected, draw_figure1, draw_figure6, draw_panels
+from symfpu.paper.drawings import (
+    draw_convergence,
+    draw_corrected,
+    draw_figure1,
+    draw_figure6,
+    draw_panels,
+)
 from symfpu.paper.fig1 import figure1, figure1_claims
 from symfpu.paper.fig2_fig3 import figure2, figure3
 from symfpu.paper.fig4 import figure4
@@ -41,8 +54,10 @@ SCALED = ("Fig. 1", "Fig. 7")  # rows whose errors are followed to smaller mu
 
 
 class Page(NamedTuple):
-    """record : for JSON. markdown : a section of the report. files : written beside it, by their common beginning. lines : for the
-    terminal, one for each row of the table. figure : with the claims, for targets that judge any."""
+    """record : for JSON. markdown : a section of the report. files : written beside it, by their
+    common beginning. lines : for the terminal, one for each row of the table. figure : with the
+    claims, for targets that judge any.
+    """
 
     record: Any
     markdown: str
@@ -52,7 +67,10 @@ class Page(NamedTuple):
 
 
 class Target(Protocol):
-    """Computes a page and writes its files into the folder; `step` hears what comes next. full : what takes hours, too."""
+    """Computes a page and writes its files into the folder.
+
+    `step` hears what comes next. full : what takes hours, too.
+    """
 
     def __call__(self, folder: Path, step: Step, *, full: bool = False) -> Page: ...
 
@@ -60,7 +78,11 @@ class Target(Protocol):
 def _table(folder: Path, step: Step, *, full: bool = False) -> Page:
     rows = list(amplitude_table(step))
     corrected = list(corrected_rows({row.printed: row.series for row in rows}, step, full=full))
-    studies = [scaling_study(row.torus, row.printed.label, step) for row in corrected if row.torus and row.printed.label in SCALED]
+    studies = [
+        scaling_study(row.torus, row.printed.label, step)
+        for row in corrected
+        if row.torus and row.printed.label in SCALED
+    ]
     write_corrected_csv(corrected, studies, folder)
     step("table: pictures")
     draw_corrected(corrected, studies, folder)
@@ -70,7 +92,12 @@ def _table(folder: Path, step: Step, *, full: bool = False) -> Page:
         for row, exact in zip(rows, corrected, strict=True)
     ]
     markdown = table_markdown(rows) + "\n" + corrected_markdown(corrected, studies)
-    return Page(record, markdown, f"corrected-a..{'bcd'[len(studies)]}", tuple(map(corrected_text, corrected)))
+    return Page(
+        record,
+        markdown,
+        f"corrected-a..{'bcd'[len(studies)]}",
+        tuple(map(corrected_text, corrected)),
+    )
 
 
 def _figure1(folder: Path, step: Step, *, full: bool = False) -> Page:
@@ -80,7 +107,12 @@ def _figure1(folder: Path, step: Step, *, full: bool = False) -> Page:
     draw_figure1(data, folder)
     more = _figure(partial(figure1_claims, data), folder, step, full=full)
     record = figure1_record(data) | {"judged": more.record}
-    return Page(record, figure1_markdown(data) + "\n" + more.markdown, f"fig1a..d, {more.files}", figure=more.figure)
+    return Page(
+        record,
+        figure1_markdown(data) + "\n" + more.markdown,
+        f"fig1a..d, {more.files}",
+        figure=more.figure,
+    )
 
 
 def _figure6(folder: Path, step: Step, *, full: bool = False) -> Page:
@@ -89,12 +121,17 @@ def _figure6(folder: Path, step: Step, *, full: bool = False) -> Page:
     step("fig6: pictures")
     draw_figure6(patterns, folder)
     judged = figure6_claims(patterns)
-    record = {panel: {"seeds": list(seeds), "orders": orders} for panel, (seeds, orders) in patterns.panels.items()}
+    record = {
+        panel: {"seeds": list(seeds), "orders": orders}
+        for panel, (seeds, orders) in patterns.panels.items()
+    }
     markdown = figure6_markdown(patterns) + "\n" + figure_markdown(judged)
     return Page(record | {"judged": figure_record(judged)}, markdown, "fig6a..c", figure=judged)
 
 
-def _figure(make: Callable[..., PaperFigure], folder: Path, step: Step, *, full: bool = False) -> Page:
+def _figure(
+    make: Callable[..., PaperFigure], folder: Path, step: Step, *, full: bool = False
+) -> Page:
     """A figure of panels and claims."""
     figure = make(folder, step, full=full)
     write_panel_csv(figure, folder)
@@ -109,7 +146,9 @@ def _convergence(folder: Path, step: Step, *, full: bool = False) -> Page:
     write_convergence_csv(*questions, folder)
     step("convergence: pictures")
     draw_convergence(*questions, folder)
-    return Page(convergence_record(*questions), convergence_markdown(*questions), "convergence-a..e")
+    return Page(
+        convergence_record(*questions), convergence_markdown(*questions), "convergence-a..e"
+    )
 
 
 TARGETS: dict[str, Target] = {
@@ -134,5 +173,9 @@ def full_estimate(targets: list[str], folder: Path) -> str:
     times = {figure: full_seconds(figure) for figure in VECTORS if figure in targets}
     parts = [f"{figure} {seconds / 3600:.1f} h" for figure, seconds in times.items()]
     parts += ["table 10 minutes"] if "table" in targets else []
-    resumed = f"; stopped and started again, alignment indices go on from {folder}/*.checkpoint" if times else ""
+    resumed = (
+        f"; stopped and started again, alignment indices go on from {folder}/*.checkpoint"
+        if times
+        else ""
+    )
     return f"--full, about: {', '.join(parts)}{resumed}"

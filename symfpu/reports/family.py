@@ -18,13 +18,17 @@ SHOWN_MEMBERS = 8  # besides the first; the last one is among them
 
 
 def refined_record(torus: RefinedTorus) -> dict[str, Any]:
-    """A refined torus for JSON: keys of the command line, numbers to 15 digits, frequencies exact as strings."""
+    """A refined torus for JSON: keys of the command line, numbers to 15 digits, frequencies exact
+    as strings.
+    """
     return {
         "N": torus.chain.N,
         "alpha": decimal(torus.chain.alpha),
         "beta": decimal(torus.chain.beta),
         "seeds": list(torus.seeds),
-        "frequencies": {str(q): decimal(w) for q, w in zip(torus.seeds, torus.frequencies, strict=True)},
+        "frequencies": {
+            str(q): decimal(w) for q, w in zip(torus.seeds, torus.frequencies, strict=True)
+        },
         "amplitudes": {str(q): fifteen_digits(a) for q, a in torus.amplitudes.items()},
         "energy": fifteen_digits(float(torus.energy())),
         "harmonic_energy": fifteen_digits(float(torus.harmonic_energies().sum())),
@@ -32,9 +36,21 @@ def refined_record(torus: RefinedTorus) -> dict[str, Any]:
         "residual": fifteen_digits(torus.residual()),
         "energy_error": fifteen_digits(energy_spread(torus)),
         "harmonics": len(torus.harmonics),
-        "newton": [{"residual": fifteen_digits(s.residual), "change": fifteen_digits(s.change), "products": s.krylov} for s in torus.steps],
+        "newton": [
+            {
+                "residual": fifteen_digits(s.residual),
+                "change": fifteen_digits(s.change),
+                "products": s.krylov,
+            }
+            for s in torus.steps
+        ],
         "smallest_divisors": [
-            {"size": fifteen_digits(r.divisor), "mode": r.mode, "harmonic": list(r.harmonic), "coefficient": fifteen_digits(r.coefficient)}
+            {
+                "size": fifteen_digits(r.divisor),
+                "mode": r.mode,
+                "harmonic": list(r.harmonic),
+                "coefficient": fifteen_digits(r.coefficient),
+            }
             for r in torus.near_resonances
         ],
         "verdict": "doubtful" if torus.warnings else "torus",
@@ -53,7 +69,10 @@ def refined_text(torus: RefinedTorus) -> str:
     record = refined_record(torus)
     lines = [
         f"verdict: {record['verdict']}",
-        *(f"seed {q:<4} omega {w:<28} amplitude {record['amplitudes'][q]:.15g}" for q, w in record["frequencies"].items()),
+        *(
+            f"seed {q:<4} omega {w:<28} amplitude {record['amplitudes'][q]:.15g}"
+            for q, w in record["frequencies"].items()
+        ),
         f"energy H           {record['energy']:.15g}   (at t = 0)",
         f"harmonic energy    {record['harmonic_energy']:.15g}   (at t = 0; time average {record['average_harmonic_energy']:.12g})",
         f"residual           {record['residual']:.2g}   (equations of motion, relative to the largest acceleration)",
@@ -92,11 +111,20 @@ def family_record(found: Family) -> dict[str, Any]:
 
 
 def _member_record(m: Member) -> dict[str, Any]:
-    known = {} if m.multipliers is None else {"stable": m.multipliers.stable, "largest_multiplier": fifteen_digits(m.multipliers.largest)}
+    known = (
+        {}
+        if m.multipliers is None
+        else {
+            "stable": m.multipliers.stable,
+            "largest_multiplier": fifteen_digits(m.multipliers.largest),
+        }
+    )
     return {
         "energy": fifteen_digits(m.energy),
         "harmonic_energy": fifteen_digits(m.harmonic_energy),
-        "frequencies": {str(q): decimal(w) for q, w in zip(m.torus.seeds, m.torus.frequencies, strict=True)},
+        "frequencies": {
+            str(q): decimal(w) for q, w in zip(m.torus.seeds, m.torus.frequencies, strict=True)
+        },
         "amplitudes": {str(q): fifteen_digits(a) for q, a in m.amplitudes.items()},
         "residual": fifteen_digits(m.residual),
         "verdict": m.verdict,
@@ -106,14 +134,29 @@ def _member_record(m: Member) -> dict[str, Any]:
 
 
 def family_table(found: Family) -> list[list[str]]:
-    """Head and rows of a table of the members: energies, frequencies, amplitudes, residual, stability."""
+    """Head and rows of a table of the members: energies, frequencies, amplitudes, residual,
+    stability.
+    """
     stability = any(m.multipliers is not None for m in found.members)
     omega, amplitudes = [f"omega_{q}" for q in found.seeds], [f"A_{q}" for q in found.seeds]
-    head = ["H", "sum E_q", *omega, *amplitudes, "residual", "verdict", *(["largest multiplier"] if stability else [])]
+    head = [
+        "H",
+        "sum E_q",
+        *omega,
+        *amplitudes,
+        "residual",
+        "verdict",
+        *(["largest multiplier"] if stability else []),
+    ]
     rows = []
     for m in found.members:
         rates = [f"{float(w):.15g}" for w in m.torus.frequencies]
-        row = [f"{m.energy:.15g}", f"{m.harmonic_energy:.15g}", *rates, *(f"{a:.15g}" for a in m.amplitudes.values())]
+        row = [
+            f"{m.energy:.15g}",
+            f"{m.harmonic_energy:.15g}",
+            *rates,
+            *(f"{a:.15g}" for a in m.amplitudes.values()),
+        ]
         largest = [] if m.multipliers is None else [f"{m.multipliers.largest:.15g}"]
         rows.append([*row, f"{m.residual:.2g}", m.verdict, *largest])
     return [head, *rows]

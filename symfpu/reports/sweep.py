@@ -7,16 +7,27 @@ from symfpu.reports.tables import markdown_table
 
 
 def sweep_markdown(sweep: Sweep) -> str:
-    """A sweep of the propagation rule: how often it holds by N and number of seeds, and every exception."""
+    """A sweep of the propagation rule: how often it holds by N and number of seeds, and every
+    exception.
+    """
     groups: dict[tuple[int, int], list[SweepCase]] = {}
     for case in sweep.cases:
         groups.setdefault((case.N, len(case.seeds)), []).append(case)
     rows = [
-        [str(N), str(s), str(len(cases)), *(str(sum(c.verdict == v for c in cases)) for v in ("proved", "refuted", "undecided"))]
+        [
+            str(N),
+            str(s),
+            str(len(cases)),
+            *(str(sum(c.verdict == v for c in cases)) for v in ("proved", "refuted", "undecided")),
+        ]
         for (N, s), cases in groups.items()
     ]
     exceptions = [
-        [str(case.N), ", ".join(map(str, case.seeds)), "; ".join(f"{q}: {p} -> {a}" for q, p, a in case.exceptions)]
+        [
+            str(case.N),
+            ", ".join(map(str, case.seeds)),
+            "; ".join(f"{q}: {p} -> {a}" for q, p, a in case.exceptions),
+        ]
         for case in sweep.exceptions
     ]
     holds = sum(case.corrected_rule_holds for case in sweep.cases)

@@ -13,17 +13,26 @@ GAP = "  "  # between the columns of a table in a terminal
 
 
 def fifteen_digits(value: float) -> float:
-    """A measure of size to 15 digits, the most that a number in JSON has; what needs more is written as a string."""
+    """A measure of size to 15 digits, the most that a number in JSON has.
+
+    What needs more is written as a string.
+    """
     return float(f"{value:.15g}")
 
 
 def number_text(value: Any, digits: int | None) -> str:
-    """A number that loses no digit: the shortest decimal of a double, or so many digits of an mpf."""
+    """A number that loses no digit: the shortest decimal of a double, or so many digits of an
+    mpf.
+    """
     return repr(float(value)) if digits is None else text(value, digits)
 
 
-def text_table(head: Sequence[str], rows: Sequence[Sequence[str]], width: int | None = None) -> list[str]:
-    """A table in lines; columns beyond the width follow in a further one with the same first column."""
+def text_table(
+    head: Sequence[str], rows: Sequence[Sequence[str]], width: int | None = None
+) -> list[str]:
+    """A table in lines; columns beyond the width follow in a further one with the same first
+    column.
+    """
     widths = [max(len(row[i]) for row in (head, *rows)) for i in range(len(head))]
     lines = []
     for part in _parts(widths, width):
@@ -54,7 +63,9 @@ def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def write_csv(tables: Mapping[str, tuple[Sequence[str], Iterable[Sequence[Any]]]], folder: Path) -> list[Path]:
+def write_csv(
+    tables: Mapping[str, tuple[Sequence[str], Iterable[Sequence[Any]]]], folder: Path
+) -> list[Path]:
     """Tables by name, each with its header, as CSV files in a folder."""
     paths = []
     for name, (header, lines) in tables.items():

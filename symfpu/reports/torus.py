@@ -19,25 +19,38 @@ def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[st
         "harmonic_energy": torus.harmonic_energies().sum(),
         "average_harmonic_energy": torus.average_spectrum().sum(),
     }
-    judged = {} if assessment is None else {"verdict": assessment.headline, "assessment": assessment.record()}
+    judged = (
+        {}
+        if assessment is None
+        else {"verdict": assessment.headline, "assessment": assessment.record()}
+    )
     return {
         "N": series.chain.N,
         "alpha": decimal(series.chain.alpha),
         "beta": decimal(series.chain.beta),
         "seeds": list(series.seeds),
-        "frequencies": {str(q): decimal(w) for q, w in zip(series.seeds, series.frequencies or (), strict=True)},
+        "frequencies": {
+            str(q): decimal(w) for q, w in zip(series.seeds, series.frequencies or (), strict=True)
+        },
         "order": torus.order,
         "frequency_order": torus.frequency_order,
         "digits": digits,
         "guard_digits": None if digits is None else series.guard_digits,
         "amplitudes": {str(q): number_text(a, digits) for q, a in torus.amplitudes.items()},
         "certified": None if torus.certificate is None else torus.certificate.certified,
-        "history": {str(k): [number_text(a, digits) for a in values] for k, values in torus.history.items()},
+        "history": {
+            str(k): [number_text(a, digits) for a in values] for k, values in torus.history.items()
+        },
         **{name: number_text(value, digits) for name, value in energies.items()},
         "residual": fifteen_digits(torus.residual()),
         "root_residual": fifteen_digits(torus.root_residual),
         "smallest_divisors": [
-            {"size": fifteen_digits(d.size), "mode": d.mode, "harmonic": list(d.harmonic), "order": d.order}
+            {
+                "size": fifteen_digits(d.size),
+                "mode": d.mode,
+                "harmonic": list(d.harmonic),
+                "order": d.order,
+            }
             for d in series.smallest_divisors
         ],
         "warnings": list(torus.warnings),
@@ -73,9 +86,16 @@ def _some(found: Assessment) -> list[int]:
 def _order_line(found: Assessment, seed: int, k: int) -> tuple[str, ...]:
     first, second = (sums[k] for sums in found.sums[seed])
     term = next((t for t in found.terms if t.order == k), None)
-    largest = "" if term is None else f"{term.size:.1e}: {term.mode}, ({','.join(map(str, term.harmonic))}), {term.divisor:.1e}"
+    largest = (
+        ""
+        if term is None
+        else f"{term.size:.1e}: {term.mode}, ({','.join(map(str, term.harmonic))}), {term.divisor:.1e}"
+    )
     position = list(found.sums).index(seed)
     amplitude = f"{float(found.amplitudes[k][position]):.10g}" if k in found.amplitudes else ""
     change = f"{max(found.differences[k]):.1e}" if k in found.differences else ""
-    sums, errors = f"{first:.1e}, {second:.1e}", (f"{found.residuals[k]:.1e}", f"{found.energy_errors[k]:.1e}")
+    sums, errors = (
+        f"{first:.1e}, {second:.1e}",
+        (f"{found.residuals[k]:.1e}", f"{found.energy_errors[k]:.1e}"),
+    )
     return (str(k), amplitude, change, sums, *errors, largest)

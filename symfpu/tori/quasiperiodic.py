@@ -160,7 +160,10 @@ class QuasiPeriodic(Parts):
         return self._along(t, self._cosine_sums(self.cosines))
 
     def momenta(self, t: ArrayLike) -> Numbers:
-        """Mode momenta P_q(t) = dQ_q/dt; t a number or an array (T,), result (N-1,) or (T, N-1)."""
+        """Mode momenta P_q(t) = dQ_q/dt.
+
+        T a number or an array (T,), result (N-1,) or (T, N-1).
+        """
         return with_digits(self._momenta(t), self.digits)
 
     def _momenta(self, t: ArrayLike) -> Numbers:
@@ -209,7 +212,10 @@ class QuasiPeriodic(Parts):
     # energies
 
     def energy(self, t: ArrayLike = 0.0) -> Any:
-        """Total energy H at t, a number or (T,), in the shape of t; constant in time for an exact torus."""
+        """Total energy H at t, a number or (T,), in the shape of t.
+
+        Constant in time for an exact torus.
+        """
         with self._context():
             energy = self.chain.energy(self._positions(t), self._momenta(t))
             return with_digits(energy[()], self.digits)

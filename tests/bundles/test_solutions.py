@@ -91,9 +91,7 @@ def test_what_is_not_finite_is_not_written(name, tmp_path):
     cosines[2, 2] = float("inf") * cosines[1, 2]
     fields = orbit.chain, orbit.seeds, orbit.frequencies, orbit.harmonics, cosines, orbit.phases, orbit.digits
     spoilt = (
-        PeriodicOrbit(*fields, iterations=1, sigma=0.1)
-        if name == "PeriodicOrbit"
-        else PreciseOrbit(*fields, bound=orbit.bound, sweeps=1)
+        PeriodicOrbit(*fields, iterations=1, sigma=0.1) if name == "PeriodicOrbit" else PreciseOrbit(*fields, bound=orbit.bound, sweeps=1)
     )
     with pytest.raises(InputError, match=r"^result = .*finite"):
         save(tmp_path / "orbit", spoilt)
@@ -103,7 +101,7 @@ def test_what_is_not_finite_is_not_written(name, tmp_path):
 def test_numbers_of_many_digits_keep_every_bit(tmp_path):
     """Tiny and large ones, with signs, whole and zero."""
     with mpmath.workdps(60):
-        values = [mpmath.mpf(2) ** -3000 / 3, -mpmath.mpf(10) ** 40 / 7, mpmath.mpf(0), mpmath.mpf(-1), *[mpmath.mpf("0.1")] * 3]
+        values = [mpmath.mpf(2) ** -3000 / 3, -(mpmath.mpf(10) ** 40) / 7, mpmath.mpf(0), mpmath.mpf(-1), *[mpmath.mpf("0.1")] * 3]
     precise = CASES["PreciseOrbit"]()
     cosines = np.array([values, values[::-1]], dtype=object)
     harmonics = precise.harmonics[:2]

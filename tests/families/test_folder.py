@@ -20,7 +20,6 @@ from symfpu.refinement.tori import RefinedTorus
 from tests.bundles.test_bundle import same
 from tests.families.cases import ROUND, RUNS, whole
 
-
 ENERGY = 1e-12  # of the ends of a family: conditions like the others
 
 

@@ -30,7 +30,7 @@ def exponential(N, decades):
     return e / math.fsum(e)
 
 
-def quiet(label):
+def quiet(label, done=None):
     """Hears nothing."""
 
 

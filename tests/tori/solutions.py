@@ -242,7 +242,8 @@ class SolutionTests:
         assert same(dict(loaded.amplitudes), dict(solution.amplitudes))
         assert (bundle.series is not None, bundle.verdict) == (self.with_series, {"good": True})
         assert len(bundle.test_vectors) == 3
-        assert (type(solution).__name__ in repr(bundle)) and "saved" in repr(bundle)
+        assert type(solution).__name__ in repr(bundle)
+        assert "saved" in repr(bundle)
         assert save(tmp_path / "again", loaded).stat().st_size > 0
 
     def test_exported_python_evaluates_it(self, solution, tmp_path):
