@@ -20,9 +20,9 @@ LEAST_HEIGHT_DECADES = 0.5  # of the picture, for indices that stay where they a
 
 
 def plot_alignment(found: AlignmentIndices, ax: Axes) -> Axes:
-    """log10 GALI_k against log10 t, k = 2 ..
+    """log10 GALI_k against log10 t for k = 2, 3, ..., with the fitted slopes in the legend.
 
-    Vectors, with the fitted slopes in the legend; both logarithms to base 10.
+    Both logarithms are to base 10.
     """
     panel = alignment_panel("gali", "alignment indices", found)
     ax = plot_panel(panel, ax)

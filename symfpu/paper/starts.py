@@ -1,5 +1,6 @@
-"""What all figures of orbits begin with: the paper's tori from its printed frequencies, their
-orbits, and profiles beside each other.
+"""What all figures of orbits begin with.
+
+The paper's tori from its printed frequencies, their orbits, and profiles beside each other.
 """
 
 from __future__ import annotations
@@ -54,11 +55,13 @@ def printed_row(label: str) -> PrintedTorus:
 
 
 def printed_torus(row: PrintedTorus) -> QTorus:
-    """The truncated series of the printed frequencies and order, with amplitudes of the frequency
-    order that gives the printed ones.
+    """The truncated series of the printed frequencies and order.
+
+    Its amplitudes are of the frequency order that gives the printed ones.
     """
     series = lindstedt(row.chain, row.seeds, row.frequencies, row.order)
-    return solve_amplitudes(series, frequency_order=AMPLITUDE_ORDERS.get(row.label))
+    frequency_order = AMPLITUDE_ORDERS.get(row.label)
+    return solve_amplitudes(series, frequency_order=frequency_order)
 
 
 def printed_amplitudes(row: PrintedTorus) -> dict[int, str]:
@@ -66,7 +69,7 @@ def printed_amplitudes(row: PrintedTorus) -> dict[int, str]:
     return dict(zip(row.seeds, row.amplitudes, strict=True))
 
 
-def follow(
+def integrated_orbit(
     name: str,
     chain: Chain,
     start: Starting | tuple[Floats, Floats],
@@ -82,7 +85,14 @@ def follow(
 
     `tell` hears how far it is.
     """
-    Q, P = start if isinstance(start, tuple) else (start.positions(0.0), start.momenta(0.0))
+
+    def progress(done: int, total: int) -> None:
+        tell(f"{name}: orbit to t = {T:.2g}", done / total)
+
+    if isinstance(start, tuple):
+        Q, P = start
+    else:
+        Q, P = start.positions(0.0), start.momenta(0.0)
     return integrate(
         chain,
         np.asarray(Q, dtype=float),
@@ -93,7 +103,7 @@ def follow(
         samples=samples,
         averages=averages,
         workers=2,
-        progress=lambda done, total: tell(f"{name}: orbit to t = {T:.2g}", done / total),
+        progress=progress,
     )
 
 
@@ -110,22 +120,26 @@ def profile_panel(
 
     floors : by name too, from `normalised_floor`; modes at or below them are left out.
     """
-    q = np.arange(1.0, chain.N)
-    x = q / chain.N if by_kappa else q
+    x = np.arange(1.0, chain.N)
+    labels = (r"$q$", r"$\overline{E}_q / E$")
+    axes = ("q", "average_energy_over_H")
+    if by_kappa:
+        x = x / chain.N
+        labels = (r"$\kappa = q/N$", r"$e_\kappa$")
+        axes = ("kappa", "average_energy_over_H")
     styles = itertools.cycle(("points", "triangles", "rings"))
     curves = []
     for (label, profile), style in zip(profiles.items(), styles, strict=False):
-        e = np.asarray(profile, dtype=float)
-        known = e > floors.get(label, -np.inf)
-        curves.append(Curve(label, x[known], e[known], style))
-    labels = (r"$\kappa = q/N$", r"$e_\kappa$") if by_kappa else (r"$q$", r"$\overline{E}_q / E$")
-    axes = ("kappa" if by_kappa else "q", "average_energy_over_H")
+        shares = np.asarray(profile, dtype=float)
+        known = shares > floors.get(label, -np.inf)
+        curves.append(Curve(label, x[known], shares[known], style))
     return Panel(name, title, *labels, (*curves, *laws), axes)
 
 
 def normalised_floor(solution: QuasiPeriodic) -> Floats:
     """The energies below which a mode of a torus is rounding, over its energy; shape (N-1,)."""
-    return np.asarray(spectrum_floor(solution) / float(solution.energy()))
+    floor = spectrum_floor(solution)
+    return np.asarray(floor / float(solution.energy()))
 
 
 def energies_panel(
@@ -138,7 +152,10 @@ def energies_panel(
     bottom: float | None = None,
 ) -> Panel:
     """Instantaneous E_q(t)/E of some modes; energies (S, N-1), normalised."""
-    curves = tuple(Curve(f"$q = {q}$", times, energies[:, q - 1], name=f"q={q}") for q in modes)
-    return Panel(
-        name, title, r"$t$", r"$E_q(t) / E$", curves, ("t", "energy_over_H"), bottom=bottom
-    )
+    curves = []
+    for q in modes:
+        energy = energies[:, q - 1]
+        curves.append(Curve(f"$q = {q}$", times, energy, name=f"q={q}"))
+    labels = (r"$t$", r"$E_q(t) / E$")
+    axes = ("t", "energy_over_H")
+    return Panel(name, title, *labels, tuple(curves), axes, bottom=bottom)
