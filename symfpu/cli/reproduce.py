@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,8 +22,13 @@ from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_folder, write_text
 from symfpu.paper.claims import PaperFigure
-from symfpu.paper.claims_page import claims_markdown
-from symfpu.paper.targets import FULL, TARGETS, Page, full_estimate
+from symfpu.paper.claims_page import (
+    claims_markdown,
+    figure_markdown,
+    figure_record,
+    file_names,
+)
+from symfpu.paper.targets import FULL, TARGETS, full_estimate, reproduced
 
 
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
@@ -64,61 +69,44 @@ def reproduce(
     chosen = [target for target in TARGETS if target in targets or "all" in targets]
     if full:
         console().print(full_estimate(chosen, folder), highlight=False)
-    pages: dict[str, Page] = {}
-    with progress_bar(chosen[0], lambda: _kept(pages, folder)) as advance:
+    figures: dict[str, PaperFigure] = {}
+    with progress_bar(chosen[0], lambda: _kept(figures, folder)) as advance:
         for target in chosen:
-            pages[target] = TARGETS[target](folder, advance, full=full)
+            figures[target] = reproduced(target, folder, advance, full=full)
             # at once: a run that is stopped, or a later target that fails, loses nothing
-            record = _write(pages, folder)
+            record = _write(figures, folder)
     if as_json:
         print_json(record)
         return
-    if "table" in pages:
-        _print_rows(record["table"], pages["table"].lines)
-    for key, claim in record.get("fig1", {}).get("claims", {}).items():
-        name = key.replace("_", " ")
-        say(f"Fig. 1, {name}: printed {claim['printed']}; computed {claim['computed']}")
-    _print_claims(page.figure for page in pages.values() if page.figure is not None)
+    for figure in figures.values():
+        for line in figure.lines:
+            say(line)
+    _print_claims(figure for figure in figures.values() if figure.claims)
     written = f"{folder / 'report.md'}, report.json"
-    pictures = ", ".join(page.files for page in pages.values() if page.files)
+    pictures = ", ".join(file_names(figure) for figure in figures.values() if figure.panels)
     if pictures:
         written += f", {pictures} as PNG, PDF and CSV"
     print(f"written: {written}")
 
 
-def _kept(pages: dict[str, Page], folder: Path) -> str:
+def _kept(figures: dict[str, PaperFigure], folder: Path) -> str:
     """What stands of a reproduction that was interrupted."""
-    parts = [f"{folder}/report.md and report.json hold {', '.join(pages)}"] if pages else []
+    parts = [f"{folder}/report.md and report.json hold {', '.join(figures)}"] if figures else []
     if any(folder.glob("*.checkpoint")):
         parts.append(f"the same command goes on from {folder}/*.checkpoint")
     return "; ".join(parts) or NOTHING_KEPT
 
 
-def _write(pages: dict[str, Page], folder: Path) -> dict[str, Any]:
+def _write(figures: dict[str, PaperFigure], folder: Path) -> dict[str, Any]:
     """The report as Markdown and JSON; returns the record."""
-    record = {target: page.record for target, page in pages.items()}
-    figures = [page.figure for page in pages.values() if page.figure is not None]
+    record = {target: figure_record(figure) for target, figure in figures.items()}
     parts = ["# The paper's numbers, computed from its printed frequencies"]
-    if figures:
-        parts.append(claims_markdown(figures))
-    parts += [page.markdown for page in pages.values()]
+    if any(figure.claims for figure in figures.values()):
+        parts.append(claims_markdown(figures.values()))
+    parts += [figure_markdown(figure) for figure in figures.values()]
     write_text(folder / "report.md", "\n\n".join(parts))
     write_text(folder / "report.json", json.dumps(record, indent=1) + "\n")
     return record
-
-
-def _print_rows(rows: Sequence[dict[str, Any]], corrected: Sequence[str]) -> None:
-    for row, exact in zip(rows, corrected, strict=True):
-        say(f"{row['label']}  (Appendix F: {row['printed_label']})")
-        computed = row["torus"]["amplitudes"]
-        for q, printed in row["printed_amplitudes"].items():
-            say(f"  A_{q:<3} printed {printed:<24} computed {computed[q]}")
-        energies = []
-        for name, value in row["energies"].items():
-            energies.append(f"{name} {float(value):.9g}")
-        listed = ", ".join(energies)
-        say(f"  E    printed {row['printed_energy']:<24} computed {listed}")
-        say(f"  {row['verdict']}\n{exact}\n")
 
 
 def _print_claims(figures: Iterable[PaperFigure]) -> None:

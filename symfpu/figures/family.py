@@ -1,5 +1,6 @@
-"""Pictures of a family: energy against frequency, amplitudes, multipliers, spectra. Nothing is
-computed here.
+"""Pictures of a family: energy against frequency, amplitudes, multipliers, spectra.
+
+Nothing is computed here.
 """
 
 from __future__ import annotations
@@ -16,9 +17,10 @@ from symfpu.figures.drawing import save_panel
 from symfpu.localization.floors import spectrum_floor
 
 Axes = Any
-FOLDED = 0.01  # of the smallest of the largest shifts, below which a scale with folds is linear
-ROUNDING = 1e-15  # of a relative shift in doubles
-SPECTRA = 5  # as many as the style has colours
+# of the smallest of the largest shifts: below it a scale with folds is linear
+LINEAR_SCALE_SHARE = 0.01
+SHIFT_ROUNDING = 1e-15  # of a relative shift in doubles
+SPECTRA_SHOWN = 5  # as many as the style has colours
 
 
 def plot_shifts(found: Family, ax: Axes) -> Axes:
@@ -27,16 +29,21 @@ def plot_shifts(found: Family, ax: Axes) -> Axes:
     Folds as lines.
     """
     energies = np.array([m.energy for m in found.members])
-    linear, smallest = found.chain.frequencies(), np.inf
+    linear = found.chain.frequencies()
+    smallest = np.inf
     for i, q in enumerate(found.seeds):
-        shifts = np.array([float(m.torus.frequencies[i]) for m in found.members]) - linear[q - 1]
-        ax.plot(shifts / linear[q - 1], energies, marker=".", label=rf"$q = {q}$")
-        smallest = min(smallest, float(np.abs(shifts / linear[q - 1]).max()))
+        rates = np.array([float(m.torus.frequencies[i]) for m in found.members])
+        shifts = (rates - linear[q - 1]) / linear[q - 1]
+        ax.plot(shifts, energies, marker=".", label=rf"$q = {q}$")
+        largest = float(np.abs(shifts).max())
+        smallest = min(smallest, largest)
     folds = [event.energy for event in found.events if event.kind == "fold"]
     for i, energy in enumerate(folds):
-        ax.axhline(energy, color="0.7", lw=0.8, zorder=0, label=None if i else "fold")
+        label = None if i else "fold"
+        ax.axhline(energy, color="0.7", lw=0.8, zorder=0, label=label)
     if folds:
-        ax.set_xscale("symlog", linthresh=max(FOLDED * smallest, ROUNDING))
+        linear_below = max(LINEAR_SCALE_SHARE * smallest, SHIFT_ROUNDING)
+        ax.set_xscale("symlog", linthresh=linear_below)
     ax.set_yscale("log")
     ax.set_xlabel(r"$\omega_q / \Omega_q - 1$")
     ax.set_ylabel(r"$H$")
@@ -48,18 +55,16 @@ def plot_amplitudes(found: Family, ax: Axes) -> Axes:
     """Amplitudes against H; resonances as ticks below, changes of stability as lines."""
     energies = [m.energy for m in found.members]
     for q in found.seeds:
-        ax.loglog(
-            energies,
-            [abs(m.amplitudes[q]) for m in found.members],
-            marker=".",
-            label=rf"$A_{{{q}}}$",
-        )
-    for i, event in enumerate(e for e in found.events if e.kind == "resonance"):
-        ax.axvline(event.energy, ymax=0.04, color="C3", lw=1, label=None if i else "resonance")
-    for i, event in enumerate(e for e in found.events if e.kind == "stability"):
-        ax.axvline(
-            event.energy, color="0.5", ls=":", lw=1, label=None if i else "change of stability"
-        )
+        sizes = [abs(m.amplitudes[q]) for m in found.members]
+        ax.loglog(energies, sizes, marker=".", label=rf"$A_{{{q}}}$")
+    resonances = [e.energy for e in found.events if e.kind == "resonance"]
+    for i, energy in enumerate(resonances):
+        label = None if i else "resonance"
+        ax.axvline(energy, ymax=0.04, color="C3", lw=1, label=label)
+    changes = [e.energy for e in found.events if e.kind == "stability"]
+    for i, energy in enumerate(changes):
+        label = None if i else "change of stability"
+        ax.axvline(energy, color="0.5", ls=":", lw=1, label=label)
     ax.set_xlabel(r"$H$")
     ax.set_ylabel(r"$A_q$")
     ax.legend()
@@ -67,16 +72,20 @@ def plot_amplitudes(found: Family, ax: Axes) -> Axes:
 
 
 def plot_multipliers(found: Family, ax: Axes) -> Axes:
-    """Angles of the multipliers on the unit circle against H, and the moduli of those off it as
-    crosses on a second axis.
+    """Angles of the multipliers on the unit circle against H.
+
+    Moduli of those off it as crosses on a second axis.
     """
-    known = [(m.energy, m.multipliers) for m in found.members if m.multipliers is not None]
     off: list[tuple[float, float]] = []
-    for energy, multipliers in known:
-        angles = np.abs(np.angle(multipliers.pairs[:, 0]))
-        ax.plot(np.full(len(angles), energy), angles, ".", color="C0", ms=2)
-        unstable = [kind not in (TRIVIAL, ELLIPTIC) for kind in multipliers.kinds]
-        off += [(energy, float(size)) for size in np.abs(multipliers.pairs[unstable, 0])]
+    for m in found.members:
+        if m.multipliers is None:
+            continue
+        firsts = m.multipliers.pairs[:, 0]
+        angles = np.abs(np.angle(firsts))
+        same_energy = np.full(len(angles), m.energy)
+        ax.plot(same_energy, angles, ".", color="C0", ms=2)
+        unstable = [kind not in (TRIVIAL, ELLIPTIC) for kind in m.multipliers.kinds]
+        off += [(m.energy, float(size)) for size in np.abs(firsts[unstable])]
     ax.set_xscale("log")
     ax.set_xlabel(r"$H$")
     ax.set_ylabel(r"$|\arg \lambda|$")
@@ -93,17 +102,15 @@ def plot_spectra(found: Family, ax: Axes) -> Axes:
 
     Modes at or below the `spectrum_floor` of their member are not drawn.
     """
-    chosen = np.unique(np.linspace(0, len(found.members) - 1, SPECTRA).round().astype(int))
-    for i, m in enumerate(found.members[k] for k in chosen):
+    last = len(found.members) - 1
+    places = np.linspace(0, last, SPECTRA_SHOWN).round().astype(int)
+    for i, k in enumerate(np.unique(places)):
+        m = found.members[k]
         spectrum = np.asarray(m.torus.average_spectrum(), dtype=float)
-        q = np.flatnonzero(spectrum > spectrum_floor(m.torus))
-        ax.semilogy(
-            q + 1,
-            spectrum[q] / spectrum.sum(),
-            marker=".",
-            color=f"C{i}",
-            label=f"$H$ = {m.energy:.2g}",
-        )
+        known = np.flatnonzero(spectrum > spectrum_floor(m.torus))
+        shares = spectrum[known] / spectrum.sum()
+        label = f"$H$ = {m.energy:.2g}"
+        ax.semilogy(known + 1, shares, marker=".", color=f"C{i}", label=label)
     ax.set_xlabel(r"$q$")
     ax.set_ylabel(r"$\overline{E}_q / E$")
     ax.legend(fontsize="small")
@@ -119,8 +126,11 @@ def draw_family(found: Family, folder: Path, stem: str = "family") -> list[Path]
     }
     if any(m.multipliers is not None for m in found.members):
         panels["multipliers"] = ("Floquet multipliers", plot_multipliers)
-    name = f"{repr(found.chain)[6:-1]}, {'seed' if len(found.seeds) == 1 else 'seeds'} {', '.join(map(str, found.seeds))}"
+    chain = repr(found.chain)[6:-1]
+    word = "seed" if len(found.seeds) == 1 else "seeds"
+    seeds = ", ".join(map(str, found.seeds))
     drawn = []
     for panel, (title, draw) in panels.items():
-        drawn += save_panel(partial(draw, found), f"{title} ({name})", folder / f"{stem}-{panel}")
+        full_title = f"{title} ({chain}, {word} {seeds})"
+        drawn += save_panel(partial(draw, found), full_title, folder / f"{stem}-{panel}")
     return drawn

@@ -1,7 +1,4 @@
-"""The lines printed in the captions of Figs.
-
-2(a), 4(a), 4(b), and which reading of the laws gives them.
-"""
+"""The lines printed in captions: Figs. 2(a), 4(a), 4(b), and the reading of the laws behind them."""
 
 from __future__ import annotations
 
@@ -25,7 +22,7 @@ def printed_line(label: str) -> PrintedLine:
 
 def caption_curve(line: PrintedLine, kappa: Floats) -> Curve:
     """The line as printed."""
-    printed = ProfileLine(float(line.slope), float(line.intercept), float(line.power))
+    printed = _printed_law(line)
     return Curve("line of the caption", kappa, 10 ** printed(kappa), "law")
 
 
@@ -37,9 +34,8 @@ def law_of(
     specific_energy: float | None = None,
 ) -> ProfileLine:
     """Eqs. eksa2, eksp2 for the parameters of a caption."""
-    return profile_law(
-        chain, line.seeds(chain), specific_energy or line.specific_energy, denominator=denominator
-    )
+    energy = specific_energy or line.specific_energy
+    return profile_law(chain, line.seeds(chain), energy, denominator=denominator)
 
 
 def same_numbers(line: PrintedLine, law: ProfileLine) -> bool:
@@ -48,24 +44,30 @@ def same_numbers(line: PrintedLine, law: ProfileLine) -> bool:
 
 
 def caption_claim(line: PrintedLine, section: str, readings: dict[str, ProfileLine]) -> Claim:
-    """Whether the laws give the printed line: with the caption's parameters for every chain, or
-    only with some other reading.
+    """Whether the laws give the printed line.
+
+    With the caption's parameters for every chain, or only with some other reading.
     """
-    own = [law_of(line, chain) for chain in line.chains]
-    given = [same_numbers(line, law) and law.power == line.power for law in own]
+    as_printed = []
+    sizes = []
+    for chain in line.chains:
+        own = law_of(line, chain)
+        as_printed.append(same_numbers(line, own) and own.power == line.power)
+        sizes.append(f"N = {chain.N}: {_text(own)}")
     meant = next((name for name, law in readings.items() if same_numbers(line, law)), None)
-    sizes = ", ".join(
-        f"N = {chain.N}: {_text(law)}" for chain, law in zip(line.chains, own, strict=True)
-    )
-    ours = f"the law with the caption's parameters: {sizes}; "
-    ours += (
-        f"every printed digit of slope and intercept comes out with {meant}"
-        if meant
-        else "no reading gives the printed digits"
-    )
-    law = ProfileLine(float(line.slope), float(line.intercept), float(line.power))
+    ours = f"the law with the caption's parameters: {', '.join(sizes)}; "
+    if meant:
+        ours += f"every printed digit of slope and intercept comes out with {meant}"
+    else:
+        ours += "no reading gives the printed digits"
     text = f"{line.label}: the line of the caption is the law"
-    return Claim(section, text, _text(law), ours, judged(all(given), meant is not None))
+    verdict = judged(all(as_printed), meant is not None)
+    return Claim(section, text, _text(_printed_law(line)), ours, verdict)
+
+
+def _printed_law(line: PrintedLine) -> ProfileLine:
+    slope, intercept = float(line.slope), float(line.intercept)
+    return ProfileLine(slope, intercept, float(line.power))
 
 
 def _text(law: ProfileLine) -> str:

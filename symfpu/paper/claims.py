@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 from symfpu.errors import InputError
 from symfpu.figures.panels import Panel
@@ -32,30 +33,38 @@ class Claim:
 
     def record(self) -> dict[str, str]:
         """For JSON."""
-        return {
-            name: getattr(self, name) for name in ("section", "text", "printed", "ours", "verdict")
-        }
+        names = ("section", "text", "printed", "ours", "verdict")
+        return {name: getattr(self, name) for name in names}
 
 
 @dataclass(frozen=True)
 class PaperFigure:
-    """A figure of the paper computed anew. name : such as "fig2". remarks : how, in sentences."""
+    """A figure, a table or a question of the paper computed anew.
+
+    name : such as "fig2". remarks : how, in sentences. text : more for the page, paragraphs and
+    tables in Markdown. numbers : for the record, by name or one entry for each row. lines : for
+    the terminal, beside the claims.
+    """
 
     name: str
     title: str
     panels: tuple[Panel, ...]
     claims: tuple[Claim, ...]
     remarks: tuple[str, ...] = ()
+    text: tuple[str, ...] = field(default=(), repr=False)
+    numbers: Any = field(default=None, repr=False)
+    lines: tuple[str, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
-        counts = ", ".join(
-            f"{n} {verdict}"
-            for verdict in VERDICTS
-            if (n := sum(c.verdict == verdict for c in self.claims))
-        )
-        return f"PaperFigure({self.name}, panels {', '.join(panel.name for panel in self.panels)}; claims: {counts or 'none'})"
+        found = [claim.verdict for claim in self.claims]
+        counts = [f"{found.count(verdict)} {verdict}" for verdict in VERDICTS if verdict in found]
+        claims = ", ".join(counts) or "none"
+        panels = ", ".join(panel.name for panel in self.panels)
+        return f"PaperFigure({self.name}, panels {panels}; claims: {claims})"
 
 
 def judged(holds: bool, partly: bool = False) -> str:
     """The verdict on a claim that can be decided."""
-    return HOLDS if holds else PARTLY if partly else FAILS
+    if holds:
+        return HOLDS
+    return PARTLY if partly else FAILS

@@ -1,29 +1,37 @@
-"""Figures of the paper as text: Markdown with every panel and claim, JSON, CSV. Computes nothing."""
+"""Figures of the paper as text, data and pictures: Markdown, JSON, CSV, PNG and PDF.
+
+Computes nothing.
+"""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from symfpu.figures.drawing import draw_panel
+from symfpu.figures.panels import Panel
 from symfpu.paper.claims import VERDICTS, Claim, PaperFigure
 from symfpu.reports.tables import markdown_table, write_csv
 
 
 def figure_markdown(figure: PaperFigure) -> str:
-    """Title, remarks, claims and pictures of a figure."""
-    pictures = [f"![{panel.title}]({panel.name}.png)" for panel in figure.panels]
-    claims = [claims_table(figure.claims)] if figure.claims else []
-    return "\n\n".join([f"## {figure.title}", *figure.remarks, *claims, *pictures]) + "\n"
+    """Title, remarks, text, claims and pictures of a figure."""
+    parts = [f"## {figure.title}", *figure.remarks, *figure.text]
+    if figure.claims:
+        parts.append(claims_table(figure.claims))
+    parts += [f"![{panel.title}]({panel.name}.png)" for panel in figure.panels]
+    return "\n\n".join(parts) + "\n"
 
 
 def claims_table(claims: Iterable[Claim]) -> str:
     """One row for each claim."""
-    rows = [
-        [_cell(text) for text in (c.section, c.text, c.printed or "-", c.ours, f"**{c.verdict}**")]
-        for c in claims
-    ]
+    rows = []
+    for claim in claims:
+        printed = claim.printed or "-"
+        verdict = f"**{claim.verdict}**"
+        row = (claim.section, claim.text, printed, claim.ours, verdict)
+        rows.append([_cell(text) for text in row])
     return markdown_table(["section", "the paper says", "printed", "found here", "verdict"], rows)
 
 
@@ -32,33 +40,71 @@ def _cell(text: str) -> str:
     return text.replace("|", r"\|")
 
 
-def claims_markdown(figures: Sequence[PaperFigure]) -> str:
-    """How many claims hold, and where they are judged."""
-    counts = Counter(claim.verdict for figure in figures for claim in figure.claims)
-    summary = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS if counts[verdict])
-    rows = [
-        [
-            figure.title,
-            *(
-                str(sum(claim.verdict == verdict for claim in figure.claims) or "")
-                for verdict in VERDICTS
-            ),
-        ]
-        for figure in figures
-    ]
-    return f"## Claims\n\n{summary}.\n\n{markdown_table(['figure', *VERDICTS], rows)}\n"
+def claims_markdown(figures: Iterable[PaperFigure]) -> str:
+    """How many claims hold, and in which figures; figures without claims are left out."""
+    total = dict.fromkeys(VERDICTS, 0)
+    rows = []
+    for figure in figures:
+        if not figure.claims:
+            continue
+        found = [claim.verdict for claim in figure.claims]
+        row = [figure.title]
+        for verdict in VERDICTS:
+            count = found.count(verdict)
+            total[verdict] += count
+            row.append(str(count or ""))
+        rows.append(row)
+    summary = ", ".join(f"{count} {verdict}" for verdict, count in total.items() if count)
+    table = markdown_table(["figure", *VERDICTS], rows)
+    return f"## Claims\n\n{summary}.\n\n{table}\n"
 
 
-def figure_record(figure: PaperFigure) -> dict[str, Any]:
-    """For JSON: claims, and the curves of each panel by name."""
-    return {
-        "title": figure.title,
-        "remarks": list(figure.remarks),
-        "claims": [claim.record() for claim in figure.claims],
-        "panels": {panel.name: [curve.label for curve in panel.curves] for panel in figure.panels},
-    }
+def figure_record(figure: PaperFigure) -> Any:
+    """For JSON: claims, and the curves of each panel by name.
+
+    Beside numbers of the figure's own they are under "judged"; numbers are alone where nothing is
+    judged.
+    """
+    if figure.numbers is not None and not figure.claims:
+        return figure.numbers
+    record: dict[str, Any] = {"title": figure.title, "remarks": list(figure.remarks)}
+    record["claims"] = [claim.record() for claim in figure.claims]
+    record["panels"] = {panel.name: _curve_names(panel) for panel in figure.panels}
+    return record if figure.numbers is None else figure.numbers | {"judged": record}
+
+
+def _curve_names(panel: Panel) -> list[str]:
+    return [curve.label or curve.name for curve in panel.curves]
 
 
 def write_panel_csv(figure: PaperFigure, folder: Path) -> list[Path]:
-    """The curves of each panel, one file each."""
+    """The table of each panel, one file each."""
     return write_csv({panel.name: panel.table() for panel in figure.panels}, folder)
+
+
+def draw_panels(figure: PaperFigure, folder: Path) -> list[Path]:
+    """Write every panel of a figure as PNG and PDF; returns the paths."""
+    paths = []
+    for panel in figure.panels:
+        paths += draw_panel(panel, folder)
+    return paths
+
+
+def file_names(figure: PaperFigure) -> str:
+    """The names of a figure's files, those that differ in a last letter together: fig6a..c."""
+    runs: list[list[str]] = []
+    for panel in figure.panels:
+        if runs and _follows(runs[-1][-1], panel.name):
+            runs[-1].append(panel.name)
+        else:
+            runs.append([panel.name])
+    return ", ".join(_run_text(run) for run in runs)
+
+
+def _follows(name: str, other: str) -> bool:
+    """Whether a name is the one after another: the same but for the next letter."""
+    return name[:-1] == other[:-1] and ord(name[-1]) + 1 == ord(other[-1])
+
+
+def _run_text(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{names[0]}..{names[-1][-1]}"

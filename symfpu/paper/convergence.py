@@ -1,358 +1,281 @@
-"""Two questions that the paper leaves open about the convergence of its series, settled with numbers.
+"""Two questions that the paper leaves open about the convergence of its series: page and pictures.
 
-(i) Fig. 1(b, c): why the amplitudes stop settling near order 24 and the cancellations stop
-improving after order 14. The paper offers frequencies that become commensurable at that
-precision, and the finite precision of the amplitudes. (ii) Fig. 9: is the amplitude found at
-order 242 that of a periodic orbit with the printed frequency?
+The numbers that settle them come from convergence_fig1.py and convergence_fig9.py.
 """
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
-from math import lcm
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
-import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import PeriodicOrbit, breather_at_amplitude, periodic_orbit
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.families.family import Family, family
-from symfpu.numbers.typed import Number
-from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, FIG9_BREATHER, TWO_TORUS
-from symfpu.paper.steps import Step, unheard
-from symfpu.series.divisors import divisor
-from symfpu.series.lindstedt import lindstedt
-from symfpu.series.series import LindstedtSeries
-from symfpu.tori.amplitudes import frequency_orders, solve_amplitudes
-from symfpu.tori.resummation import pade_amplitudes, resum_by_order
-from symfpu.tori.torus import QTorus
-from symfpu.tori.verdict import Assessment, assess
+from symfpu.breathers.balance import PeriodicOrbit
+from symfpu.figures.panels import Curve, Panel
+from symfpu.numbers.typed import decimal
+from symfpu.paper.claims import PaperFigure
+from symfpu.paper.convergence_fig1 import CancellationStudy, cancellation_study
+from symfpu.paper.convergence_fig9 import BreatherStudy, SchemeLimit, breather_study
+from symfpu.paper.steps import Step
+from symfpu.reports.tables import fifteen_digits, markdown_table
+from symfpu.tori.verdict import Assessment
 
 Floats = NDArray[np.float64]
+ByOrder = Mapping[int, float]
 
-DIGITS, MORE_DIGITS = 20, 40
-SHOWN_ORDERS = (12, 18, 24, 30, 36, 42)  # of the resummed torus
-LONG_ORDER = 42  # beyond the paper's 30, to see what the terms tend to
-PRINTED_DIGITS = 7  # of the amplitudes that the paper goes on with
-RESONANT_MODE, RESONANT_HARMONIC = 3, (5, -4)
-PROBE_SHIFTS = ("1e-6", "1e-7")  # of the probe frequency from the resonance, to extrapolate to it
-PROBE_ORDER = 14
-REAL = 1e-9  # imaginary part below which a root of the probe counts as real
-# printed digits, then sqrt 2, sqrt 3
-INCOMMENSURABLE = ("0.19626000014142135623730950488", "0.39046000017320508075688772935")
-# the divisor of the resonance 12.6 times larger, of the other sign
-DETUNED = ("0.19626", "0.39056")
-BREATHER_DIGITS = 30
-SINGULARITY_TERMS = 60  # last terms of the frequency series to which its singularity is fitted
-LIMIT_ORDER = 160  # of the series whose ends are followed along a family
-LIMIT_ENERGIES = ("0.0005", "0.05")  # where the family is followed for the picture
-LIMIT_POINTS = 14
+DIFFERENCE_ORDERS = (14, 20, 24, 28)  # in the table of variants
+SUM_ORDERS = (14, 30)
+FIRST_RATIO = 20  # order from which ratios are shown
+ROOT_ORDERS = (2, 10, 50, 100, 150, 200)  # and the last
+ROOT_LIMITS = (1.25, 1.5)  # of the picture of A(K)
+FIRST_RESIDUAL = 2  # order from which residuals are drawn
+BREATHER_HEAD = ("periodic orbit with the", "omega", "A", "H", "harmonic E(0)", "residual")
+AMPLITUDE_HEAD = ("order", "residual", "resummed", "A_1", "A_2", "A_1 resummed", "A_2 resummed")
 
 
-@dataclass(frozen=True)
-class Variant:
-    """One way to compute Fig.
-
-    1(b, c). differences : Delta A(k) of all seeds; sums : mu^k S_2(k) of mode 1, order 0 first.
-    """
-
-    name: str
-    differences: dict[int, tuple[float, ...]]
-    sums: Floats = field(repr=False)
-    residuals: Floats = field(repr=False)
+def convergence(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+    """Both questions: why the errors of Fig. 1 stop falling, and whether Fig. 9 is a breather."""
+    return convergence_figure(cancellation_study(step), breather_study(step))
 
 
-@dataclass(frozen=True)
-class CancellationStudy:
-    """Question (i). variants : the printed case in doubles, with digits, with rounded amplitudes,
-    with other frequencies.
-
-    coincidence : the first harmonic that the printed frequencies bring to rest. ratios : by
-    order, how much the coefficient of the resonant harmonic grows from two orders before. divisor
-    : its divisor. pole : mu^2 in units of the actual one at which mode 3's own frequency on the
-    torus meets the harmonic; 1/pole is the ratio that this predicts. residuals, resummed : of
-    truncated and of resummed tori, by order. amplitudes : by frequency order, truncated and
-    resummed roots.
-    """
-
-    variants: tuple[Variant, ...]
-    coincidence: tuple[int, int]
-    ratios: dict[int, float]
-    divisor: float
-    pole: float
-    residuals: Floats
-    resummed: dict[int, float]
-    amplitudes: dict[int, tuple[tuple[float, ...], tuple[float, ...]]]
-    assessment: Assessment
+def convergence_figure(cancellation: CancellationStudy, breather: BreatherStudy) -> PaperFigure:
+    """What the studies found."""
+    title = "Convergence of the series: two questions"
+    panels = (*cancellation_panels(cancellation), *breather_panels(breather))
+    text = (*cancellation_text(cancellation), *breather_text(breather))
+    numbers = convergence_numbers(cancellation, breather)
+    return PaperFigure("convergence", title, panels, (), text=text, numbers=numbers)
 
 
-def cancellation_study(step: Step = unheard) -> CancellationStudy:
-    """Compute question (i)."""
-    chain, seeds, printed = TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies
-    step("convergence: long series")
-    series = lindstedt(chain, seeds, printed, LONG_ORDER, digits=DIGITS)
-    torus = solve_amplitudes(series, frequency_order=FIG1_AMPLITUDE_ORDER)
-    step("convergence: verdict")
-    assessment = assess(series, torus)
-    variants = list(_variants(step))
-    step("convergence: resummation")
-    resummed = {
-        k: t.residual()
-        for k, t in zip(SHOWN_ORDERS, resum_by_order(torus, SHOWN_ORDERS), strict=True)
-    }
-    amplitudes = {}
-    for K in SHOWN_ORDERS:
-        root = pade_amplitudes(series, torus.amplitudes, K)
-        amplitudes[K] = (
-            tuple(map(float, torus.history[K])),
-            tuple(float(a) for a in root.values()),
-        )
-    return CancellationStudy(
-        variants=tuple(variants),
-        coincidence=_coincidence(series),
-        ratios=_ratios(torus),
-        divisor=divisor(chain, seeds, torus.frequencies, RESONANT_MODE, RESONANT_HARMONIC),
-        pole=_pole(torus),
-        residuals=assessment.residuals,
-        resummed=resummed,
-        amplitudes=amplitudes,
-        assessment=assessment,
+def cancellation_text(data: CancellationStudy) -> tuple[str, ...]:
+    """Question (i): what was tested, what came out."""
+    first, second = data.coincidence
+    order = abs(first) + abs(second) - 1
+    coincidence = f"{first} omega_1 {second:+d} omega_2 = 0, at order {order}; none before."
+    shown = [f"{k}: {r:.6f}" for k, r in data.ratios.items() if k >= FIRST_RATIO]
+    growth = f"The coefficient of harmonic (5,-4) in mode 3, divisor {data.divisor:.4e}, "
+    growth += f"grows every two orders by: {', '.join(shown)}."
+    pole = "Mode 3's own frequency on the torus, a series in mu^2, meets 4 omega_2 - 5 omega_1 "
+    pole += f"at {data.pole:.5f} of the actual mu^2: "
+    pole += f"a pole there makes terms grow by {1 / data.pole:.5f} every two orders."
+    return (
+        "### Question (i): Fig. 1(b, c), why the errors stop falling",
+        _variants_table(data),
+        f"Exact coincidence: {coincidence}",
+        _verdict(data.assessment),
+        growth,
+        pole,
+        _amplitudes_table(data),
     )
 
 
-def _variants(step: Step) -> list[Variant]:
-    """The printed case and its counterfactuals, to the paper's order."""
-    cases: tuple[tuple[str, Sequence[str], int | None, int | None], ...] = (
-        ("doubles", TWO_TORUS.frequencies, None, None),
-        (f"{MORE_DIGITS} digits", TWO_TORUS.frequencies, MORE_DIGITS, None),
-        (
-            f"amplitudes rounded to {PRINTED_DIGITS} digits",
-            TWO_TORUS.frequencies,
-            MORE_DIGITS,
-            PRINTED_DIGITS,
-        ),
-        ("incommensurable digits appended", INCOMMENSURABLE, MORE_DIGITS, None),
-        (f"omega_2 = {DETUNED[1]}", DETUNED, None, None),
-    )
-    variants, known = [], {}
-    for name, frequencies, digits, rounded in cases:
-        step(f"convergence: {name}")
-        key = (tuple(frequencies), digits)
-        if key not in known:
-            known[key] = lindstedt(
-                TWO_TORUS.chain, TWO_TORUS.seeds, frequencies, TWO_TORUS.order, digits=digits
-            )
-        torus = solve_amplitudes(known[key], frequency_order=FIG1_AMPLITUDE_ORDER)
-        if rounded:
-            torus = replace(
-                torus,
-                amplitudes={
-                    q: mpmath.mpf(mpmath.nstr(a, rounded)) for q, a in torus.amplitudes.items()
-                },
-            )
-        found = assess(known[key], torus, resummed=False)
-        variants.append(Variant(name, dict(found.differences), found.sums[1][1], found.residuals))
-    return variants
+def _verdict(assessment: Assessment) -> str:
+    return f"Verdict: {assessment.headline} ({'; '.join(assessment.reasons)})."
 
 
-def _coincidence(series: LindstedtSeries) -> tuple[int, int]:
-    """The shortest harmonic with nu.omega = 0 for the two chosen frequencies, exactly."""
-    assert series.frequencies is not None
-    first, second = series.frequencies
-    common = lcm(first.denominator, second.denominator)
-    a, b = int(first * common), int(second * common)
-    divisor_ = int(np.gcd(a, b))
-    return b // divisor_, -a // divisor_
+def _variants_table(data: CancellationStudy) -> str:
+    head = ["case"]
+    head += [f"dA({k})" for k in DIFFERENCE_ORDERS]
+    head += [f"S_2({k})" for k in SUM_ORDERS]
+    rows = []
+    for variant in data.variants:
+        row = [variant.name]
+        row += [f"{max(variant.differences[k]):.2e}" for k in DIFFERENCE_ORDERS]
+        row += [f"{variant.sums[k]:.2e}" for k in SUM_ORDERS]
+        row.append(f"{variant.residuals.min():.1e}")
+        rows.append(row)
+    return markdown_table([*head, "least residual"], rows)
 
 
-def _ratios(torus: QTorus) -> dict[int, float]:
-    """By order, the coefficient of the resonant harmonic over that two orders before."""
-    series, values = torus.series, {}
-    amplitudes = [torus.amplitudes[q] for q in torus.seeds]
-    for k in range(sum(map(abs, RESONANT_HARMONIC)) - 1, series.order + 1, 2):
-        nu, table = series.harmonic_terms(amplitudes, k)
-        row = int(np.flatnonzero((nu == RESONANT_HARMONIC).all(axis=1))[0])
-        values[k] = float(table[row, RESONANT_MODE - 1])
-    return {k: values[k] / values[k - 2] for k in values if k - 2 in values}
+def _amplitudes_table(data: CancellationStudy) -> str:
+    """Residuals and amplitudes of truncated and resummed tori, by order."""
+    rows = []
+    for k, resummed in data.resummed.items():
+        truncated_roots, resummed_roots = data.amplitudes[k]
+        row = [str(k), f"{data.residuals[k]:.1e}", f"{resummed:.1e}"]
+        row += [f"{a:.10f}" for a in (*truncated_roots, *resummed_roots)]
+        rows.append(row)
+    return markdown_table(AMPLITUDE_HEAD, rows)
 
 
-def _pole(torus: QTorus) -> float:
-    """Where the frequency of small oscillations of mode 3 on the torus, a series in mu^2, equals
-    |nu.omega| of the resonance.
-
-    The mode is made a third seed of amplitude zero with a frequency ever closer to the
-    harmonic's: its frequency series then starts at Omega_3, and its divisors are those of the
-    harmonic.
-    """
-    drive = abs(
-        sum(
-            (n * w for n, w in zip(RESONANT_HARMONIC, torus.frequencies, strict=True)),
-            start=Fraction(0),
-        )
-    )
-    found = []
-    for shift in PROBE_SHIFTS:
-        probe = lindstedt(
-            torus.chain,
-            (*torus.seeds, RESONANT_MODE),
-            (*torus.frequencies, drive + Fraction(shift)),
-            PROBE_ORDER,
-        )
-        squares = [float(torus.amplitudes[q]) ** 2 for q in torus.seeds]
-        terms, _ = probe.frequency_terms([*squares, 0.0])
-        coefficients = terms[[0, *frequency_orders(probe)], 2].copy()
-        coefficients[0] -= float(drive)
-        roots = np.polynomial.Polynomial(coefficients).roots()
-        found.append(
-            min(float(r.real) for r in roots if abs(float(r.imag)) < REAL and float(r.real) > 0)
-        )
-    far, near = (float(shift) for shift in PROBE_SHIFTS)
-    return found[1] + (found[1] - found[0]) * near / (far - near)
-
-
-@dataclass(frozen=True)
-class BreatherStudy:
-    """Question (ii). orbit : the periodic orbit with the printed frequency, by Newton. at_printed :
-    the one with the printed amplitude. amplitudes : A(K). singularity : amplitude at which the
-    frequency series with these divisors ends, from the ratios of its terms, with the spread of
-    the fit. assessment : of the series at the printed order.
-    """
-
-    orbit: PeriodicOrbit
-    at_printed: PeriodicOrbit
-    amplitudes: dict[int, float]
-    singularity: float
-    spread: float
-    exponent: float
-    assessment: Assessment
-    limit: SchemeLimit
-
-
-@dataclass(frozen=True)
-class SchemeLimit:
-    """Where the series with chosen frequencies in its divisors ceases to find a family of breathers.
-
-    For a chosen omega the frequency series in A ends at a fold. Up to omega_limit it reaches
-    omega before; beyond, the breather lies behind the fold. orbit : the breather there.
-    frequencies, amplitudes : of the family; ends : amplitude at which the series with these
-    divisors ends. family : on both sides of the limit.
-    """
-
-    orbit: PeriodicOrbit
-    frequencies: tuple[float, ...]
-    amplitudes: tuple[float, ...]
-    ends: tuple[float, ...]
-    family: Family = field(repr=False)
-
-
-def breather_study(step: Step = unheard) -> BreatherStudy:
-    """Compute question (ii)."""
-    printed = FIG9_BREATHER
-    (seed,), (omega,) = printed.seeds, printed.frequencies
-    step("convergence: breather series")
-    series = lindstedt(
-        printed.chain, printed.seeds, printed.frequencies, printed.order, digits=BREATHER_DIGITS
-    )
-    torus = solve_amplitudes(series)
-    step("convergence: breather verdict")
-    assessment = assess(series, torus)
-    singularity, spread, exponent = _singularity(series)
-    step("convergence: periodic orbits")
-    return BreatherStudy(
-        orbit=periodic_orbit(printed.chain, seed, omega),
-        at_printed=breather_at_amplitude(printed.chain, seed, float(printed.amplitudes[0])),
-        amplitudes={K: float(a[0]) for K, a in torus.history.items()},
-        singularity=singularity,
-        spread=spread,
-        exponent=exponent,
-        assessment=assessment,
-        limit=scheme_limit(printed.chain, seed, LIMIT_ENERGIES, step),
-    )
-
-
-def scheme_limit(
-    chain: Chain, seed: int, energies: tuple[str, str], step: Step = unheard
-) -> SchemeLimit:
-    """Follow the breathers of a seed between two energies, and find where their fixed-frequency
-    series stop to reach them.
-
-    Raises InputError where the limit does not lie between them.
-    """
-    step("convergence: family of breathers")
-    found = family(chain, (seed,), energies[1], from_energy=energies[0])
-    chosen = [
-        found.members[k]
-        for k in np.unique(np.linspace(0, len(found.members) - 1, LIMIT_POINTS).round().astype(int))
+def breather_text(data: BreatherStudy) -> tuple[str, ...]:
+    """Question (ii): the orbits, the roots and the end of the series."""
+    rows = [
+        _orbit_row("printed frequency", data.orbit),
+        _orbit_row("printed amplitude", data.at_printed),
     ]
-    rates = [float(m.torus.frequencies[0]) for m in chosen]
-    step("convergence: ends of the series along the family")
-    ends = [series_end(chain, seed, w) for w in rates]
-    gaps = [reached - w for (_, reached), w in zip(ends, rates, strict=True)]
-    if gaps[0] <= 0 or gaps[-1] >= 0:
-        raise InputError(
-            "energies",
-            energies,
-            "two with the limit between them",
-            "take the first smaller or the second larger",
-        )
-    from scipy.optimize import brentq
-
-    k = next(k for k, gap in enumerate(gaps) if gap < 0)
-    omega = brentq(
-        lambda w: series_end(chain, seed, w)[1] - w, rates[k - 1], rates[k], xtol=1e-12, rtol=1e-12
-    )
-    orbit = periodic_orbit(chain, seed, omega, chosen[k - 1].torus)
-    return SchemeLimit(
-        orbit,
-        tuple(rates),
-        tuple(m.amplitudes[seed] for m in chosen),
-        tuple(a for a, _ in ends),
-        found,
+    orders = [k for k in data.amplitudes if k in (*ROOT_ORDERS, max(data.amplitudes))]
+    roots = ", ".join(f"{k}: {data.amplitudes[k]:.8f}" for k in orders)
+    end = f"The frequency series with these divisors ends at A = {data.singularity:.9f} "
+    end += f"(spread of the fit {data.spread:.0e}) in a singularity of exponent "
+    end += f"{data.exponent:.4f}."
+    orbit = data.limit.orbit
+    last = data.limit.family.members[-1]
+    limit = "The breathers lie behind such an end, out of reach of the series, from "
+    limit += f"A = {orbit.amplitude:.6f}, omega = {float(orbit.frequency):.9f}, "
+    limit += f"H = {orbit.energy():.7f} on; "
+    limit += f"Newton's method followed the family to H = {last.energy:.4f}."
+    return (
+        "### Question (ii): the breather of E = 0.014915",
+        markdown_table(BREATHER_HEAD, rows),
+        f"A(K) of the truncated series: {roots}.",
+        end,
+        limit,
+        _verdict(data.assessment),
     )
 
 
-def series_end(chain: Chain, seed: int, omega: Number) -> tuple[float, float]:
-    """The amplitude at which the frequency series with omega in its divisors ends, and the frequency
-    that it has reached there.
+def _orbit_row(name: str, orbit: PeriodicOrbit) -> list[str]:
+    row = [name, f"{float(orbit.frequency):.14f}"]
+    row += [f"{orbit.amplitude:.11f}", f"{orbit.energy():.10f}"]
+    harmonic = orbit.harmonic_energies().sum()
+    row += [f"{harmonic:.10f}", f"{orbit.residual():.0e}"]
+    return row
 
-    At its square-root end the terms fall as k^(-3/2); the sum is extrapolated in powers of k^(-1/2).
+
+def convergence_numbers(cancellation: CancellationStudy, breather: BreatherStudy) -> dict[str, Any]:
+    """Both questions for JSON."""
+    orbit = breather.orbit
+    limit = breather.limit.orbit
+    record: dict[str, Any] = {"coincidence": list(cancellation.coincidence)}
+    record["divisor"] = fifteen_digits(cancellation.divisor)
+    record["pole"] = fifteen_digits(cancellation.pole)
+    record["ratios"] = _rounded(cancellation.ratios)
+    record["resummed_residuals"] = _rounded(cancellation.resummed)
+    record["torus"] = cancellation.assessment.record()
+    record["orbit"] = _orbit_record(orbit)
+    record["orbit_energy"] = repr(float(orbit.energy()))
+    record["singularity"] = fifteen_digits(breather.singularity)
+    record["limit"] = _orbit_record(limit) | {"energy": repr(float(limit.energy()))}
+    record["breather"] = breather.assessment.record()
+    return record
+
+
+def _rounded(values: ByOrder) -> dict[str, float]:
+    return {str(k): fifteen_digits(value) for k, value in values.items()}
+
+
+def _orbit_record(orbit: PeriodicOrbit) -> dict[str, str]:
+    return {"frequency": decimal(orbit.frequency), "amplitude": repr(orbit.amplitude)}
+
+
+def cancellation_panels(data: CancellationStudy) -> tuple[Panel, ...]:
+    """Panels (a) to (c): settling, sizes of terms, residuals."""
+    differences, sums = {}, {}
+    for variant in data.variants:
+        differences[variant.name] = {k: max(d) for k, d in variant.differences.items()}
+        sums[variant.name] = dict(enumerate(variant.sums.tolist()))
+    residuals = [float(r) for r in data.residuals]
+    truncated = {k: r for k, r in enumerate(residuals) if k >= FIRST_RESIDUAL}
+    both = {"truncated": truncated, "resummed": data.resummed}
+    orders = list(data.resummed)
+    shown: dict[str, list[Any]] = {"order": orders}
+    shown["truncated"] = [residuals[k] for k in orders]
+    shown["resummed"] = list(data.resummed.values())
+    difference, size = r"$\max_i |A_i(k+2) - A_i(k)|$", r"$\mu^k S_2(k)$"
+    name, title = "convergence-c", "Residual of the 2-torus of Fig. 1"
+    return (
+        by_order_panel("convergence-a", "Settling of the amplitudes", difference, differences),
+        by_order_panel("convergence-b", "Size of the terms of mode 1", size, sums),
+        by_order_panel(name, title, "relative residual", both, columns=shown),
+    )
+
+
+def by_order_panel(
+    name: str,
+    title: str,
+    y_label: str,
+    curves: Mapping[str, ByOrder],
+    *,
+    columns: Mapping[str, list[Any]] | None = None,
+) -> Panel:
+    """Several quantities by order, by name; the table has the orders of the first one.
+
+    columns : of another table.
     """
-    series = lindstedt(chain, (seed,), (omega,), LIMIT_ORDER)
-    end, _, _ = _singularity(series)
-    terms, _ = series.frequency_terms([end**2])
-    orders = np.array([0, *frequency_orders(series)])
-    sums = np.cumsum(terms[orders, 0] - np.where(orders == 0, terms[0, 0], 0.0))
-    n = np.arange(1, len(sums) + 1, dtype=float)[-SINGULARITY_TERMS:]
-    powers = np.stack([np.ones_like(n), n**-0.5, n**-1.5, n**-2.5], axis=1)
-    limit = float(np.linalg.lstsq(powers, sums[-SINGULARITY_TERMS:], rcond=None)[0][0])
-    return end, float(terms[0, 0]) + limit
+    drawn = []
+    first = next(iter(curves.values()))
+    table: dict[str, list[Any]] = {"k": list(first)}
+    for label, values in curves.items():
+        orders = np.array(list(values), dtype=float)
+        sizes = list(values.values())
+        drawn.append(Curve(label, orders, np.array(sizes), "joined"))
+        table[label] = sizes
+    return Panel(
+        name,
+        title,
+        r"order $k$",
+        y_label,
+        tuple(drawn),
+        ("k", "size"),
+        columns=columns or table,
+    )
 
 
-def _singularity(series: LindstedtSeries) -> tuple[float, float, float]:
-    """Amplitude, its spread, and exponent g of the singularity (x_c - A^2)^g of the frequency
-    series, from ratios of terms.
+def breather_panels(data: BreatherStudy) -> tuple[Panel, Panel]:
+    """Panels (d) and (e): roots of the series, and the family beyond its series."""
+    roots = roots_panel(data.amplitudes, data.orbit.amplitude, data.singularity)
+    return (roots, _limit_panel(data.limit))
 
-    a_k / a_(k-1) = (1 - (1 + g) / k + O(1/k^2)) / x_c (Domb and Sykes, Proc. R. Soc. A 240 (1957)
-    214), k counting powers of A^2.
+
+def roots_panel(amplitudes: ByOrder, periodic: float, end: float) -> Panel:
+    """A(K) of the truncated series beside the periodic orbit and the end of the series."""
+    orders = np.array(list(amplitudes), dtype=float)
+    roots = list(amplitudes.values())
+    ends = orders[[0, -1]]
+    orbit = rf"periodic orbit with the printed $\omega$: {periodic:.6f}"
+    curves = (
+        Curve(r"root $A(K)$ of the truncated series", orders, np.array(roots), "dots"),
+        Curve(orbit, ends, np.full(2, periodic)),
+        Curve(f"the series ends: {end:.6f}", ends, np.full(2, end), "law"),
+    )
+    bottom, top = ROOT_LIMITS
+    return Panel(
+        "convergence-d",
+        "The breather of E = 0.014915",
+        r"frequency order $K$",
+        r"$A_1$",
+        curves,
+        ("K", "A"),
+        log_y=False,
+        bottom=bottom,
+        top=top,
+        columns={"K": list(amplitudes), "A": roots},
+    )
+
+
+def _limit_panel(data: SchemeLimit) -> Panel:
+    """Amplitudes of a family and of the ends of its series against the frequency.
+
+    The curves touch where the series stop to reach it.
     """
-    orders = frequency_orders(series)
-    with mpmath.workdps(BREATHER_DIGITS):
-        unit = (
-            mpmath.mpf(1) / series.seed_factors[0] ** 2 if series.digits is None else mpmath.mpf(1)
-        )
-        terms, _ = series.frequency_terms([unit])
-        ratios = np.array(
-            [float(terms[b, 0] / terms[a, 0] / unit) for a, b in itertools.pairwise(orders)]
-        )
-    n = np.arange(2, len(ratios) + 2, dtype=float)
-    estimates = []
-    for last in (SINGULARITY_TERMS, SINGULARITY_TERMS // 2):
-        fit = np.polyfit(1 / n[-last:], ratios[-last:], 2)
-        estimates.append((1 / fit[2], -fit[1] / fit[2] - 1))
-    (x, g), (other, _) = estimates
-    return float(np.sqrt(x)), float(abs(np.sqrt(x) - np.sqrt(other))), float(g)
+    linear = float(data.orbit.chain.frequencies()[data.orbit.seed - 1])
+    shifts = np.array(data.frequencies) / linear - 1
+    touch = float(data.orbit.frequency) / linear - 1
+    amplitude = data.orbit.amplitude
+    amplitudes, ends = np.array(data.amplitudes), np.array(data.ends)
+    beyond = np.array([touch, shifts[-1]])
+    lowest = np.full(2, data.amplitudes[0])
+    limit = rf"limit: $A_1 = {amplitude:.4f}$"
+    end = r"end of the series with $\omega$ in its divisors"
+    curves = (
+        Curve(limit, np.array([touch]), np.array([amplitude]), "rings", group=3),
+        Curve("breathers (Newton)", shifts, amplitudes, "beads", group=0),
+        Curve(end, shifts, ends, "crosses", group=1),
+        Curve("out of reach\nof the series", beyond, lowest, "span"),
+    )
+    columns: dict[str, list[float]] = {"omega": list(data.frequencies)}
+    columns["A"] = list(data.amplitudes)
+    columns["A at the end of the series"] = list(data.ends)
+    return Panel(
+        "convergence-e",
+        "Breathers of seed 1 beyond their series",
+        r"$\omega_1 / \Omega_1 - 1$",
+        r"$A_1$",
+        curves,
+        ("shift", "A"),
+        log_x=True,
+        columns=columns,
+    )

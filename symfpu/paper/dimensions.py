@@ -16,47 +16,52 @@ TIME, FULL_TIME = 1e7, 1e9  # default; the paper's, with --full
 # by figure: whose chain, and how many vectors
 VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}
 GALI_STEP = 0.4  # of the tangent map
+SETTLED_DECADES = 0.3  # of the last value of an index
 
 
 def full_seconds(figure: str) -> float:
-    """Processor time that the alignment indices of a figure will take with --full, from a short
-    trial.
+    """Processor time that the alignment indices of a figure will take with --full.
+
+    From a short trial.
     """
     label, vectors = VECTORS[figure]
-    return seconds_needed(printed_row(label).chain, FULL_TIME, vectors=vectors, step=GALI_STEP)
+    chain = printed_row(label).chain
+    return seconds_needed(chain, FULL_TIME, vectors=vectors, step=GALI_STEP)
 
 
-def indices(
+def figure_alignment(
     name: str, start: tuple[Floats, Floats], tell: Step, folder: Path, *, full: bool
 ) -> AlignmentIndices:
-    """GALI_2, ... of an orbit of a figure to TIME, or to FULL_TIME with a checkpoint in the
-    folder.
+    """GALI_2, ... of an orbit of a figure to TIME.
+
+    Or to FULL_TIME, with a checkpoint in the folder.
     """
     label, vectors = VECTORS[name]
     chain = printed_row(label).chain
     T = FULL_TIME if full else TIME
     file = folder / f"{name}-gali.checkpoint" if full else None
+
+    def progress(stage: str, done: float) -> None:
+        tell(f"{name}: GALI, {stage} of {T:.0e}", done)
+
     return alignment_indices(
-        chain,
-        *start,
-        T,
-        vectors=vectors,
-        step=GALI_STEP,
-        file=file,
-        progress=lambda label, done: tell(f"{name}: GALI, {label} of {T:.0e}", done),
+        chain, *start, T, vectors=vectors, step=GALI_STEP, file=file, progress=progress
     )
 
 
 def slopes_text(found: AlignmentIndices) -> str:
     """Slopes and verdict in a line."""
     slopes = ", ".join(f"{s.value:.2f}+-{s.error:.2f}" for s in found.slopes())
-    return f"slopes {slopes} of G_2..G_{found.vectors} to t = {found.times[-1]:.0e}: {found.dimension().verdict}"
+    last = f"{found.times[-1]:.0e}"
+    verdict = found.dimension().verdict
+    return f"slopes {slopes} of G_2..G_{found.vectors} to t = {last}: {verdict}"
 
 
-def settled_after(found: AlignmentIndices, k: int, decades: float = 0.3) -> float:
+def settled_after(found: AlignmentIndices, k: int, decades: float = SETTLED_DECADES) -> float:
     """The time after which log10 G_k stays within so many decades of its last value."""
     values = found.log10_gali[:, k - 2]
     off = np.abs(values - values[-1]) > decades
-    return (
-        float(found.times[int(np.flatnonzero(off)[-1]) + 1]) if off.any() else float(found.times[0])
-    )
+    if not off.any():
+        return float(found.times[0])
+    last_off = int(np.flatnonzero(off)[-1])
+    return float(found.times[last_off + 1])

@@ -1,13 +1,13 @@
-"""Fig. 4: packets of a fixed fraction of the modes at fixed energy a particle, in longer and longer
-chains; the laws on trial.
+"""Fig. 4: packets in longer and longer chains, and the laws on trial.
 
-The claims are those of section 6.1.
+A fixed fraction of the modes at fixed energy a particle. The claims are those of section 6.1.
 """
 
 from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,48 +20,51 @@ from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.localization.trials import ProfileInvariance, Trend, profile_invariance, slope_by_energy
 from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_line
 from symfpu.paper.claims import Claim, PaperFigure, judged
-from symfpu.paper.judgements import SIMILAR
+from symfpu.paper.judgements import SIMILAR_DECADES
 from symfpu.paper.printed import PrintedLine
-from symfpu.paper.starts import follow
+from symfpu.paper.starts import integrated_orbit
 from symfpu.paper.steps import Step, unheard
 
 Floats = NDArray[np.float64]
 TIME, RANDOM_TIME = 1e6, 1e5  # the paper's with phases 0; ours with random phases
 REALISATIONS = 4  # of random phases
-STILL = 0.15  # an exponent of N that is 0 within what edges of groups and few chains leave
+# an exponent of N that is 0 within what edges of groups and few chains leave
+EXPONENT_TOLERANCE = 0.15
 # decades, over all chains: what a picture of thirty decades does not show; a fiftieth of its
 # height
-SEEN, SMALL = 0.2, 0.6
+UNSEEN_DECADES, SHIFT_DECADES = 0.2, 0.6
 SLOPE_CHAIN, SLOPE_SEEDS, SLOPE_TIME = 32, 4, 3e4  # packets whose slope is followed in energy
 LAMBDAS = {"weak": (5e-10, 5e-9, 5e-8), "strong": (5e-4, 5e-3, 5e-2)}
-SAME = 0.005  # of slopes and intercepts of a law: half a unit of the last printed digit
-SAME_RATE = 0.05  # relative
+# of slopes and intercepts of a law: half a unit of the last printed digit
+LAW_TOLERANCE = 0.005
+RATE_TOLERANCE = 0.05  # relative
+CURVE_START, CURVE_POINTS = 0.01, 200  # kappa of the line of the caption
+BOTTOM_SHARE = 10  # of the least energy shown, the bottom of the picture
 
 
 def figure4(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     """Spectra of FPU-trajectories for N = 64 .. 512, both models, phases 0 and random."""
-    lines = [printed_line(label) for label in ("Fig. 4a", "Fig. 4b")]
+    lines = [printed_line("Fig. 4a"), printed_line("Fig. 4b")]
     step("fig4: phases 0")
     with ThreadPoolExecutor(2) as pool:
-        equal = list(pool.map(lambda line: _trial(line, TIME), lines))
+        equal = list(pool.map(partial(_trial, T=TIME), lines))
         step("fig4: random phases")
-        random = list(pool.map(lambda line: _trial(line, RANDOM_TIME, random=True), lines))
-    panels = [_panel(line, found) for line, found in zip(lines, equal, strict=True)]
-    panels += [_panel(line, found, random=True) for line, found in zip(lines, random, strict=True)]
-    claims = [*_captions(*lines), *map(_unaltered, lines)]
-    claims += [_line_fits(line, found) for line, found in zip(lines, equal, strict=True)]
-    claims += [_same_line(line, found) for line, found in zip(lines, equal, strict=True)]
-    claims += [_law_scaling(line, found) for line, found in zip(lines, random, strict=True)]
+        random = list(pool.map(partial(_trial, T=RANDOM_TIME, random=True), lines))
+    panels = [spectra_panel(line, found) for line, found in zip(lines, equal, strict=True)]
+    for line, found in zip(lines, random, strict=True):
+        panels.append(spectra_panel(line, found, random=True))
+    claims = [*_captions(*lines), *map(unaltered_claim, lines)]
+    claims += map(line_claim, lines, equal)
+    claims += map(same_line_claim, lines, equal)
+    claims += map(scaling_claim, lines, random)
     step("fig4: slopes by energy")
-    claims += [_logarithmic(name, _rates(name)) for name in LAMBDAS]
-    claims += [_condition(line) for line in lines]
-    remarks = (
-        f"Phases 0 to t = {TIME:.0e}; random phases, {REALISATIONS} realisations, to {RANDOM_TIME:.0e}. Seeds share the energy equally. "
-        "Modes below the rounding noise of the integration are not shown.",
-    )
-    return PaperFigure(
-        "fig4", "Fig. 4: packets in longer chains", tuple(panels), tuple(claims), remarks
-    )
+    claims += [logarithm_claim(name, _rates(name)) for name in LAMBDAS]
+    claims += map(condition_claim, lines)
+    remark = f"Phases 0 to t = {TIME:.0e}; random phases, {REALISATIONS} realisations, "
+    remark += f"to {RANDOM_TIME:.0e}. Seeds share the energy equally. "
+    remark += "Modes below the rounding noise of the integration are not shown."
+    title = "Fig. 4: packets in longer chains"
+    return PaperFigure("fig4", title, tuple(panels), tuple(claims), (remark,))
 
 
 def _trial(line: PrintedLine, T: float, *, random: bool = False) -> ProfileInvariance:
@@ -77,159 +80,161 @@ def _trial(line: PrintedLine, T: float, *, random: bool = False) -> ProfileInvar
     )
 
 
-def _panel(line: PrintedLine, found: ProfileInvariance, *, random: bool = False) -> Panel:
-    letter = line.label[-1]
+def spectra_panel(line: PrintedLine, found: ProfileInvariance, *, random: bool = False) -> Panel:
+    """Spectra of all chains above the noise, and the line of the caption."""
     curves = []
     for chain, rows, floor in zip(found.chains, found.spectra, found.floors, strict=True):
-        kappa, e = np.arange(1.0, chain.N) / chain.N, rows.mean(axis=0)
+        kappa = np.arange(1.0, chain.N) / chain.N
+        e = rows.mean(axis=0)
         above = e > floor
         curves.append(Curve(f"$N = {chain.N}$", kappa[above], e[above], "points"))
     least = min(float(curve.y.min()) for curve in curves)
-    kappa = np.linspace(0.01, max(float(curve.x.max()) for curve in curves), 200)
-    title = f"Fig. 4({letter}): {line.chains[0].model} model, {'random phases' if random else 'phases 0'}"
-    axes = ("kappa", "average_energy_over_E")
+    last = max(float(curve.x.max()) for curve in curves)
+    law = caption_curve(line, np.linspace(CURVE_START, last, CURVE_POINTS))
+    letter = line.label[-1]
+    phases = "random phases" if random else "phases 0"
     name = f"fig4{letter}-random" if random else f"fig4{letter}"
-    return Panel(
-        name,
-        title,
-        r"$\kappa = q/N$",
-        r"$e_\kappa$",
-        (*curves, caption_curve(line, kappa)),
-        axes,
-        bottom=least / 10,
-    )
+    title = f"Fig. 4({letter}): {line.chains[0].model} model, {phases}"
+    labels = (r"$\kappa = q/N$", r"$e_\kappa$")
+    axes = ("kappa", "average_energy_over_E")
+    return Panel(name, title, *labels, (*curves, law), axes, bottom=least / BOTTOM_SHARE)
 
 
 def _captions(alpha: PrintedLine, beta: PrintedLine) -> tuple[Claim, Claim]:
-    first, third = alpha.chains[0], beta.chains[2]
-    readings = {f"N = {first.N} and kappa = q/(N-1)": law_of(alpha, first, denominator=first.N - 1)}
-    return caption_claim(alpha, "6.1.1", readings), caption_claim(
-        beta, "6.1.2", {f"N = {third.N} alone": law_of(beta, third)}
-    )
+    first = alpha.chains[0]
+    third = beta.chains[2]
+    reading = f"N = {first.N} and kappa = q/(N-1)"
+    of_alpha = {reading: law_of(alpha, first, denominator=first.N - 1)}
+    of_beta = {f"N = {third.N} alone": law_of(beta, third)}
+    return (caption_claim(alpha, "6.1.1", of_alpha), caption_claim(beta, "6.1.2", of_beta))
 
 
-def _unaltered(line: PrintedLine) -> Claim:
+def unaltered_claim(line: PrintedLine) -> Claim:
     """What the law itself says of longer chains."""
+    shortest, longest = line.chains[0], line.chains[-1]
     laws = [law_of(line, chain) for chain in line.chains]
-    slopes, intercepts = (
-        [float(getattr(law, name)) for law in laws] for name in ("slope", "intercept")
-    )
-    same_slope, same_intercept = (
-        max(values) - min(values) <= SAME for values in (slopes, intercepts)
-    )
-    ours = (
-        f"slope {slopes[0]:.2f} for N = {line.chains[0].N}, {slopes[-1]:.2f} for N = {line.chains[-1].N}; intercept {intercepts[0]:.2f}, "
-        f"{intercepts[-1]:.2f}"
-    )
-    ours += (
-        ""
-        if same_intercept
-        else ": e_kappa is a share of the whole energy and falls as 1/N; what stays is N e_kappa = E_q/eps"
-    )
-    text = f"by Eq. {'eksa2' if line.chains[0].alpha else 'eksp2'} the normalised profile remains unaltered as N increases at fixed M and eps"
-    return Claim(_section(line), text, "", ours, judged(same_slope and same_intercept, same_slope))
+    slopes = [float(law.slope) for law in laws]
+    intercepts = [float(law.intercept) for law in laws]
+    same_slope = max(slopes) - min(slopes) <= LAW_TOLERANCE
+    same_intercept = max(intercepts) - min(intercepts) <= LAW_TOLERANCE
+    ours = f"slope {slopes[0]:.2f} for N = {shortest.N}, "
+    ours += f"{slopes[-1]:.2f} for N = {longest.N}; "
+    ours += f"intercept {intercepts[0]:.2f}, {intercepts[-1]:.2f}"
+    if not same_intercept:
+        ours += ": e_kappa is a share of the whole energy and falls as 1/N; "
+        ours += "what stays is N e_kappa = E_q/eps"
+    equation = "eksa2" if shortest.alpha else "eksp2"
+    text = f"by Eq. {equation} the normalised profile remains unaltered "
+    text += "as N increases at fixed M and eps"
+    verdict = judged(same_slope and same_intercept, same_slope)
+    return Claim(_section(line), text, "", ours, verdict)
 
 
 def _section(line: PrintedLine) -> str:
     return "6.1.1" if line.chains[0].alpha else "6.1.2"
 
 
-def _line_fits(line: PrintedLine, found: ProfileInvariance) -> Claim:
-    """How far middle modes of the groups, for which the laws are made, are from the line of the
-    caption.
+def line_claim(line: PrintedLine, found: ProfileInvariance) -> Claim:
+    """How far middle modes of the groups are from the line of the caption.
+
+    The laws are made for them.
     """
     worst = []
+    sizes = []
     for chain, rows, floor in zip(found.chains, found.spectra, found.floors, strict=True):
-        e, middle = rows.mean(axis=0), np.array(middle_modes(chain, line.seeds(chain)))
+        e = rows.mean(axis=0)
+        middle = np.array(middle_modes(chain, line.seeds(chain)))
         middle = middle[e[middle - 1] > floor[middle - 1]]
         printed = np.log10(caption_curve(line, middle / chain.N).y)
-        worst.append(float(np.max(np.abs(np.log10(e[middle - 1]) - printed))))
-    sizes = ", ".join(
-        f"{off:.2g} for N = {chain.N}" for off, chain in zip(worst, found.chains, strict=True)
-    )
+        levels = np.log10(e[middle - 1])
+        off = float(np.max(np.abs(levels - printed)))
+        worst.append(off)
+        sizes.append(f"{off:.2g} for N = {chain.N}")
     text = f"{line.label}: the line of the caption fits the spectra"
-    return Claim(
-        _section(line),
-        text,
-        "",
-        f"middle modes off by up to {sizes} decades",
-        judged(max(worst) <= SIMILAR, min(worst) <= SIMILAR),
-    )
+    ours = f"middle modes off by up to {', '.join(sizes)} decades"
+    verdict = judged(max(worst) <= SIMILAR_DECADES, min(worst) <= SIMILAR_DECADES)
+    return Claim(_section(line), text, "", ours, verdict)
 
 
 def _growth(found: ProfileInvariance) -> str:
+    """Exponents of N by group, of all chains and of the last two."""
     late = found.late_growth
+    rates = []
+    for k, trend in found.growth.items():
+        rates.append(f"D_{k} {trend.rate:.2f} +- {trend.error:.2f} ({late[k]:.2f})")
     sizes = f"N = {found.chains[-2].N} to {found.chains[-1].N}"
-    rates = ", ".join(
-        f"D_{k} {trend.rate:.2f} +- {trend.error:.2f} ({late[k]:.2f})"
-        for k, trend in found.growth.items()
-    )
-    return f"{rates}; in brackets from {sizes}"
+    return f"{', '.join(rates)}; in brackets from {sizes}"
 
 
-def _same_line(line: PrintedLine, found: ProfileInvariance) -> Claim:
+def same_line_claim(line: PrintedLine, found: ProfileInvariance) -> Claim:
     """Do spectra of all N lie on each other?"""
-    decades = math.log10(found.chains[-1].N / found.chains[0].N)
+    first, last = found.chains[0].N, found.chains[-1].N
+    decades = math.log10(last / first)
     moved = max(abs(trend.rate - 1) * decades for trend in found.growth.values())
     worst, kappa = found.moved()
-    ours = (
-        f"middle modes of the groups, at the same kappas: E_q/eps ~ N^c, c = {_growth(found)}. So e_kappa moves by {moved:.2f} decades "
-        f"from N = {found.chains[0].N} to {found.chains[-1].N}, at the edges of groups by up to {worst:.1f} (kappa = {kappa:g})"
-    )
+    ours = "middle modes of the groups, at the same kappas: E_q/eps ~ N^c, "
+    ours += f"c = {_growth(found)}. So e_kappa moves by {moved:.2f} decades "
+    ours += f"from N = {first} to {last}, "
+    ours += f"at the edges of groups by up to {worst:.1f} (kappa = {kappa:g})"
     text = f"{line.label}: the spectra of all N lie on one line (phases 0)"
-    return Claim(_section(line), text, "", ours, judged(worst <= SEEN, moved <= SMALL))
+    verdict = judged(worst <= UNSEEN_DECADES, moved <= SHIFT_DECADES)
+    return Claim(_section(line), text, "", ours, verdict)
 
 
-def _law_scaling(line: PrintedLine, found: ProfileInvariance) -> Claim:
+def scaling_claim(line: PrintedLine, found: ProfileInvariance) -> Claim:
+    """The law's dependence on the size of the chain."""
     ours = f"E_q/eps ~ N^c, by the laws with c = 0, here with c = {_growth(found)}"
-    still = [abs(trend.rate) <= STILL for trend in found.growth.values()]
-    text = (
-        f"the law's dependence on N, {line.chains[0].model} model, random phases (not in the paper)"
-    )
-    return Claim(_section(line), text, "", ours, judged(all(still), any(still)))
+    vanishing = [abs(trend.rate) <= EXPONENT_TOLERANCE for trend in found.growth.values()]
+    model = line.chains[0].model
+    text = f"the law's dependence on N, {model} model, random phases (not in the paper)"
+    return Claim(_section(line), text, "", ours, judged(all(vanishing), any(vanishing)))
 
 
 def _rates(name: str) -> tuple[Trend, float, float]:
     """Rate of the slope with log10 eps for three energies, and slope and law at the highest one."""
-    chain, s = Chain(SLOPE_CHAIN, alpha="0.33"), SLOPE_SEEDS
+    chain = Chain(SLOPE_CHAIN, alpha="0.33")
+    s = SLOPE_SEEDS
     unit = packet_parameter(chain, s, 1.0)
     energies = [value / unit for value in LAMBDAS[name]]
     spectra = []
     for energy in energies:
-        start = fpu_trajectory(chain, packet_amplitudes(chain, range(1, s + 1), energy * chain.N))
-        orbit = follow("fig4 slopes", chain, start, SLOPE_TIME, unheard, samples=1)
+        amplitudes = packet_amplitudes(chain, range(1, s + 1), energy * chain.N)
+        start = fpu_trajectory(chain, amplitudes)
+        orbit = integrated_orbit("fig4 slopes", chain, start, SLOPE_TIME, unheard, samples=1)
         assert orbit.averages is not None
         spectra.append(orbit.averages[-1])
     trend = slope_by_energy(chain, s, energies, spectra, floor=0.0)
-    return trend, float(trend.y[-1]), math.log10(LAMBDAS[name][-1]) * chain.N / s
+    law = math.log10(LAMBDAS[name][-1]) * chain.N / s
+    return trend, float(trend.y[-1]), law
 
 
-def _logarithmic(name: str, found: tuple[Trend, float, float]) -> Claim:
+def logarithm_claim(name: str, found: tuple[Trend, float, float]) -> Claim:
+    """The change of the slope a decade of energy, and the slope itself."""
     trend, slope, law = found
     expected = SLOPE_CHAIN / SLOPE_SEEDS
     low, high = LAMBDAS[name][0], LAMBDAS[name][-1]
-    ours = (
-        f"lambda from {low:g} to {high:g} (N = {SLOPE_CHAIN}, s = {SLOPE_SEEDS}): slope changes by {trend.rate:.2f} +- {trend.error:.2f} "
-        f"a decade of energy, by the law {expected:g}; slope {slope:.1f} at lambda = {high:g}, by the law {law:.1f}"
-    )
+    ours = f"lambda from {low:g} to {high:g} (N = {SLOPE_CHAIN}, s = {SLOPE_SEEDS}): "
+    ours += f"slope changes by {trend.rate:.2f} +- {trend.error:.2f} a decade of energy, "
+    ours += f"by the law {expected:g}; "
+    ours += f"slope {slope:.1f} at lambda = {high:g}, by the law {law:.1f}"
     text = f"the slope goes as log(energy), Eq. eksa2: {name} packets"
-    return Claim(
-        "6.1.1",
-        text,
-        "1/M a decade",
-        ours,
-        judged(abs(trend.rate / expected - 1) <= SAME_RATE, trend.rate > 0),
-    )
+    as_expected = abs(trend.rate / expected - 1) <= RATE_TOLERANCE
+    return Claim("6.1.1", text, "1/M a decade", ours, judged(as_expected, trend.rate > 0))
 
 
-def _condition(line: PrintedLine) -> Claim:
+def condition_claim(line: PrintedLine) -> Claim:
     """The width at which lambda = 1."""
-    chain = line.chains[-1]
-    least, eps = least_packet(chain, line.specific_energy), line.specific_energy
-    printed = (
-        chain.N * float(chain.alpha**2 * eps if chain.alpha else (chain.beta * eps) ** 2) ** 0.25
-    )
-    formula = "alpha^(1/2) eps^(1/4) N" if chain.alpha else "(beta eps)^(1/2) N"
-    ours = f"at N = {chain.N} lambda = 1 at s = {least:.2f}, the formula gives {printed:.2f}, {printed / least:.3f} times as much"
-    verdict = judged(abs(printed / least - 1) <= SAME_RATE, 0.1 <= printed / least <= 10)
+    chain, eps = line.chains[-1], line.specific_energy
+    least = least_packet(chain, eps)
+    if chain.alpha:
+        formula = "alpha^(1/2) eps^(1/4) N"
+        fourth_power = float(chain.alpha**2 * eps)
+    else:
+        formula = "(beta eps)^(1/2) N"
+        fourth_power = float((chain.beta * eps) ** 2)
+    printed = chain.N * fourth_power**0.25
+    ratio = printed / least
+    ours = f"at N = {chain.N} lambda = 1 at s = {least:.2f}, "
+    ours += f"the formula gives {printed:.2f}, {ratio:.3f} times as much"
+    verdict = judged(abs(ratio - 1) <= RATE_TOLERANCE, 0.1 <= ratio <= 10)
     return Claim(_section(line), f"lambda < 1 means s > {formula}", "", ours, verdict)

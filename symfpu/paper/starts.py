@@ -1,5 +1,6 @@
-"""What all figures of orbits begin with: the paper's tori from its printed frequencies, their
-orbits, and profiles beside each other.
+"""What all figures of orbits begin with.
+
+The paper's tori from its printed frequencies, their orbits, and profiles beside each other.
 """
 
 from __future__ import annotations
@@ -7,9 +8,10 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import Orbit, integrate
@@ -39,17 +41,27 @@ AMPLITUDE_ORDERS = {
 SCHEME, MODE_STEP = "aba864_modes", 0.7
 
 
+class Starting(Protocol):
+    """Where an orbit can start: tori and breathers."""
+
+    def positions(self, t: ArrayLike) -> Any: ...
+
+    def momenta(self, t: ArrayLike) -> Any: ...
+
+
 def printed_row(label: str) -> PrintedTorus:
     """The printed torus shown in a figure."""
     return next(row for row in (TWO_TORUS, *APPENDIX_F) if row.label == label)
 
 
 def printed_torus(row: PrintedTorus) -> QTorus:
-    """The truncated series of the printed frequencies and order, with amplitudes of the frequency
-    order that gives the printed ones.
+    """The truncated series of the printed frequencies and order.
+
+    Its amplitudes are of the frequency order that gives the printed ones.
     """
     series = lindstedt(row.chain, row.seeds, row.frequencies, row.order)
-    return solve_amplitudes(series, frequency_order=AMPLITUDE_ORDERS.get(row.label))
+    frequency_order = AMPLITUDE_ORDERS.get(row.label)
+    return solve_amplitudes(series, frequency_order=frequency_order)
 
 
 def printed_amplitudes(row: PrintedTorus) -> dict[int, str]:
@@ -57,10 +69,10 @@ def printed_amplitudes(row: PrintedTorus) -> dict[int, str]:
     return dict(zip(row.seeds, row.amplitudes, strict=True))
 
 
-def follow(
+def integrated_orbit(
     name: str,
     chain: Chain,
-    start: QuasiPeriodic | tuple[Floats, Floats],
+    start: Starting | tuple[Floats, Floats],
     T: float,
     tell: Step,
     *,
@@ -69,19 +81,29 @@ def follow(
     samples: int | Floats = 200,
     averages: bool = True,
 ) -> Orbit:
-    """The orbit from a torus or a state at t = 0, with running averages; `tell` hears how far it is."""
-    Q, P = start if isinstance(start, tuple) else start.state()
+    """The orbit from a torus or a state at t = 0, with running averages.
+
+    `tell` hears how far it is.
+    """
+
+    def progress(done: int, total: int) -> None:
+        tell(f"{name}: orbit to t = {T:.2g}", done / total)
+
+    if isinstance(start, tuple):
+        Q, P = start
+    else:
+        Q, P = start.positions(0.0), start.momenta(0.0)
     return integrate(
         chain,
-        Q,
-        P,
+        np.asarray(Q, dtype=float),
+        np.asarray(P, dtype=float),
         T,
         step=step,
         scheme=scheme,
         samples=samples,
         averages=averages,
         workers=2,
-        progress=lambda done, total: tell(f"{name}: orbit to t = {T:.2g}", done / total),
+        progress=progress,
     )
 
 
@@ -98,22 +120,26 @@ def profile_panel(
 
     floors : by name too, from `normalised_floor`; modes at or below them are left out.
     """
-    q = np.arange(1.0, chain.N)
-    x = q / chain.N if by_kappa else q
+    x = np.arange(1.0, chain.N)
+    labels = (r"$q$", r"$\overline{E}_q / E$")
+    axes = ("q", "average_energy_over_H")
+    if by_kappa:
+        x = x / chain.N
+        labels = (r"$\kappa = q/N$", r"$e_\kappa$")
+        axes = ("kappa", "average_energy_over_H")
     styles = itertools.cycle(("points", "triangles", "rings"))
     curves = []
     for (label, profile), style in zip(profiles.items(), styles, strict=False):
-        e = np.asarray(profile, dtype=float)
-        known = e > floors.get(label, -np.inf)
-        curves.append(Curve(label, x[known], e[known], style))
-    labels = (r"$\kappa = q/N$", r"$e_\kappa$") if by_kappa else (r"$q$", r"$\overline{E}_q / E$")
-    axes = ("kappa" if by_kappa else "q", "average_energy_over_H")
+        shares = np.asarray(profile, dtype=float)
+        known = shares > floors.get(label, -np.inf)
+        curves.append(Curve(label, x[known], shares[known], style))
     return Panel(name, title, *labels, (*curves, *laws), axes)
 
 
 def normalised_floor(solution: QuasiPeriodic) -> Floats:
     """The energies below which a mode of a torus is rounding, over its energy; shape (N-1,)."""
-    return np.asarray(spectrum_floor(solution) / float(solution.energy()))
+    floor = spectrum_floor(solution)
+    return np.asarray(floor / float(solution.energy()))
 
 
 def energies_panel(
@@ -126,7 +152,10 @@ def energies_panel(
     bottom: float | None = None,
 ) -> Panel:
     """Instantaneous E_q(t)/E of some modes; energies (S, N-1), normalised."""
-    curves = tuple(Curve(f"$q = {q}$", times, energies[:, q - 1], name=f"q={q}") for q in modes)
-    return Panel(
-        name, title, r"$t$", r"$E_q(t) / E$", curves, ("t", "energy_over_H"), bottom=bottom
-    )
+    curves = []
+    for q in modes:
+        energy = energies[:, q - 1]
+        curves.append(Curve(f"$q = {q}$", times, energy, name=f"q={q}"))
+    labels = (r"$t$", r"$E_q(t) / E$")
+    axes = ("t", "energy_over_H")
+    return Panel(name, title, *labels, tuple(curves), axes, bottom=bottom)

@@ -5,41 +5,42 @@ from __future__ import annotations
 from symfpu.proofs.sweeps import Sweep, SweepCase
 from symfpu.reports.tables import markdown_table
 
+VERDICTS = ("proved", "refuted", "undecided")
+
 
 def sweep_markdown(sweep: Sweep) -> str:
-    """A sweep of the propagation rule: how often it holds by N and number of seeds, and every
-    exception.
+    """A sweep of the propagation rule.
+
+    How often it holds by N and number of seeds, and every exception.
     """
-    groups: dict[tuple[int, int], list[SweepCase]] = {}
-    for case in sweep.cases:
-        groups.setdefault((case.N, len(case.seeds)), []).append(case)
-    rows = [
-        [
-            str(N),
-            str(s),
-            str(len(cases)),
-            *(str(sum(c.verdict == v for c in cases)) for v in ("proved", "refuted", "undecided")),
-        ]
-        for (N, s), cases in groups.items()
-    ]
-    exceptions = [
-        [
-            str(case.N),
-            ", ".join(map(str, case.seeds)),
-            "; ".join(f"{q}: {p} -> {a}" for q, p, a in case.exceptions),
-        ]
-        for case in sweep.exceptions
-    ]
+    proved = sum(case.verdict == "proved" for case in sweep.cases)
     holds = sum(case.corrected_rule_holds for case in sweep.cases)
-    parts = [
-        f"## {sweep.model} model, order {sweep.order}",
-        f"{len(sweep.cases)} seed sets. The proposition holds in {sum(c.verdict == 'proved' for c in sweep.cases)}; "
-        f"the corrected rule predicts the actual sets in {holds}.",
-        markdown_table(["N", "seeds", "sets", "proved", "refuted", "undecided"], rows),
-    ]
+    counts = f"{len(sweep.cases)} seed sets. The proposition holds in {proved}; "
+    counts += f"the corrected rule predicts the actual sets in {holds}."
+    parts = [f"## {sweep.model} model, order {sweep.order}", counts]
+    parts.append(markdown_table(["N", "seeds", "sets", *VERDICTS], _count_rows(sweep)))
+    exceptions = [_exception_row(case) for case in sweep.exceptions]
     if exceptions:
-        parts += [
-            "Exceptions (mode: predicted order -> actual order):",
-            markdown_table(["N", "seeds", "exceptions"], exceptions),
-        ]
+        parts.append("Exceptions (mode: predicted order -> actual order):")
+        parts.append(markdown_table(["N", "seeds", "exceptions"], exceptions))
     return "\n\n".join(parts) + "\n"
+
+
+def _count_rows(sweep: Sweep) -> list[list[str]]:
+    """Verdicts by N and number of seeds."""
+    groups: dict[tuple[int, int], list[str]] = {}
+    for case in sweep.cases:
+        size = (case.N, len(case.seeds))
+        groups.setdefault(size, []).append(case.verdict)
+    rows = []
+    for (N, s), verdicts in groups.items():
+        counts = [verdicts.count(verdict) for verdict in VERDICTS]
+        row = [N, s, len(verdicts), *counts]
+        rows.append([str(number) for number in row])
+    return rows
+
+
+def _exception_row(case: SweepCase) -> list[str]:
+    seeds = ", ".join(map(str, case.seeds))
+    moved = [f"{q}: {predicted} -> {actual}" for q, predicted, actual in case.exceptions]
+    return [str(case.N), seeds, "; ".join(moved)]

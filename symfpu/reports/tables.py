@@ -21,8 +21,9 @@ def fifteen_digits(value: float) -> float:
 
 
 def number_text(value: Any, digits: int | None) -> str:
-    """A number that loses no digit: the shortest decimal of a double, or so many digits of an
-    mpf.
+    """A number that loses no digit.
+
+    The shortest decimal of a double, or so many digits of an mpf.
     """
     return repr(float(value)) if digits is None else text(value, digits)
 
@@ -30,15 +31,18 @@ def number_text(value: Any, digits: int | None) -> str:
 def text_table(
     head: Sequence[str], rows: Sequence[Sequence[str]], width: int | None = None
 ) -> list[str]:
-    """A table in lines; columns beyond the width follow in a further one with the same first
-    column.
+    """A table in lines.
+
+    Columns beyond the width follow in a further one with the same first column.
     """
-    widths = [max(len(row[i]) for row in (head, *rows)) for i in range(len(head))]
+    table = [head, *rows]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     lines = []
     for part in _parts(widths, width):
-        for row in (head, *rows):
+        for row in table:
             cells = [row[i].ljust(widths[i]) for i in part]
-            lines.append(GAP.join(cells).rstrip())
+            line = GAP.join(cells)
+            lines.append(line.rstrip())
     return lines
 
 
@@ -46,7 +50,8 @@ def _parts(widths: Sequence[int], width: int | None) -> list[list[int]]:
     """The columns of each table."""
     if width is None:
         return [list(range(len(widths)))]
-    parts, taken = [[0]], widths[0]
+    parts = [[0]]
+    taken = widths[0]
     for i in range(1, len(widths)):
         needed = len(GAP) + widths[i]
         if taken + needed > width and len(parts[-1]) > 1:
@@ -59,7 +64,8 @@ def _parts(widths: Sequence[int], width: int | None) -> list[list[int]]:
 
 def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """A Markdown table."""
-    lines = [header, ["---"] * len(header), *rows]
+    rule = ["---"] * len(header)
+    lines = [header, rule, *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 

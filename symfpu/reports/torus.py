@@ -5,97 +5,119 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from symfpu.chain.chain import Chain
 from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import GAP, fifteen_digits, number_text, text_table
+from symfpu.series.series import LindstedtSeries
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment
+
+SHOWN_ORDERS = 10  # of the evidence, about
 
 
 def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[str, Any]:
     """A torus for JSON: keys of the command line, numbers of more than 15 digits as strings."""
-    series, digits = torus.series, torus.digits
-    energies = {
-        "energy": torus.energy(),
-        "harmonic_energy": torus.harmonic_energies().sum(),
-        "average_harmonic_energy": torus.average_spectrum().sum(),
-    }
-    judged = (
-        {}
-        if assessment is None
-        else {"verdict": assessment.headline, "assessment": assessment.record()}
-    )
-    return {
-        "N": series.chain.N,
-        "alpha": decimal(series.chain.alpha),
-        "beta": decimal(series.chain.beta),
-        "seeds": list(series.seeds),
-        "frequencies": {
-            str(q): decimal(w) for q, w in zip(series.seeds, series.frequencies or (), strict=True)
-        },
-        "order": torus.order,
-        "frequency_order": torus.frequency_order,
-        "digits": digits,
-        "guard_digits": None if digits is None else series.guard_digits,
-        "amplitudes": {str(q): number_text(a, digits) for q, a in torus.amplitudes.items()},
-        "certified": None if torus.certificate is None else torus.certificate.certified,
-        "history": {
-            str(k): [number_text(a, digits) for a in values] for k, values in torus.history.items()
-        },
-        **{name: number_text(value, digits) for name, value in energies.items()},
-        "residual": fifteen_digits(torus.residual()),
-        "root_residual": fifteen_digits(torus.root_residual),
-        "smallest_divisors": [
-            {
-                "size": fifteen_digits(d.size),
-                "mode": d.mode,
-                "harmonic": list(d.harmonic),
-                "order": d.order,
-            }
-            for d in series.smallest_divisors
-        ],
-        "warnings": list(torus.warnings),
-        **judged,
-    }
+    series = torus.series
+    digits = torus.digits
+    certificate = torus.certificate
+    average = torus.average_spectrum().sum()
+    record = chain_record(series.chain, series.seeds)
+    record["frequencies"] = _frequencies(series)
+    record["order"] = torus.order
+    record["frequency_order"] = torus.frequency_order
+    record["digits"] = digits
+    record["guard_digits"] = None if digits is None else series.guard_digits
+    record["amplitudes"] = {str(q): number_text(a, digits) for q, a in torus.amplitudes.items()}
+    record["certified"] = None if certificate is None else certificate.certified
+    record["history"] = _history(torus)
+    record["energy"] = number_text(torus.energy(), digits)
+    record["harmonic_energy"] = number_text(torus.harmonic_energies().sum(), digits)
+    record["average_harmonic_energy"] = number_text(average, digits)
+    record["residual"] = fifteen_digits(torus.residual())
+    record["root_residual"] = fifteen_digits(torus.root_residual)
+    record["smallest_divisors"] = _divisor_records(series)
+    record["warnings"] = list(torus.warnings)
+    if assessment is not None:
+        record["verdict"] = assessment.headline
+        record["assessment"] = assessment.record()
+    return record
+
+
+def chain_record(chain: Chain, seeds: tuple[int, ...]) -> dict[str, Any]:
+    """What every record of a solution begins with: the chain, exact, and the seeds."""
+    record: dict[str, Any] = {"N": chain.N}
+    record["alpha"] = decimal(chain.alpha)
+    record["beta"] = decimal(chain.beta)
+    record["seeds"] = list(seeds)
+    return record
+
+
+def _frequencies(series: LindstedtSeries) -> dict[str, str]:
+    """By seed, exact."""
+    by_seed = zip(series.seeds, series.frequencies or (), strict=True)
+    return {str(q): decimal(w) for q, w in by_seed}
+
+
+def _history(torus: QTorus) -> dict[str, list[str]]:
+    """Amplitudes of all seeds by frequency order."""
+    history = {}
+    for k, values in torus.history.items():
+        history[str(k)] = [number_text(a, torus.digits) for a in values]
+    return history
+
+
+def _divisor_records(series: LindstedtSeries) -> list[dict[str, Any]]:
+    records = []
+    for divisor in series.smallest_divisors:
+        record: dict[str, Any] = {"size": fifteen_digits(divisor.size)}
+        record["mode"] = divisor.mode
+        record["harmonic"] = list(divisor.harmonic)
+        record["order"] = divisor.order
+        records.append(record)
+    return records
 
 
 def assessment_text(found: Assessment, width: int | None = None) -> str:
-    """The evidence of a verdict: reasons, radii, and a line for some of the orders (all are in the JSON).
+    """The evidence of a verdict: reasons, radii, and a line for some of the orders.
 
-    width : columns of the terminal, where the table is to fit into them.
+    All orders are in the JSON. width : columns of the terminal, where the table is to fit into
+    them.
     """
     lines = [f"  {reason}" for reason in found.reasons]
     poles = "no pole" if math.isinf(found.pole_radius) else f"{found.pole_radius:.3g}"
-    lines.append(
-        f"  radius of convergence in units of mu: {found.radius:.3g} by ratio of terms, {poles} by Pade poles of the frequencies (a hint)"
-    )
+    radii = f"{found.radius:.3g} by ratio of terms, "
+    radii += f"{poles} by Pade poles of the frequencies (a hint)"
+    lines.append(f"  radius of convergence in units of mu: {radii}")
     seed = next(iter(found.sums))
-    errors = ("coarse residual", "energy error")
-    largest = "largest term: mode, harmonic, divisor"
-    head = ("order", f"A_{seed}(k)", "dA(k)", f"S_1, S_2 of Q_{seed}", *errors, largest)
-    rows = [_order_line(found, seed, k) for k in _some(found)]
-    table = text_table(head, rows, None if width is None else width - len(GAP))
-    return "\n".join([*lines, *(GAP + line for line in table)])
+    head = ["order", f"A_{seed}(k)", "dA(k)", f"S_1, S_2 of Q_{seed}"]
+    head += ["coarse residual", "energy error", "largest term: mode, harmonic, divisor"]
+    rows = [_order_line(found, seed, k) for k in _shown_orders(found)]
+    inner_width = None if width is None else width - len(GAP)
+    table = text_table(head, rows, inner_width)
+    lines += [GAP + line for line in table]
+    return "\n".join(lines)
 
 
-def _some(found: Assessment) -> list[int]:
+def _shown_orders(found: Assessment) -> list[int]:
     """At most about a dozen orders: the first, the best, the last, and some between."""
-    step = max(1, found.order // 10)
-    return sorted({*range(0, found.order + 1, step), found.best_order, found.order})
+    step = max(1, found.order // SHOWN_ORDERS)
+    evenly = range(0, found.order + 1, step)
+    return sorted({*evenly, found.best_order, found.order})
 
 
-def _order_line(found: Assessment, seed: int, k: int) -> tuple[str, ...]:
+def _order_line(found: Assessment, seed: int, k: int) -> list[str]:
     first, second = (sums[k] for sums in found.sums[seed])
-    term = next((t for t in found.terms if t.order == k), None)
-    largest = (
-        ""
-        if term is None
-        else f"{term.size:.1e}: {term.mode}, ({','.join(map(str, term.harmonic))}), {term.divisor:.1e}"
-    )
     position = list(found.sums).index(seed)
-    amplitude = f"{float(found.amplitudes[k][position]):.10g}" if k in found.amplitudes else ""
-    change = f"{max(found.differences[k]):.1e}" if k in found.differences else ""
-    sums, errors = (
-        f"{first:.1e}, {second:.1e}",
-        (f"{found.residuals[k]:.1e}", f"{found.energy_errors[k]:.1e}"),
-    )
-    return (str(k), amplitude, change, sums, *errors, largest)
+    amplitude = change = largest = ""
+    if k in found.amplitudes:
+        amplitude = f"{float(found.amplitudes[k][position]):.10g}"
+    if k in found.differences:
+        change = f"{max(found.differences[k]):.1e}"
+    term = next((t for t in found.terms if t.order == k), None)
+    if term is not None:
+        harmonic = ",".join(map(str, term.harmonic))
+        largest = f"{term.size:.1e}: {term.mode}, ({harmonic}), {term.divisor:.1e}"
+    sums = f"{first:.1e}, {second:.1e}"
+    residual = f"{found.residuals[k]:.1e}"
+    energy_error = f"{found.energy_errors[k]:.1e}"
+    return [str(k), amplitude, change, sums, residual, energy_error, largest]

@@ -306,8 +306,8 @@ def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
 @pytest.mark.long
 def test_reproduce_full_refines_every_row(capsys, monkeypatch, tmp_path):
     small_rows(monkeypatch)
-    monkeypatch.setattr("symfpu.paper.targets.SCALED", ("Fig. 8",))
-    monkeypatch.setattr("symfpu.paper.corrected.HALVINGS", 1)
+    monkeypatch.setattr("symfpu.paper.table_page.SCALED_ROWS", ("Fig. 8",))
+    monkeypatch.setattr("symfpu.paper.series_errors.HALVINGS", 1)
     assert run(capsys, "reproduce", "table", "--full", "-o", str(tmp_path))[0] == 0
     rows = json.loads((tmp_path / "report.json").read_text())["table"]
     assert [row["corrected"]["refined"] for row in rows] == [True, True]

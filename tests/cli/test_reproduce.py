@@ -12,8 +12,8 @@ from symfpu.dynamics.alignment import alignment_indices
 from symfpu.errors import SymfpuError
 from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.localization.recurrence import NoRecurrence
-from symfpu.paper import dimensions, fig2_fig3, targets
-from symfpu.paper.claims import VERDICTS
+from symfpu.paper import dimensions, fig2, fig3, targets
+from symfpu.paper.claims import VERDICTS, PaperFigure
 from symfpu.paper.starts import printed_row
 from tests.paper.cases import shorter_figure_9
 
@@ -36,7 +36,8 @@ def strict(text):
 
 @pytest.fixture
 def short(monkeypatch):
-    monkeypatch.setattr(fig2_fig3, "TIME", 2e3)
+    monkeypatch.setattr(fig2, "TIME", 2e3)
+    monkeypatch.setattr(fig3, "TIME", 2e3)
     shorter_figure_9(monkeypatch)
 
 
@@ -55,7 +56,7 @@ def test_reproduce_writes_claims_pictures_and_data(short, capsys, tmp_path):
     assert all(page.count(f"({panel}.png)") == 1 for panel in panels)
     assert all(len(row) == 7 for row in cells(page, "| section |"))
     assert all(claim["ours"] in out and f"{claim['verdict']}: section {claim['section']}, {claim['text']}" in out for claim in claims)
-    assert out.splitlines()[-1].endswith("report.json, fig3a, fig3b, fig6a..c as PNG, PDF and CSV")
+    assert out.splitlines()[-1].endswith("report.json, fig3a..b, fig6a..c as PNG, PDF and CSV")
     header, *rows = csv.reader((tmp_path / "fig3a.csv").read_text().splitlines())
     assert header == ["curve", "t", "average_energy_over_H"]
     assert len({name for name, _, _ in rows}) == 31
@@ -134,7 +135,7 @@ def test_a_checkpoint_of_another_run_is_refused_by_name(tmp_path):
     file = tmp_path / "fig9-gali.checkpoint"
     file.write_bytes(b"something else")
     with pytest.raises(SymfpuError, match=r"fig9-gali\.checkpoint"):
-        dimensions.indices("fig9", (np.ones(31), np.zeros(31)), print, tmp_path, full=True)
+        dimensions.figure_alignment("fig9", (np.ones(31), np.zeros(31)), print, tmp_path, full=True)
     assert file.read_bytes() == b"something else"
 
 
@@ -156,14 +157,13 @@ def test_bad_arguments_compute_nothing(monkeypatch, capsys, tmp_path, argv, name
 
 def test_targets_are_done_once_and_in_order_of_the_paper(monkeypatch, capsys, tmp_path):
     done = []
-    page = targets.Page({}, "## page\n")
+    page = PaperFigure("fig0", "Page", (), ())
     for name in targets.TARGETS:
         monkeypatch.setitem(targets.TARGETS, name, lambda folder, step, *, full=False, name=name: done.append((name, full)) or page)
     assert run(capsys, "fig9", "table", "fig9", "-o", str(tmp_path))[0] == 0
     assert done == [("table", False), ("fig9", False)]
     done.clear()
     monkeypatch.setattr("symfpu.cli.reproduce.full_estimate", lambda chosen, folder: ", ".join(chosen))
-    monkeypatch.setattr("symfpu.cli.reproduce._print_rows", lambda rows, lines: None)
     assert run(capsys, "all", "--full", "-o", str(tmp_path))[0] == 0
     assert done == [(name, True) for name in targets.TARGETS]
 

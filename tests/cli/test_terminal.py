@@ -18,6 +18,7 @@ from symfpu.cli import terminal
 from symfpu.cli.main import main
 from symfpu.cli.terminal import Bar, Interrupted, Lines, folded, progress_bar
 from symfpu.paper import targets
+from symfpu.paper.claims import PaperFigure
 from symfpu.reports.tables import text_table
 
 SOLVE = [
@@ -175,15 +176,16 @@ def test_reproduce_tells_its_steps(monkeypatch, capsys, tmp_path):
     def target(folder, step, *, full=False):
         step("fig6: patterns")
         step("fig6: orbit", 0.25)
-        return targets.Page({}, "## page\n")
+        return PaperFigure("fig0", "Page", (), ())
 
     monkeypatch.setitem(targets.TARGETS, "fig6", target)
     monkeypatch.setattr(terminal, "PATIENCE", 0.0)
     monkeypatch.setattr(terminal, "PAUSE", 0.0)
+    monkeypatch.setattr(terminal, "SHARE", 0.0)  # every step, however soon it comes after the last one
     assert main(["reproduce", "fig6", "-o", str(tmp_path)]) == 0
     captured = capsys.readouterr()
     told = [line.split(maxsplit=2)[-1] for line in captured.err.splitlines()]
-    assert told[-2:] == ["fig6: patterns", "fig6: orbit, 25%"]
+    assert told[-3:] == ["fig6: patterns", "fig6: orbit, 25%", "fig6: pictures"]
     assert "patterns" not in captured.out
 
 
@@ -267,7 +269,7 @@ def test_an_interrupted_verb_is_one_line_and_code_130(verb, function, kept, monk
 
     monkeypatch.chdir(tmp_path)
     if function.endswith("TARGETS"):
-        page = targets.Page({}, "## page\n")
+        page = PaperFigure("fig0", "Page", (), ())
         monkeypatch.setitem(targets.TARGETS, "section5", lambda folder, step, *, full=False: page)
         monkeypatch.setitem(targets.TARGETS, "fig6", interrupted)
     else:

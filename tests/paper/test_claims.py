@@ -10,8 +10,15 @@ import pytest
 from symfpu.errors import InputError
 from symfpu.figures.panels import Curve, Panel
 from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY, Claim, PaperFigure, judged
-from symfpu.paper.claims_page import claims_markdown, claims_table, figure_markdown, figure_record, write_panel_csv
-from symfpu.paper.drawings import draw_panels
+from symfpu.paper.claims_page import (
+    claims_markdown,
+    claims_table,
+    draw_panels,
+    figure_markdown,
+    figure_record,
+    file_names,
+    write_panel_csv,
+)
 
 X = np.array([1.0, 2.0, 4.0])
 
@@ -76,6 +83,32 @@ def test_the_page_has_every_claim_remark_and_picture(figure):
     assert "| section |" not in figure_markdown(replace(figure, claims=()))
 
 
+def test_columns_are_the_table_where_they_are_given(figure, tmp_path):
+    columns = {"q": [1, 2], "order": ["", 0.5]}
+    (path,) = write_panel_csv(replace(figure, panels=(panel(Curve("a", X, X), columns=columns),)), tmp_path)
+    assert list(csv.reader(path.read_text().splitlines())) == [["q", "order"], ["1", ""], ["2", "0.5"]]
+
+
+def test_the_page_has_remarks_text_claims_and_pictures_in_this_order(figure):
+    page = figure_markdown(replace(figure, text=("| a table |", "A sentence.")))
+    parts = ("## Fig. X", "Made by hand.", "| a table |\n\nA sentence.", "| section |", "![Fig. X(a)")
+    places = [page.index(part) for part in parts]
+    assert places == sorted(places)
+
+
+def test_numbers_are_beside_what_is_judged_or_alone(figure):
+    judged_alone = figure_record(figure)
+    assert figure_record(replace(figure, numbers={"best": 3})) == {"best": 3, "judged": judged_alone}
+    assert figure_record(replace(figure, claims=(), numbers=[1, 2])) == [1, 2]
+
+
+def test_files_that_differ_in_a_last_letter_are_named_together(figure):
+    names = ("fig4a", "fig4b", "fig4a-random", "fig4c", "fig4e", "fig4f", "fig4g")
+    panels = tuple(panel(name=name) for name in names)
+    assert file_names(replace(figure, panels=panels)) == "fig4a..b, fig4a-random, fig4c, fig4e..g"
+    assert file_names(replace(figure, panels=())) == ""
+
+
 def test_moduli_do_not_end_the_cells_of_a_table():
     row = claims_table([claim(text="|eps_q| << 1", printed="", ours="|v| grows")]).splitlines()[-1]
     assert row == r"| 4.1 | \|eps_q\| << 1 | - | \|v\| grows | **holds** |"
@@ -84,7 +117,8 @@ def test_moduli_do_not_end_the_cells_of_a_table():
 
 def test_the_summary_counts_by_verdict_and_figure(figure):
     other = PaperFigure("figY", "Fig. Y", (), (claim(PARTLY), claim(OPEN), claim()))
-    page = claims_markdown([figure, other])
+    page = claims_markdown([figure, other, PaperFigure("figZ", "Fig. Z", (), ())])
+    assert "Fig. Z" not in page  # nothing is judged
     assert "2 holds, 1 holds in part, 2 does not hold, 1 undecided." in page
     assert "| Fig. X: a test | 1 |  | 2 |  |" in page
     assert "| Fig. Y | 1 | 1 |  | 1 |" in page

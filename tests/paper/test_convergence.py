@@ -9,19 +9,16 @@ import pytest
 
 from symfpu.breathers.balance import periodic_orbit
 from symfpu.errors import InputError
-from symfpu.paper.convergence import (
+from symfpu.paper.convergence_fig1 import (
     DETUNED,
     INCOMMENSURABLE,
     SHOWN_ORDERS,
     _coincidence,
     _pole,
     _ratios,
-    _singularity,
-    breather_study,
     cancellation_study,
-    scheme_limit,
-    series_end,
 )
+from symfpu.paper.convergence_fig9 import _singularity, breather_study, scheme_limit, series_end
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, FIG9_BREATHER, TWO_TORUS
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes

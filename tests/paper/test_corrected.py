@@ -10,22 +10,13 @@ import pytest
 
 from symfpu.breathers.balance import periodic_orbit
 from symfpu.chain.chain import Chain
-from symfpu.paper import corrected
-from symfpu.paper.corrected import (
-    HEAVY,
-    CorrectedRow,
-    ScalingStudy,
-    SeriesErrors,
-    corrected_row,
-    corrected_rows,
-    decay,
-    left_out,
-    scaling_study,
-    series_errors,
-)
-from symfpu.paper.corrected_page import corrected_markdown, corrected_record, corrected_text, write_corrected_csv
-from symfpu.paper.drawings import draw_corrected
+from symfpu.paper import corrected, series_errors
+from symfpu.paper.claims import PaperFigure
+from symfpu.paper.claims_page import draw_panels, figure_markdown, write_panel_csv
+from symfpu.paper.corrected import HEAVY, CorrectedRow, corrected_row, corrected_rows, left_out
+from symfpu.paper.corrected_page import corrected_line, corrected_panels, corrected_record, corrected_text
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
+from symfpu.paper.series_errors import ScalingStudy, SeriesErrors, decay, scaling_study
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -94,8 +85,8 @@ def test_errors_do_not_depend_on_the_sign_of_a_harmonic(pair):
     """One of each pair +-nu is listed, whichever."""
     series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies, 4)
     signs = np.where(np.arange(len(pair.torus.harmonics)) % 2, -1, 1)[:, None]
-    turned = series_errors(series, replace(pair.torus, harmonics=signs * pair.torus.harmonics))
-    assert turned == series_errors(series, pair.torus)
+    turned = series_errors.series_errors(series, replace(pair.torus, harmonics=signs * pair.torus.harmonics))
+    assert turned == series_errors.series_errors(series, pair.torus)
     assert turned.given[4] == pytest.approx(pair.errors.given[4], rel=CONVERGED_DIGITS)
 
 
@@ -136,7 +127,7 @@ def test_the_error_of_a_breather_falls_as_mu_to_the_next_order(study, K):
 
 
 def test_the_error_of_fig_1_falls_as_mu_to_the_next_order(pair, monkeypatch):
-    monkeypatch.setattr(corrected, "HALVINGS", 3)
+    monkeypatch.setattr(series_errors, "HALVINGS", 3)
     rates = scaling_study(pair.torus, "Fig. 1").rates
     assert [given for given, _ in rates.values()] == pytest.approx([2, 3, 4, 5], abs=SLOPE)
     assert [rates[K][1] for K in (2, 3, 4)] == pytest.approx([2, 2, 4], abs=SLOPE)
@@ -145,7 +136,7 @@ def test_the_error_of_fig_1_falls_as_mu_to_the_next_order(pair, monkeypatch):
 def test_a_beta_chain_is_compared_too():
     """Its frequency series gains a term at every order."""
     series = lindstedt(Chain(18, beta="0.6"), (3,), ("0.5251",), 6)
-    errors = series_errors(series, refine(solve_amplitudes(series)))
+    errors = series_errors.series_errors(series, refine(solve_amplitudes(series)))
     assert sorted(errors.solved) == sorted(errors.given) == sorted(errors.amplitudes) == list(range(1, 7))
     assert errors.given[6] < errors.given[1] / 100
 
@@ -196,7 +187,7 @@ def test_a_second_refinement_that_fails_leaves_the_first(monkeypatch):
     monkeypatch.setattr(corrected, "TOLERANCES", (1e-10, 2.0))
     row = corrected_row(SMALL)
     assert row.torus is not None
-    assert row.digits == corrected.FEW_DIGITS
+    assert row.digits == corrected.LEAST_DIGITS
     assert "to a residual of" in row.verdict
     assert "tolerance" in row.verdict
 
@@ -232,8 +223,27 @@ def two_rows(breather):
     return [breather, left_out(BY_LABEL["Fig. 5b"], "more than 5 s")]
 
 
+def figure_of(rows, study):
+    panels = corrected_panels(rows, [study])
+    return PaperFigure("table", "Corrected", panels, (), text=corrected_text(rows, [study]))
+
+
+def test_pictures_of_errors_have_a_curve_for_each_refined_row(two_rows, study):
+    solved, given, scaling = corrected_panels(two_rows, [study])
+    (curve,) = given.curves
+    assert (curve.label, dict(zip(curve.x, curve.y, strict=True))) == ("Fig. 7", two_rows[0].errors.given)
+    assert [curve.label for curve in solved.curves] == ["Fig. 7"]
+    by_style = {style: [c for c in scaling.curves if c.style == style] for style in ("marks", "line", "crosses")}
+    assert [len(curves) for curves in by_style.values()] == [4, 4, 3]
+    for errors, law, K in zip(by_style["marks"], by_style["line"], (1, 2, 3, 4), strict=True):
+        assert errors.y.tolist() == list(study.given[K])
+        assert law.y == pytest.approx(study.given[K][-1] * (law.x / law.x[-1]) ** (K + 1))
+        assert errors.group == law.group
+    assert [curve.group for curve in by_style["crosses"]] == [1, 2, 3]  # K = 1 has no amplitudes of its own
+
+
 def test_the_page_has_printed_and_exact_numbers(two_rows, study):
-    page = corrected_markdown(two_rows, [study])
+    page = figure_markdown(figure_of(two_rows, study))
     row = two_rows[0]
     assert "| Fig. 7 | 1 | 0.18574105489382606 | 0.185736029576 | +2.7e-05 |" in page
     assert f"| Fig. 7 | 0.00016635 | {row.energies['H']:.12g} |" in page
@@ -242,7 +252,7 @@ def test_the_page_has_printed_and_exact_numbers(two_rows, study):
     assert f"| Fig. 7 | 2 | {study.rates[2][0]:.3f} | 3 | {study.rates[2][1]:.3f} | 2 |" in page
     assert f"| Fig. 7 | 3 | {study.rates[3][0]:.3f} | 4 | {study.rates[3][1]:.3f} | 2 |" in page
     assert f"| Fig. 7 | 1 | {study.rates[1][0]:.3f} | 2 |  |  |" in page
-    assert all(page.count(f"![corrected-{c}](corrected-{c}.png)") == 1 for c in "abc")
+    assert all(page.count(f"](corrected-{c}.png)") == 1 for c in "abc")
     assert "nan" not in page
 
 
@@ -258,12 +268,13 @@ def test_the_record_is_strict_json(two_rows, study):
 
 def test_zeros_at_the_end_of_an_amplitude_are_kept(breather):
     torus = replace(breather.torus, amplitudes={1: 0.25})
-    assert "A_1 = 0.250000000000," in corrected_text(replace(breather, torus=torus))
-    assert "A_1 = 0.25000000," in corrected_text(replace(breather, torus=torus, digits=0))
+    assert "A_1 = 0.250000000000," in corrected_line(replace(breather, torus=torus))
+    assert "A_1 = 0.25000000," in corrected_line(replace(breather, torus=torus, digits=0))
 
 
 def test_data_and_pictures_are_written(two_rows, study, tmp_path):
-    paths = write_corrected_csv(two_rows, [study], tmp_path)
+    figure = figure_of(two_rows, study)
+    paths = write_panel_csv(figure, tmp_path)
     assert [path.name for path in paths] == [f"corrected-{c}.csv" for c in "abc"]
     header, *lines = csv.reader(paths[0].read_text().splitlines())
     assert header == ["K", "Fig. 7"]
@@ -273,7 +284,7 @@ def test_data_and_pictures_are_written(two_rows, study, tmp_path):
     header, *lines = csv.reader(paths[2].read_text().splitlines())
     assert header == ["scale", *(f"given_{K}" for K in (1, 2, 3, 4)), *(f"solved_{K}" for K in (2, 3, 4))]
     assert [float(line[1]) for line in lines] == list(study.given[1])
-    pictures = draw_corrected(two_rows, [study], tmp_path)
+    pictures = draw_panels(figure, tmp_path)
     assert [path.name for path in pictures] == [f"corrected-{c}.{suffix}" for c in "abc" for suffix in ("png", "pdf")]
     assert all(path.stat().st_size > 5000 for path in pictures)
 
@@ -294,7 +305,7 @@ def test_a_row_without_torus_has_no_numbers():
     row = left_out(TWO_TORUS, "reason")
     assert isinstance(row, CorrectedRow)
     assert row.decays == row.energy_deviations == {}
-    assert corrected_text(row) == "  corrected: not refined: reason"
+    assert corrected_line(row) == "  corrected: not refined: reason"
 
 
 def test_the_largest_deviation_is_named(breather):

@@ -41,74 +41,74 @@ def hump(N, kappa):
 @pytest.mark.parametrize("line", [ALPHA, BETA], ids=["alpha", "beta"])
 def test_spectra_on_the_line_fit_it_and_lie_on_each_other(line):
     found = profiles(line)
-    assert fig4._line_fits(line, found).verdict == HOLDS
-    assert fig4._same_line(line, found).verdict == HOLDS
+    assert fig4.line_claim(line, found).verdict == HOLDS
+    assert fig4.same_line_claim(line, found).verdict == HOLDS
 
 
 def test_spectra_off_the_line_do_not_fit_it():
-    assert fig4._line_fits(ALPHA, profiles(ALPHA, lambda N, kappa: 100.0)).verdict == FAILS
-    one = fig4._line_fits(ALPHA, profiles(ALPHA, lambda N, kappa: 100.0 if N == 512 else 1.0))
+    assert fig4.line_claim(ALPHA, profiles(ALPHA, lambda N, kappa: 100.0)).verdict == FAILS
+    one = fig4.line_claim(ALPHA, profiles(ALPHA, lambda N, kappa: 100.0 if N == 512 else 1.0))
     assert one.verdict == PARTLY
     assert "2 for N = 512" in one.ours
 
 
 def test_spectra_on_another_line_still_lie_on_each_other():
-    assert fig4._same_line(ALPHA, profiles(ALPHA, lambda N, kappa: 100.0)).verdict == HOLDS
+    assert fig4.same_line_claim(ALPHA, profiles(ALPHA, lambda N, kappa: 100.0)).verdict == HOLDS
 
 
 def test_spectra_that_move_with_the_size():
     law = profiles(ALPHA, lambda N, kappa: stairs(N, kappa) * 64 / N)
-    assert fig4._same_line(ALPHA, law).verdict == FAILS  # what the law itself says
-    assert fig4._law_scaling(ALPHA, law).verdict == HOLDS
-    assert fig4._same_line(ALPHA, profiles(ALPHA, stairs)).verdict == HOLDS
-    assert fig4._law_scaling(ALPHA, profiles(ALPHA, stairs)).verdict == FAILS
-    assert fig4._same_line(ALPHA, profiles(ALPHA, hump)).verdict == PARTLY
+    assert fig4.same_line_claim(ALPHA, law).verdict == FAILS  # what the law itself says
+    assert fig4.scaling_claim(ALPHA, law).verdict == HOLDS
+    assert fig4.same_line_claim(ALPHA, profiles(ALPHA, stairs)).verdict == HOLDS
+    assert fig4.scaling_claim(ALPHA, profiles(ALPHA, stairs)).verdict == FAILS
+    assert fig4.same_line_claim(ALPHA, profiles(ALPHA, hump)).verdict == PARTLY
 
 
 def test_modes_below_the_noise_do_not_count():
     found = profiles(BETA, lambda N, kappa: np.where(kappa > 0.5, 1e10, 1.0))
     quiet_floor = tuple(np.where(np.arange(1, chain.N) > chain.N / 2, 1.0, 1e-60) for chain in found.chains)
-    assert fig4._line_fits(BETA, found).verdict == FAILS
-    assert fig4._line_fits(BETA, replace(found, floors=quiet_floor)).verdict == HOLDS
+    assert fig4.line_claim(BETA, found).verdict == FAILS
+    assert fig4.line_claim(BETA, replace(found, floors=quiet_floor)).verdict == HOLDS
 
 
 @pytest.mark.parametrize(("exponents", "verdict"), [((0.0, 0.1), HOLDS), ((0.0, -0.4), PARTLY), ((0.4, 0.45), FAILS)])
 def test_the_law_s_own_dependence_on_the_size(exponents, verdict):
     growth = {k: SimpleNamespace(rate=c, error=0.3) for k, c in enumerate(exponents, 1)}
     found = SimpleNamespace(growth=growth, late_growth=dict(enumerate(exponents, 1)), chains=ALPHA.chains)
-    assert fig4._law_scaling(ALPHA, found).verdict == verdict  # an error bar excuses nothing
+    assert fig4.scaling_claim(ALPHA, found).verdict == verdict  # an error bar excuses nothing
 
 
 @pytest.mark.parametrize("line", [ALPHA, BETA], ids=["alpha", "beta"])
 def test_laws_are_unaltered_in_slope_alone(line):
-    assert fig4._unaltered(line).verdict == PARTLY
-    assert fig4._unaltered(replace(line, chains=line.chains[:1] * 2)).verdict == HOLDS
+    assert fig4.unaltered_claim(line).verdict == PARTLY
+    assert fig4.unaltered_claim(replace(line, chains=line.chains[:1] * 2)).verdict == HOLDS
     other = replace(line, chains=(line.chains[0], replace(line.chains[1], **({"alpha": "0.5"} if line is ALPHA else {"beta": "0.5"}))))
-    assert fig4._unaltered(other).verdict == FAILS
+    assert fig4.unaltered_claim(other).verdict == FAILS
 
 
 @pytest.mark.parametrize(("rate", "verdict"), [(8.0, HOLDS), (8.3, HOLDS), (8.5, PARTLY), (-1.0, FAILS)])
 def test_slopes_go_with_the_logarithm_of_the_energy(rate, verdict):
-    assert fig4._logarithmic("weak", (SimpleNamespace(rate=rate, error=0.1), -60.0, -58.0)).verdict == verdict
+    assert fig4.logarithm_claim("weak", (SimpleNamespace(rate=rate, error=0.1), -60.0, -58.0)).verdict == verdict
 
 
 def test_the_width_of_the_condition_is_off_by_pi(monkeypatch):
     for line in (ALPHA, BETA):
-        claim = fig4._condition(line)
+        claim = fig4.condition_claim(line)
         assert claim.verdict == PARTLY
         assert "3.142 times as much" in claim.ours
     chain = ALPHA.chains[-1]
     width = chain.N * float(chain.alpha) ** 0.5 * ALPHA.specific_energy**0.25
     monkeypatch.setattr(fig4, "least_packet", lambda chain, eps: width)
-    assert fig4._condition(ALPHA).verdict == HOLDS
+    assert fig4.condition_claim(ALPHA).verdict == HOLDS
     monkeypatch.setattr(fig4, "least_packet", lambda chain, eps: 100 * width)
-    assert fig4._condition(ALPHA).verdict == FAILS
+    assert fig4.condition_claim(ALPHA).verdict == FAILS
 
 
 def test_panels_show_what_lies_above_the_noise():
     found = profiles(ALPHA)
     floors = tuple(np.where(np.arange(1, chain.N) > chain.N / 2, 1.0, 1e-60) for chain in found.chains)
-    made = fig4._panel(ALPHA, replace(found, floors=floors), random=True)
+    made = fig4.spectra_panel(ALPHA, replace(found, floors=floors), random=True)
     assert made.name == "fig4a-random"
     assert [curve.label for curve in made.curves] == ["$N = 64$", "$N = 128$", "$N = 256$", "$N = 512$", "line of the caption"]
     assert all(curve.x.max() <= 0.5 for curve in made.curves)

@@ -16,23 +16,23 @@ def parted(level):
 
 @pytest.mark.parametrize(("level", "verdict"), [(0.0, HOLDS), (1e-20, PARTLY), (1.0, FAILS)])
 def test_agreement_of_series_and_integration(level, verdict):
-    claim = fig5._agreement("Fig. 5a", parted(level))
+    claim = fig5.agreement_claim("Fig. 5a", parted(level))
     assert claim.verdict == verdict
     assert "not stated" not in claim.text
-    assert "not stated" in fig5._agreement("Fig. 5b", parted(level)).text  # the paper says so of Example 1 alone
+    assert "not stated" in fig5.agreement_claim("Fig. 5b", parted(level)).text  # the paper says so of Example 1 alone
 
 
 @pytest.mark.parametrize(("level", "verdict"), [(1e-60, HOLDS), (1e-70, FAILS), (1e-50, FAILS), (0.0, FAILS)])
 def test_agreement_down_to_a_printed_level(level, verdict):
-    claim = fig5._agreement("Fig. 5c", parted(level))
+    claim = fig5.agreement_claim("Fig. 5c", parted(level))
     assert (claim.verdict, claim.printed) == (verdict, "1e-60")
 
 
 def test_mirror_pairs():
     e = exponential(32, 1)
-    assert fig5._mirror_pairs(e).verdict == FAILS
+    assert fig5.mirror_claim(e).verdict == FAILS
     e[[11, 12, 21, 22]] = e[[9, 8, 19, 18]]
-    assert fig5._mirror_pairs(e).verdict == HOLDS
+    assert fig5.mirror_claim(e).verdict == HOLDS
 
 
 def test_one_example_over_a_short_time(monkeypatch, tmp_path):

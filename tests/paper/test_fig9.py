@@ -24,7 +24,7 @@ def returning(period, back=1.0):
 
 @pytest.mark.parametrize(("period", "back", "verdict"), [(12100, 1.0, HOLDS), (14000, 1.0, FAILS), (12000, 0.8, FAILS)])
 def test_recurrence_has_a_time_and_a_completeness(period, back, verdict):
-    claim = fig9._recurrence(ROW, {"printed E": returning(period, back), "printed A_1": returning(14000)})
+    claim = fig9.recurrence_claim(ROW, {"printed E": returning(period, back), "printed A_1": returning(14000)})
     assert claim.verdict == verdict
     assert f"t = {period}" in claim.ours
 
@@ -34,17 +34,17 @@ def test_breathers_are_almost_constant(swing, verdict):
     breather = np.full((10, 31), 1e-3)
     breather[::2, 3] *= swing
     orbit = SimpleNamespace(averages=np.full((2, 31), 1e-3), energies=np.ones(2))
-    assert fig9._still(breather, orbit).verdict == verdict
+    assert fig9.constancy_claim(breather, orbit).verdict == verdict
 
 
 @pytest.mark.parametrize(("dimension", "T", "verdict"), [(5, 1e7, HOLDS), (3, 1e7, OPEN), (3, 1e9, FAILS), (7, 1e9, FAILS)])
 def test_five_frequencies(dimension, T, verdict):
-    assert fig9._frequencies(alignment(dimension, vectors=7, T=T)).verdict == verdict
+    assert fig9.frequencies_claim(alignment(dimension, vectors=7, T=T)).verdict == verdict
 
 
 def test_widths_of_natural_packets():
-    assert [claim.verdict for claim in fig9._packets(ROW)] == [HOLDS, HOLDS]
-    assert [claim.verdict for claim in fig9._packets(replace(ROW, energy="0.0164"))] == [FAILS, FAILS]  # a tenth more
+    assert [claim.verdict for claim in fig9.packet_claims(ROW)] == [HOLDS, HOLDS]
+    assert [claim.verdict for claim in fig9.packet_claims(replace(ROW, energy="0.0164"))] == [FAILS, FAILS]  # a tenth more
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Series:
 
 @pytest.mark.parametrize(("late", "verdict"), [(1e-3, HOLDS), (4e-3, HOLDS), (2e-4, PARTLY), (1e-5, FAILS)])
 def test_gain_after_order_50(late, verdict):
-    claim = fig9._little_gain(Series(242, {50: 2e-3, 100: 2e-3, 150: late, 200: 2e-3, 242: 2e-3}))
+    claim = fig9.gain_claim(Series(242, {50: 2e-3, 100: 2e-3, 150: late, 200: 2e-3, 242: 2e-3}))
     assert claim.verdict == verdict
     assert "50: 2.0e-03, 100: 2.0e-03, 150:" in claim.ours
 

@@ -7,7 +7,8 @@ import pytest
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.paper import section5
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
-from symfpu.paper.fig6 import figure6
+from symfpu.paper.fig6 import excited_by_packets, intervals_claim
+from symfpu.paper.printed import EXCITATIONS
 from tests.paper.cases import quiet
 
 
@@ -59,8 +60,13 @@ def wrong_rule(monkeypatch):
 
 
 def test_a_wrong_rule_is_seen(wrong_rule):
-    claims = [section5._breathers(), section5._parities(), *section5._two_seeds(), *map(section5._low_packets, ("alpha", "beta"))]
-    claims += [section5._high_packets("alpha"), section5._symmetric(), *section5._printed_sets()]
+    claims = [
+        section5.breathers_claim(),
+        section5.parities_claim(),
+        *section5.two_seeds_claims(),
+        *map(section5.low_packets_claim, ("alpha", "beta")),
+    ]
+    claims += [section5.high_packets_claim("alpha"), section5.symmetric_claim(), *map(section5.printed_sets_claim, EXCITATIONS)]
     off = [claim for claim in claims if claim.verdict != FAILS]
     assert [claim.text.split(":")[0] for claim in off] == ["example ii", "example ii", "example v"]  # M_1, M_2 and empty sets stay
 
@@ -72,14 +78,13 @@ def test_a_proposition_without_proofs_does_not_hold(monkeypatch):
         return replace(right(N, seeds, order, model=model), verdict="undecided")
 
     monkeypatch.setattr(section5, "prove_propagation", without_verdict)
-    assert section5._alpha_rule().verdict == FAILS
+    assert section5.alpha_rule_claim().verdict == FAILS
 
 
 def test_intervals_of_section_6_3():
-    data = figure6()
-    assert [claim.verdict for claim in section5.figure6_claims(data).claims] == [HOLDS] * 3
-    seeds, orders = data.panels["a"]
-    moved = replace(data, panels={"a": (tuple(q + 1 for q in seeds), orders)})
-    (claim,) = section5.figure6_claims(moved).claims
+    packets = excited_by_packets()
+    assert [intervals_claim(packet).verdict for packet in packets.values()] == [HOLDS] * 3
+    moved = replace(packets["a"], seeds=tuple(q + 1 for q in packets["a"].seeds))
+    claim = intervals_claim(moved)
     assert claim.verdict == FAILS
     assert "all but [1, 2" in claim.ours

@@ -9,7 +9,7 @@ import pytest
 
 from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
-from symfpu.paper.fig1 import figure1
+from symfpu.paper.fig1_data import figure1_data
 from symfpu.paper.printed import APPENDIX_F, FIG1_DIGITS, TWO_TORUS, PrintedTorus
 from symfpu.paper.table import MET_DIGITS, agreement_digits, amplitude_row, energies, rounds_to
 from tests.reference import BETA_BREATHER, PERIODIC_ORBITS
@@ -116,7 +116,7 @@ def test_printed_breathers_differ_from_the_periodic_orbits(orbit):
 def computed():
     """Fig. 1 and the labels of its steps."""
     labels = []
-    return figure1(labels.append), labels
+    return figure1_data(labels.append), labels
 
 
 @pytest.mark.long
@@ -142,7 +142,7 @@ def test_figure_1_is_computed_from_the_printed_frequencies(computed):
 @pytest.mark.long
 def test_reproduce_fig1_writes_pictures_data_and_claims(computed, monkeypatch, capsys, tmp_path):
     """The alignment indices end at 1e3, before they decide."""
-    monkeypatch.setattr("symfpu.paper.targets.figure1", lambda step: computed[0])
+    monkeypatch.setattr("symfpu.paper.fig1.figure1_data", lambda step: computed[0])
     monkeypatch.setattr("symfpu.paper.dimensions.TIME", 1e3)
     assert main(["reproduce", "fig1", "-o", str(tmp_path), "--json"]) == 0
     out = capsys.readouterr().out

@@ -15,10 +15,11 @@ from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.families.continuation import Member
 from symfpu.families.family import Family
-from symfpu.paper.convergence import BreatherStudy, CancellationStudy, SchemeLimit, Variant
-from symfpu.paper.drawings import draw_convergence
-from symfpu.paper.pages import breather_markdown, cancellation_markdown, convergence_markdown, convergence_record, write_convergence_csv
-from symfpu.paper.targets import TARGETS
+from symfpu.paper.claims_page import draw_panels, figure_markdown, figure_record, write_panel_csv
+from symfpu.paper.convergence import breather_text, cancellation_text, convergence_figure
+from symfpu.paper.convergence_fig1 import CancellationStudy, Variant
+from symfpu.paper.convergence_fig9 import BreatherStudy, SchemeLimit
+from symfpu.paper.targets import TARGETS, reproduced
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.verdict import assess
@@ -89,7 +90,7 @@ def rows_of(path):
 
 
 def test_data_files_hold_what_the_pictures_show(cancellation, breather, tmp_path):
-    paths = write_convergence_csv(cancellation, breather, tmp_path)
+    paths = write_panel_csv(convergence_figure(cancellation, breather), tmp_path)
     tables = {path.stem: rows_of(path) for path in paths}
     assert list(tables) == FILES
     assert tables["convergence-a"][0] == ["k", *NAMES]
@@ -106,7 +107,7 @@ def test_data_files_hold_what_the_pictures_show(cancellation, breather, tmp_path
 
 
 def test_the_page_on_fig_1_names_every_number(cancellation, assessment):
-    page = cancellation_markdown(cancellation)
+    page = "\n".join(cancellation_text(cancellation))
     assert "| doubles | 3.00e-14 | 3.00e-20 | 3.00e-24 | 3.00e-28 | 6.10e-05 | 9.31e-10 | 8.7e-19 |" in page
     assert all(f"| {name} |" in page for name in NAMES)
     assert "13 omega_1 -7 omega_2 = 0, at order 19" in page
@@ -117,7 +118,7 @@ def test_the_page_on_fig_1_names_every_number(cancellation, assessment):
 
 
 def test_the_page_on_fig_9_names_every_number(breather, assessment):
-    page = breather_markdown(breather)
+    page = "\n".join(breather_text(breather))
     assert "| printed frequency | 0.39050000000000 | 1.25000000000 |" in page
     assert "| printed amplitude | 0.39070000000000 | 1.37500000000 |" in page
     orbit = breather.orbit
@@ -129,14 +130,14 @@ def test_the_page_on_fig_9_names_every_number(breather, assessment):
 
 
 def test_the_page_links_every_picture_once(cancellation, breather):
-    page = convergence_markdown(cancellation, breather)
+    page = figure_markdown(convergence_figure(cancellation, breather))
     assert page.index("Question (i)") < page.index("Question (ii)") < page.index("![")
-    assert all(page.count(f"![{name}]({name}.png)") == 1 for name in FILES)
+    assert all(page.count(f"]({name}.png)") == 1 for name in FILES)
     assert page.endswith(")\n")
 
 
 def test_the_record_is_strict_json_with_the_numbers(cancellation, breather, assessment):
-    record = json.loads(json.dumps(convergence_record(cancellation, breather), allow_nan=False))
+    record = json.loads(json.dumps(figure_record(convergence_figure(cancellation, breather)), allow_nan=False))
     assert (record["coincidence"], record["divisor"], record["pole"]) == ([13, -7], 3.125e-5, 0.625)
     assert record["ratios"] == {"18": 9.0, "20": 1.25, "22": 1.5}
     assert record["resummed_residuals"] == {"12": 1e-5, "30": 2e-7}
@@ -148,12 +149,12 @@ def test_the_record_is_strict_json_with_the_numbers(cancellation, breather, asse
 
 def test_a_study_without_a_pole_still_has_a_record(cancellation, breather, assessment):
     endless = replace(cancellation, assessment=replace(assessment, pole_radius=math.inf, growth=0.0))
-    record = json.loads(json.dumps(convergence_record(endless, breather), allow_nan=False))
+    record = json.loads(json.dumps(figure_record(convergence_figure(endless, breather)), allow_nan=False))
     assert record["torus"]["radius_by_poles"] is record["torus"]["radius_by_ratio"] is None
 
 
 def test_pictures_are_written_as_png_and_pdf(cancellation, breather, tmp_path):
-    paths = draw_convergence(cancellation, breather, tmp_path)
+    paths = draw_panels(convergence_figure(cancellation, breather), tmp_path)
     assert [path.name for path in paths] == [f"{name}.{suffix}" for name in FILES for suffix in ("png", "pdf")]
     for path in paths:
         assert path.read_bytes().startswith(b"\x89PNG" if path.suffix == ".png" else b"%PDF")
@@ -162,20 +163,19 @@ def test_pictures_are_written_as_png_and_pdf(cancellation, breather, tmp_path):
 
 def test_reproduce_convergence_writes_page_data_and_pictures(cancellation, breather, monkeypatch, capsys, tmp_path):
     steps = []
-    monkeypatch.setattr("symfpu.paper.targets.cancellation_study", lambda step: step("first") or cancellation)
-    monkeypatch.setattr("symfpu.paper.targets.breather_study", lambda step: step("second") or breather)
+    monkeypatch.setattr("symfpu.paper.convergence.cancellation_study", lambda step: step("first") or cancellation)
+    monkeypatch.setattr("symfpu.paper.convergence.breather_study", lambda step: step("second") or breather)
     with monkeypatch.context() as unseen:
-        unseen.setattr("symfpu.paper.targets.draw_convergence", lambda *given: [])
-        page = TARGETS["convergence"](tmp_path, steps.append)
+        unseen.setattr("symfpu.paper.targets.draw_panels", lambda *given: [])
+        figure = reproduced("convergence", tmp_path, steps.append)
     assert steps == ["first", "second", "convergence: pictures"]
-    assert page.markdown == convergence_markdown(cancellation, breather)
     code = main(["reproduce", "convergence", "-o", str(tmp_path / "out"), "--json"])
     captured = capsys.readouterr()
     assert (code, captured.err) == (0, "")
     written = {path.name for path in (tmp_path / "out").iterdir()}
     assert written == {"report.md", "report.json"} | {f"{name}.{suffix}" for name in FILES for suffix in ("png", "pdf", "csv")}
-    assert json.loads(captured.out) == json.loads((tmp_path / "out" / "report.json").read_text()) == {"convergence": page.record}
-    assert page.markdown in (tmp_path / "out" / "report.md").read_text()
+    assert json.loads(captured.out) == json.loads((tmp_path / "out" / "report.json").read_text()) == {"convergence": figure_record(figure)}
+    assert figure_markdown(figure) in (tmp_path / "out" / "report.md").read_text()
 
 
 def test_reproduce_fig6_writes_its_orders(capsys, tmp_path):

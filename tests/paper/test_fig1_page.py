@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.paper.fig1 import Figure1
-from symfpu.paper.pages import figure1_markdown, figure1_record, write_figure1_csv
+from symfpu.paper.fig1 import figure1_numbers, figure1_panels, figure1_text
+from symfpu.paper.fig1_data import Figure1
+from symfpu.reports.tables import write_csv
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.verdict import assess
@@ -41,7 +42,8 @@ def figure_of(torus):
 
 def test_csv_files_hold_the_data_of_the_panels(torus, tmp_path):
     data = figure_of(torus)
-    tables = {path.stem: list(csv.reader(path.read_text().splitlines())) for path in write_figure1_csv(data, tmp_path)}
+    paths = write_csv({panel.name: panel.table() for panel in figure1_panels(data)}, tmp_path)
+    tables = {path.stem: list(csv.reader(path.read_text().splitlines())) for path in paths}
     assert set(tables) == {"fig1a", "fig1b", "fig1c", "fig1d"}
     assert tables["fig1a"][1:] == [[str(q), str(float(q))] for q in range(1, 8)]
     assert tables["fig1b"] == [["k", "delta_A1", "delta_A2"], ["2", "0.125", "0.0625"]]
@@ -60,16 +62,26 @@ def test_figure_1_reads_its_evidence_from_the_verdict(torus):
 
 
 def test_the_page_on_fig_1_has_claims_verdict_and_pictures(torus, monkeypatch):
-    monkeypatch.setattr("symfpu.paper.fig1.FIG1_CANCELLATION_ORDER", 1)
+    monkeypatch.setattr("symfpu.paper.fig1_data.FIG1_CANCELLATION_ORDER", 1)
     data = figure_of(torus)
-    page, record = figure1_markdown(data), figure1_record(data)
+    page, record = "\n".join(figure1_text(data)), figure1_numbers(data)
     assert "| energy error | about 1e-4 | 1.0e-02 at order 4, 1.0e-03 at order 24 |" in page
     assert "| cancellation | four orders of magnitude at k = 14 | 0.3 orders of magnitude at k = 1 |" in page
     assert "by coordinate order: 2: 5.0e-01, 4: 2.5e-01." in page
     assert "The least is at order 4." in page
     assert "Verdict on the series: asymptotic, best at order 4 (residual" in page
     assert "the same to 2.5e-13" in page
-    assert all(page.count(f"![Fig. 1({panel})](fig1{panel}.png)") == 1 for panel in "abcd")
+    assert [panel.name for panel in figure1_panels(data)] == ["fig1a", "fig1b", "fig1c", "fig1d"]
     assert (record["best_order"], record["rounding_of_doubles"], record["digits"]) == (4, 2.5e-13, None)
     assert record["claims"]["energy_error"]["computed"] == "1.0e-02 at order 4, 1.0e-03 at order 24"
     assert record["assessment"]["verdict"] == "asymptotic, best at order 4"
+
+
+def test_errors_in_time_are_drawn_as_moduli_after_the_start(torus):
+    data = figure_of(torus)
+    *_, panel = figure1_panels(data)
+    harmonic, total = panel.curves[:2]
+    assert harmonic.y.tolist() == [1e-3, 2e-3, 0.1]
+    assert total.y.tolist() == pytest.approx([1e-4, 2e-4, 1e-2], rel=1e-15)
+    assert all(min(curve.x) > 0 for curve in panel.curves)
+    assert [curve.group for curve in panel.curves] == [0, 0, 1, 1]
