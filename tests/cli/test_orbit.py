@@ -112,4 +112,4 @@ def test_a_file_without_a_torus_is_refused(capsys, tmp_path):
     file = save(tmp_path / "series", lindstedt(Chain(8, beta="0.1"), (3,), ("1.12",), 2))
     code, _, err = run(capsys, "orbit", str(file), "--time", "10")
     assert code == 2
-    assert "a file with a torus in it" in err
+    assert "a file with a torus or a breather in it" in err
