@@ -36,7 +36,7 @@ from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import particle_scheme
 from symfpu.dynamics.tangent import moving_frame, step_length
 from symfpu.errors import InputError
-from symfpu.files.checkpoint import checkpoint_path, seconds_between
+from symfpu.files.checkpoint import checkpoint_path, digest, seconds_between
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -202,14 +202,15 @@ def alignment_indices(
     count, last = _vectors(n, vectors), _steps(T, h)
     longest = integer(block, "block", 1)
     marks = _marks(last, h, _samples(samples))
-    vectors_at_start = _random_frame(count, n, integer(seed, "seed", 0))
-    frame = moving_frame(chain, Q, P, *vectors_at_start, h, scheme=integrator)
+    drawn = integer(seed, "seed", 0)
+    frame = moving_frame(chain, Q, P, *_random_frame(count, n, drawn), h, scheme=integrator)
     if not np.any(frame.x) and not np.any(frame.p):
         raise InputError("Q, P", 0.0, "a state other than the equilibrium", "start from an orbit")
     before = float(chain.energy(*frame.orbit()))
     run = FrameRun(frame, marks, h, longest, seconds_between(every))
     if file is not None:
-        run.keep_in(checkpoint_path(file))
+        state = digest(np.array([Q, P], dtype=float))
+        run.keep_in(checkpoint_path(file), {"start": state, "seed": drawn})
     run.go(progress or (lambda label, done: None))
     times = np.asarray(run.marks * h, dtype=np.float64)
     logarithms = np.cumsum(run.volumes, axis=1)

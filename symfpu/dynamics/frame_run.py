@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from symfpu.dynamics.tangent import MovingFrame
 from symfpu.errors import SymfpuError
-from symfpu.files.archive import BundleError
+from symfpu.files.archive import BundleError, Json
 from symfpu.files.checkpoint import (
     ADVICE,
     ALIGNMENT,
@@ -71,10 +71,14 @@ class FrameRun:
         self.marks = marks
         self.volumes, self.growth = np.zeros((len(marks), self.frame.vectors)), np.zeros(len(marks))
 
-    def keep_in(self, path: Path) -> None:
-        """Goes on from the file, if there is one, which may hold a shorter run."""
+    def keep_in(self, path: Path, start: Json) -> None:
+        """Goes on from the file, if there is one, which may hold a shorter run.
+
+        start : what the first frame was made of, the same on every machine. Files of version 0.1
+        know it by all its digits instead, the last of which are the machine's.
+        """
         self.path, frame = path, self.frame
-        self.parameters = {
+        known = {
             "N": frame.chain.N,
             "alpha": decimal(frame.chain.alpha),
             "beta": decimal(frame.chain.beta),
@@ -85,10 +89,13 @@ class FrameRun:
             "sampled steps": digest(self.marks),
             "block": self.longest,
             "portion": self.portion,
+        }
+        made = known | {
             "start": digest(np.stack([frame.x, frame.p])),
             "first vectors": digest(np.stack([frame.dx, frame.dp])),
         }
-        kept = read_checkpoint(path, self.parameters, ALIGNMENT)
+        self.parameters = known | start
+        kept = read_checkpoint(path, self.parameters, ALIGNMENT, made)
         if kept is None:
             return
         done, arrays = kept

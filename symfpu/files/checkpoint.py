@@ -106,11 +106,13 @@ def write_checkpoint(
 
 
 def read_checkpoint(
-    path: Path, parameters: Json, kind: Kind = ORBIT
+    path: Path, parameters: Json, kind: Kind = ORBIT, before: Json | None = None
 ) -> tuple[int, dict[str, Floats]] | None:
     """Steps done and the arrays, or None where there is no file.
 
     The checkpoint may be one of fewer steps in all.
+
+    before : the parameters by which files of version 0.1 know the run, if these are others.
 
     Raises InputError for a checkpoint of other parameters, BundleError for a file that is none.
     """
@@ -123,7 +125,7 @@ def read_checkpoint(
             archive = Archive(path, stream)
             if archive.body.get("kind") != kind.name:
                 raise BundleError(path, f"is not a checkpoint of {kind.of}", ADVICE)
-            _require_same(path, archive.body["parameters"], parameters, kind)
+            _require_same(path, archive.body["parameters"], parameters, kind, before)
             arrays = _arrays(archive)
             if "sampled" not in arrays:
                 _require_same_samples(path, archive.body["parameters"], parameters)
@@ -187,14 +189,19 @@ def _require_same_samples(path: Path, found: Json, parameters: Json) -> None:
         raise Refused("file", str(path), allowed, ADVICE)
 
 
-def _require_same(path: Path, found: Json, parameters: Json, kind: Kind) -> None:
+def _require_same(
+    path: Path, found: Json, parameters: Json, kind: Kind, before: Json | None
+) -> None:
     longer = integer(found["steps"], "steps", 0) < parameters["steps"]
     known = dict(kind.implied) | found
-    for name, value in parameters.items():
+    asked = parameters if before is None or parameters.keys() <= known.keys() else before
+    for name, value in asked.items():
         goes_on = longer and name in LENGTH
         if known.get(name) != value and not goes_on:
             was = str(known.get(name))[:40]
             now = str(value)[:40]
             same = f"a checkpoint of the same {kind.name}"
+            if asked is before:
+                same += " from a machine that rounds alike, as it is of version 0.1"
             allowed = f"{same} ({name} is {was} in it, {now} here)"
             raise Refused("file", str(path), allowed, ADVICE)

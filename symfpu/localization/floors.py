@@ -5,7 +5,7 @@ Every kind of solution knows its errors:
 - tori and orbits by Newton's method: what the coefficients leave of the equations of motion, taken
   in long doubles and at harmonics that were left out too, over the divisors. That is the correction
   of one more step of Newton's method with the divisors alone as its matrix; the rest of the matrix
-  is applied to it once;
+  is applied to it a few times;
 - series in doubles: rounding relative to the largest force of a harmonic, since products over the
   bonds mix modes, over the divisor;
 - series with digits: the proved radii of the tables;
@@ -35,6 +35,7 @@ Ints = NDArray[np.int64]
 EPS = 2.0**-52
 WIDER = 1.5  # times the largest harmonic of one angle: up to there left out ones are solved for
 SAFETY = 2.0  # on errors of first order
+CORRECTIONS = 3  # times that the rest of Newton's matrix is applied
 
 
 class _Errors:
@@ -146,11 +147,16 @@ def _of_newton(torus: QuasiPeriodic) -> _Errors:
     with np.errstate(divide="ignore"):
         inverse = np.where(equation.mask, 1 / np.abs(divisors), 0)
         first = left / divisors
-    finite = np.where(np.isfinite(first), first, 0)
-    second = equation.force_change(equation.slopes(cosines), finite.astype(float))
     seeds = equation.seed_rows, equation.seed_columns
-    second[seeds] = 0  # the amplitudes go along the family
-    sizes = SAFETY * (np.abs(first) + inverse * (np.abs(second) + rounding))
+    slopes = equation.slopes(cosines)
+    sizes, correction = np.abs(first) + inverse * rounding, first
+    for _ in range(CORRECTIONS):
+        finite = np.where(np.isfinite(correction), correction, 0)
+        change = equation.force_change(slopes, finite.astype(float))
+        change[seeds] = 0  # the amplitudes go along the family
+        correction = inverse * change
+        sizes += np.abs(correction)
+    sizes *= SAFETY
     relative = float(np.max(sizes[seeds] / np.abs(cosines[seeds])))
     relative += EPS / 2  # they are rounded to doubles
     sizes += _along_the_family(torus.chain, torus.seeds, equation.harmonics, cosines, relative)

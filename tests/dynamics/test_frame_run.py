@@ -16,6 +16,7 @@ import pytest
 
 from symfpu.bundles.bundle import load
 from symfpu.chain.chain import Chain
+from symfpu.dynamics import alignment
 from symfpu.dynamics.alignment import alignment_indices, seconds_needed
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError, RunInterrupted
@@ -167,7 +168,7 @@ def test_a_run_is_written_every_so_many_seconds_and_at_the_end(tmp_path, state, 
         ({"scheme": "kahan_li8"}, "scheme"),
         ({"vectors": 5}, "vectors"),
         ({"samples": 70}, "sampled steps"),
-        ({"seed": 1}, "first vectors"),
+        ({"seed": 1}, "seed"),
         ({"block": 8}, "block"),
     ],
 )
@@ -178,6 +179,18 @@ def test_a_checkpoint_of_other_parameters_is_refused(change, name, tmp_path, sta
     with pytest.raises(InputError, match=rf"a checkpoint of the same alignment indices \({name} is .* in it, .* here\)"):
         alignment_indices(**arguments | change)
     assert arguments["file"].read_bytes() == before
+
+
+def test_a_checkpoint_is_taken_on_by_a_machine_that_rounds_otherwise(tmp_path, state, monkeypatch):
+    arguments = {"chain": CHAIN, "file": tmp_path / "gali"} | state | SHORT
+    first = alignment_indices(**arguments)
+    drawn = alignment._random_frame
+
+    def rounded_otherwise(*sizes):
+        return tuple(np.nextafter(rows, 1) for rows in drawn(*sizes))
+
+    monkeypatch.setattr(alignment, "_random_frame", rounded_otherwise)
+    assert np.array_equal(alignment_indices(**arguments).log10_gali, first.log10_gali)
 
 
 def test_files_that_are_no_such_checkpoint_are_refused_and_kept(tmp_path, state):
