@@ -84,6 +84,24 @@ class TooLarge(InputError):
         InputError.__init__(self, "order", order, allowed, advice)
 
 
+class ExpansionTooLarge(InputError):
+    """An expanded polynomial that would not fit into the free memory, or into integers of 64 bits.
+
+    Raised by what expands coefficients of a universal series, before anything is allocated. Ours.
+
+    terms : at most; needed, free : bytes.
+    """
+
+    def __init__(self, terms: float, needed: float, free: int) -> None:
+        self.terms = terms
+        self.needed = needed
+        self.free = free
+        size = f"{terms:.3g} terms, {needed:.3g} bytes"
+        allowed = f"what fits into the {free:.3g} bytes of free memory, and integers of 64 bits"
+        advice = 'ask for form="factored" or "cse", or for a lower order'
+        InputError.__init__(self, "expansion", size, allowed, advice)
+
+
 class ResonantDivisor(InputError):
     """A divisor lambda_q - (nu.omega)^2 that is zero, or cannot be told from zero.
 

@@ -345,7 +345,10 @@ class _Reader:
         """Coordinates, corrections and radii as a series holds them."""
         coordinates, corrections = self.shapes
         kept = self._read("coordinates", coordinates) + self._read("corrections", corrections)
-        tables = self.tables.unpack(kept, self.body)
+        members = {}
+        for name, length in self.tables.members(self.body).items():
+            members[name] = self.archive.array(name, self.tables.dtype, length)
+        tables = self.tables.unpack(kept, self.body, members)
         count = len(coordinates)
         none = np.zeros((0, self.seeds))  # order 0 has no corrections
         return {

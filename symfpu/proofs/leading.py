@@ -25,11 +25,11 @@ from typing import Any
 
 import symengine as se
 
+from symfpu.algebra.formulas import multiplier_symbol
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import product_modes
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer, seed_modes
-from symfpu.series.divisors import multiplier_symbol
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 
@@ -182,7 +182,7 @@ def _first_orders(series: LindstedtSeries) -> dict[int, int]:
     """By mode, the first order at which the recursion gives it a term."""
     first: dict[int, int] = {}
     for k, table in enumerate(series.coordinates):
-        excited = (table != 0).any(axis=0)
+        excited = series.tables.nonzero(table).any(axis=0).tolist()
         for q in range(1, series.chain.N):
             if excited[q - 1]:
                 first.setdefault(q, k)

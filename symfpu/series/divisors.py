@@ -18,6 +18,7 @@ import numpy as np
 import symengine as se
 from numpy.typing import NDArray
 
+from symfpu.algebra.formulas import multiplier_symbol
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.residue import ResidueRing, cosine_table
 from symfpu.chain.chain import Chain
@@ -366,9 +367,3 @@ def gauge_terms(harmonics: Ints, seeds: Sequence[int], N: int) -> NDArray[np.boo
     for unit, q in zip(units, seeds, strict=True):
         gauge[:, q - 1] = (moduli == unit).all(axis=1)
     return gauge
-
-
-def multiplier_symbol(mode: int, harmonic: Sequence[int]) -> Any:
-    """The symbol L_q(nu); its name reads as LaTeX."""
-    nu = ",".join(map(str, harmonic))
-    return se.Symbol(f"L_{{{mode}}}({nu})")

@@ -12,9 +12,9 @@ from fractions import Fraction
 from functools import partial
 
 from symfpu.algebra.float64 import Float64Ring
+from symfpu.algebra.program_ring import ProgramRing
 from symfpu.algebra.ring import Ring
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.symbolic import SymbolicRing
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.series.divisors import Divisors, Float64Divisors, UniversalDivisors
@@ -65,14 +65,14 @@ FLOAT64 = RingKind("float64", _double_tables, Float64Ring, _double_divisors, num
 SYMBOLIC = RingKind(
     "symbolic",
     partial(_expression_tables, expanded=True),
-    SymbolicRing,
+    partial(ProgramRing, expanded=True),
     _universal_divisors,
     growth=SYMBOLIC_GROWTH,
 )
 NESTED = RingKind(
     "nested",
     partial(_expression_tables, expanded=False),
-    partial(SymbolicRing, nested=True),
+    partial(ProgramRing, expanded=False),
     _universal_divisors,
     growth=SYMBOLIC_GROWTH,
 )

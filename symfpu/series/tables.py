@@ -5,7 +5,7 @@ The numbers they denote, in which arithmetic, and how a file keeps them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Protocol
@@ -15,19 +15,23 @@ import numpy as np
 import symengine as se
 from numpy.typing import NDArray
 
+from symfpu.algebra.formulas import NodeTable
 from symfpu.algebra.grading import Ints
+from symfpu.algebra.program import ZERO
 from symfpu.algebra.words import IntegerTable
 from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, from_integers
 from symfpu.numbers.typed import integer
-from symfpu.series.expressions import ExpressionNodes, expressions_of
+from symfpu.series.expressions import expressions_of
+from symfpu.series.programs import program_entries, program_from, program_lengths
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
 Json = dict[str, Any]
 Shapes = list[tuple[int, ...]]
 Parts = dict[str, tuple[Any, ...]]  # tables by order: "coordinates" and "corrections"
+Members = Mapping[str, Array]
 
 LOG10_2 = 0.30102999566398120
 SYMBOL_DIGITS = 2  # of a number in an expression, beyond the promised ones
@@ -68,6 +72,9 @@ class Tables(Protocol):
     def doubles(self, table: Any) -> Floats:
         """Entries of a table as doubles."""
 
+    def nonzero(self, table: Any) -> NDArray[np.bool_]:
+        """Which entries of a table are not zero."""
+
     def scaled(
         self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
     ) -> Array:
@@ -88,7 +95,10 @@ class Tables(Protocol):
     def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
         """Shapes of the arrays of a file, from those of the tables."""
 
-    def unpack(self, arrays: Sequence[Array], body: Json) -> list[Any]:
+    def members(self, body: Json) -> dict[str, int]:
+        """Further arrays of a file, by name, with their lengths. Raises ValueError."""
+
+    def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
         """Tables from the arrays of a file. Raises ValueError."""
 
 
@@ -132,6 +142,10 @@ class DoubleTables:
         """As they are."""
         return np.asarray(table)
 
+    def nonzero(self, table: Any) -> NDArray[np.bool_]:
+        """Those that are not."""
+        return np.asarray(table != 0)
+
     def scaled(
         self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
     ) -> Array:
@@ -165,7 +179,11 @@ class DoubleTables:
         """Those of the tables."""
         return shapes
 
-    def unpack(self, arrays: Sequence[Array], body: Json) -> list[Any]:
+    def members(self, body: Json) -> dict[str, int]:
+        """None."""
+        return {}
+
+    def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
         """As they are."""
         return list(map(np.asarray, arrays))
 
@@ -201,6 +219,10 @@ class FixedPointTables:
         """Rounded; the corrections of order 0 are an array without rows."""
         return table.floats(-self.bits) if isinstance(table, IntegerTable) else np.asarray(table)
 
+    def nonzero(self, table: Any) -> NDArray[np.bool_]:
+        """By their words."""
+        return np.asarray(table.words.any(axis=-1))
+
     def scaled(
         self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
     ) -> Array:
@@ -233,7 +255,11 @@ class FixedPointTables:
         counts = [integer(n, "words", 1) for n in body["words"][name]]
         return [(*shape, n) for shape, n in zip(shapes, counts, strict=True)]
 
-    def unpack(self, arrays: Sequence[Array], body: Json) -> list[Any]:
+    def members(self, body: Json) -> dict[str, int]:
+        """None."""
+        return {}
+
+    def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
         """Tables of integers."""
         return list(map(IntegerTable, arrays))
 
@@ -266,7 +292,7 @@ class ExpressionTables:
         return se.Symbol(f"Omega_{q}")
 
     def entries(self, table: Any, columns: Any = slice(None)) -> Array:
-        """As they are."""
+        """Expressions, made when they are looked at."""
         return np.asarray(table[:, columns])
 
     def doubles(self, table: Any) -> Floats:
@@ -275,6 +301,11 @@ class ExpressionTables:
         Raises SymEngine's RuntimeError for others.
         """
         return np.asarray(table, dtype=np.float64)
+
+    def nonzero(self, table: Any) -> NDArray[np.bool_]:
+        """Those that have a node."""
+        present = table.nonzero if isinstance(table, NodeTable) else table != 0
+        return np.asarray(present)
 
     def scaled(
         self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
@@ -295,24 +326,37 @@ class ExpressionTables:
         return value
 
     def pack(self, parts: Parts) -> tuple[Parts, Json]:
-        """Places in a list of expressions, and the list."""
-        nodes = ExpressionNodes()
-        places = {
-            name: tuple(nodes.places(table) for table in tables) for name, tables in parts.items()
-        }
-        return places, {"expressions": nodes.nodes}
+        """Nodes, the program that they belong to, and its symbols."""
+        tables = {name: tuple(table.nodes for table in row) for name, row in parts.items()}
+        first, *_ = parts["coordinates"]
+        arrays, layout = program_entries(first.program)
+        return tables | {name: (values,) for name, values in arrays.items()}, layout
 
     def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
         """Those of the tables."""
         return shapes
 
-    def unpack(self, arrays: Sequence[Array], body: Json) -> list[Any]:
-        """Tables of expressions, rebuilt from the list."""
-        expressions = expressions_of(body["expressions"])
-        for places in arrays:
-            if places.size and not 0 <= places.min() <= places.max() < len(expressions):
-                raise ValueError("a coefficient is none of the expressions")
-        return [np.asarray(expressions[places]) for places in arrays]
+    def members(self, body: Json) -> dict[str, int]:
+        """Those of the program."""
+        return {} if "expressions" in body else program_lengths(body)
+
+    def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
+        """Tables of nodes; of files of version 0.1, of expressions out of a list."""
+        if "expressions" in body:
+            return _unpacked_expressions(arrays, body)
+        program = program_from(body, members)
+        for nodes in arrays:
+            if nodes.size and not ZERO <= nodes.min() <= nodes.max() < program.size:
+                raise ValueError("a coefficient is no node of the program")
+        return [NodeTable(program, nodes, expanded=self.expanded) for nodes in arrays]
+
+
+def _unpacked_expressions(arrays: Sequence[Array], body: Json) -> list[Any]:
+    expressions = expressions_of(body["expressions"])
+    for places in arrays:
+        if places.size and not 0 <= places.min() <= places.max() < len(expressions):
+            raise ValueError("a coefficient is none of the expressions")
+    return [np.asarray(expressions[places]) for places in arrays]
 
 
 def multiplied(values: Array, linear: Sequence[Any], powers: Ints, scale: Any) -> Numbers:

@@ -9,7 +9,7 @@ from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.residue import ResidueRing
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.symbolic import SymbolicRing
+from tests.oracles.symbolic_ring import SymbolicRing
 from tests.tolerances import COEFFICIENT
 
 N, SEEDS, DEGREE, PRIME = 6, (1, 2), 6, 97  # 97 = 1 mod 4N

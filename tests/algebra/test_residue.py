@@ -96,7 +96,7 @@ def test_series_is_the_universal_form_modulo_the_prime(chain, seeds, order):
     point = random_point(chain.N, len(seeds), 1 + chain.degree_step * order, random.Random(7))
     ours, universal = residue_series(chain, seeds, point, order), lindstedt(chain, seeds, order=order)
     for mine, symbols in zip((*ours.coordinates, *ours.corrections), (*universal.coordinates, *universal.corrections), strict=True):
-        expected = [modulo(value, chain.N, seeds, point) for value in symbols.ravel()]
+        expected = [modulo(value, chain.N, seeds, point) for value in np.ravel(symbols)]
         assert [int(value) % point.prime for value in mine.ravel()] == expected
 
 

@@ -15,6 +15,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from symfpu.algebra.formulas import NodeTable
 from symfpu.algebra.grading import Grading
 from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
@@ -79,6 +80,9 @@ def same(a, b):
     if isinstance(a, np.ndarray):
         inside = all(map(same, a.flat, b.flat)) if a.dtype == object else a.tobytes() == b.tobytes()
         return a.dtype == b.dtype and a.shape == b.shape and inside
+    if isinstance(a, NodeTable):
+        programs = [(p.symbols, p.start.tolist(), *(t.tolist() for t in p.terms)) for p in (a.program, b.program)]
+        return same(a.nodes, b.nodes) and a.expanded == b.expanded and programs[0] == programs[1]
     if isinstance(a, Grading):
         return (a.seeds, a.degree) == (b.seeds, b.degree)
     if is_dataclass(a):

@@ -213,6 +213,37 @@ def test_forged_expressions_are_refused(nodes, message, tmp_path):
         load(forged(path, lambda m, b: b["series"].update(expressions=nodes)))
 
 
+def forged_integers(name, change):
+    """A forgery that changes an array of integers in place."""
+
+    def forge(members, body):
+        values = np.load(io.BytesIO(members[name])).copy()
+        change(values)
+        members[name] = numpy_file(values)
+
+    return forge
+
+
+@pytest.mark.parametrize(
+    ("forge", "message"),
+    [
+        (forged_integers("program_right.npy", lambda a: a.__setitem__(0, 10**6)), "comes before its parts"),
+        (forged_integers("program_left.npy", lambda a: a.__setitem__(0, -1)), "comes before its parts"),
+        (forged_integers("program_start.npy", lambda a: a.__setitem__(-2, 10**6)), "are in no order"),
+        (forged_integers("program_start.npy", lambda a: a.__setitem__(0, 1)), "are in no order"),
+        (forged_integers("coordinates.npy", lambda a: a.__setitem__(0, 10**6)), "is no node of the program"),
+        (forged_integers("coordinates.npy", lambda a: a.__setitem__(0, -2)), "is no node of the program"),
+        (lambda m, b: b["series"]["program"]["symbols"].pop(), "other leaves than symbols"),
+        (lambda m, b: b["series"]["program"]["symbols"].__setitem__(0, ["eval", "exit()"]), "no kind of symbol"),
+        (lambda m, b: b["series"]["program"].update(terms=2**50), "a program of"),
+    ],
+)
+def test_forged_programs_are_refused(forge, message, tmp_path):
+    path = save(tmp_path / "symbolic", lindstedt(ALPHA, (1, 2), order=2))
+    with pytest.raises(BundleError, match=message):
+        load(forged(path, forge))
+
+
 def test_compressions_that_inflate_without_a_bound_are_refused(healthy, tmp_path):
     (tmp_path / "bzip2").write_bytes(healthy[1])
     members, _ = opened(tmp_path / "bzip2")
@@ -225,11 +256,12 @@ def test_compressions_that_inflate_without_a_bound_are_refused(healthy, tmp_path
 
 def test_names_of_symbols_are_only_names(tmp_path):
     path = save(tmp_path / "symbolic", lindstedt(ALPHA, (1,), order=1))
-    renamed = forged(
-        path,
-        lambda m, b: b["series"].update(expressions=[[k, "exit()" if k == "symbol" else v, *r] for k, v, *r in b["series"]["expressions"]]),
-    )
-    assert se.Symbol("exit()") in load(renamed).series.coordinates[1][-1, 1].free_symbols
+
+    def rename(members, body):
+        program = body["series"]["program"]
+        program["symbols"] = [["symbol", f"exit({i})"] for i, _ in enumerate(program["symbols"])]
+
+    assert se.Symbol("exit(1)") in load(forged(path, rename)).series.coordinates[1][-1, 1].free_symbols
 
 
 def memory_of(action):

@@ -5,7 +5,7 @@ from fractions import Fraction
 import mpmath
 import symengine as se
 
-from symfpu.series.divisors import multiplier_symbol
+from symfpu.algebra.formulas import multiplier_symbol
 
 DIGITS = 40
 

@@ -6,6 +6,7 @@ import pytest
 import symengine as se
 
 import symfpu.proofs.leading
+from symfpu.algebra.formulas import multiplier_symbol
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import coupling_sequence, excitation_sequence
 from symfpu.errors import InputError
@@ -19,7 +20,6 @@ from symfpu.proofs.leading import (
     leading_terms,
     lemma_holds,
 )
-from symfpu.series.divisors import multiplier_symbol
 from symfpu.series.lindstedt import lindstedt
 
 ORDER = {"alpha": 4, "beta": 2}

@@ -6,11 +6,12 @@ import mpmath
 import numpy as np
 import pytest
 
+from symfpu.algebra.formulas import multiplier_symbol
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.selection import CosineModes
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, ResonantDivisor
-from symfpu.series.divisors import Float64Divisors, UniversalDivisors, multiplier_symbol
+from symfpu.series.divisors import Float64Divisors, UniversalDivisors
 from symfpu.series.lindstedt import lindstedt
 from tests.oracles.universal import DIGITS, multiplier
 from tests.tolerances import MULTIPLIER, NEAR_RESONANCE

@@ -39,15 +39,10 @@ class SymbolicRing:
         self._corrections: dict[int, Objects] = {}
 
     def _monomials(self, degree: int) -> list[Monomial]:
-        return [
-            tuple(map(int, row))
-            for row in self.grading.exponents(degree)[self.grading.canonical(degree)]
-        ]
+        return [tuple(map(int, row)) for row in self.grading.exponents(degree)[self.grading.canonical(degree)]]
 
     def _zeros(self, degree: int) -> Objects:
-        return np.full(
-            (len(self.grading.canonical(degree)), self.space.N - 1), se.Integer(0), dtype=object
-        )
+        return np.full((len(self.grading.canonical(degree)), self.space.N - 1), se.Integer(0), dtype=object)
 
     def number(self, value: Fraction) -> Any:
         return se.Integer(value.numerator) / se.Integer(value.denominator)
@@ -76,9 +71,7 @@ class SymbolicRing:
                 known[d] = self.power(power - 1, d)
         return self._sum(known, self._bonds, degree)
 
-    def _sum(
-        self, left: dict[int, Any], right: dict[int, Any], degree: int
-    ) -> dict[Monomial, Cosines]:
+    def _sum(self, left: dict[int, Any], right: dict[int, Any], degree: int) -> dict[Monomial, Cosines]:
         result: dict[Monomial, Cosines] = defaultdict(lambda: defaultdict(lambda: se.Integer(0)))
         for d in left:
             if degree - d not in right:
@@ -150,9 +143,7 @@ class SymbolicRing:
                 self._add_corrected(table, place, degree - n, np.repeat(e, 2), values)
         return table
 
-    def _add_corrected(
-        self, table: Objects, place: dict[Monomial, int], degree: int, diagonal: Any, values: Any
-    ) -> None:
+    def _add_corrected(self, table: Objects, place: dict[Monomial, int], degree: int, diagonal: Any, values: Any) -> None:
         """table += W_q u_q, of one coefficient of the corrections and the modes of a degree."""
         for monomial, terms in zip(self._monomials(degree), self._modes[degree], strict=True):
             product = tuple(m + int(k) for m, k in zip(monomial, diagonal, strict=True))
@@ -160,9 +151,7 @@ class SymbolicRing:
             for i, q in enumerate(self.space.seeds):
                 table[row, i] += values[i] * terms[q - 1]
 
-    def solve(
-        self, degree: int, corrected: Objects, force: Objects, multipliers: Objects
-    ) -> Objects:
+    def solve(self, degree: int, corrected: Objects, force: Objects, multipliers: Objects) -> Objects:
         _, index = self.grading.harmonics(degree)
         bracket = -force
         seeds = np.array(self.space.seeds) - 1
