@@ -304,7 +304,7 @@ class ExpressionTables:
 
     def nonzero(self, table: Any) -> NDArray[np.bool_]:
         """Those that have a node."""
-        present = table.nonzero if isinstance(table, NodeTable) else table != 0
+        present: Any = table.nonzero if isinstance(table, NodeTable) else table != 0
         return np.asarray(present)
 
     def scaled(
