@@ -182,9 +182,9 @@ def _first_orders(series: LindstedtSeries) -> dict[int, int]:
     """By mode, the first order at which the recursion gives it a term."""
     first: dict[int, int] = {}
     for k, table in enumerate(series.coordinates):
-        excited = series.tables.nonzero(table).any(axis=0, keepdims=True)[0]
+        nonzero = series.tables.nonzero(table)
         for q in range(1, series.chain.N):
-            if excited[q - 1]:
+            if nonzero[:, q - 1].any():
                 first.setdefault(q, k)
     return first
 
