@@ -207,7 +207,9 @@ def test_every_step_is_told():
 
 def test_heavy_rows_are_computed_in_full_only(monkeypatch):
     asked = []
-    monkeypatch.setattr(corrected, "corrected_row", lambda printed, step, *, series: asked.append(printed.label) or left_out(printed, ""))
+    monkeypatch.setattr(
+        corrected, "corrected_row", lambda printed, progress, *, series: asked.append(printed.label) or left_out(printed, "")
+    )
     known = dict.fromkeys(BY_LABEL.values())
     rows = list(corrected_rows(known))
     assert [row.printed.label for row in rows] == list(BY_LABEL)
