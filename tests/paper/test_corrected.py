@@ -199,7 +199,7 @@ def test_a_torus_above_its_tolerance_is_not_an_exact_one(monkeypatch):
 
 def test_every_step_is_told():
     lines = []
-    corrected_row(SMALL, lines.append)
+    corrected_row(SMALL, lambda label, fraction: lines.append(label))
     assert all(line.startswith("corrected: Fig. 7: ") for line in lines)
     assert any("step 1: residual" in line for line in lines)
     assert any("errors with" in line for line in lines)
