@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from math import comb
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from symfpu.algebra.grading import Ints, canonical_count, monomial_count
 from symfpu.algebra.selection import CosineModes
 
 Floats = NDArray[np.float64]
+Bonds = TypeVar("Bonds")
 
 PARALLEL_FROM = 500_000  # multiply-adds below which threads cost more than they give
 
@@ -63,9 +64,10 @@ def predicted_bytes(N: int, seeds: int, top: int, *, cubic: bool) -> int:
     return stored + modes + products + last_modes + transforms
 
 
-class DenseRing(ABC):
+class DenseRing(ABC, Generic[Bonds]):
     """Coefficients as doubles; products on bonds by compiled, threaded kernels.
 
+    Bonds : what powers on the bonds are, for `power` to give and `project` to take.
     multiply_adds counts the multiply-adds that the kernels performed on the bonds so far.
     exponent : degree d of everything stored carries the factor 2^(-exponent (d - 1)).
     """
@@ -126,6 +128,18 @@ class DenseRing(ABC):
     @abstractmethod
     def _keep_in_range(self, degree: int, modes: Floats) -> None:
         """Called after a degree is stored; a ring that can overflow rescales here."""
+
+    @abstractmethod
+    def power(self, power: int, degree: int) -> Bonds:
+        """As of `Ring`."""
+
+    @abstractmethod
+    def _put_power(self, power: int, degree: int) -> None:
+        """Keep a power of the bonds as a factor of higher ones."""
+
+    @abstractmethod
+    def project(self, degree: int, parts: Sequence[tuple[float, Bonds]]) -> Floats:
+        """As of `Ring`."""
 
     def _transforms(self) -> tuple[Floats, Floats]:
         """The cosines cos(q (j + 1/2) pi / N) on the first half of the bonds, and the way back.
@@ -252,16 +266,6 @@ class DenseRing(ABC):
         seeds = len(self.space.seeds)
         return sum(monomial_count(seeds, d) * monomial_count(seeds, e) for d, e in splits)
 
-    def power(self, power: int, degree: int) -> Floats:
-        if power == 2:
-            splits = self._square_splits(degree)
-            out = self._product(self._bonds, self._bonds, degree, splits, symmetric=True)
-        else:
-            splits = self._power_splits(power, degree)
-            out = self._product(self._powers[power - 1], self._bonds, degree, splits)
-        scale = np.ldexp(2.0, -self.exponent)
-        return self._times(out, float(scale))
-
     def _canonical_points(self, degree: int, values: Floats) -> Floats:
         """Canonical monomials of the kernel's (slices, rows, lanes); shape (canonical, points)."""
         canonical = self.grading.canonical(degree)
@@ -283,10 +287,6 @@ class DenseRing(ABC):
         splits = [(d, degree - d) for d in self._power_degrees.get(lower, ())]
         return [(d, e) for d, e in splits if e in self._degrees]
 
-    def _put_power(self, power: int, degree: int) -> None:
-        values = self.power(power, degree)
-        self._store_power(power, degree, self._canonical_points(degree, values))
-
     def _store_power(self, power: int, degree: int, values: Floats) -> None:
         """Keep a power of the bonds, (canonical, points), as a factor of higher powers."""
         if power not in self._powers:
@@ -295,18 +295,6 @@ class DenseRing(ABC):
         if degree not in self._power_degrees[power]:
             self._power_degrees[power].append(degree)
         self._store(self._powers[power], degree, np.arange(len(values)), values)
-
-    def project(self, degree: int, parts: Sequence[tuple[float, Floats]]) -> Floats:
-        canonical = self.grading.canonical(degree)
-        modes = np.zeros((len(canonical), self.space.N - 1))
-        for rows, columns in self._parts(degree):
-            chosen, back = canonical[rows], self._to_modes[columns].T
-            for coefficient, values in parts:
-                bonds = np.concatenate([part[chosen] for part in values], axis=1)
-                force = self._matrix_product(bonds, back)
-                modes[rows, columns] += self._times(force, coefficient)
-        np.multiply(modes, self.space.mask(degree), out=modes)
-        return self._reduced(modes)
 
     def secular(self, degree: int, modes: NDArray[Any]) -> NDArray[Any]:
         canonical = self.grading.canonical(degree)
@@ -357,3 +345,33 @@ class DenseRing(ABC):
 
     def results(self) -> tuple[list[Floats], list[Floats], Fraction]:
         return self._modes, self._diagonal, Fraction(2) ** self.exponent
+
+
+class ValuesRing(DenseRing[Floats]):
+    """Powers on the bonds as their values, as the kernel leaves them: (slices, rows, lanes)."""
+
+    def power(self, power: int, degree: int) -> Floats:
+        if power == 2:
+            splits = self._square_splits(degree)
+            out = self._product(self._bonds, self._bonds, degree, splits, symmetric=True)
+        else:
+            splits = self._power_splits(power, degree)
+            out = self._product(self._powers[power - 1], self._bonds, degree, splits)
+        scale = np.ldexp(2.0, -self.exponent)
+        return self._times(out, float(scale))
+
+    def _put_power(self, power: int, degree: int) -> None:
+        values = self.power(power, degree)
+        self._store_power(power, degree, self._canonical_points(degree, values))
+
+    def project(self, degree: int, parts: Sequence[tuple[float, Floats]]) -> Floats:
+        canonical = self.grading.canonical(degree)
+        modes = np.zeros((len(canonical), self.space.N - 1))
+        for rows, columns in self._parts(degree):
+            chosen, back = canonical[rows], self._to_modes[columns].T
+            for coefficient, values in parts:
+                bonds = np.concatenate([part[chosen] for part in values], axis=1)
+                force = self._matrix_product(bonds, back)
+                modes[rows, columns] += self._times(force, coefficient)
+        np.multiply(modes, self.space.mask(degree), out=modes)
+        return self._reduced(modes)

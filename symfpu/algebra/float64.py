@@ -11,19 +11,14 @@ from fractions import Fraction
 
 import numpy as np
 
-from symfpu.algebra.dense import DenseRing, Floats
+from symfpu.algebra.dense import Bonds, DenseRing, Floats, ValuesRing
 from symfpu.algebra.grading import Ints
 
 SAFE_EXPONENT = 200
 
 
-class Float64Ring(DenseRing):
-    """Coefficients as doubles."""
-
-    name = "float64"
-
-    def number(self, value: Fraction) -> float:
-        return float(value)
+class DoublesRing(DenseRing[Bonds]):
+    """The arithmetic of doubles, whatever stands on the bonds."""
 
     def _cosines(self, angles: Ints) -> Floats:
         # cos x = sin(pi/2 - x): the sine of an exactly reduced argument has full relative
@@ -44,6 +39,15 @@ class Float64Ring(DenseRing):
 
     def _reduced(self, values: Floats) -> Floats:
         return values
+
+
+class Float64Ring(DoublesRing[Floats], ValuesRing):
+    """Coefficients as doubles."""
+
+    name = "float64"
+
+    def number(self, value: Fraction) -> float:
+        return float(value)
 
     def _keep_in_range(self, degree: int, modes: Floats) -> None:
         largest = max(float(modes.max()), -float(modes.min()))

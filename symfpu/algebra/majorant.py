@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symfpu.algebra.dense import Floats
-from symfpu.algebra.float64 import Float64Ring
+from symfpu.algebra.float64 import DoublesRing
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.residue import longest_sum
 from symfpu.algebra.selection import CosineModes
@@ -39,7 +39,7 @@ class Bounds(NamedTuple):
     power: int
 
 
-class MajorantRing(Float64Ring):
+class MajorantRing(DoublesRing[Bounds]):
     """Radii in units of the last place.
 
     tables, corrections : moduli of the series, by degree, scaled by unit^-(d - 1). epsilon : the
@@ -138,7 +138,7 @@ class MajorantRing(Float64Ring):
         doubled = 2 * self._canonical_points(degree, radii)
         return Bounds(doubled + fresh, sums, power)
 
-    def power(self, power: int, degree: int) -> Bounds:  # type: ignore[override]
+    def power(self, power: int, degree: int) -> Bounds:
         if power == 2:
             splits = [(d, degree - d) for d in self._degrees]
             ordered = [(d, e) for d, e in splits if e in self._degrees]
@@ -167,7 +167,7 @@ class MajorantRing(Float64Ring):
             self._power_radii[power] = np.zeros_like(self._bonds)
         self._store(self._power_radii[power], degree, np.arange(len(radii)), radii)
 
-    def project(self, degree: int, parts: Sequence[tuple[float, Bounds]]) -> Floats:  # type: ignore[override]
+    def project(self, degree: int, parts: Sequence[tuple[float, Bounds]]) -> Floats:
         mask = self.space.mask(degree)
         modes = np.full(mask.shape, ROUNDED)
         for coefficient, bounds in parts:

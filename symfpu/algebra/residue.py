@@ -11,7 +11,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from symfpu.algebra.dense import DenseRing, Floats
+from symfpu.algebra.dense import Floats, ValuesRing
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.selection import CosineModes
 
@@ -30,7 +30,7 @@ def largest_modulus(seeds: int, degree: int) -> int:
     return int(min(2**PRIME_BITS, 2**52 // longest_sum(seeds, degree)))
 
 
-class ResidueRing(DenseRing):
+class ResidueRing(ValuesRing):
     """Coefficients modulo a prime; root is an element of order 4N."""
 
     name = "residue"

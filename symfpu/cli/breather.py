@@ -25,6 +25,7 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
+from symfpu.files.progress import NO_FRACTION
 from symfpu.files.writing import output_file
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.tori.quasiperiodic import FourierTorus
@@ -69,9 +70,9 @@ def breather(
     with progress_bar("harmonic balance") as advance:
         orbit: FourierTorus = _found(chain, mode, omega, amplitude, energy)
         if places is not None:
-            advance("digits")
+            advance("digits", NO_FRACTION)
             orbit = periodic_orbit_digits(orbit, places, frequency=omega, amplitude=amplitude)
-        advance("multipliers" if multipliers else "energies")
+        advance("multipliers" if multipliers else "energies", NO_FRACTION)
         stability = floquet(orbit) if multipliers else None
         if file:
             verdict = {"verdict": "periodic orbit", "reasons": list(doubts)}

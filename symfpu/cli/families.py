@@ -85,19 +85,15 @@ def refine_file(
     kept = None if output is None else output_file(path_named("output", output))
     goal = number("tolerance", tolerance)
     with progress_bar("Newton's method") as advance:
-
-        def report(line: str) -> None:
-            advance(line)
-
         if energy is not None:
             refined = refine_at_energy(
-                torus, energy, harmonic=harmonic, tolerance=goal, report=report
+                torus, energy, harmonic=harmonic, tolerance=goal, progress=advance
             )
         elif amplitudes is not None:
             chosen = by_seed("amplitudes", amplitudes, torus.seeds)
-            refined = refine_at_amplitudes(torus, chosen, tolerance=goal, report=report)
+            refined = refine_at_amplitudes(torus, chosen, tolerance=goal, progress=advance)
         else:
-            refined = refine(torus, tolerance=goal, report=report)
+            refined = refine(torus, tolerance=goal, progress=advance)
         if kept:
             command = shlex.join(["symfpu", *context.obj])
             save(kept, refined, verdict=verdict_of(refined), command=command)
@@ -190,10 +186,6 @@ def follow_family(
     chosen = tuple(whole_numbers("seeds", seeds))
     folder = None if output is None else output_folder(path_named("output", output))
     with progress_bar("first member", lambda: _kept(folder)) as advance:
-
-        def progress(label: str, done: float) -> None:
-            advance(label, min(max(done, 0.0), 1.0))
-
         found = family(
             chain,
             chosen,
@@ -207,7 +199,7 @@ def follow_family(
             method=method,
             order=optional("order", order),
             folder=folder,
-            progress=progress,
+            progress=advance,
         )
         pictures = [] if folder is None else draw_family(found, folder)
         if folder is not None:

@@ -85,7 +85,7 @@ def orbit(
             samples=count,
             averages=True,
             file=kept,
-            progress=lambda done, total: advance("orbit", done / total),
+            progress=advance,
         )
         if target is not None:
             _write(target, made)

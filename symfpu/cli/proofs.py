@@ -93,7 +93,7 @@ def prove(
             highest,
             model=model,
             points=whole("points", points),
-            progress=lambda done, total: advance("recursion modulo a prime", done / max(total, 1)),
+            progress=advance,
         )
         if file is not None:
             proof.write(file)
@@ -187,7 +187,7 @@ def sweep(
             whole("order", order),
             model=model,
             file=log,
-            progress=lambda done, total: advance("seed sets", done / total),
+            progress=advance,
         )
         if summary is not None:
             write_text(summary, sweep_markdown(result))

@@ -6,6 +6,7 @@ Options, numbers and paths, lines for a reader, JSON, progress, the interrupt ke
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 import sys
@@ -16,13 +17,13 @@ from datetime import timedelta
 from pathlib import Path
 from threading import Event, Lock, Thread
 from time import monotonic
-from typing import Annotated, Any, Protocol, TextIO, TypeVar
+from typing import Annotated, Any, TextIO, TypeVar
 
+import rich.progress
 import typer
 from rich.console import Console
 from rich.progress import (
     BarColumn,
-    Progress,
     SpinnerColumn,
     Task,
     TaskProgressColumn,
@@ -34,6 +35,7 @@ from rich.table import Column
 from rich.text import Text
 
 from symfpu.errors import InputError, SymfpuError
+from symfpu.files.progress import Progress
 
 BondsOption = Annotated[
     str,
@@ -176,14 +178,8 @@ def console() -> Console:
     return Console(stderr=True, soft_wrap=True)
 
 
-class Advance(Protocol):
-    """Hears what comes next, and the fraction of it that is done if that is known."""
-
-    def __call__(self, label: str, done: float | None = None) -> None: ...
-
-
 @contextmanager
-def progress_bar(label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Advance]:
+def progress_bar(label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Progress]:
     """A function that shows on standard error what is being done: a bar on a terminal, lines elsewhere.
 
     label : what is done first. kept : what stands when the interrupt key is pressed, and how to go on.
@@ -219,7 +215,7 @@ class Bar:
         )
         much = BarColumn(BAR_WIDTH), TaskProgressColumn()
         when = TimeElapsedColumn(), TimeLeft(compact=True)
-        self._progress = Progress(
+        self._progress = rich.progress.Progress(
             *what, *much, *when, console=terminal, transient=True, expand=True
         )
         self._begun = self._progress.get_time()
@@ -232,8 +228,9 @@ class Bar:
     def __exit__(self, *reason: object) -> None:
         self._progress.stop()
 
-    def __call__(self, label: str, done: float | None = None) -> None:
+    def __call__(self, label: str, fraction: float) -> None:
         """Moves the bar; where the fraction begins anew, so does the estimate of the time left."""
+        done = _known(fraction)
         if done is None or self._done is None or done < self._done:
             self._progress.remove_task(self._task)
             self._task = self._progress.add_task(label, total=None if done is None else 1.0)
@@ -263,8 +260,9 @@ class Lines:
         self._over.set()
         self._watch.join()
 
-    def __call__(self, label: str, done: float | None = None) -> None:
+    def __call__(self, label: str, fraction: float) -> None:
         """Hears what is being done."""
+        done = _known(fraction)
         with self._lock:
             if done is not None and (self._done is None or done < self._done):
                 self._since, self._from = monotonic(), done
@@ -297,6 +295,11 @@ class Lines:
             return ""
         rest = (1.0 - self._done) / (self._done - self._from)
         return f", {_clock(rest * (now - self._since))} left"
+
+
+def _known(fraction: float) -> float | None:
+    """The fraction, or None for NO_FRACTION."""
+    return None if math.isnan(fraction) else fraction
 
 
 def _clock(seconds: float) -> str:

@@ -27,6 +27,7 @@ from symfpu.cli.terminal import (
     width_of,
 )
 from symfpu.cli.verbs import app
+from symfpu.files.progress import NO_FRACTION
 from symfpu.files.writing import output_file
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.tori import RefinedTorus
@@ -96,16 +97,14 @@ def solve(
             omega.split(","),
             whole("order", order),
             digits=places,
-            progress=lambda done, total: advance("series", done / total),
+            progress=advance,
         )
-        advance("amplitudes")
+        advance("amplitudes", NO_FRACTION)
         torus = solve_amplitudes(series, frequency_order=highest, order=cut)
-        assessment = assess(
-            series, torus, progress=lambda done, total: advance("verdict", done / total)
-        )
+        assessment = assess(series, torus, progress=advance)
         record = torus_record(torus, assessment)
         if file:
-            advance("writing")
+            advance("writing", NO_FRACTION)
             save(
                 file,
                 torus,

@@ -31,12 +31,13 @@ from symfpu.dynamics.dimension import (
     fits,
     torus_dimension,
 )
-from symfpu.dynamics.frame_run import FrameRun, Progress, seconds_a_step
+from symfpu.dynamics.frame_run import FrameRun, seconds_a_step
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import particle_scheme
 from symfpu.dynamics.tangent import moving_frame, step_length
 from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path, digest, seconds_between
+from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -211,7 +212,7 @@ def alignment_indices(
     if file is not None:
         state = digest(np.array([Q, P], dtype=float))
         run.keep_in(checkpoint_path(file), {"start": state, "seed": drawn})
-    run.go(progress or (lambda label, done: None))
+    run.go(progress or unheard)
     times = np.asarray(run.marks * h, dtype=np.float64)
     logarithms = np.cumsum(run.volumes, axis=1)
     volumes = logarithms[:, 1:] / math.log(10)

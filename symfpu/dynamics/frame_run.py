@@ -5,7 +5,7 @@ again bitwise, and the time it will take.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -24,11 +24,11 @@ from symfpu.files.checkpoint import (
     write_checkpoint,
 )
 from symfpu.files.interruption import kept_run
+from symfpu.files.progress import Progress
 from symfpu.numbers.typed import decimal
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Progress = Callable[[str, float], None]
 # moves of a particle with its lanes between two looks at the clock: half a second, about
 PORTION = 6_400_000
 TRIAL = 0.2  # seconds of a measurement

@@ -42,6 +42,7 @@ from symfpu.files.checkpoint import (
     write_checkpoint,
 )
 from symfpu.files.interruption import kept_run
+from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.typed import decimal, integer
 
 Floats = NDArray[np.float64]
@@ -120,7 +121,7 @@ def integrate(
     file: str | PathLike[str] | None = None,
     every: float = 10.0,
     workers: int = 1,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> Orbit:
     """The orbit from mode coordinates Q and momenta P at time 0 to T, sampled at multiples of the step.
 
@@ -140,7 +141,7 @@ def integrate(
         and where they have the old end among them the bits are those of a run to this T from the start.
     every : those seconds.
     workers : threads, among which orbits are shared out.
-    progress : called as (steps done, steps).
+    progress : called as (label, fraction done).
 
     Solves Eq. eqmo, in particles or in modes. Section 3.2 averages P^2 + Omega^2 Q^2 without the factor 1/2;
     the averages here are of Eq. harmonicene, with it.
@@ -166,7 +167,7 @@ def integrate(
     with ThreadPoolExecutor(workers) as pool:
         run.go(
             map if workers == 1 or run.orbits == 1 else pool.map,
-            progress or (lambda done, total: None),
+            progress or unheard,
         )
     return run.result()
 
@@ -286,7 +287,7 @@ class _Run:
             following = int(self.sampled[np.searchsorted(self.sampled, self.done, side="right")])
             yield min(following, (self.done // block + 1) * block)
 
-    def go(self, each: Callable[..., Any], progress: Callable[[int, int], None]) -> None:
+    def go(self, each: Callable[..., Any], progress: Progress) -> None:
         """To the last step. Raises OrbitStopped.
 
         RunInterrupted where the run is kept in a file.
@@ -295,7 +296,7 @@ class _Run:
             for end in self._ends():
                 self._move_to(end, each)
                 place = f"at t = {self.step * end:.6g} of {self.T:.6g}"
-                look(place, end == self.steps, partial(progress, end, self.steps))
+                look(place, end == self.steps, partial(progress, "orbit", end / self.steps))
 
     def _move_to(self, end: int, each: Callable[..., Any]) -> None:
         before = self.state.copy()

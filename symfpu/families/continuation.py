@@ -19,10 +19,10 @@ from symfpu.breathers.floquet import Floquet, floquet
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import SymfpuError
+from symfpu.files.progress import Progress
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import Amplitude, Condition, Energy, Plane, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, Floats
-from symfpu.refinement.newton import Report
 from symfpu.refinement.tori import (
     TOLERANCE,
     NoTorus,
@@ -177,7 +177,7 @@ def first_torus(
     *,
     energy_ratio: Mapping[int, float] | None = None,
     tolerance: float = TOLERANCE,
-    report: Report = lambda _: None,
+    progress: Progress | None = None,
 ) -> RefinedTorus:
     """The torus with these small amplitudes, from a short series about the lowest frequency shift.
 
@@ -186,10 +186,10 @@ def first_torus(
     """
     guess = _short_series(chain, amplitudes)
     if energy_ratio is None:
-        return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance, report=report)
+        return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance, progress=progress)
     first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
     conditions = [first, *ratio_conditions(tuple(amplitudes), energy_ratio, energies=True)]
-    return refined_torus(guess, conditions, tolerance=tolerance, report=report)
+    return refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
 
 
 def first_at(
@@ -199,7 +199,7 @@ def first_at(
     ratio: Sequence[Condition],
     *,
     tolerance: float = TOLERANCE,
-    report: Report = lambda _: None,
+    progress: Progress | None = None,
 ) -> RefinedTorus:
     """The torus of an energy near the linear limit, from a short series with about its amplitudes.
 
@@ -210,7 +210,7 @@ def first_at(
         _short_series(chain, amplitudes),
         [level.condition, *ratio],
         tolerance=tolerance,
-        report=report,
+        progress=progress,
     )
     astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
     if astray > FAR:
@@ -289,12 +289,13 @@ class Way:
         *,
         energies: bool,
         tolerance: float,
-        report: Report,
+        progress: Progress | None,
         tori: Sequence[RefinedTorus],
         step: float,
         largest: float = 0.0,
     ) -> None:
-        self.ratio, self.energies, self.tolerance, self.report = ratio, energies, tolerance, report
+        self.ratio, self.energies = ratio, energies
+        self.tolerance, self.progress = tolerance, progress
         self.tori, self.step = list(tori), step
         self.largest = largest  # relative shift so far
 
@@ -304,7 +305,7 @@ class Way:
             self.ratio,
             energies=self.energies,
             tolerance=self.tolerance,
-            report=self.report,
+            progress=self.progress,
             tori=tori,
             step=self.step,
             largest=self.largest,
@@ -346,7 +347,7 @@ class Way:
             extrapolated(before, last, distance / length),
             self._conditions(plane),
             tolerance=self.tolerance,
-            report=self.report,
+            progress=self.progress,
         )
         _require_resolved(found)
         off = float(
@@ -368,7 +369,7 @@ class Way:
         ratio = ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)
         conditions = [level.condition, *ratio]
         guess = extrapolated(before, last, part - 1)
-        found = refined_torus(guess, conditions, tolerance=self.tolerance, report=self.report)
+        found = refined_torus(guess, conditions, tolerance=self.tolerance, progress=self.progress)
         _require_resolved(found)
         along, astray = self.place(found)
         if astray > ASTRAY or not -SPARE <= along <= 1 + SPARE:

@@ -152,7 +152,7 @@ def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
             extrapolated(first, second, sign.part - 1),
             conditions,
             tolerance=way.tolerance,
-            report=way.report,
+            progress=way.progress,
         )
     except NoTorus:
         return None

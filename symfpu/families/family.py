@@ -31,14 +31,12 @@ from symfpu.families.continuation import (
 )
 from symfpu.families.events import continued, events_between
 from symfpu.families.folder import BEGINNING, Kept, Plan, checked_family
+from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
-from symfpu.refinement.newton import Report
 from symfpu.refinement.tori import TOLERANCE, NoTorus, RefinedTorus, refine_at_energy, refined_torus
 from symfpu.tori.torus import QTorus
-
-Progress = Callable[[str, float], None]
 
 SECOND = 1.1  # ratio of the amplitudes of the second member and the first
 MEMBERS = 200
@@ -280,14 +278,14 @@ def family(
     )
     plan = checked_family(chain, seeds, *arguments)
     kept = Kept(plan, None if folder is None else Path(folder))
-    tell = progress or (lambda label, done: None)
+    tell = progress or unheard
 
-    def report(line: str) -> None:
-        tell(f"member {len(kept.members) + 1}: {line}", kept.plan.done(kept.members))
+    def of_member(label: str, _: float) -> None:
+        tell(f"member {len(kept.members) + 1}: {label}", kept.plan.done(kept.members))
 
     try:
         return (
-            _by_arclength(kept.plan, kept, report)
+            _by_arclength(kept.plan, kept, of_member)
             if order is None
             else _by_appendix_a(kept.plan, order, kept, tell)
         )
@@ -297,7 +295,7 @@ def family(
         raise RunInterrupted(f"after {len(kept.members)} members", str(kept.folder)) from stop
 
 
-def _by_arclength(plan: Plan, kept: Kept, report: Report, *, lower: bool = True) -> Family:
+def _by_arclength(plan: Plan, kept: Kept, progress: Progress, *, lower: bool = True) -> Family:
     """Newton's method and pseudo-arclength continuation, gone on with from the members there are.
 
     lower : as for `_begun`.
@@ -305,13 +303,13 @@ def _by_arclength(plan: Plan, kept: Kept, report: Report, *, lower: bool = True)
     if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
 
         def at_goal(k: int) -> Member:
-            way = _way(plan, kept, report, _refined(kept.members[k - 1 : k + 1]))
+            way = _way(plan, kept, progress, _refined(kept.members[k - 1 : k + 1]))
             return member(way.between(plan.level), multipliers=plan.multipliers)
 
         return _up_to_goal(plan, kept, at_goal)
-    why = _begun(plan, kept, report, lower=lower) or _ending(plan, kept)
+    why = _begun(plan, kept, progress, lower=lower) or _ending(plan, kept)
     if not why:
-        way = _way(plan, kept, report)
+        way = _way(plan, kept, progress)
         try:
             for found in continued(way, kept.members, plan.level, multipliers=plan.multipliers):
                 kept.step, kept.largest = way.step, way.largest
@@ -324,14 +322,14 @@ def _by_arclength(plan: Plan, kept: Kept, report: Report, *, lower: bool = True)
     return _family(plan, kept.members, kept.events, why)
 
 
-def _way(plan: Plan, kept: Kept, report: Report, tori: Sequence[RefinedTorus] = ()) -> Way:
+def _way(plan: Plan, kept: Kept, progress: Progress, tori: Sequence[RefinedTorus] = ()) -> Way:
     """The way of a family from its last members, or from other tori."""
     known = tori or [m.torus for m in kept.members[-3:] if isinstance(m.torus, RefinedTorus)]
     return Way(
         plan.ratio,
         energies=plan.energies,
         tolerance=plan.tolerance,
-        report=report,
+        progress=progress,
         tori=known,
         step=kept.step,
         largest=kept.largest,
@@ -394,7 +392,7 @@ def _refined(members: Sequence[Member]) -> list[RefinedTorus]:
     return [m.torus for m in members if isinstance(m.torus, RefinedTorus)]
 
 
-def _begun(plan: Plan, kept: Kept, report: Report, *, lower: bool) -> str:
+def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
     """The first two members: from short series, or, where these fail, from a family that begins lower.
 
     lower : whether such a family is looked for. Returns why there is no second member; empty if there is.
@@ -403,19 +401,19 @@ def _begun(plan: Plan, kept: Kept, report: Report, *, lower: bool) -> str:
         return ""
     why = ""
     try:
-        tori = _from_series(plan, kept, report)
+        tori = _from_series(plan, kept, progress)
     except NoTorus:
         if not lower:
             raise
-        tori, why = _led_up(plan, kept, report)
-    way = _way(plan, kept, report, tori)
+        tori, why = _led_up(plan, kept, progress)
+    way = _way(plan, kept, progress, tori)
     for torus in tori[len(kept.members) : plan.most]:
         found = member(torus, multipliers=plan.multipliers)
         kept.add(found, events_between(way, kept.members[-1], found, 0) if kept.members else [])
     return why
 
 
-def _from_series(plan: Plan, kept: Kept, report: Report) -> list[RefinedTorus]:
+def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedTorus]:
     """The torus of the first energy, or the one member there is, and one a little above, up to the goal."""
     ratio = ratio_conditions(plan.seeds, plan.ratio, energies=plan.energies)
     begin = Level(plan.first, plan.harmonic)
@@ -423,7 +421,9 @@ def _from_series(plan: Plan, kept: Kept, report: Report) -> list[RefinedTorus]:
     first = (
         known[0]
         if known
-        else first_at(begin, plan.chain, plan.start, ratio, tolerance=plan.tolerance, report=report)
+        else first_at(
+            begin, plan.chain, plan.start, ratio, tolerance=plan.tolerance, progress=progress
+        )
     )
     energy = begin.of(first)
     above = Level(min(SECOND**2 * energy, plan.goal), plan.harmonic)
@@ -431,11 +431,11 @@ def _from_series(plan: Plan, kept: Kept, report: Report) -> list[RefinedTorus]:
     raised = {q: scale * a for q, a in first.amplitudes.items()}
     return [
         first,
-        first_at(above, plan.chain, raised, ratio, tolerance=plan.tolerance, report=report),
+        first_at(above, plan.chain, raised, ratio, tolerance=plan.tolerance, progress=progress),
     ]
 
 
-def _led_up(plan: Plan, kept: Kept, report: Report) -> tuple[list[RefinedTorus], str]:
+def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[RefinedTorus], str]:
     """The torus of the first energy, at the end of a family from a small part of it, and the next one.
 
     With why there is no next one. Raises NotInFamily where that family does not reach the energy.
@@ -444,11 +444,11 @@ def _led_up(plan: Plan, kept: Kept, report: Report) -> tuple[list[RefinedTorus],
     low = {q: a * math.sqrt(Fraction(BEGINNING)) for q, a in plan.start.items()}
     below = replace(plan, goal=goal.energy, start=low, most=MEMBERS, multipliers=False)
     led = Kept(below, None)
-    leading = _by_arclength(below, led, report, lower=False)
+    leading = _by_arclength(below, led, progress, lower=False)
     if below.done(led.members) < 1:
         energies = [goal.of_member(m) for m in led.members]
         raise NotInFamily(goal.name, goal.energy, (min(energies), max(energies)), leading.ending)
-    way = _way(plan, led, report)
+    way = _way(plan, led, progress)
     first = way.tori[-1]
     kept.step, kept.largest = way.step, way.largest
     try:

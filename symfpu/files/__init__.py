@@ -1,1 +1,1 @@
-"""Files: archives, checkpoints, writing whole or not at all."""
+"""Files: archives, checkpoints, writing whole or not at all; what a long run tells."""

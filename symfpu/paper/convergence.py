@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from symfpu.breathers.balance import PeriodicOrbit
 from symfpu.figures.panels import Curve, Panel
+from symfpu.files.progress import Progress
 from symfpu.numbers.typed import decimal
 from symfpu.paper.claims import PaperFigure
 from symfpu.paper.convergence_fig1 import CancellationStudy, cancellation_study
 from symfpu.paper.convergence_fig9 import BreatherStudy, SchemeLimit, breather_study
-from symfpu.paper.steps import Step
 from symfpu.reports.tables import fifteen_digits, markdown_table
 from symfpu.tori.verdict import Assessment
 
@@ -35,9 +35,9 @@ BREATHER_HEAD = ("periodic orbit with the", "omega", "A", "H", "harmonic E(0)", 
 AMPLITUDE_HEAD = ("order", "residual", "resummed", "A_1", "A_2", "A_1 resummed", "A_2 resummed")
 
 
-def convergence(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def convergence(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """Both questions: why the errors of Fig. 1 stop falling, and whether Fig. 9 is a breather."""
-    return convergence_figure(cancellation_study(step), breather_study(step))
+    return convergence_figure(cancellation_study(progress), breather_study(progress))
 
 
 def convergence_figure(cancellation: CancellationStudy, breather: BreatherStudy) -> PaperFigure:

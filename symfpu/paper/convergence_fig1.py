@@ -16,8 +16,8 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, TWO_TORUS
-from symfpu.paper.steps import Step, unheard
 from symfpu.series.divisors import divisor
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
@@ -80,16 +80,16 @@ class CancellationStudy:
     assessment: Assessment
 
 
-def cancellation_study(step: Step = unheard) -> CancellationStudy:
+def cancellation_study(progress: Progress = unheard) -> CancellationStudy:
     """Compute question (i)."""
     chain, seeds, printed = TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies
-    step("convergence: long series")
+    progress("convergence: long series", NO_FRACTION)
     series = lindstedt(chain, seeds, printed, LONG_ORDER, digits=DIGITS)
     torus = solve_amplitudes(series, frequency_order=FIG1_AMPLITUDE_ORDER)
-    step("convergence: verdict")
+    progress("convergence: verdict", NO_FRACTION)
     assessment = assess(series, torus)
-    variants = _variants(step)
-    step("convergence: resummation")
+    variants = _variants(progress)
+    progress("convergence: resummation", NO_FRACTION)
     tori = resum_by_order(torus, SHOWN_ORDERS)
     resummed = {k: t.residual() for k, t in zip(SHOWN_ORDERS, tori, strict=True)}
     amplitudes = {}
@@ -111,28 +111,28 @@ def cancellation_study(step: Step = unheard) -> CancellationStudy:
     )
 
 
-def _variants(step: Step) -> tuple[Variant, ...]:
+def _variants(progress: Progress) -> tuple[Variant, ...]:
     """The printed case and its counterfactuals, to the paper's order."""
     printed = TWO_TORUS.frequencies
     detuned = f"omega_2 = {DETUNED[1]}"
-    variants = [_variant("doubles", _series(printed, None, "doubles", step))]
+    variants = [_variant("doubles", _series(printed, None, "doubles", progress))]
     name = f"{MORE_DIGITS} digits"
-    precise = _series(printed, MORE_DIGITS, name, step)
+    precise = _series(printed, MORE_DIGITS, name, progress)
     variants.append(_variant(name, precise))
     name = f"amplitudes rounded to {PRINTED_DIGITS} digits"
-    step(f"convergence: {name}")
+    progress(f"convergence: {name}", NO_FRACTION)
     variants.append(_variant(name, precise, amplitude_digits=PRINTED_DIGITS))
     name = "incommensurable digits appended"
-    variants.append(_variant(name, _series(INCOMMENSURABLE, MORE_DIGITS, name, step)))
-    variants.append(_variant(detuned, _series(DETUNED, None, detuned, step)))
+    variants.append(_variant(name, _series(INCOMMENSURABLE, MORE_DIGITS, name, progress)))
+    variants.append(_variant(detuned, _series(DETUNED, None, detuned, progress)))
     return tuple(variants)
 
 
 def _series(
-    frequencies: Sequence[str], digits: int | None, name: str, step: Step
+    frequencies: Sequence[str], digits: int | None, name: str, progress: Progress
 ) -> LindstedtSeries:
     """The series of the paper's torus with some frequencies, to the paper's order."""
-    step(f"convergence: {name}")
+    progress(f"convergence: {name}", NO_FRACTION)
     chain, seeds = TWO_TORUS.chain, TWO_TORUS.seeds
     return lindstedt(chain, seeds, frequencies, TWO_TORUS.order, digits=digits)
 

@@ -17,9 +17,9 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.continuation import Member
 from symfpu.families.family import Family, family
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import Number
 from symfpu.paper.printed import FIG9_BREATHER
-from symfpu.paper.steps import Step, unheard
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import frequency_orders, solve_amplitudes
@@ -72,17 +72,17 @@ class SchemeLimit:
     family: Family = field(repr=False)
 
 
-def breather_study(step: Step = unheard) -> BreatherStudy:
+def breather_study(progress: Progress = unheard) -> BreatherStudy:
     """Compute question (ii)."""
     chain, seeds, rates = FIG9_BREATHER.chain, FIG9_BREATHER.seeds, FIG9_BREATHER.frequencies
     (seed,) = seeds
-    step("convergence: breather series")
+    progress("convergence: breather series", NO_FRACTION)
     series = lindstedt(chain, seeds, rates, FIG9_BREATHER.order, digits=BREATHER_DIGITS)
     torus = solve_amplitudes(series)
-    step("convergence: breather verdict")
+    progress("convergence: breather verdict", NO_FRACTION)
     assessment = assess(series, torus)
     singularity, spread, exponent = _singularity(series)
-    step("convergence: periodic orbits")
+    progress("convergence: periodic orbits", NO_FRACTION)
     printed = float(FIG9_BREATHER.amplitudes[0])
     amplitudes = {K: float(a[0]) for K, a in torus.history.items()}
     return BreatherStudy(
@@ -93,23 +93,23 @@ def breather_study(step: Step = unheard) -> BreatherStudy:
         spread=spread,
         exponent=exponent,
         assessment=assessment,
-        limit=scheme_limit(chain, seed, LIMIT_ENERGIES, step),
+        limit=scheme_limit(chain, seed, LIMIT_ENERGIES, progress),
     )
 
 
 def scheme_limit(
-    chain: Chain, seed: int, energies: tuple[str, str], step: Step = unheard
+    chain: Chain, seed: int, energies: tuple[str, str], progress: Progress = unheard
 ) -> SchemeLimit:
     """Follow the breathers of a seed between two energies, to where their series end before them.
 
     Those are the series with fixed frequency. Raises InputError where the limit does not lie
     between the energies.
     """
-    step("convergence: family of breathers")
+    progress("convergence: family of breathers", NO_FRACTION)
     found = family(chain, (seed,), energies[1], from_energy=energies[0])
     chosen = _spread_members(found)
     rates = [float(m.torus.frequencies[0]) for m in chosen]
-    step("convergence: ends of the series along the family")
+    progress("convergence: ends of the series along the family", NO_FRACTION)
     ends = []
     gaps = []
     for w in rates:

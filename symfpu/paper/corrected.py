@@ -10,10 +10,9 @@ import numpy as np
 
 from symfpu.breathers.balance import periodic_orbit
 from symfpu.errors import SymfpuError
+from symfpu.files.progress import NO_FRACTION, Progress, labelled, unheard
 from symfpu.paper.printed import PrintedTorus
 from symfpu.paper.series_errors import Decay, SeriesErrors, decay, series_errors
-from symfpu.paper.steps import Step, unheard
-from symfpu.refinement.newton import Report
 from symfpu.refinement.tori import RefinedTorus, refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
@@ -93,34 +92,34 @@ class CorrectedRow:
 
 
 def corrected_rows(
-    known: Mapping[PrintedTorus, LindstedtSeries], step: Step = unheard, *, full: bool = False
+    known: Mapping[PrintedTorus, LindstedtSeries],
+    progress: Progress = unheard,
+    *,
+    full: bool = False,
 ) -> Iterator[CorrectedRow]:
     """The corrected row of each printed torus with its series; those of HEAVY only if full."""
     for printed, series in known.items():
         if printed.label in HEAVY and not full:
             yield left_out(printed, "takes minutes; computed with --full")
         else:
-            yield corrected_row(printed, step, series=series)
+            yield corrected_row(printed, progress, series=series)
 
 
 def corrected_row(
-    printed: PrintedTorus, step: Step = unheard, *, series: LindstedtSeries | None = None
+    printed: PrintedTorus, progress: Progress = unheard, *, series: LindstedtSeries | None = None
 ) -> CorrectedRow:
     """The exact torus of the printed frequencies, and the errors of the series at every order.
 
-    series : that of the printed order, if it is known already. step : told of every step of
+    series : that of the printed order, if it is known already. progress : told of every step of
     Newton's method. A row that takes more than LIMIT seconds or does not converge has no torus,
     and says why.
     """
-
-    def tell(line: str) -> None:
-        step(f"corrected: {printed.label}: {line}")
-
+    tell = labelled(progress, f"corrected: {printed.label}")
     torus, digits, reason = _refined(printed, tell)
     if torus is None:
         return left_out(printed, reason)
     if series is None:
-        tell("series")
+        tell("series", NO_FRACTION)
         series = lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order)
     deviations = {}
     for q, a in zip(printed.seeds, printed.amplitudes, strict=True):
@@ -145,17 +144,17 @@ def left_out(printed: PrintedTorus, reason: str) -> CorrectedRow:
     return CorrectedRow(printed, None, reason, 0, {}, {}, np.nan, None)
 
 
-def _refined(printed: PrintedTorus, tell: Report) -> tuple[RefinedTorus | None, int, str]:
+def _refined(printed: PrintedTorus, tell: Progress) -> tuple[RefinedTorus | None, int, str]:
     """The exact torus, the converged digits of its amplitudes, and what went wrong."""
     started = time.monotonic()
     limit = HEAVY_LIMIT if printed.label in HEAVY else LIMIT
 
-    def report(line: str) -> None:
-        tell(line)
+    def timed(label: str, fraction: float) -> None:
+        tell(label, fraction)
         if time.monotonic() - started > limit:
-            raise TimeIsUp(limit, line)
+            raise TimeIsUp(limit, label)
 
-    found, failed = _refinements(printed, report)
+    found, failed = _refinements(printed, timed)
     if not found:
         return None, 0, failed
     last = found[-1]
@@ -168,15 +167,15 @@ def _refined(printed: PrintedTorus, tell: Report) -> tuple[RefinedTorus | None, 
     return last, min(MOST_DIGITS, digits), ""
 
 
-def _refinements(printed: PrintedTorus, report: Report) -> tuple[list[RefinedTorus], str]:
+def _refinements(printed: PrintedTorus, progress: Progress) -> tuple[list[RefinedTorus], str]:
     """The tori of all tolerances until one fails, and how that one failed."""
     found: list[RefinedTorus] = []
     try:
         tolerances, order = HEAVY.get(printed.label, (TOLERANCES, GUESS_ORDER))
-        guess = _guess(printed, order, report)
+        guess = _guess(printed, order, progress)
         for tolerance in tolerances:
             start = found[-1] if found else guess
-            torus = refine(start, tolerance=tolerance, report=report)
+            torus = refine(start, tolerance=tolerance, progress=progress)
             if torus.warnings:
                 return found, "; ".join(torus.warnings)
             found.append(torus)
@@ -185,15 +184,15 @@ def _refinements(printed: PrintedTorus, report: Report) -> tuple[list[RefinedTor
     return found, ""
 
 
-def _guess(printed: PrintedTorus, order: int, tell: Report) -> QuasiPeriodic:
+def _guess(printed: PrintedTorus, order: int, tell: Progress) -> QuasiPeriodic:
     """Where Newton's method starts.
 
     A short series, or for one seed the periodic orbit, which needs none.
     """
     chain, seeds, rates = printed.chain, printed.seeds, printed.frequencies
     if len(seeds) == 1:
-        tell("periodic orbit")
+        tell("periodic orbit", NO_FRACTION)
         return periodic_orbit(chain, seeds[0], rates[0])
-    tell("short series")
+    tell("short series", NO_FRACTION)
     series = lindstedt(chain, seeds, rates, min(order, printed.order))
     return solve_amplitudes(series)

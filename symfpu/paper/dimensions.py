@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices, seconds_needed
+from symfpu.files.progress import Progress
 from symfpu.paper.starts import printed_row
-from symfpu.paper.steps import Step
 
 Floats = NDArray[np.float64]
 TIME, FULL_TIME = 1e7, 1e9  # default; the paper's, with --full
@@ -30,7 +30,7 @@ def full_seconds(figure: str) -> float:
 
 
 def figure_alignment(
-    name: str, start: tuple[Floats, Floats], tell: Step, folder: Path, *, full: bool
+    name: str, start: tuple[Floats, Floats], tell: Progress, folder: Path, *, full: bool
 ) -> AlignmentIndices:
     """GALI_2, ... of an orbit of a figure to TIME.
 
@@ -41,8 +41,8 @@ def figure_alignment(
     T = FULL_TIME if full else TIME
     file = folder / f"{name}-gali.checkpoint" if full else None
 
-    def progress(stage: str, done: float) -> None:
-        tell(f"{name}: GALI, {stage} of {T:.0e}", done)
+    def progress(label: str, fraction: float) -> None:
+        tell(f"{name}: GALI, {label} of {T:.0e}", fraction)
 
     return alignment_indices(
         chain, *start, T, vectors=vectors, step=GALI_STEP, file=file, progress=progress

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Curve, Panel
+from symfpu.files.progress import Progress, labelled
 from symfpu.paper.claims import PaperFigure
 from symfpu.paper.dimensions import figure_alignment
 from symfpu.paper.fig1_claims import figure1_claims
 from symfpu.paper.fig1_data import Figure1, figure1_data
 from symfpu.paper.judgements import sums_panel
 from symfpu.paper.printed import FIG1_CLAIMS
-from symfpu.paper.steps import Step
 from symfpu.refinement.tori import refine
 from symfpu.reports.tables import fifteen_digits, markdown_table
 
@@ -26,14 +26,14 @@ ERRORS_BOTTOM = 1e-8  # of the picture: errors of rounding at its beginning are 
 TITLE_E = "Fig. 1(e): alignment indices of the orbit from the series"
 
 
-def figure1(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def figure1(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """Panels (a) to (e), and the claims of section 3.2 on the 2-torus."""
-    data = figure1_data(step)
+    data = figure1_data(progress)
     torus = data.torus
-    exact = refine(torus, report=lambda line: step(f"fig1: exact torus: {line}"))
+    exact = refine(torus, progress=labelled(progress, "fig1: exact torus"))
     Q = np.asarray(torus.positions(0.0), dtype=float)
     P = np.asarray(torus.momenta(0.0), dtype=float)
-    found = figure_alignment("fig1", (Q, P), step, folder, full=full)
+    found = figure_alignment("fig1", (Q, P), progress, folder, full=full)
     return PaperFigure(
         "fig1",
         "Fig. 1: the 2-torus of N = 16, alpha = 0.33, seeds 1 and 2",

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.paper.printed import (
     FIG1_AMPLITUDE_ORDER,
     FIG1_CANCELLATION_ORDER,
     FIG1_DIGITS,
     TWO_TORUS,
 )
-from symfpu.paper.steps import Step, unheard
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.torus import QTorus
@@ -99,20 +99,20 @@ class Figure1:
         return float(np.abs(total).max()), float(np.abs(harmonic).max())
 
 
-def figure1_data(step: Step = unheard) -> Figure1:
+def figure1_data(progress: Progress = unheard) -> Figure1:
     """Compute the data of Fig. 1(a) to (d) from the printed frequencies, with FIG1_DIGITS digits.
 
     Doubles run beside them show what precision is needed: they lose no more than `rounding`.
     """
     chain, seeds, rates = TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies
-    step("fig1: series")
+    progress("fig1: series", NO_FRACTION)
     series = lindstedt(chain, seeds, rates, TWO_TORUS.order, digits=FIG1_DIGITS)
     torus = solve_amplitudes(series, frequency_order=FIG1_AMPLITUDE_ORDER)
-    step("fig1: verdict")
+    progress("fig1: verdict", NO_FRACTION)
     assessment = assess(series, torus)
-    step("fig1: doubles")
+    progress("fig1: doubles", NO_FRACTION)
     rounding = _rounding_of_doubles(torus)
-    step("fig1: errors in time")
+    progress("fig1: errors in time", NO_FRACTION)
     times = np.linspace(0.0, LAST_TIME, LOOKS)
     spectra, errors = {}, {}
     for k in sorted({assessment.best_order, FIG1_AMPLITUDE_ORDER}):

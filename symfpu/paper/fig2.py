@@ -14,6 +14,7 @@ from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Curve, Panel
+from symfpu.files.progress import NO_FRACTION, Progress, labelled
 from symfpu.localization.floors import spectrum_floor
 from symfpu.localization.laws import fit_profile, middle_modes
 from symfpu.localization.profiles import normalised_averages
@@ -36,7 +37,6 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.paper.steps import Step
 from symfpu.refinement.tori import RefinedTorus, refine
 from symfpu.tori.torus import QTorus
 
@@ -50,15 +50,15 @@ CANCELLATION_DECADES = 2.0
 SLOPE_ERRORS = 3  # by which the slope of a decay is below zero
 
 
-def figure2(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def figure2(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """The 4-torus of N = 32: its spectrum three ways, its alignment indices, its sums."""
     row = printed_row("Fig. 2")
-    step("fig2: series")
+    progress("fig2: series", NO_FRACTION)
     torus = printed_torus(row)
-    exact = refine(torus, report=lambda line: step(f"fig2: exact torus: {line}"))
-    orbit = integrated_orbit("fig2 PLn", row.chain, torus, TIME, step)
+    exact = refine(torus, progress=labelled(progress, "fig2: exact torus"))
+    orbit = integrated_orbit("fig2 PLn", row.chain, torus, TIME, progress)
     start = (torus.positions(0.0), torus.momenta(0.0))
-    found = figure_alignment("fig2", start, step, folder, full=full)
+    found = figure_alignment("fig2", start, progress, folder, full=full)
     profiles = {
         "PL": torus.average_spectrum() / torus.energy(),
         "PLn": normalised_averages(orbit)[-1],

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.figures.panels import Curve, Panel
+from symfpu.files.progress import Progress
 from symfpu.localization.growth import GroupGrowth, GrowthExponents, growth_exponents
 from symfpu.localization.profiles import fpu_trajectory, normalised_averages, profile_distance
 from symfpu.paper.claims import Claim, PaperFigure, judged
@@ -33,7 +34,6 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.paper.steps import Step
 from symfpu.paper.table import rounds_to
 from symfpu.tori.torus import QTorus
 
@@ -51,7 +51,7 @@ SEED_CHANGES = (3e-5, 3e-4)  # "about 1e-4"
 MU_FACTOR = 10  # times mu: a distance of the order of mu
 
 
-def figure3(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def figure3(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """The FPU-trajectory of the seeds of Fig. 2.
 
     Growth of the groups, and its spectrum beside that of the torus.
@@ -60,7 +60,7 @@ def figure3(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     chain = row.chain
     torus = printed_torus(row)
     start = fpu_trajectory(chain, printed_amplitudes(row))
-    orbit = integrated_orbit("fig3 FPU-trajectory", chain, start, TIME, step, samples=LOOKS)
+    orbit = integrated_orbit("fig3 FPU-trajectory", chain, start, TIME, progress, samples=LOOKS)
     shares = normalised_averages(orbit)
     groups = excitation_sequence(chain.N, row.seeds, (chain.N - 1) // len(row.seeds))
     own = growth_exponents(chain, orbit.times, shares, groups, window=None)

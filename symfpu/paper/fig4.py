@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.figures.panels import Curve, Panel
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.localization.laws import least_packet, middle_modes, packet_parameter
 from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.localization.trials import ProfileInvariance, Trend, profile_invariance, slope_by_energy
@@ -23,7 +24,6 @@ from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import SIMILAR_DECADES
 from symfpu.paper.printed import PrintedLine
 from symfpu.paper.starts import integrated_orbit
-from symfpu.paper.steps import Step, unheard
 
 Floats = NDArray[np.float64]
 TIME, RANDOM_TIME = 1e6, 1e5  # the paper's with phases 0; ours with random phases
@@ -42,13 +42,13 @@ CURVE_START, CURVE_POINTS = 0.01, 200  # kappa of the line of the caption
 BOTTOM_SHARE = 10  # of the least energy shown, the bottom of the picture
 
 
-def figure4(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def figure4(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """Spectra of FPU-trajectories for N = 64 .. 512, both models, phases 0 and random."""
     lines = [printed_line("Fig. 4a"), printed_line("Fig. 4b")]
-    step("fig4: phases 0")
+    progress("fig4: phases 0", NO_FRACTION)
     with ThreadPoolExecutor(2) as pool:
         equal = list(pool.map(partial(_trial, T=TIME), lines))
-        step("fig4: random phases")
+        progress("fig4: random phases", NO_FRACTION)
         random = list(pool.map(partial(_trial, T=RANDOM_TIME, random=True), lines))
     panels = [spectra_panel(line, found) for line, found in zip(lines, equal, strict=True)]
     for line, found in zip(lines, random, strict=True):
@@ -57,7 +57,7 @@ def figure4(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     claims += map(line_claim, lines, equal)
     claims += map(same_line_claim, lines, equal)
     claims += map(scaling_claim, lines, random)
-    step("fig4: slopes by energy")
+    progress("fig4: slopes by energy", NO_FRACTION)
     claims += [logarithm_claim(name, _rates(name)) for name in LAMBDAS]
     claims += map(condition_claim, lines)
     remark = f"Phases 0 to t = {TIME:.0e}; random phases, {REALISATIONS} realisations, "

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.figures.panels import Panel
+from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.localization.profiles import normalised_averages
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import SAME_DECADES, groups_claim, parting_level, runs
@@ -19,7 +20,6 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.paper.steps import Step
 
 Floats = NDArray[np.float64]
 TIME = 1e5  # our choice; slow beats of the lowest modes average out by then
@@ -42,13 +42,13 @@ LEVEL_DECADES = 5.0
 HIGH_LEVEL = 1e-10  # of the energy: spectra that part below it agree in part
 
 
-def figure5(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def figure5(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """The four examples of section 6.2."""
     panels: list[Panel] = []
     claims: list[Claim] = []
     for label in EXAMPLES:
-        step(f"fig5: {label}: series")
-        panel, judgements = _example(label, step)
+        progress(f"fig5: {label}: series", NO_FRACTION)
+        panel, judgements = _example(label, progress)
         panels.append(panel)
         claims += judgements
     remark = "PLn: the initial condition of the series integrated in mode space "
@@ -57,12 +57,12 @@ def figure5(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     return PaperFigure("fig5", title, tuple(panels), tuple(claims), (remark,))
 
 
-def _example(label: str, step: Step) -> tuple[Panel, list[Claim]]:
+def _example(label: str, progress: Progress) -> tuple[Panel, list[Claim]]:
     """Spectra of one example, and what is said of them."""
     row = printed_row(label)
     letter = label[-1]
     torus = printed_torus(row)
-    orbit = integrated_orbit(f"fig5 {letter}", row.chain, torus, TIME, step)
+    orbit = integrated_orbit(f"fig5 {letter}", row.chain, torus, TIME, progress)
     series = np.asarray(torus.average_spectrum() / torus.energy(), dtype=float)
     profiles = {"PL": series, "PLn": normalised_averages(orbit)[-1]}
     title = f"Fig. 5({letter}): {EXAMPLES[label]}, seeds {runs(row.seeds)}, N = {row.chain.N}"

@@ -10,9 +10,9 @@ import numpy as np
 
 from symfpu.chain.propagation import excitation_sequence, reachable_modes
 from symfpu.figures.panels import Curve, Panel
+from symfpu.files.progress import Progress
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.printed import FIG6_CHAIN, FIG6_WIDTH
-from symfpu.paper.steps import Step
 from symfpu.reports.tables import markdown_table
 
 PLACES = {"a": "1/4", "b": "1/2", "c": "3/4"}  # of the packets, kappa_0 by panel
@@ -27,7 +27,7 @@ class Packet:
     orders: dict[int, int]
 
 
-def figure6(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def figure6(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """Orders of first excitation, and the intervals M_k against the rule."""
     packets = excited_by_packets()
     panels = tuple(_panel(letter, packet) for letter, packet in packets.items())

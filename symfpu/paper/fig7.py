@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from symfpu.breathers.balance import periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.figures.panels import Curve, Panel
+from symfpu.files.progress import Progress, unheard
 from symfpu.localization.profiles import fpu_trajectory
 from symfpu.paper.breather_profiles import (
     ALIKE_TEXT,
@@ -39,7 +40,6 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.paper.steps import Step, unheard
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
@@ -53,7 +53,7 @@ VARYING_DECADES = 1.0  # "more than one order of magnitude"
 BOTTOM_SHARE = 1e-3  # of the least energy of the last mode shown, the bottom of the picture
 
 
-def figure7(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def figure7(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """The breather of seed 1 and its FPU-trajectory, N = 32."""
     row = printed_row("Fig. 7")
     chain = row.chain
@@ -64,7 +64,9 @@ def figure7(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     moments = np.linspace(0.0, TIME, LOOKS)
     orbits = {}
     for name, start in starts.items():
-        orbits[name] = integrated_orbit(f"fig7 {name}", chain, start, TIME, step, samples=moments)
+        orbits[name] = integrated_orbit(
+            f"fig7 {name}", chain, start, TIME, progress, samples=moments
+        )
     times = orbits["PLn"].times
     series = torus.harmonic_energies(times) / torus.energy()
     shares = {"PL": np.asarray(series, dtype=float)}

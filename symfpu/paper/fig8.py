@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.panels import Curve, Panel
+from symfpu.files.progress import Progress
 from symfpu.localization.profiles import fpu_trajectory
 from symfpu.paper.breather_profiles import ALIKE_TEXT, SHOWN_ONLY, hierarchy_claim, profiles_of
 from symfpu.paper.claims import Claim, PaperFigure, judged
@@ -26,7 +27,6 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.paper.steps import Step
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
@@ -43,15 +43,15 @@ LEFT_SHARE = 0.1  # of the mean energy of a mode: the integration has left the s
 YOSHIDA, MODE_SPACE = "PLn, Yoshida 4", "PLn, mode space"
 
 
-def figure8(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def figure8(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """The breather of seed 25, integrated in mode space and as in the paper."""
     row = printed_row("Fig. 8")
     torus = printed_torus(row)
     groups = excitation_sequence(row.chain.N, row.seeds, row.order)
     sequence = [modes[0] for modes in groups if modes]
-    shares = _shares(row, torus, step)
+    shares = _shares(row, torus, progress)
     energies = {name: values for name, (_, values) in shares.items()}
-    profiles = profiles_of(torus, _averaged_orbits(row, torus, step))
+    profiles = profiles_of(torus, _averaged_orbits(row, torus, progress))
     shown = tuple(sequence[:SHOWN_MODES])
     floors = {"PL": normalised_floor(torus)}
     title_b = "Fig. 8(b): average spectra, seed 25"
@@ -72,7 +72,7 @@ def figure8(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     return PaperFigure("fig8", title, panels, claims)
 
 
-def _shares(row: PrintedTorus, torus: QTorus, step: Step) -> Shares:
+def _shares(row: PrintedTorus, torus: QTorus, progress: Progress) -> Shares:
     """Instantaneous energies by both integrations and by the series."""
     moments = np.linspace(0.0, TIME, LOOKS)
     mode_space = integrated_orbit(
@@ -80,7 +80,7 @@ def _shares(row: PrintedTorus, torus: QTorus, step: Step) -> Shares:
         row.chain,
         torus,
         TIME,
-        step,
+        progress,
         samples=moments,
         averages=False,
         step=BREATHER_STEP,
@@ -90,7 +90,7 @@ def _shares(row: PrintedTorus, torus: QTorus, step: Step) -> Shares:
         row.chain,
         torus,
         TIME,
-        step,
+        progress,
         samples=moments,
         averages=False,
         scheme=PAPER_SCHEME,
@@ -106,13 +106,13 @@ def _shares(row: PrintedTorus, torus: QTorus, step: Step) -> Shares:
     return shares | {"PL": (times, series)}
 
 
-def _averaged_orbits(row: PrintedTorus, torus: QTorus, step: Step) -> dict[str, Orbit]:
+def _averaged_orbits(row: PrintedTorus, torus: QTorus, progress: Progress) -> dict[str, Orbit]:
     """Orbits of the series and of the FPU-trajectory, long enough for their averages."""
     chain, T, looks = row.chain, AVERAGING_TIME, AVERAGING_LOOKS
     fpu = fpu_trajectory(chain, printed_amplitudes(row))
     name = "fig8 PLn"
-    orbit = integrated_orbit(name, chain, torus, T, step, samples=looks, step=BREATHER_STEP)
-    trajectory = integrated_orbit("fig8 FPU-trajectory", chain, fpu, T, step, samples=looks)
+    orbit = integrated_orbit(name, chain, torus, T, progress, samples=looks, step=BREATHER_STEP)
+    trajectory = integrated_orbit("fig8 FPU-trajectory", chain, fpu, T, progress, samples=looks)
     return {"PLn": orbit, "FPU-trajectory": trajectory}
 
 

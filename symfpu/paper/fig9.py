@@ -19,6 +19,7 @@ from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Panel
+from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.localization.laws import natural_packet
 from symfpu.localization.profiles import fpu_trajectory, normalised_averages, packet_amplitudes
 from symfpu.localization.recurrence import recurrence
@@ -45,7 +46,6 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.paper.steps import Step
 from symfpu.paper.table import rounds_to
 from symfpu.tori.torus import QTorus
 
@@ -66,19 +66,19 @@ TRAJECTORY_BOTTOM = 1e-10
 PRINTED_E, PRINTED_A = "printed E", "printed A_1"
 
 
-def figure9(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """Breather and FPU-trajectories at the printed amplitude and at the printed energy."""
     row = printed_row("Fig. 9")
     chain = row.chain
-    step("fig9: series")
+    progress("fig9: series", NO_FRACTION)
     torus = printed_torus(row)
     newton = periodic_orbit_digits(periodic_orbit(chain, 1, row.frequencies[0]), DIGITS)
-    orbits = _trajectories(row, step)
+    orbits = _trajectories(row, progress)
     looks = AVERAGING_LOOKS
-    exact = integrated_orbit("fig9 breather", chain, newton, TIME, step, samples=looks)
-    series = integrated_orbit("fig9 PLn", chain, torus, TIME, step, samples=looks)
+    exact = integrated_orbit("fig9 breather", chain, newton, TIME, progress, samples=looks)
+    series = integrated_orbit("fig9 PLn", chain, torus, TIME, progress, samples=looks)
     main = orbits[PRINTED_E]
-    found = figure_alignment("fig9", (main.Q[0], main.P[0]), step, folder, full=full)
+    found = figure_alignment("fig9", (main.Q[0], main.P[0]), progress, folder, full=full)
     times = main.times[::SHOWN_EVERY]
     energies = newton.in_doubles().harmonic_energies(times)
     breather = np.asarray(energies, dtype=float) / float(newton.energy())
@@ -110,7 +110,7 @@ def figure9(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
     return PaperFigure("fig9", title, panels, claims)
 
 
-def _trajectories(row: PrintedTorus, step: Step) -> dict[str, Orbit]:
+def _trajectories(row: PrintedTorus, progress: Progress) -> dict[str, Orbit]:
     """FPU-trajectories of the printed energy and of the printed amplitude."""
     amplitudes: dict[str, Mapping[int, Number]] = {}
     amplitudes[PRINTED_E] = packet_amplitudes(row.chain, (1,), row.energy)
@@ -120,7 +120,7 @@ def _trajectories(row: PrintedTorus, step: Step) -> dict[str, Orbit]:
     for name, values in amplitudes.items():
         start = fpu_trajectory(row.chain, values)
         label = f"fig9 {name}"
-        orbits[name] = integrated_orbit(label, row.chain, start, TIME, step, samples=moments)
+        orbits[name] = integrated_orbit(label, row.chain, start, TIME, progress, samples=moments)
     return orbits
 
 

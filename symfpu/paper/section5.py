@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from symfpu.chain.propagation import excitation_sequence, reachable_modes
+from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import runs
 from symfpu.paper.printed import APPENDIX_F, EXCITATIONS, TWO_TORUS, PrintedExcitation
-from symfpu.paper.steps import Step
 from symfpu.proofs.certificates import prove_propagation
 
 Modes = tuple[int, ...]
@@ -35,9 +35,9 @@ AS_PRINTED = {("Example 4", 3): (*range(5, 9), *range(56, 73), *range(120, 128))
 MODELS = ("alpha", "beta")
 
 
-def section5(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def section5(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """Claims on the sets D_k; no panels."""
-    step("section5: proofs")
+    progress("section5: proofs", NO_FRACTION)
     claims = (
         alpha_rule_claim(),
         beta_rule_claim(),

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import exact
-from symfpu.paper.steps import Step, unheard
-from symfpu.refinement.newton import Report
 from symfpu.refinement.tori import RefinedTorus, refine_at_amplitudes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
@@ -155,19 +154,19 @@ def _positive(harmonics: Ints) -> Ints:
 
 
 def series_errors(
-    series: LindstedtSeries, torus: RefinedTorus, tell: Report = unheard
+    series: LindstedtSeries, torus: RefinedTorus, tell: Progress = unheard
 ) -> SeriesErrors:
     """Errors of a series against the exact torus of its frequencies, by order from 1 on."""
     history = amplitude_history(series)
     compared = _Comparison(series, torus)
     exact_amplitudes = [torus.amplitudes[q] for q in series.seeds]
-    tell("errors with the exact amplitudes")
+    tell("errors with the exact amplitudes", NO_FRACTION)
     orders = range(1, series.order + 1)
     errors = compared.errors(exact_amplitudes, orders)
     given = dict(zip(orders, errors, strict=True))
     solved = {}
     for K in _compared_orders(series.order):
-        tell(f"errors with the amplitudes of order {K}")
+        tell(f"errors with the amplitudes of order {K}", NO_FRACTION)
         values = _amplitudes_at(history, K)
         if values is not None:
             (solved[K],) = compared.errors(list(values), range(K, K + 1))
@@ -232,7 +231,7 @@ class ScalingStudy:
         return exponents
 
 
-def scaling_study(torus: RefinedTorus, label: str, step: Step = unheard) -> ScalingStudy:
+def scaling_study(torus: RefinedTorus, label: str, progress: Progress = unheard) -> ScalingStudy:
     """The errors of the orders SCALED_ORDERS at an exact torus and at scaled ones.
 
     Those have 1/2, 1/4, ... of its amplitudes.
@@ -242,7 +241,7 @@ def scaling_study(torus: RefinedTorus, label: str, step: Step = unheard) -> Scal
     given: dict[int, tuple[float, ...]] = {}
     solved: dict[int, tuple[float, ...]] = {}
     for scale in scales:
-        step(f"corrected: {label}: amplitudes times {scale:g}")
+        progress(f"corrected: {label}: amplitudes times {scale:g}", NO_FRACTION)
         member = torus if scale == 1 else _scaled(torus, scale)
         series = lindstedt(member.chain, member.seeds, member.frequencies, longest)
         errors = series_errors(series, member)

@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import Orbit, integrate
 from symfpu.figures.panels import Curve, Panel
+from symfpu.files.progress import Progress
 from symfpu.localization.floors import spectrum_floor
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS, PrintedTorus
-from symfpu.paper.steps import Step
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.quasiperiodic import QuasiPeriodic
@@ -74,7 +74,7 @@ def integrated_orbit(
     chain: Chain,
     start: Starting | tuple[Floats, Floats],
     T: float,
-    tell: Step,
+    tell: Progress,
     *,
     scheme: str = SCHEME,
     step: float = MODE_STEP,
@@ -86,8 +86,8 @@ def integrated_orbit(
     `tell` hears how far it is.
     """
 
-    def progress(done: int, total: int) -> None:
-        tell(f"{name}: orbit to t = {T:.2g}", done / total)
+    def progress(_: str, fraction: float) -> None:
+        tell(f"{name}: orbit to t = {T:.2g}", fraction)
 
     if isinstance(start, tuple):
         Q, P = start

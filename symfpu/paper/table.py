@@ -8,8 +8,8 @@ from decimal import Decimal
 
 import numpy as np
 
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS, PrintedTorus
-from symfpu.paper.steps import Step, unheard
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
@@ -145,8 +145,8 @@ def _energy_orders(torus: QTorus, printed: str) -> dict[str, tuple[int, ...]]:
     return found
 
 
-def amplitude_table(step: Step = unheard) -> Iterator[AmplitudeRow]:
+def amplitude_table(progress: Progress = unheard) -> Iterator[AmplitudeRow]:
     """Every torus of Appendix F (Eq. Table1) and the pair of Fig. 1; `step` is told of each one."""
     for printed in (TWO_TORUS, *APPENDIX_F):
-        step(f"table: {printed.label}")
+        progress(f"table: {printed.label}", NO_FRACTION)
         yield amplitude_row(printed)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from symfpu.files.progress import Progress
 from symfpu.numbers.typed import decimal
 from symfpu.paper.claims import PaperFigure
 from symfpu.paper.corrected import corrected_rows
@@ -16,7 +17,6 @@ from symfpu.paper.corrected_page import (
     corrected_text,
 )
 from symfpu.paper.series_errors import ScalingStudy, scaling_study
-from symfpu.paper.steps import Step
 from symfpu.paper.table import AmplitudeRow, amplitude_table
 from symfpu.reports.tables import markdown_table
 from symfpu.reports.torus import torus_record
@@ -34,16 +34,16 @@ ENERGIES = ("printed E", "H(0)", "harmonic E(0)", "average")
 HEAD = ("torus", "N", "alpha", "seeds", "order", "met at K", "digits", *ENERGIES, "residual")
 
 
-def table(folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def table(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """The table from the printed frequencies, and the exact tori beside it."""
-    rows = list(amplitude_table(step))
+    rows = list(amplitude_table(progress))
     known = {row.printed: row.series for row in rows}
-    corrected = list(corrected_rows(known, step, full=full))
+    corrected = list(corrected_rows(known, progress, full=full))
     studies: dict[str, ScalingStudy] = {}
     for row in corrected:
         label = row.printed.label
         if row.torus and label in SCALED_ROWS:
-            studies[label] = scaling_study(row.torus, label, step)
+            studies[label] = scaling_study(row.torus, label, progress)
     records = []
     lines = []
     for series_row, row in zip(rows, corrected, strict=True):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol
 
+from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.paper.claims import PaperFigure
 from symfpu.paper.claims_page import draw_panels, write_panel_csv
 from symfpu.paper.convergence import convergence
@@ -19,17 +20,16 @@ from symfpu.paper.fig7 import figure7
 from symfpu.paper.fig8 import figure8
 from symfpu.paper.fig9 import figure9
 from symfpu.paper.section5 import section5
-from symfpu.paper.steps import Step
 from symfpu.paper.table_page import table
 
 
 class Maker(Protocol):
     """Computes a figure; the folder is for checkpoints.
 
-    `step` hears what comes next. full : what takes hours, too.
+    `progress` hears what comes next. full : what takes hours, too.
     """
 
-    def __call__(self, folder: Path, step: Step, *, full: bool = False) -> PaperFigure: ...
+    def __call__(self, folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure: ...
 
 
 TARGETS: dict[str, Maker] = {
@@ -49,11 +49,11 @@ TARGETS: dict[str, Maker] = {
 FULL = ("table", "fig1", "fig2", "fig9")  # targets with a part that takes many minutes, or hours
 
 
-def reproduced(target: str, folder: Path, step: Step, *, full: bool = False) -> PaperFigure:
+def reproduced(target: str, folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
     """The figure of a target, with its tables and pictures in the folder."""
-    figure = TARGETS[target](folder, step, full=full)
+    figure = TARGETS[target](folder, progress, full=full)
     write_panel_csv(figure, folder)
-    step(f"{target}: pictures")
+    progress(f"{target}: pictures", NO_FRACTION)
     draw_panels(figure, folder)
     return figure
 

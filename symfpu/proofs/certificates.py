@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import random
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -23,11 +23,12 @@ from symfpu.algebra.residue import largest_modulus
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import coupled_modes, excitation_sequence
 from symfpu.errors import InputError, SymfpuError, VanishingResidue
+from symfpu.files.progress import Progress
 from symfpu.files.writing import write_text
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import Progress, shared_grading
+from symfpu.series.recursion import shared_grading
 from symfpu.series.residues import residue_series
 from symfpu.series.series import LindstedtSeries, ResiduePoint
 
@@ -214,7 +215,7 @@ def prove_propagation(
         nothing can be shown excited.
     random_seed : the same seed gives the same points.
     workers : threads of the recursion; default as many as there are processors.
-    progress : called as (orders done, orders in all).
+    progress : called as (label, fraction done).
 
     Appendix B proves the Proposition in general; here each case is decided exactly, and some of
     beta are refuted.
@@ -240,7 +241,7 @@ def prove_propagation(
     used: list[ResiduePoint] = []
     found: dict[int, Witness] = {}
     for number in range(points):
-        done = _shifted(progress, number * order, points * order)
+        done = _of_point(progress, number, points)
         point, series = _run_at_random_point(chain, seeds, order, source, done, workers)
         used.append(point)
         for witness in _witnesses(series, number, point.prime):
@@ -295,11 +296,12 @@ def _verdict(exceptions: Iterable[RuleException], undecided: Sequence[Undecided]
     return "undecided" if undecided else "proved"
 
 
-def _shifted(progress: Progress | None, before: int, total: int) -> Progress | None:
+def _of_point(progress: Progress | None, number: int, points: int) -> Progress | None:
+    """What the run at one of so many points tells."""
     if progress is None:
         return None
-    report: Callable[[int, int], None] = progress
-    return lambda done, _: report(before + done, total)
+    label = "recursion modulo a prime"
+    return lambda _, fraction: progress(label, (number + fraction) / points)
 
 
 def random_point(N: int, seeds: int, degree: int, source: random.Random) -> ResiduePoint:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import multiprocessing
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, as_completed
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
@@ -19,6 +19,7 @@ from typing import Any
 
 from symfpu.chain.propagation import coupling_sequence
 from symfpu.errors import InputError, SymfpuError
+from symfpu.files.progress import Progress
 from symfpu.numbers.typed import integer
 from symfpu.proofs.certificates import prove_propagation
 
@@ -129,7 +130,7 @@ def sweep_propagation(
     model: str = "alpha",
     executor: Executor | None = None,
     file: Path | str | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> Sweep:
     """Decide the Proposition for all seed sets of up to `largest_set` modes, all N in `lengths`.
 
@@ -139,7 +140,7 @@ def sweep_propagation(
         default a pool of processes, which a script must start under `if __name__ == "__main__":`.
     file : JSON lines, one for each decided case; an existing file of the same sweep is continued,
         its last line dropped if it was cut.
-    progress : called as (cases done, cases in all).
+    progress : called as (label, fraction done).
 
     Every case is decided as by `prove_propagation` (Eqs. app, dk). Raises InputError, also for a
     file of another sweep; SweepIncomplete, after all other cases, if one raised an error or its
@@ -177,7 +178,7 @@ def sweep_propagation(
                 if log:
                     log.append(record)
             if progress:
-                progress(len(decided), len(cases))
+                progress("seed sets", len(decided) / len(cases))
     sweep = Sweep(model, order, tuple(decided[case] for case in cases if case in decided))
     if failures:
         ordered = {case: failures[case] for case in cases if case in failures}

@@ -10,16 +10,15 @@ they are solved directly.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.invariance import Floats, Ints, InvarianceEquation
-
-Report = Callable[[str], None]
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
 NEAR = 3.0  # divisors up to so many times what the coupling adds to them belong to the block
@@ -199,7 +198,7 @@ def newton(
     conditions: Sequence[Condition],
     cosines: Floats,
     shifts: Floats,
-    report: Report = lambda _: None,
+    progress: Progress = unheard,
 ) -> Iterate:
     """The torus near a guess that meets the conditions.
 
@@ -231,7 +230,8 @@ def newton(
         shifts = shifts + change[-len(shifts) :]
         relative = float(np.abs(moved).max() / np.abs(cosines).max())
         steps.append(NewtonStep(residual, relative, violation, products))
-        report(f"step {len(steps)}: residual {residual:.1e}, change {relative:.1e}")
+        line = f"step {len(steps)}: residual {residual:.1e}, change {relative:.1e}"
+        progress(line, NO_FRACTION)
         reached = zip(_names(equation), sizes, _sizes(equation, cosines), strict=True)
         for name, old, new in reached:
             if not old / GROWTH < new < old * GROWTH:

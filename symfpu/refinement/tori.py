@@ -16,6 +16,7 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import (
@@ -35,7 +36,7 @@ from symfpu.refinement.invariance import (
     long,
     rational,
 )
-from symfpu.refinement.newton import Iterate, NewtonStep, Report, newton
+from symfpu.refinement.newton import Iterate, NewtonStep, newton
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 
 # residual of the equations of motion, relative to the largest acceleration, that ends the search
@@ -128,14 +129,14 @@ class NoTorus(SymfpuError):
 
 
 def refine(
-    torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, report: Report = lambda _: None
+    torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, progress: Progress | None = None
 ) -> RefinedTorus:
     """The torus with the same frequencies that solves the equations of motion, with a given one as the guess.
 
     torus : of a series, resummed, or any other; its phases (radians) are kept.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration,
         dimensionless; harmonics are added until it is reached.
-    report : called with a line on every step.
+    progress : called as (label, NO_FRACTION) on every step.
 
     Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a torus, which the
     paper solves by series. Raises InputError, and NoTorus with the best iterate.
@@ -148,7 +149,7 @@ def refine(
     """
     require_solution(torus, "torus")
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
-    refined = refined_torus(torus, conditions, tolerance=tolerance, report=report)
+    refined = refined_torus(torus, conditions, tolerance=tolerance, progress=progress)
     return replace(refined, frequencies=tuple(torus.frequencies))
 
 
@@ -157,14 +158,14 @@ def refine_at_amplitudes(
     amplitudes: Mapping[int, Number],
     *,
     tolerance: float = TOLERANCE,
-    report: Report = lambda _: None,
+    progress: Progress | None = None,
 ) -> RefinedTorus:
     """The torus with the given amplitude of every seed; its frequencies are found.
 
     torus : the guess, of the same seeds; its phases (radians) are kept.
     amplitudes : A_q by seed, exact numbers, dimensionless; of cos(theta_q) in Q_q.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration.
-    report : called with a line on every step.
+    progress : called as (label, NO_FRACTION) on every step.
 
     As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, also for a seed left
     out, and NoTorus with the best iterate.
@@ -177,7 +178,10 @@ def refine_at_amplitudes(
     require_solution(torus, "torus")
     values = [long(a) for a in _by_seed("amplitudes", amplitudes, torus, signed=True).values()]
     return refined_torus(
-        torus, [Amplitude(i, a) for i, a in enumerate(values)], tolerance=tolerance, report=report
+        torus,
+        [Amplitude(i, a) for i, a in enumerate(values)],
+        tolerance=tolerance,
+        progress=progress,
     )
 
 
@@ -189,7 +193,7 @@ def refine_at_energy(
     amplitude_ratio: Mapping[int, Number] | None = None,
     energy_ratio: Mapping[int, Number] | None = None,
     tolerance: float = TOLERANCE,
-    report: Report = lambda _: None,
+    progress: Progress | None = None,
 ) -> RefinedTorus:
     """The torus with the given energy and ratio of amplitudes or mode energies; its frequencies are found.
 
@@ -199,7 +203,7 @@ def refine_at_energy(
     amplitude_ratio, energy_ratio : by seed, at most one of them; energy_ratio is of E_q of the seeds averaged
         over the torus. Left out, the amplitudes keep the ratio they have in `torus`.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration.
-    report : called with a line on every step.
+    progress : called as (label, NO_FRACTION) on every step.
 
     As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, and NoTorus with the
     best iterate.
@@ -237,7 +241,7 @@ def refine_at_energy(
         Energy(long(value), bool(harmonic)),
         *ratio_conditions(torus.seeds, numbers, energies=energy_ratio is not None),
     ]
-    return refined_torus(torus, conditions, tolerance=tolerance, report=report)
+    return refined_torus(torus, conditions, tolerance=tolerance, progress=progress)
 
 
 def _by_seed(
@@ -267,7 +271,7 @@ def refined_torus(
     conditions: Sequence[Condition],
     *,
     tolerance: float = TOLERANCE,
-    report: Report = lambda _: None,
+    progress: Progress | None = None,
 ) -> RefinedTorus:
     """The torus near a guess that meets as many conditions as it has angles.
 
@@ -276,6 +280,7 @@ def refined_torus(
     require_solution(torus, "torus")
     if not isinstance(tolerance, Real) or not 0 < tolerance < 1:
         raise InputError("tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more")
+    tell = progress or unheard
     chain, seeds = torus.chain, torus.seeds
     known = _rows(torus.harmonics, _moderate_coefficients(torus))
     shifts = shifts_of(torus)
@@ -287,14 +292,14 @@ def refined_torus(
         none = np.zeros(chain.N - 1)
         rows = [known.get(tuple(nu), none) for nu in harmonics.tolist()]
         cosines = np.array(rows, dtype=np.longdouble)
-        report(f"{len(harmonics)} harmonics, {equation.grid.points} points")
+        tell(f"{len(harmonics)} harmonics, {equation.grid.points} points", NO_FRACTION)
         guess = np.where(equation.mask, cosines, 0)
-        found = newton(equation, conditions, guess, shifts, report)
+        found = newton(equation, conditions, guess, shifts, tell)
         refined = _result(torus, equation, found)
         residual = refined.residual()
         if found.failure:
             raise NoTorus(found.failure, refined, residual)
-        report(f"residual {residual:.1e} between the grid points")
+        tell(f"residual {residual:.1e} between the grid points", NO_FRACTION)
         if residual <= tolerance:
             return refined
         if full or residual > before / 2:

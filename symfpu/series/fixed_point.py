@@ -16,15 +16,10 @@ from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.words import LIMB_BITS
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
+from symfpu.files.progress import Progress
 from symfpu.series.divisors import Divisors, FixedPointDivisors, Float64Divisors
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import (
-    Progress,
-    monomial_space,
-    named_series,
-    ring_series,
-    run_recursion,
-)
+from symfpu.series.recursion import monomial_space, named_series, ring_series, run_recursion
 from symfpu.series.rings import FLOAT64, Frequencies, chosen_frequencies
 from symfpu.series.series import LindstedtSeries
 from symfpu.series.tables import LOG10_2
@@ -55,8 +50,8 @@ def fixed_point_series(
     def stage(number: int) -> Progress | None:
         if progress is None:
             return None
-        before = min(number, 3) * order
-        return lambda done, _: progress(before + done, 4 * order)
+        before = min(number, 3)
+        return lambda label, fraction: progress(label, (before + fraction) / 4)
 
     known = named_series(FLOAT64, chain, space, chosen, order, stage(0))
     unit = _fitting_unit(known)

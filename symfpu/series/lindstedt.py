@@ -7,10 +7,11 @@ from fractions import Fraction
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.files.progress import Progress
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.series.fixed_point import fixed_point_series
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import Progress, monomial_space, named_series
+from symfpu.series.recursion import monomial_space, named_series
 from symfpu.series.rings import BY_NAME, RINGS, Frequencies
 from symfpu.series.series import LindstedtSeries
 
@@ -42,7 +43,7 @@ def lindstedt(
         frequencies are given.
     digits : every coefficient to so many digits of the largest one of its order, proved
         (fixed-point numbers); None for doubles.
-    progress : called as (steps done, steps).
+    progress : called as (label, fraction done).
 
     Differs from the paper: both couplings may act, mu is then alpha/sqrt(2N), and omega^(k) has
     degree k (alpha), 2k (beta) in the amplitudes, one less than printed.

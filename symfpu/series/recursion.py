@@ -8,7 +8,6 @@ term (the gauge of A_q).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -17,11 +16,10 @@ from symfpu.algebra.grading import Grading
 from symfpu.algebra.ring import Ring
 from symfpu.algebra.selection import CosineModes
 from symfpu.chain.chain import Chain
+from symfpu.files.progress import Progress
 from symfpu.series.divisors import Divisors
 from symfpu.series.rings import Frequencies, RingKind
 from symfpu.series.series import LindstedtSeries
-
-Progress = Callable[[int, int], None]
 
 
 def run_recursion(
@@ -49,7 +47,7 @@ def run_recursion(
         multipliers = divisors.multipliers(harmonics, carried, k)
         ring.put(degree, ring.solve(degree, ring.corrected(degree), force, multipliers))
         if progress:
-            progress(k, order)
+            progress("series", k / order)
 
 
 def ring_series(

@@ -7,10 +7,11 @@ from dataclasses import replace
 
 from symfpu.algebra.residue import ResidueRing
 from symfpu.chain.chain import Chain
+from symfpu.files.progress import Progress
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.series.divisors import ResidueDivisors
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import Progress, monomial_space, ring_series
+from symfpu.series.recursion import monomial_space, ring_series
 from symfpu.series.series import LindstedtSeries, ResiduePoint
 
 

@@ -10,7 +10,7 @@ convergence by ratio and by Pade poles, and the resummed torus.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import InputError
+from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, text
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
@@ -27,7 +28,6 @@ from symfpu.tori.resummation import pade_poles, resum
 from symfpu.tori.torus import QTorus, RootCertificate, require_series_torus
 
 Floats = NDArray[np.float64]
-Progress = Callable[[int, int], None]
 
 # relative uncertainty of an amplitude above which the root is not stable under the order
 AGREEMENT = 1e-3
@@ -206,7 +206,7 @@ def assess(
     series : with chosen frequencies. torus : made from this series by `solve_amplitudes`.
     resummed : also judge the torus of Pade sums (the slowest part for long series with digits);
         else its residual is infinite.
-    progress : called as (steps done, steps).
+    progress : called as (label, fraction done).
 
     The residuals, relative and dimensionless, decide: they fall to the last order of a converged
     series, fall and rise again for an asymptotic one; a root that moves with the frequency order,
@@ -223,12 +223,12 @@ def assess(
         allowed = "one solved from this series"
         advice = "call solve_amplitudes(series)"
         raise InputError("torus", "of another series", allowed, advice)
-    advance = progress or (lambda done, total: None)
+    tell = progress or unheard
     passes = 1 if torus.digits is None else 2
     steps = (torus.order + 1) * passes
-    found = _orders(torus, steps, advance)
+    found = _orders(torus, steps, tell)
     evidence = _evidence(torus, found, resummed)
-    advance(steps, steps)
+    tell("verdict", 1.0)
     step = 2 // series.chain.degree_step
     floor = FLOOR if series.digits is None else min(FLOOR, 10.0**-series.digits)
     word, closing = _word(evidence, step, floor)
@@ -236,12 +236,12 @@ def assess(
     return replace(evidence, word=word, reasons=reasons)
 
 
-def _orders(torus: QTorus, steps: int, advance: Progress) -> list[_Order]:
+def _orders(torus: QTorus, steps: int, tell: Progress) -> list[_Order]:
     """All orders in doubles; where doubles see no residual any more, in the digits of the torus."""
     found = []
     for k, order in enumerate(_by_order(torus, DOUBLES)):
         found.append(order)
-        advance(k + 1, steps)
+        tell("verdict", (k + 1) / steps)
     if torus.digits is None:
         return found
     least = min(order.residual for order in found)
@@ -249,7 +249,7 @@ def _orders(torus: QTorus, steps: int, advance: Progress) -> list[_Order]:
         for k, order in enumerate(_by_order(torus, MULTIPRECISION)):
             if found[k].residual < SEEN_BY_DOUBLES:
                 found[k] = order
-            advance(torus.order + 2 + k, steps)
+            tell("verdict", (torus.order + 2 + k) / steps)
     return found
 
 

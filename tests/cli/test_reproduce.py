@@ -77,7 +77,7 @@ def test_json_is_strict_and_alone_on_standard_output(capsys, tmp_path):
 
 
 def test_a_target_that_fails_loses_nothing_of_those_before(monkeypatch, capsys, tmp_path):
-    def lost(folder, step, *, full=False):
+    def lost(folder, progress, *, full=False):
         raise NoRecurrence(1e4, 0.9)
 
     monkeypatch.setitem(targets.TARGETS, "fig9", lost)
@@ -159,7 +159,7 @@ def test_targets_are_done_once_and_in_order_of_the_paper(monkeypatch, capsys, tm
     done = []
     page = PaperFigure("fig0", "Page", (), ())
     for name in targets.TARGETS:
-        monkeypatch.setitem(targets.TARGETS, name, lambda folder, step, *, full=False, name=name: done.append((name, full)) or page)
+        monkeypatch.setitem(targets.TARGETS, name, lambda folder, progress, *, full=False, name=name: done.append((name, full)) or page)
     assert run(capsys, "fig9", "table", "fig9", "-o", str(tmp_path))[0] == 0
     assert done == [("table", False), ("fig9", False)]
     done.clear()

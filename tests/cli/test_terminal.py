@@ -17,6 +17,7 @@ from rich.console import Console
 from symfpu.cli import terminal
 from symfpu.cli.main import main
 from symfpu.cli.terminal import Bar, Interrupted, Lines, folded, progress_bar
+from symfpu.files.progress import NO_FRACTION
 from symfpu.paper import targets
 from symfpu.paper.claims import PaperFigure
 from symfpu.reports.tables import text_table
@@ -132,14 +133,14 @@ def test_lines_have_patience_and_pauses(lines, capsys):
 def test_pauses_grow_and_silence_ends(lines, capsys):
     clock, tell = lines
     clock.now = 1000.0
-    tell("verdict")
+    tell("verdict", NO_FRACTION)
     for clock.now in (1005.0, 1009.0):
-        tell(f"step at {clock.now:g}")
+        tell(f"step at {clock.now:g}", NO_FRACTION)
     assert len(capsys.readouterr().err.splitlines()) == 1
     clock.now = 1010.5
-    tell("step at the end")
+    tell("step at the end", NO_FRACTION)
     for clock.now in (1030.0, 1045.0):
-        tell("step at the end")
+        tell("step at the end", NO_FRACTION)
     assert capsys.readouterr().err.splitlines() == [
         "symfpu: 0:16:50 step at the end",
         "symfpu: 0:17:25 step at the end",
@@ -153,8 +154,8 @@ def test_a_step_that_is_silent_has_its_line(monkeypatch, capsys):
     shown = threading.Event()
     threads = threading.active_count()
     with progress_bar("first") as advance:
-        advance("first")
-        advance("second")
+        advance("first", NO_FRACTION)
+        advance("second", NO_FRACTION)
         shown.wait(1.0)
     assert [line.split()[-1] for line in capsys.readouterr().err.splitlines()] == ["first", "second"]
     assert threading.active_count() == threads
@@ -173,9 +174,9 @@ def test_standard_output_hears_nothing_of_progress(monkeypatch, capsys):
 
 
 def test_reproduce_tells_its_steps(monkeypatch, capsys, tmp_path):
-    def target(folder, step, *, full=False):
-        step("fig6: patterns")
-        step("fig6: orbit", 0.25)
+    def target(folder, progress, *, full=False):
+        progress("fig6: patterns", NO_FRACTION)
+        progress("fig6: orbit", 0.25)
         return PaperFigure("fig0", "Page", (), ())
 
     monkeypatch.setitem(targets.TARGETS, "fig6", target)
@@ -200,7 +201,7 @@ def test_a_bar_has_percentage_and_time_left():
         shown = with_bar()
         bar(
             "a label that is longer than what is left of the line, with [brackets] in it, and so on and on",
-            None,
+            NO_FRACTION,
         )
         bar._progress.refresh()
     assert "50%" in shown
@@ -270,7 +271,7 @@ def test_an_interrupted_verb_is_one_line_and_code_130(verb, function, kept, monk
     monkeypatch.chdir(tmp_path)
     if function.endswith("TARGETS"):
         page = PaperFigure("fig0", "Page", (), ())
-        monkeypatch.setitem(targets.TARGETS, "section5", lambda folder, step, *, full=False: page)
+        monkeypatch.setitem(targets.TARGETS, "section5", lambda folder, progress, *, full=False: page)
         monkeypatch.setitem(targets.TARGETS, "fig6", interrupted)
     else:
         monkeypatch.setattr(f"symfpu.cli.{function}", interrupted)

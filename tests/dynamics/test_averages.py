@@ -91,7 +91,7 @@ def test_an_interrupted_run_keeps_its_averages_bitwise(start, tmp_path):
     def stop_soon():
         calls = iter(range(4))
 
-        def progress(done, total):
+        def progress(label, fraction):
             if next(calls) == 3:
                 raise Interrupted
 

@@ -30,10 +30,6 @@ def exponential(N, decades):
     return e / math.fsum(e)
 
 
-def quiet(label, done=None):
-    """Hears nothing."""
-
-
 def shorter_figure_9(monkeypatch):
     """Order 40 in place of 242; one recurrence; alignment indices to 1e3."""
     monkeypatch.setattr(fig9, "printed_row", lambda label: replace(printed_row(label), order=40))

@@ -176,7 +176,7 @@ def test_the_singularity_of_a_binomial_series_is_found(end, exponent):
 @pytest.mark.long
 def test_the_study_of_fig_1():
     labels = []
-    study = cancellation_study(labels.append)
+    study = cancellation_study(lambda label, fraction: labels.append(label))
     printed, precise, rounded, incommensurable, detuned = study.variants
     for variant in (precise, rounded, incommensurable):
         assert variant.sums == pytest.approx(printed.sums, rel=ALIKE)

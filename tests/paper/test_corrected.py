@@ -199,7 +199,7 @@ def test_a_torus_above_its_tolerance_is_not_an_exact_one(monkeypatch):
 
 def test_every_step_is_told():
     lines = []
-    corrected_row(SMALL, lines.append)
+    corrected_row(SMALL, lambda label, fraction: lines.append(label))
     assert all(line.startswith("corrected: Fig. 7: ") for line in lines)
     assert any("step 1: residual" in line for line in lines)
     assert any("errors with" in line for line in lines)
@@ -207,7 +207,9 @@ def test_every_step_is_told():
 
 def test_heavy_rows_are_computed_in_full_only(monkeypatch):
     asked = []
-    monkeypatch.setattr(corrected, "corrected_row", lambda printed, step, *, series: asked.append(printed.label) or left_out(printed, ""))
+    monkeypatch.setattr(
+        corrected, "corrected_row", lambda printed, progress, *, series: asked.append(printed.label) or left_out(printed, "")
+    )
     known = dict.fromkeys(BY_LABEL.values())
     rows = list(corrected_rows(known))
     assert [row.printed.label for row in rows] == list(BY_LABEL)

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
+from symfpu.files.progress import unheard
 from symfpu.localization.growth import GroupGrowth
 from symfpu.paper import fig3
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.starts import printed_row
-from tests.paper.cases import exponential, quiet
+from tests.paper.cases import exponential
 
 
 def groups(*means, spread=0.1, times=(100.0, 200.0)):
@@ -61,7 +62,7 @@ def test_a_spectrum_persists_from_a_hundredth_of_the_time_on(decades, verdict):
 def test_figure_3_over_a_short_time(monkeypatch, tmp_path):
     """2e4, in place of 1e6: the first stage is over by then."""
     monkeypatch.setattr(fig3, "TIME", 2e4)
-    figure = fig3.figure3(tmp_path, quiet)
+    figure = fig3.figure3(tmp_path, unheard)
     a, b = figure.panels
     assert [a.name, b.name] == ["fig3a", "fig3b"]
     names = {row[0] for row in a.table()[1]}

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from symfpu.files.progress import unheard
 from symfpu.localization.trials import ProfileInvariance
 from symfpu.paper import fig4
 from symfpu.paper.captions import caption_curve, printed_line
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
-from tests.paper.cases import quiet
 
 ALPHA, BETA = printed_line("Fig. 4a"), printed_line("Fig. 4b")
 
@@ -117,7 +117,7 @@ def test_panels_show_what_lies_above_the_noise():
 def test_figure_4_over_a_short_time(monkeypatch, tmp_path):
     for name, value in {"TIME": 1e3, "RANDOM_TIME": 1e3, "REALISATIONS": 2, "SLOPE_TIME": 3e2}.items():
         monkeypatch.setattr(fig4, name, value)
-    figure = fig4.figure4(tmp_path, quiet)
+    figure = fig4.figure4(tmp_path, unheard)
     assert [panel.name for panel in figure.panels] == ["fig4a", "fig4b", "fig4a-random", "fig4b-random"]
     assert {claim.section for claim in figure.claims} == {"6.1.1", "6.1.2"}
     assert [claim.verdict for claim in figure.claims if "caption is the law" in claim.text] == [PARTLY, PARTLY]

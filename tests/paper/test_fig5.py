@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from symfpu.files.progress import unheard
 from symfpu.paper import fig5
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
-from tests.paper.cases import exponential, quiet
+from tests.paper.cases import exponential
 
 
 def parted(level):
@@ -38,7 +39,7 @@ def test_mirror_pairs():
 def test_one_example_over_a_short_time(monkeypatch, tmp_path):
     monkeypatch.setattr(fig5, "TIME", 1e3)
     monkeypatch.setattr(fig5, "EXAMPLES", {"Fig. 5a": "evenly spread seeds"})
-    figure = fig5.figure5(tmp_path, quiet)
+    figure = fig5.figure5(tmp_path, unheard)
     (panel,) = figure.panels
     assert (panel.name, panel.axes[0]) == ("fig5a", "q")
     assert [curve.label for curve in panel.curves] == ["PL", "PLn"]

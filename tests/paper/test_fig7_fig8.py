@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from symfpu.figures.panels import Curve
+from symfpu.files.progress import unheard
 from symfpu.paper import breather_profiles, fig7, fig8
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.starts import printed_row
-from tests.paper.cases import exponential, quiet
+from tests.paper.cases import exponential
 
 SEQUENCE = [25, 14, 11, 28, 3, 22, 17]
 
@@ -89,7 +90,7 @@ def test_a_trajectory_leaves_the_breather_at_later_modes():
 
 def test_figure_7_over_a_short_time(monkeypatch, tmp_path):
     monkeypatch.setattr(fig7, "TIME", 2e3)
-    figure = fig7.figure7(tmp_path, quiet)
+    figure = fig7.figure7(tmp_path, unheard)
     assert [panel.name for panel in figure.panels] == ["fig7a", "fig7b", "fig7c", "fig7d"]
     a, b, c, d = figure.panels
     assert a.bottom == b.bottom == c.bottom
@@ -105,7 +106,7 @@ def test_figure_8_over_a_short_time(monkeypatch, tmp_path):
     """Times of samples are those of the nearest steps, of each integration its own."""
     monkeypatch.setattr(fig8, "TIME", 100.0)
     monkeypatch.setattr(fig8, "AVERAGING_TIME", 1e3)
-    figure = fig8.figure8(tmp_path, quiet)
+    figure = fig8.figure8(tmp_path, unheard)
     a, b = figure.panels
     curves = {curve.name: curve for curve in a.curves}
     assert len(curves) == 3 * 7

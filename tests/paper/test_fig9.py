@@ -6,10 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from symfpu.files.progress import unheard
 from symfpu.paper import fig9
 from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY
 from symfpu.paper.starts import printed_row
-from tests.paper.cases import alignment, quiet, shorter_figure_9
+from tests.paper.cases import alignment, shorter_figure_9
 
 ROW = printed_row("Fig. 9")
 
@@ -67,7 +68,7 @@ def test_gain_after_order_50(late, verdict):
 
 def test_figure_9_with_a_short_series(monkeypatch, tmp_path):
     shorter_figure_9(monkeypatch)
-    figure = fig9.figure9(tmp_path, quiet)
+    figure = fig9.figure9(tmp_path, unheard)
     assert [panel.name for panel in figure.panels] == ["fig9a", "fig9b", "fig9c", "fig9d"]
     first, still, *_ = figure.claims
     assert (first.verdict, still.verdict) == (HOLDS, HOLDS)

@@ -5,16 +5,16 @@ from dataclasses import replace
 import pytest
 
 from symfpu.chain.propagation import excitation_sequence
+from symfpu.files.progress import unheard
 from symfpu.paper import section5
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.fig6 import excited_by_packets, intervals_claim
 from symfpu.paper.printed import EXCITATIONS
-from tests.paper.cases import quiet
 
 
 @pytest.fixture(scope="module")
 def section(tmp_path_factory):
-    return section5.section5(tmp_path_factory.mktemp("section5"), quiet)
+    return section5.section5(tmp_path_factory.mktemp("section5"), unheard)
 
 
 def test_every_example_of_section_5_is_judged(section):

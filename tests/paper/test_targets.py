@@ -15,6 +15,7 @@ from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.families.continuation import Member
 from symfpu.families.family import Family
+from symfpu.files.progress import NO_FRACTION
 from symfpu.paper.claims_page import draw_panels, figure_markdown, figure_record, write_panel_csv
 from symfpu.paper.convergence import breather_text, cancellation_text, convergence_figure
 from symfpu.paper.convergence_fig1 import CancellationStudy, Variant
@@ -163,11 +164,11 @@ def test_pictures_are_written_as_png_and_pdf(cancellation, breather, tmp_path):
 
 def test_reproduce_convergence_writes_page_data_and_pictures(cancellation, breather, monkeypatch, capsys, tmp_path):
     steps = []
-    monkeypatch.setattr("symfpu.paper.convergence.cancellation_study", lambda step: step("first") or cancellation)
-    monkeypatch.setattr("symfpu.paper.convergence.breather_study", lambda step: step("second") or breather)
+    monkeypatch.setattr("symfpu.paper.convergence.cancellation_study", lambda progress: progress("first", NO_FRACTION) or cancellation)
+    monkeypatch.setattr("symfpu.paper.convergence.breather_study", lambda progress: progress("second", NO_FRACTION) or breather)
     with monkeypatch.context() as unseen:
         unseen.setattr("symfpu.paper.targets.draw_panels", lambda *given: [])
-        figure = reproduced("convergence", tmp_path, steps.append)
+        figure = reproduced("convergence", tmp_path, lambda label, fraction: steps.append(label))
     assert steps == ["first", "second", "convergence: pictures"]
     code = main(["reproduce", "convergence", "-o", str(tmp_path / "out"), "--json"])
     captured = capsys.readouterr()

@@ -393,7 +393,7 @@ def test_ratios_of_energies_are_positive_and_only_one_ratio_is_given():
 
 def test_every_step_is_reported():
     lines = []
-    torus = refine(series_torus("mixed, breather"), report=lines.append)
+    torus = refine(series_torus("mixed, breather"), progress=lambda label, fraction: lines.append(label))
     assert sum(line.startswith("step") for line in lines) >= len(torus.steps) >= 1
     assert lines[0].split()[1] == "harmonics,"
     assert lines[-1].startswith("residual")

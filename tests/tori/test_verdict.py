@@ -247,11 +247,13 @@ def test_digits_change_no_word_and_no_evidence(doubles, digits):
 def test_progress_goes_from_the_first_order_to_the_end(name):
     torus, _ = judged(name)
     calls = []
-    assess(torus.series, torus, progress=lambda done, total: calls.append((done, total)))
-    assert {total for _, total in calls} == {(torus.order + 1) * (2 if torus.digits else 1)}
-    assert [done for done, _ in calls] == sorted(done for done, _ in calls)
-    assert calls[0][0] == 1
-    assert calls[-1][0] == calls[-1][1]
+    assess(torus.series, torus, progress=lambda *told: calls.append(told))
+    steps = (torus.order + 1) * (2 if torus.digits else 1)
+    fractions = [fraction for _, fraction in calls]
+    assert {label for label, _ in calls} == {"verdict"}
+    assert fractions == sorted(fractions)
+    assert fractions[0] == 1 / steps
+    assert fractions[-1] == 1
 
 
 def test_every_sentence_states_one_residual():
