@@ -108,7 +108,7 @@ class FixedPointRing:
         """Multiply-adds of the kernels, over all primes."""
         return sum(image.multiply_adds for image in self._images)
 
-    def number(self, value: Fraction) -> Fraction:
+    def coupling(self, power: int, value: Fraction) -> Fraction:
         return value
 
     def _each(self, work: Callable[[int, _Image], Any]) -> list[Any]:

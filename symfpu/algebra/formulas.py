@@ -25,6 +25,13 @@ class Multiplier(NamedTuple):
     harmonic: tuple[int, ...]
 
 
+class Coupling(NamedTuple):
+    """The coupling of the force r^power, relative to that of the lowest power."""
+
+    power: int
+    value: Fraction
+
+
 def multiplier_symbol(mode: int, harmonic: Sequence[int]) -> Any:
     """The symbol L_q(nu); its name reads as LaTeX."""
     nu = ",".join(map(str, harmonic))
@@ -32,11 +39,11 @@ def multiplier_symbol(mode: int, harmonic: Sequence[int]) -> Any:
 
 
 def expression_of_leaf(symbol: Hashable) -> Any:
-    """What a leaf stands for: a multiplier, a rational coupling, or any other symbol by name."""
+    """What a leaf stands for: a multiplier, a coupling's value, or any other symbol by name."""
     if isinstance(symbol, Multiplier):
         return multiplier_symbol(*symbol)
-    if isinstance(symbol, Fraction):
-        return se.Integer(symbol.numerator) / se.Integer(symbol.denominator)
+    if isinstance(symbol, Coupling):
+        return se.Integer(symbol.value.numerator) / se.Integer(symbol.value.denominator)
     return se.Symbol(str(symbol))
 
 

@@ -76,7 +76,7 @@ class MajorantRing(DoublesRing[Bounds]):
             table = self._table(np.arange(parity, space.N, 2))
             self._noise[parity, : self._points] = 2 * table.sum(axis=0)
 
-    def number(self, value: Fraction) -> float:
+    def coupling(self, power: int, value: Fraction) -> float:
         return abs(float(value))
 
     def _table(self, modes: Ints) -> Floats:

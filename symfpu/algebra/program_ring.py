@@ -11,12 +11,16 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
+import psutil
 from numpy.typing import NDArray
 
 from symfpu.algebra.expansion import Expansion
-from symfpu.algebra.formulas import Multiplier, NodeTable
+from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
 from symfpu.algebra.program import ONE, ZERO, Ints, Program, Terms
 from symfpu.algebra.selection import CosineModes
+from symfpu.errors import TooLarge
+
+TERM_BYTES = 400  # of a pair of cosines while its two terms are sorted and collected, at most
 
 
 class _Cosines(NamedTuple):
@@ -31,6 +35,20 @@ class _Cosines(NamedTuple):
     node: Ints
 
 
+class _Product(NamedTuple):
+    """A product f o g: pairs of monomials a, b with a canonical product, its row in the table,
+    how many pairs of cosines each has, and the factor of all.
+    """
+
+    f: _Cosines
+    g: _Cosines
+    a: Ints
+    b: Ints
+    row: Ints
+    counts: Ints
+    weight: int
+
+
 class ProgramRing:
     """Coefficients as nodes of `program`; ZERO is the zero of a table.
 
@@ -43,6 +61,7 @@ class ProgramRing:
         self.name = "symbolic" if expanded else "nested"
         self.space, self.grading, self.expanded = space, space.grading, expanded
         self.program, self.guessed = Program(), 0
+        self._couplings: dict[int, int] = {}
         self._modes: dict[int, Ints] = {}
         self._cosines: dict[int, _Cosines] = {}
         # powers of the bonds, by degree
@@ -67,8 +86,13 @@ class ProgramRing:
         nodes[suspects] = ZERO
         return nodes
 
-    def number(self, value: Fraction) -> int:
-        return ONE if value == 1 else self.program.leaf(value)
+    def coupling(self, power: int, value: Fraction) -> int:
+        """The first coupling, in whose units all are, is one."""
+        if not self._couplings:
+            assert value == 1
+            self._couplings[power] = ONE
+        known = self._couplings.get(power)
+        return self.program.leaf(Coupling(power, value)) if known is None else known
 
     def seed_terms(self) -> Ints:
         powers = self.grading.powers(1)
@@ -93,20 +117,33 @@ class ProgramRing:
         return _Cosines(start, mode, whole[row, mode])
 
     def power(self, power: int, degree: int) -> Ints:
-        """Nodes of the canonical monomials, (canonical, N): wave numbers 0 .. N-1."""
+        """Nodes of the canonical monomials, (canonical, N): wave numbers 0 .. N-1.
+
+        Raises TooLarge before the terms of the products are made.
+        """
         lower = self._cosines if power == 2 else self._lower(power - 1, degree)
-        parts = []
+        products = []
         for d in sorted(lower):
             e = degree - d
             if e in self._cosines and (power > 2 or d <= e):
                 weight = 1 if power > 2 or d == e else 2
-                parts.append(self._products(lower[d], self._cosines[e], d, e, weight))
+                products.append(self._product(lower[d], self._cosines[e], d, e, weight))
+        self._require_room(degree, products)
         shape = len(self.grading.canonical(degree)), self.space.N
-        if not parts:
+        if not products:
             return np.full(shape, ZERO, dtype=np.int64)
+        parts = [self._terms(product) for product in products]
         out, left, right, factor = map(np.concatenate, zip(*parts, strict=True))
         nodes = self._sums(shape[0] * shape[1], out, Terms(left, right, factor))
         return nodes.reshape(shape)
+
+    def _require_room(self, degree: int, products: list[_Product]) -> None:
+        needed = TERM_BYTES * sum(int(product.counts.sum()) for product in products)
+        free = psutil.virtual_memory().available
+        if needed > free:
+            step = (self.space.product_degree or 2) - 1
+            order = (degree - 1) // step
+            raise TooLarge(order, needed, free, order - 1)
 
     def _lower(self, power: int, degree: int) -> dict[int, _Cosines]:
         known = self._powers.setdefault(power, {})
@@ -115,13 +152,15 @@ class ProgramRing:
                 known[d] = self._of_all(d, self.power(power, d))
         return known
 
-    def _products(
-        self, f: _Cosines, g: _Cosines, d: int, e: int, weight: int
-    ) -> tuple[Ints, Ints, Ints, Ints]:
-        """Terms of f o g in the canonical monomials: place in the table, left, right, factor."""
+    def _product(self, f: _Cosines, g: _Cosines, d: int, e: int, weight: int) -> _Product:
         a, b, row = self._monomial_pairs(d, e)
-        per_left, per_right = np.diff(f.start)[a], np.diff(g.start)[b]
-        counts = per_left * per_right
+        counts = np.diff(f.start)[a] * np.diff(g.start)[b]
+        return _Product(f, g, a, b, row, counts, weight)
+
+    def _terms(self, product: _Product) -> tuple[Ints, Ints, Ints, Ints]:
+        """Terms of f o g in the canonical monomials: place in the table, left, right, factor."""
+        f, g, a, b, row, counts, weight = product
+        per_right = np.diff(g.start)[b]
         pair = np.repeat(np.arange(len(a)), counts)
         within = np.arange(len(pair)) - np.repeat(np.cumsum(counts) - counts, counts)
         i = f.start[a][pair] + within // per_right[pair]

@@ -30,8 +30,8 @@ class Ring(Protocol):
     def multiply_adds(self) -> int:
         """Multiply-adds of all products so far; 0 where they are not counted."""
 
-    def number(self, value: Fraction) -> Any:
-        """An exact rational number as an element of the ring."""
+    def coupling(self, power: int, value: Fraction) -> Any:
+        """The coupling of the force r^power, relative to that of the lowest, as an element."""
 
     def seed_terms(self) -> Any:
         """Modes of degree 1: u_q = w_q + conj w_q for the seeds."""

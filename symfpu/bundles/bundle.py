@@ -44,7 +44,7 @@ from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.series.divisors import SmallDivisor
-from symfpu.series.recursion import shared_grading
+from symfpu.series.monomials import shared_grading
 from symfpu.series.rings import FIXED_POINT, RINGS, RingKind
 from symfpu.series.series import LindstedtSeries, ResiduePoint
 from symfpu.series.tables import Shapes

@@ -28,7 +28,7 @@ from symfpu.files.writing import write_text
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import shared_grading
+from symfpu.series.monomials import shared_grading
 from symfpu.series.residues import residue_series
 from symfpu.series.series import LindstedtSeries, ResiduePoint
 

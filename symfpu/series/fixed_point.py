@@ -19,7 +19,8 @@ from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
 from symfpu.series.divisors import Divisors, FixedPointDivisors, Float64Divisors
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import monomial_space, named_series, ring_series, run_recursion
+from symfpu.series.monomials import monomial_space
+from symfpu.series.recursion import named_series, ring_series, run_recursion
 from symfpu.series.rings import FLOAT64, Frequencies, chosen_frequencies
 from symfpu.series.series import LindstedtSeries
 from symfpu.series.tables import LOG10_2

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from fractions import Fraction
+from collections.abc import Sequence
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
-from symfpu.numbers.typed import Number, exact, integer, seed_modes
+from symfpu.numbers.typed import Number, integer, seed_modes
+from symfpu.series.arguments import digits_of, frequencies_of
 from symfpu.series.fixed_point import fixed_point_series
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import monomial_space, named_series
+from symfpu.series.monomials import monomial_space
+from symfpu.series.recursion import named_series
 from symfpu.series.rings import BY_NAME, RINGS, Frequencies
 from symfpu.series.series import LindstedtSeries
-
-MOST_DIGITS = 10_000
 
 
 def lindstedt(
@@ -56,11 +55,12 @@ def lindstedt(
     """
     seeds = seed_modes(seeds, chain.N)
     order = integer(order, "order", 0)
-    exact_frequencies = None if frequencies is None else _frequencies(frequencies, seeds)
+    exact_frequencies = None if frequencies is None else frequencies_of(frequencies, seeds)
     seeds, exact_frequencies = _ascending(seeds, exact_frequencies)
     if digits is not None:
+        _require_no_ring(ring)
         return fixed_point_series(
-            chain, seeds, exact_frequencies, order, _digits(digits, ring), progress
+            chain, seeds, exact_frequencies, order, digits_of(digits), progress
         )
     ring = ring or ("symbolic" if frequencies is None else "float64")
     if ring not in BY_NAME:
@@ -72,43 +72,10 @@ def lindstedt(
     return named_series(RINGS[ring], chain, space, exact_frequencies, order, progress)
 
 
-def _digits(digits: int, ring: str | None) -> int:
-    if integer(digits, "digits", 1) > MOST_DIGITS:
-        raise InputError("digits", digits, f"1..{MOST_DIGITS}", "take fewer")
+def _require_no_ring(ring: str | None) -> None:
     if ring is not None:
-        raise InputError(
-            "ring",
-            ring,
-            "none where digits are given: they have their own, of fixed-point numbers",
-            "leave one of them out",
-        )
-    return int(digits)
-
-
-def _frequencies(frequencies: Sequence[Number], seeds: tuple[int, ...]) -> tuple[Fraction, ...]:
-    if isinstance(frequencies, (str, Mapping)) or not isinstance(frequencies, Iterable):
-        raise InputError(
-            "frequencies",
-            frequencies,
-            "a sequence, one positive number for each seed",
-            "list them in the order of the seeds",
-        )
-    frequencies = list(frequencies)
-    values = tuple(exact(w, "frequencies") for w in frequencies)
-    if len(values) != len(seeds):
-        raise InputError(
-            "frequencies",
-            tuple(map(str, frequencies)),
-            f"one number for each of the seeds {seeds}",
-            "add or drop some",
-        )
-    for q, w, typed in zip(seeds, values, frequencies, strict=True):
-        if not Fraction(1, 10**6) <= w <= 10**6:
-            allowed = "a positive finite number (1e-6 to 1e6)"
-            raise InputError(
-                f"frequencies, omega_{q}", str(typed), allowed, "take one near the linear frequency"
-            )
-    return values
+        allowed = "none where digits are given: they have their own, of fixed-point numbers"
+        raise InputError("ring", ring, allowed, "leave one of them out")
 
 
 def _ascending(

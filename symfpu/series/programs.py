@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
 from typing import Any
 
 from numpy.typing import NDArray
 
-from symfpu.algebra.formulas import Multiplier
+from symfpu.algebra.formulas import Coupling, Multiplier
 from symfpu.algebra.program import Program, Terms
 from symfpu.errors import InputError
 from symfpu.numbers.typed import fraction, fraction_text, integer
@@ -51,8 +50,8 @@ def program_from(body: Json, members: Mapping[str, Array]) -> Program:
 def _symbol_entry(symbol: Any) -> list[Any]:
     if isinstance(symbol, Multiplier):
         return ["L", symbol.mode, *symbol.harmonic]
-    if isinstance(symbol, Fraction):
-        return ["number", fraction_text(symbol)]
+    if isinstance(symbol, Coupling):
+        return ["coupling", symbol.power, fraction_text(symbol.value)]
     if isinstance(symbol, str):
         return ["symbol", symbol]
     raise InputError(
@@ -65,8 +64,9 @@ def _symbol(entry: Any) -> Any:
     if kind == "L":
         mode, *harmonic = (integer(part, "symbol", -MOST) for part in parts)
         return Multiplier(mode, tuple(harmonic))
-    if kind == "number":
-        return fraction(parts[0])
+    if kind == "coupling":
+        power, value = parts
+        return Coupling(integer(power, "power", 2), fraction(value))
     if kind == "symbol":
         return str(parts[0])
     raise ValueError(f"no kind of symbol: {kind!r:.40}")

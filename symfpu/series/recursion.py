@@ -8,11 +8,8 @@ term (the gauge of A_q).
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 
-from symfpu.algebra.grading import Grading
 from symfpu.algebra.ring import Ring
 from symfpu.algebra.selection import CosineModes
 from symfpu.chain.chain import Chain
@@ -31,7 +28,7 @@ def run_recursion(
     """
     couplings = {}
     for power, coupling in chain.relative_couplings.items():
-        couplings[power] = ring.number(coupling)
+        couplings[power] = ring.coupling(power, coupling)
     ring.put(1, ring.seed_terms())
     for k in range(1, order + 1):
         degree = 1 + chain.degree_step * k
@@ -92,17 +89,3 @@ def named_series(
     divisors = kind.divisors(chain, space, frequencies)
     given = frequencies if kind.numeric else None
     return ring_series(chain, given, order, kind.ring(space), divisors, progress)
-
-
-def monomial_space(chain: Chain, seeds: tuple[int, ...], order: int) -> CosineModes:
-    """Modes and monomials of a series; its first order is a plain product of the seeds."""
-    factors = 1 + chain.degree_step
-    degree = 1 + chain.degree_step * order
-    grading = shared_grading(len(seeds), degree)
-    return CosineModes(chain.N, seeds, grading, factors)
-
-
-@lru_cache(maxsize=4)
-def shared_grading(seeds: int, degree: int) -> Grading:
-    """The grading of so many seeds; kept, because tables do not depend on the chain."""
-    return Grading(seeds, degree)

@@ -11,7 +11,8 @@ from symfpu.files.progress import Progress
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.series.divisors import ResidueDivisors
 from symfpu.series.memory import check_size
-from symfpu.series.recursion import monomial_space, ring_series
+from symfpu.series.monomials import monomial_space
+from symfpu.series.recursion import ring_series
 from symfpu.series.series import LindstedtSeries, ResiduePoint
 
 

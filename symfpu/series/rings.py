@@ -1,4 +1,4 @@
-"""The rings of a series in one list: each with its divisors, its tables, and how it grows.
+"""The rings of a series in one list: each with its divisors and its tables.
 
 A new ring is a file in symfpu/algebra with the methods of `Ring`, its divisors and its tables,
 and one line here.
@@ -21,7 +21,6 @@ from symfpu.series.divisors import Divisors, Float64Divisors, UniversalDivisors
 from symfpu.series.tables import DoubleTables, ExpressionTables, FixedPointTables, Tables
 
 Frequencies = tuple[Fraction, ...] | None
-SYMBOLIC_GROWTH = 4  # factor by which an expanded coefficient grows with the order, about
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,6 @@ class RingKind:
 
     tables : of its coefficients, from digits and bits. ring, divisors : how they are made; None
     where that takes more than a name: residues want a point, fixed-point numbers their precision.
-    growth : factor of memory by order, beside doubles.
     numeric, exact_point : whether a series has frequencies, or a point where its residues were
         taken.
     """
@@ -39,7 +37,6 @@ class RingKind:
     tables: Callable[[int | None, int], Tables]
     ring: Callable[[CosineModes], Ring] | None = None
     divisors: Callable[[Chain, CosineModes, Frequencies], Divisors] | None = None
-    growth: int = 1
     numeric: bool = False
     exact_point: bool = False
 
@@ -67,14 +64,12 @@ SYMBOLIC = RingKind(
     partial(_expression_tables, expanded=True),
     partial(ProgramRing, expanded=True),
     _universal_divisors,
-    growth=SYMBOLIC_GROWTH,
 )
 NESTED = RingKind(
     "nested",
     partial(_expression_tables, expanded=False),
     partial(ProgramRing, expanded=False),
     _universal_divisors,
-    growth=SYMBOLIC_GROWTH,
 )
 FIXED_POINT = RingKind("fixedpoint", FixedPointTables, numeric=True)
 RESIDUE = RingKind("residue", _double_tables, exact_point=True)

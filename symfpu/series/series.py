@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -12,6 +13,7 @@ import numpy as np
 import symengine as se
 from numpy.typing import ArrayLike, NDArray
 
+from symfpu.algebra.formulas import NodeTable
 from symfpu.algebra.grading import Grading, Ints
 from symfpu.algebra.polynomials import Polynomial, evaluate, powers_of, rescaled, square_root
 from symfpu.chain.chain import Chain
@@ -25,9 +27,17 @@ from symfpu.numbers.arithmetic import (
     integers,
     with_digits,
 )
-from symfpu.numbers.typed import integer
-from symfpu.series.divisors import SmallDivisor
-from symfpu.series.rings import RINGS
+from symfpu.numbers.typed import Number, integer
+from symfpu.series.arguments import digits_of, frequencies_of
+from symfpu.series.divisors import Float64Divisors, SmallDivisor
+from symfpu.series.monomials import monomial_space
+from symfpu.series.rings import FIXED_POINT, FLOAT64, RESIDUE, RINGS
+from symfpu.series.substitution import (
+    certified_tables,
+    leaves_in_doubles,
+    tables_in_doubles,
+    tables_of_residues,
+)
 from symfpu.series.tables import LOG10_2, Exponents, Tables
 
 Floats = NDArray[np.float64]
@@ -246,6 +256,94 @@ class LindstedtSeries:
             exponents = tuple(map(int, monomial))
             polynomial[exponents] = linear**2 * coefficient
         return polynomial
+
+    def at(
+        self,
+        frequencies: Sequence[Number],
+        *,
+        alpha: Number | None = None,
+        beta: Number | None = None,
+        digits: int | None = None,
+        point: ResiduePoint | None = None,
+    ) -> LindstedtSeries:
+        """The numeric series at chosen frequencies, by the program of a universal series.
+
+        frequencies : omega of every seed, shape (s,), in the order of `seeds`, exact as in
+            `lindstedt`. alpha, beta : couplings other than the chain's, not zero where the
+            chain's are not. digits : to so many digits of the largest coefficient of an order,
+            proved by balls; None for doubles. point : a point modulo a prime instead, then
+            frequencies are its own.
+
+        Ours. For many points at once see `sample_series`. Raises InputError, ResonantDivisor for
+        frequencies that make a multiplier infinite, VanishingResidue.
+
+        >>> from symfpu import Chain, lindstedt
+        >>> universal = lindstedt(Chain(N=8, alpha="0.3"), (1,), order=6)
+        >>> universal.at(("0.3905",))
+        LindstedtSeries(N=8, alpha=0.3, seeds=1, order 6, 133 coefficients (float64),
+        smallest divisor 0.024 at mode 2, harmonic (2), order 1)
+        """
+        tables = self.node_tables()
+        chain = self._chain_with(alpha, beta)
+        none = self.corrections[0]
+        if point is not None:
+            prime, root, omega = point.prime, point.root, point.frequencies
+            values = tables_of_residues(tables, chain, self.seeds, prime, root, omega)
+            return self._with(chain, values, none, ring=RESIDUE.name, point=point)
+        chosen = frequencies_of(frequencies, self.seeds)
+        if digits is not None:
+            found = certified_tables(tables, chain, self.seeds, chosen, digits_of(digits))
+            radii = self._radii(found.radii, none)
+            numeric = {"ring": FIXED_POINT.name, "digits": digits, "bits": found.bits}
+            return self._with(chain, found.tables, none, frequencies=chosen, radii=radii, **numeric)
+        divisors = Float64Divisors(chain, self.seeds, chosen, self.grading.degree)
+        space = monomial_space(chain, self.seeds, self.order)
+        leaves = leaves_in_doubles(tables[0].program, chain, space, divisors, self.order)
+        values = [table[..., 0] for table in tables_in_doubles(tables, leaves)]
+        smallest = divisors.smallest()
+        return self._with(
+            chain,
+            values,
+            none,
+            ring=FLOAT64.name,
+            frequencies=chosen,
+            smallest_divisors=smallest,
+        )
+
+    def node_tables(self) -> list[NodeTable]:
+        """The tables of a program: coordinates of orders 0 .. K, corrections of 1 .. K.
+
+        Raises InputError for series that have none.
+        """
+        tables = [*self.coordinates, *self.corrections[1:]]
+        if not all(isinstance(table, NodeTable) for table in tables):
+            allowed = "a universal series that was made by this version"
+            raise InputError(
+                "series", self.ring, allowed, "make it by lindstedt without frequencies"
+            )
+        return tables
+
+    def _chain_with(self, alpha: Number | None, beta: Number | None) -> Chain:
+        alpha = self.chain.alpha if alpha is None else alpha
+        beta = self.chain.beta if beta is None else beta
+        chain = Chain(self.chain.N, alpha, beta)
+        if chain.model != self.chain.model:
+            allowed = f"couplings of the same model, {self.chain.model}"
+            raise InputError("alpha, beta", (alpha, beta), allowed, "make a series of that model")
+        return chain
+
+    def _with(self, chain: Chain, values: list[Any], none: Any, **numeric: Any) -> LindstedtSeries:
+        """This series with numbers in its tables, coordinates first."""
+        count = self.order + 1
+        coordinates, corrections = tuple(values[:count]), (none, *values[count:])
+        return replace(
+            self, chain=chain, coordinates=coordinates, corrections=corrections, **numeric
+        )
+
+    def _radii(self, radii: list[Floats], none: Any) -> tuple[tuple[float, Floats], ...]:
+        count = self.order + 1
+        largest = [float(table.max(initial=0.0)) for table in radii[:count]]
+        return tuple(zip(largest, [none, *radii[count:]], strict=True))
 
     def term(self, q: int, order: int) -> Any:
         """Q_q^(k), without mu^k, as a SymEngine expression in A_i and theta_i (Eq. qser).

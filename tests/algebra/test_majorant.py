@@ -16,7 +16,8 @@ from symfpu.chain.chain import Chain
 from symfpu.series.divisors import FixedPointDivisors, Float64Divisors
 from symfpu.series.fixed_point import _moduli
 from symfpu.series.lindstedt import lindstedt
-from symfpu.series.recursion import monomial_space, run_recursion
+from symfpu.series.monomials import monomial_space
+from symfpu.series.recursion import run_recursion
 from tests.oracles.cases import CASES, Case
 from tests.tolerances import NEAREST
 

@@ -31,7 +31,7 @@ def projected(ring, space, power, degree):
     ring.put(1, ring.seed_terms())
     values = second_order(space)
     ring.put(2, values.astype(object) if isinstance(ring, SymbolicRing) else values.astype(float))
-    return ring.project(degree, [(ring.number(Fraction(1)), ring.power(power, degree))])
+    return ring.project(degree, [(ring.coupling(power, Fraction(1)), ring.power(power, degree))])
 
 
 @pytest.mark.parametrize("power", [2, 3, 4, 5])

@@ -44,7 +44,7 @@ class SymbolicRing:
     def _zeros(self, degree: int) -> Objects:
         return np.full((len(self.grading.canonical(degree)), self.space.N - 1), se.Integer(0), dtype=object)
 
-    def number(self, value: Fraction) -> Any:
+    def coupling(self, power: int, value: Fraction) -> Any:
         return se.Integer(value.numerator) / se.Integer(value.denominator)
 
     def seed_terms(self) -> Objects:

@@ -1,0 +1,23 @@
+"""Modes and monomials of a series."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from symfpu.algebra.grading import Grading
+from symfpu.algebra.selection import CosineModes
+from symfpu.chain.chain import Chain
+
+
+def monomial_space(chain: Chain, seeds: tuple[int, ...], order: int) -> CosineModes:
+    """Modes and monomials of a series; its first order is a plain product of the seeds."""
+    factors = 1 + chain.degree_step
+    degree = 1 + chain.degree_step * order
+    grading = shared_grading(len(seeds), degree)
+    return CosineModes(chain.N, seeds, grading, factors)
+
+
+@lru_cache(maxsize=4)
+def shared_grading(seeds: int, degree: int) -> Grading:
+    """The grading of so many seeds; kept, because tables do not depend on the chain."""
+    return Grading(seeds, degree)
