@@ -19,6 +19,18 @@ def latex(expression: Any) -> str:
     return f"$\\displaystyle {sympy.latex(sympy.sympify(expression))}$"
 
 
+def latex_lines(expression: Any, width: int = 110) -> list[str]:
+    """LaTeX without delimiters, a sum broken into lines of about `width` characters."""
+    lines = [""]
+    for term in getattr(expression, "args", ()) if expression.is_Add else (expression,):
+        text = latex(term).removeprefix("$\\displaystyle ").removesuffix("$")
+        sign = "" if text.startswith("-") or lines == [""] else "+ "
+        if len(lines[-1]) + len(text) > width and lines[-1]:
+            lines.append("")
+        lines[-1] += f"{sign}{text} "
+    return [line.rstrip() for line in lines]
+
+
 def init_printing() -> None:
     """Notebooks show SymEngine expressions, such as the terms of a series, as formulas from now on.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -97,11 +97,51 @@ def expressions(program: Program, nodes: Ints, *, expanded: bool) -> Objects:
     """
     wanted = np.unique(nodes[nodes != ZERO])
     made = _expanded(program, wanted) if expanded else _nested(program, wanted)
+    return _gathered(nodes, made)
+
+
+def _gathered(nodes: Ints, made: Mapping[int, Any]) -> Objects:
     found = np.full(nodes.size, se.Integer(0), dtype=object)
     for place, node in enumerate(nodes.ravel().tolist()):
         if node != ZERO:
             found[place] = made[node]
     return found.reshape(nodes.shape)
+
+
+def named_expressions(program: Program, nodes: Ints) -> tuple[list[tuple[Any, Any]], Objects]:
+    """Names x0, x1, ... of the sums that occur more than once, and the nodes in these names.
+
+    Returns (name, expression) in the order of their use, each after its parts; and expressions in
+    the shape of nodes.
+    """
+    wanted = np.unique(nodes[nodes != ZERO])
+    needed = ancestors(program, wanted).tolist()
+    uses = dict.fromkeys(needed, 0)
+    for node in needed:
+        for left, right, _ in terms_of(program, node):
+            for part in (left, right):
+                uses[part] = uses.get(part, 0) + 1
+    made: dict[int, Any] = {0: se.Integer(1)}
+    names: list[tuple[Any, Any]] = []
+    for node in needed:
+        if node in made:
+            continue
+        terms = [f * made[a] * made[b] for a, b, f in terms_of(program, node)]
+        made[node] = se.Add(*terms) if terms else _of_leaf(program, node)
+        if uses[node] > 1 and made[node].args and _operations(made[node]) > 1:
+            name = se.Symbol(f"x{len(names)}")
+            names.append((name, made[node]))
+            made[node] = name
+    return names, _gathered(nodes, made)
+
+
+def _operations(expression: Any) -> int:
+    """Products and sums of parts that are no numbers, at the top and one level below."""
+    count = 0
+    for part in expression.args:
+        count += not part.is_Number
+        count += sum(not piece.is_Number for piece in part.args[1:])
+    return count
 
 
 def _nested(program: Program, wanted: Ints) -> dict[int, Any]:

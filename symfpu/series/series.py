@@ -6,18 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import mpmath
 import numpy as np
 import symengine as se
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.algebra.formulas import NodeTable
+from symfpu.algebra.formulas import NodeTable, expressions, named_expressions
 from symfpu.algebra.grading import Grading, Ints
 from symfpu.algebra.polynomials import Polynomial, evaluate, powers_of, rescaled, square_root
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.notebook import latex_lines
 from symfpu.numbers.arithmetic import (
     DOUBLES,
     MULTIPRECISION,
@@ -41,6 +42,40 @@ from symfpu.series.substitution import (
 from symfpu.series.tables import LOG10_2, Exponents, Tables
 
 Floats = NDArray[np.float64]
+
+
+FORMS = ("expanded", "factored", "cse")
+
+
+class NamedParts(NamedTuple):
+    """An expression whose shared parts have names.
+
+    Made by `LindstedtSeries.term`. names : pairs (name, expression), each after its parts.
+    expression : in these names.
+    """
+
+    names: tuple[tuple[Any, Any], ...]
+    expression: Any
+
+    def latex(self) -> str:
+        """Lines that fit a page: the expression, then what its names stand for."""
+        lines = [f"&{line}" for line in latex_lines(self.expression)]
+        for name, value in self.names:
+            first, *others = latex_lines(value)
+            lines.append(f"{name} &= {first}")
+            lines += [rf"&\quad {line}" for line in others]
+        rows = " \\\\\n".join(lines)
+        return f"\\begin{{aligned}}\n{rows}\n\\end{{aligned}}"
+
+    def _repr_latex_(self) -> str:
+        return f"$${self.latex()}$$"
+
+    def whole(self) -> Any:
+        """The expression without names."""
+        whole = self.expression
+        for name, value in reversed(self.names):
+            whole = whole.subs({name: value})
+        return whole
 
 
 @dataclass(frozen=True)
@@ -201,18 +236,25 @@ class LindstedtSeries:
         coefficient and is not listed again. Raises InputError for a mode or an order outside the
         series, SymfpuError where a coefficient exceeds doubles.
         """
-        degree = self.degree(order)
         column = self._mode(q) - 1
+        self._order(order)
         with self._context():
             values = self.tables.entries(self.coordinates[order], [column])[:, 0]
-            at = np.flatnonzero(values != 0)
-            rows = self.grading.canonical(degree)[at]
-            exponents = self.grading.exponents(degree)[rows]
-            powers = self.grading.powers(degree)[at]
-            coordinates = values[at] / self._linear(q)
-            result = self._scaled(coordinates, powers, degree - 1)
-            found = self.tables.finite(result, f"Q_{q}^({order})")
-            return exponents, with_digits(found, self.digits)
+            return self._coefficients_of(q, order, values)
+
+    def _coefficients_of(
+        self, q: int, order: int, values: NDArray[Any]
+    ) -> tuple[Ints, NDArray[Any]]:
+        """The coefficients of Q_q^(k) from a column of the table of coordinates."""
+        degree = self.degree(order)
+        at = np.flatnonzero(values != 0)
+        rows = self.grading.canonical(degree)[at]
+        exponents = self.grading.exponents(degree)[rows]
+        powers = self.grading.powers(degree)[at]
+        coordinates = values[at] / self._linear(q)
+        result = self._scaled(coordinates, powers, degree - 1)
+        found = self.tables.finite(result, f"Q_{q}^({order})")
+        return exponents, with_digits(found, self.digits)
 
     def frequency_coefficients(
         self, q: int, order: int, *, squared: bool = False
@@ -345,15 +387,41 @@ class LindstedtSeries:
         largest = [float(table.max(initial=0.0)) for table in radii[:count]]
         return tuple(zip(largest, [none, *radii[count:]], strict=True))
 
-    def term(self, q: int, order: int) -> Any:
+    def term(self, q: int, order: int, *, form: str | None = None) -> Any:
         """Q_q^(k), without mu^k, as a SymEngine expression in A_i and theta_i (Eq. qser).
 
         It prints as LaTeX in a notebook.
 
-        Coefficients are doubles, or polynomials in the symbols L_q(nu) and Omega_q for a series
-        in universal form.
+        form : of the coefficients of a universal series: "expanded", polynomials in the symbols
+            L_q(nu) and Omega_q; "factored", sums of products as the recursion has them; "cse",
+            the same with the parts that occur more than once named, then a `NamedParts` is
+            returned. None for that of its ring.
+
+        Coefficients of other series are numbers. `sympy.sympify` makes SymPy's expression of any.
+        Raises InputError, and ExpansionTooLarge before an expansion that would not fit.
+
+        >>> from symfpu import Chain, lindstedt
+        >>> series = lindstedt(Chain(N=8, alpha=1), (1,), order=4)
+        >>> parts = series.term(5, 4, form="cse")
+        >>> len(parts.names), parts.names[1]
+        (4, (x1, 2*L_{3}(3)*L_{2}(2)))
         """
-        exponents, values = self.coefficients(q, order)
+        if form is None:
+            return self._term(*self.coefficients(q, order))
+        if form not in FORMS:
+            raise InputError("form", form, f"one of {', '.join(FORMS)}", "leave it out")
+        self.node_tables()
+        column = self._mode(q) - 1
+        self._order(order)
+        table = self.coordinates[order]
+        nodes = table.nodes[:, column]
+        if form == "cse":
+            names, values = named_expressions(table.program, nodes)
+            return NamedParts(tuple(names), self._term(*self._coefficients_of(q, order, values)))
+        values = expressions(table.program, nodes, expanded=form == "expanded")
+        return self._term(*self._coefficients_of(q, order, values))
+
+    def _term(self, exponents: Ints, values: NDArray[Any]) -> Any:
         A, theta = self._amplitude_symbols()
         terms = []
         for row, value in zip(exponents, values, strict=True):
