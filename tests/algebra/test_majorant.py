@@ -18,7 +18,7 @@ from symfpu.series.fixed_point import _moduli
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.recursion import monomial_space, run_recursion
 from tests.oracles.cases import CASES, Case
-from tests.tolerances import NEAREST
+from tests.tolerances import NEAREST, RADIUS_ROUNDING
 
 DIGITS = 30
 MORE_BITS = 80  # with them the other run is exact, as far as 30 digits can see
@@ -249,7 +249,7 @@ def test_each_source_of_errors_is_bounded_alone(case, source, monkeypatch):
     coordinates, corrections, _ = bound.results()
     assert max(error.max(initial=0.0) for error in errors) > 0
     for error, radius in zip(errors, [*coordinates, *corrections], strict=True):
-        assert (error <= radius + 1e-9).all()
+        assert (error <= radius + RADIUS_ROUNDING).all()
 
 
 def _without_noise(ring):

@@ -17,6 +17,7 @@ from symfpu.dynamics.dimension import (
     linear_decades,
     outgrown_powers,
 )
+from tests.tolerances import DECADES, LATE_DECADES, WHOLE_NUMBERS
 
 MIXED, BETA = Chain(32, alpha="0.33", beta="0.1"), Chain(8, beta=1)
 TIMES = np.geomspace(1.0, 1e7, 500)
@@ -149,12 +150,12 @@ def test_exponential_growth_outgrows_every_power_and_that_stays():
     growth = np.log(TIMES) + 1e-3 * np.minimum(TIMES, 1e5)
     outgrown = [outgrown_powers(TIMES[:n], growth[:n]) for n in range(100, 501, 20)]
     assert outgrown == sorted(outgrown)
-    assert outgrown[0] == pytest.approx(0.0, abs=1e-9)
+    assert outgrown[0] == pytest.approx(0.0, abs=WHOLE_NUMBERS)
     assert outgrown[-1] > 5 * OUTGROWN
 
 
 def test_linear_growth_is_counted_back_from_the_end():
-    assert linear_decades(TIMES, np.log(TIMES)) == pytest.approx(7 - np.log10(EARLY), abs=0.1)
-    assert linear_decades(TIMES, np.log(np.maximum(TIMES, 1e4))) == pytest.approx(3.0, abs=0.01)
+    assert linear_decades(TIMES, np.log(TIMES)) == pytest.approx(7 - np.log10(EARLY), abs=DECADES)
+    assert linear_decades(TIMES, np.log(np.maximum(TIMES, 1e4))) == pytest.approx(3.0, abs=LATE_DECADES)
     assert linear_decades(TIMES, (1 + 2 * ODD) * np.log(TIMES)) == 0.0
     assert FULL > LOW
