@@ -235,7 +235,7 @@ def test_each_source_of_errors_is_bounded_alone(case, source, monkeypatch):
     if source != "multipliers":
         monkeypatch.setattr(majorant, "MULTIPLIER", 0.0)
     if source != "bonds":
-        monkeypatch.setattr(majorant, "ROUNDED", 1e-15)
+        monkeypatch.setattr(majorant, "NEAREST_ROUNDING", 1e-15)
     bound = MajorantRing(space, *_moduli(series, series.unit), series.unit, 2.0**-series.bits)
     if source in ("multipliers", "corrections"):
         bound._noise *= 0

@@ -10,8 +10,8 @@ import pytest
 from symfpu.breathers.balance import periodic_orbit
 from symfpu.errors import InputError
 from symfpu.paper.convergence_fig1 import (
-    DETUNED,
-    INCOMMENSURABLE,
+    DETUNED_FREQUENCIES,
+    INCOMMENSURABLE_FREQUENCIES,
     SHOWN_ORDERS,
     _coincidence,
     _pole,
@@ -106,7 +106,11 @@ def test_at_the_pole_the_frequency_of_mode_3_is_that_of_the_harmonic(torus):
     assert terms[1:, 2].sum() == pytest.approx(shift, rel=TERM_RATIO)
 
 
-@pytest.mark.parametrize(("frequencies", "digits"), [(TWO_TORUS.frequencies, 40), (INCOMMENSURABLE, 40), (INCOMMENSURABLE, None)], ids=str)
+@pytest.mark.parametrize(
+    ("frequencies", "digits"),
+    [(TWO_TORUS.frequencies, 40), (INCOMMENSURABLE_FREQUENCIES, 40), (INCOMMENSURABLE_FREQUENCIES, None)],
+    ids=str,
+)
 def test_neither_digits_nor_incommensurable_frequencies_change_how_amplitudes_settle(torus, frequencies, digits):
     ours = amplitude_history(lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, frequencies, 14, digits=digits)).differences()
     theirs = amplitude_history(torus.series).differences()
@@ -116,12 +120,12 @@ def test_neither_digits_nor_incommensurable_frequencies_change_how_amplitudes_se
 
 
 def test_incommensurable_frequencies_leave_the_terms_as_they_are(torus):
-    assert sizes(torus_of(INCOMMENSURABLE)) == pytest.approx(sizes(torus), rel=ALIKE)
+    assert sizes(torus_of(INCOMMENSURABLE_FREQUENCIES)) == pytest.approx(sizes(torus), rel=ALIKE)
 
 
 def test_printed_frequencies_grow_and_detuned_ones_fall(torus):
     """omega_2 = 0.39056 makes one divisor eleven times larger: the terms of mode 1 fall to the last order."""
-    printed, detuned = heights(sizes(torus)), heights(sizes(torus_of(DETUNED)))
+    printed, detuned = heights(sizes(torus)), heights(sizes(torus_of(DETUNED_FREQUENCIES)))
     assert printed == sorted(printed)
     assert printed[2] > 3 * printed[1] > 3 * printed[0]
     assert detuned[0] > 3 * detuned[1] > 9 * detuned[2]
@@ -129,7 +133,8 @@ def test_printed_frequencies_grow_and_detuned_ones_fall(torus):
 
 def test_detuning_moves_the_harmonic_to_the_other_side_of_mode_3():
     """Omega_3^2 - (4 omega_2 - 5 omega_1)^2 becomes 12.6 times larger, and negative."""
-    near, far = ((2 * math.sin(3 * math.pi / 32)) ** 2 - (4 * float(b) - 5 * float(a)) ** 2 for a, b in (TWO_TORUS.frequencies, DETUNED))
+    linear = (2 * math.sin(3 * math.pi / 32)) ** 2
+    near, far = (linear - (4 * float(b) - 5 * float(a)) ** 2 for a, b in (TWO_TORUS.frequencies, DETUNED_FREQUENCIES))
     assert near == pytest.approx(3.4083795e-5, rel=SEVEN_DIGITS)
     assert far / near == pytest.approx(-12.6309, rel=FIVE_DIGITS)
 

@@ -13,7 +13,7 @@ from symfpu.chain.chain import Chain
 from symfpu.paper import corrected, series_errors
 from symfpu.paper.claims import PaperFigure
 from symfpu.paper.claims_page import draw_panels, figure_markdown, write_panel_csv
-from symfpu.paper.corrected import HEAVY, CorrectedRow, corrected_row, corrected_rows, left_out
+from symfpu.paper.corrected import HEAVY_ROWS, CorrectedRow, corrected_row, corrected_rows, left_out
 from symfpu.paper.corrected_page import corrected_line, corrected_panels, corrected_record, corrected_text
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
 from symfpu.paper.series_errors import ScalingStudy, SeriesErrors, decay, scaling_study
@@ -213,8 +213,8 @@ def test_heavy_rows_are_computed_in_full_only(monkeypatch):
     known = dict.fromkeys(BY_LABEL.values())
     rows = list(corrected_rows(known))
     assert [row.printed.label for row in rows] == list(BY_LABEL)
-    assert set(asked) == set(BY_LABEL) - set(HEAVY)
-    assert all("--full" in row.verdict for row in rows if row.printed.label in HEAVY)
+    assert set(asked) == set(BY_LABEL) - set(HEAVY_ROWS)
+    assert all("--full" in row.verdict for row in rows if row.printed.label in HEAVY_ROWS)
     asked.clear()
     list(corrected_rows(known, full=True))
     assert asked == list(BY_LABEL)
@@ -292,7 +292,7 @@ def test_data_and_pictures_are_written(two_rows, study, tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("label", [row.label for row in APPENDIX_F if len(row.seeds) > 2 and row.label not in HEAVY])
+@pytest.mark.parametrize("label", [row.label for row in APPENDIX_F if len(row.seeds) > 2 and row.label not in HEAVY_ROWS])
 def test_the_series_tend_to_the_exact_tori(label):
     row = corrected_row(BY_LABEL[label])
     assert row.residual < PROMISED_RESIDUAL
