@@ -7,12 +7,13 @@ from typing import Any
 
 import symengine as se
 
-LONGEST = 20_000  # characters of an expression up to which SymPy's printer is worth its time
+# characters of an expression up to which SymPy's printer is worth its time
+LONGEST_EXPRESSION = 20_000
 
 
 def latex(expression: Any) -> str:
     """LaTeX of a SymEngine expression, with A1 as A_{1} and theta1 as a Greek letter, in math delimiters."""
-    if len(str(expression)) > LONGEST:
+    if len(str(expression)) > LONGEST_EXPRESSION:
         return str(expression._repr_latex_())
     import sympy
 

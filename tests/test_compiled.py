@@ -14,6 +14,7 @@ import pytest
 import symfpu
 from symfpu.algebra import uncompiled
 from symfpu.compiled import temporary_folder
+from tests.tolerances import THOUSAND_ROUNDINGS
 
 ORBIT = """
 from symfpu import Chain, integrate
@@ -115,7 +116,7 @@ def test_everything_runs_without_the_compiler():
     compiled, interpreted = run(EVERYTHING), run(EVERYTHING, NUMBA_DISABLE_JIT="1")
     assert len(compiled) == len(interpreted) == 7
     for line, other in zip(compiled, interpreted, strict=True):
-        assert other == pytest.approx(line, rel=1e-9, abs=1e-9)
+        assert other == pytest.approx(line, rel=THOUSAND_ROUNDINGS, abs=THOUSAND_ROUNDINGS)
 
 
 def test_interpreted_products_modulo_a_prime_are_exact():

@@ -98,3 +98,384 @@ CONVERGED_DIGITS = 5e-13
 
 # The slope between the last two of tori whose amplitudes are halved: the next order changes it by some mu A / 16.
 RATE_OF_MU = 0.01
+
+# Roundings of doubles, by how many there are.
+
+# One number by two ways of a rounding or two: a mean, a quotient, a frequency that is read back.
+LAST_DIGIT = 1e-15
+
+# Half of the last place of a frequency that is printed with 16 decimal places.
+LAST_PRINTED_PLACE = 1e-16
+
+# Some ten roundings, or a number written with fifteen digits.
+TEN_ROUNDINGS = 1e-14
+
+# Some hundred operations on numbers of order one, each rounded once, or so many sums in another order.
+HUNDRED_ROUNDINGS = 1e-13
+
+# Sums of a thousand terms in another order, and loops of a thousand steps, each rounded once.
+THOUSAND_ROUNDINGS = 1e-12
+
+# Least squares with a condition of some 1e3, of data that are rounded once; twice, where the fits are fitted.
+LEAST_SQUARES = 1e-10
+
+# Quotients and logarithms of numbers up to 1e5 against whole ones: 1e5 EPS.
+WHOLE_NUMBERS = 1e-9
+
+# Shifts omega - Omega are some 1e-4 of the frequencies, or less, and differences of them: EPS over that, and what follows from it.
+RELATIVE_SHIFT = 1e-9
+
+# The same with shifts of some 1e-6.
+SMALL_SHIFT = 1e-8
+
+# Differences that are some 1e-9 of the numbers they are taken of, relative to themselves.
+DIFFERENCE_OF_DOUBLES = 1e-6
+
+# Solutions: residuals, conditions and what they are known to.
+
+# What `refine` promises by default.
+PROMISED_RESIDUAL = 1e-13
+
+# Newton ends at steps of 1e-14; small divisors, some 1e-4, and times between the grid points magnify the rounding of the equations.
+NEWTON_RESIDUAL = 1e-12
+
+# Energies and amplitudes that are conditions of Newton's method are met to the rounding of doubles.
+CONDITION = 1e-13
+
+# Ratios of energies are conditions too, of sums of squares of coefficients.
+FIXED_RATIO = 1e-12
+
+# What `refine` is asked for where few harmonics are to do, what its longest ones leave out, and what errors of that size change.
+LOW_ACCURACY = 1e-6
+
+# The residual that is asked for on the command line.
+COMMANDED_RESIDUAL = 1e-8
+
+# What `refine` is asked for where harmonics are counted.
+HIGH_ACCURACY = 1e-11
+
+# What the drift of the peer's energy allows an orbit is little enough to say something.
+ALLOWANCE = 2e-11
+
+# Coefficients are rounded once to doubles; before, they are solved to 1e-17 times the condition of Newton's matrix, that of
+# amplitudes by frequencies: omega over its shift, some 1e4.
+REFINED_COEFFICIENT = 1e-13
+
+# The longest of the harmonics that are left out are below 1e-3 of the tolerance; those and small divisors, some 1e-2, leave this.
+BREATHER_HARMONICS = 1e-12
+
+# Shifts feel left out harmonics by the square of their coefficients.
+FEW_HARMONICS = 1e-9
+
+# Residuals in long doubles are not zero: below this there would be nothing that was computed.
+LONG_DOUBLE_RESIDUAL = 1e-17
+
+# Amplitudes that stand with fourteen digits.
+FOURTEEN_DIGITS = 6e-15
+
+# Two solvers of one orbit, each to its rounding over the smallest divisor, some 1e-4.
+SAME_ORBIT = 1e-11
+
+# Frequencies of one mode in its potential: rounding of sigma and of the energy, both relative.
+ONE_MODE_FREQUENCY = 1e-12
+
+# DOP853 at rtol 1e-13 over one period; the breathers are stable, so that errors grow linearly.
+PERIOD_RETURN = 1e-12
+
+# Central differences of second order with step h = 6e-4 of rates about 1: h^2 / 6, for a few harmonics.
+CENTRAL_DIFFERENCE = 1e-6
+
+# What rounding leaves of a difference over a step of some 1e-5: EPS over the step.
+DIFFERENCE_ROUNDING = 1e-10
+
+# An orbit in doubles, relative to its largest coefficient: its Newton steps end at 1e-14, small divisors magnify rounding.
+ORBIT_IN_DOUBLES = 1e-13
+
+# An amplitude by shooting: omega - Omega is magnified in A; a relative error of the period of 1e-16 is 1e-16 omega / (2 (omega - Omega))
+# in A, 1e-11 at the smallest amplitude looked at, that of seed 25.
+SHOT_AMPLITUDE = 2e-11
+
+# Members of a family at an energy and by harmonic balance, with harmonics to a tolerance of 1e-10.
+LOOSE_MEMBER = 1e-8
+
+# The shift is known to 1e-18, some 1e-11 of itself; the place of its minimum to the root of that at worst, in relation to H.
+FOLD = 1e-6
+
+# The oracle has 48 harmonics of dt/dphi; the 48th of the slowest orbit looked at leaves some 3e-12 of the amplitude.
+OSCILLATOR = 1e-11
+
+# Energies of located resonances, relative; Newton's method solves for the divisor itself, to some 1e-15.
+RESONANCE_ENERGY = 1e-8
+
+# The resonant amplitude at the energy of the resonance as doubles have it: it changes by 1e4 of the energy's change.
+RESONANT_AMPLITUDE = 1e-4
+
+# The way back to the linear limit: what other modes still take part, of the shift.
+LINEAR_LIMIT = 1e-5
+
+# Maps of a period.
+
+# DOP853 at rtol 1e-13 along an unstable orbit: errors grow with the largest multiplier, here below 2, in some hundred steps.
+VARIATIONS = 1e-11
+
+# Eigenvalues of a map that is known to VARIATIONS: a condition of some ten.
+EIGENVALUES = 1e-9
+
+# The error of half a period is held to 1e-12; a period and 62 columns make some of it.
+MONODROMY = 1e-11
+
+# Sums of multipliers and of their squares against traces of such a map: ten times that.
+TRACES = 1e-10
+
+# Multipliers at amplitude 1e-4 differ from those of rest by (alpha A)^2 / N and the like, times T.
+MAP_AT_REST = 1e-7
+
+# Multipliers of two schemes: five halvings of the step leave 1e-10 of the map by a scheme of order 4, and some tens of that.
+MAP_BY_SCHEME = 1e-8
+
+# Angles of multipliers that meet at 1 are roots of what rounding leaves there: half of the digits.
+DOUBLE_MULTIPLIER = 1e-5
+
+# Orbits.
+
+# Accuracies of the peer's steps that tests ask for, relative and absolute.
+PEER_RELATIVE, PEER_ABSOLUTE = 1e-13, 1e-16
+
+# The same where it only has to find when an orbit escapes.
+ESCAPE_RELATIVE, ESCAPE_ABSOLUTE = 1e-10, 1e-12
+
+# The peer at these accuracies over 20 time units.
+PEER_ORBIT = 1e-11
+
+# Yoshida's scheme of order 4 at the steps where the others meet the peer.
+PEER_ORBIT_YOSHIDA = 5e-9
+
+# Coefficients of schemes are rounded to doubles; up to 18 of them, the largest 1.7.
+SCHEME_COEFFICIENTS = 4e-16
+
+# What a tangent map promises: some dozen stages with rounded products of matrices of norm about one.
+TANGENT_MAP = 1e-13
+
+# Relative change of H by steps that are short against the periods: rounding alone, a random walk.
+ENERGY_WALK = 1e-12
+
+# The same with the errors of the scheme, by how long its steps are.
+ENERGY_SHORT_STEPS, ENERGY_STEPS, ENERGY_LONG_STEPS = 1e-11, 1e-8, 1e-5
+
+# A scheme far below the rounding of the largest mode follows tails in mode space: relative errors of every mode.
+TAIL = 1e-8
+
+# Errors of one mode at forty times as many steps.
+FORTY_TIMES_THE_STEPS = 1e-7
+
+# Orbits of a torus against the torus where the step leaves more than rounding.
+STEP_ERROR = 1e-10
+
+# The same with steps that a command of a test can afford.
+COARSE_STEP_ERROR = 1e-5
+
+# Logarithms of volumes after a thousand blocks, each of whose factors is right to 1e-16 times a squeeze of 1e5 at most.
+SAME_VOLUME = 1e-8
+
+# The same where runs were cut elsewhere, and vectors have aligned in between.
+CUT_VOLUME = 1e-6
+
+# The same by two schemes, each with its own error of the step.
+VOLUME_BY_SCHEME = 1e-4
+
+# Slopes of the indices of tori over the last decades.
+GALI_SLOPE = 0.25
+
+# Exponents of two frames at one finite time.
+LYAPUNOV = 0.01
+
+# The exponent of a regular orbit falls as log t / t, up to a factor of order one.
+REGULAR_EXPONENT = 0.5
+
+# The observed order of a scheme between two steps: the next order takes part.
+OBSERVED_ORDER = 0.5
+
+# Times are whole steps: differences of their logarithms are even to so much.
+LOG_SPACING = 0.1
+
+# The same of the last of fifty samples.
+LATE_LOG_SPACING = 0.03
+
+# Seconds of a machine that others use, too: a factor of about two; by the command line, and of loops alone.
+COMMANDED_SECONDS, SECONDS = 0.9, 1
+
+# The energy of an escape where the peer sees it, a step away.
+ESCAPE_ENERGY = 0.1
+
+# Lengths of time in decades, by some 70 samples in each; where a bend falls on a sample.
+DECADES, LATE_DECADES = 0.1, 0.01
+
+# Numbers that are stated, by their digits or decimal places: half a unit of the last, or one unit where both sides are rounded.
+TWO_DIGITS = 0.02
+FOUR_DIGITS = 1e-3
+FIVE_DIGITS = 1e-4
+SEVEN_DIGITS = 1e-6
+TWELVE_DIGITS = 5e-12
+ONE_PLACE = 0.05
+FOUR_PLACES = 1e-4
+FIVE_PLACES = 1e-5
+SIX_PLACES = 1e-6
+TEN_PLACES = 1e-10
+THIRTEEN_PLACES = 1e-13
+
+# Bounds that tell what is there from what is not.
+
+# Two numbers that must not be the same differ by more than a thousandth; energies with and without a small anharmonic part by less.
+DISTINCTION, SMALL_DISTINCTION = 1e-3, 1e-4
+
+# Changes by terms that are some ten times smaller than this.
+SMALL_CHANGE = 1e-3
+
+# Errors and terms that must be there, far above rounding.
+PRESENCE = 1e-5
+
+# Errors of a coarse step that must be there.
+COARSE_STEP = 1e-6
+
+# Residuals that no convergence would leave.
+NO_CONVERGENCE = 1e-6
+
+# The share of a run that was done before it was killed.
+FIRST_PORTION = 2e-5
+
+# Random points that would hide a term: a bound of the probability.
+ERROR_PROBABILITY = 1e-6
+
+# Near resonances that tests choose: 2 omega_1 = Omega_2 to eight digits.
+CHOSEN_RESONANCE = 2e-9
+
+# Bounds are radii and the rounding of the sums that made them, in units of the last place.
+RADIUS_ROUNDING = 1e-9
+
+# Modes of tails that a test is about lie below these.
+FAR_TAIL, TAIL_MODE = 1e-35, 1e-30
+
+# Energies of rounding over those of the truth: a tail that doubles do not see, in squares.
+UNSEEN_TAIL = 1e-20
+
+# Errors of coefficients that are known, of the amplitude.
+KNOWN_ERROR = 1e-10
+
+# Many digits, by how many are asked for and what the test's own arithmetic leaves.
+
+# 80 digits of a test of an orbit of 40.
+BOUND_OF_FORTY = 1e-40
+
+# A bound after the last digits were spoilt in the 28th to 30th place: between these.
+SPOILT_LEAST, SPOILT_MOST = 1e-31, 1e-27
+
+# Sums of 40 digits, one of them lost; a vector in and out of modes loses another, and products of matrices two.
+SUM_OF_FORTY, TRANSFORM_OF_FORTY, PRODUCT_OF_FORTY = 1e-39, 1e-38, 1e-37
+
+# Half of the 37th place, and what a longer print would show.
+PLACE_37 = 0.51e-37
+
+# Energies of states in 50 digits from a torus of 45.
+ENERGY_OF_FIFTY = 1e-44
+
+# Differences with step 1e-18 in 50 digits.
+DIFFERENCE_OF_FIFTY = 1e-20
+
+# Sources of 30 digits with sums in another order.
+SOURCE_OF_THIRTY = 1e-28
+
+# Amplitudes to 28 digits, the series to order 16.
+AMPLITUDE_OF_TWENTY_EIGHT = 1e-26
+
+# omega - Omega, some 1e-7, is known to 28 places.
+SHIFT_OF_TWENTY_EIGHT = 1e-20
+
+# Residuals of short series with many digits, far below doubles: the first order that is left out.
+SERIES_RESIDUAL, LONG_SERIES_RESIDUAL = 1e-20, 1e-24
+
+# Series, sums and limits.
+
+# Issue 5: of the largest coordinate, momentum or energy; rounded sums leave some 1e-15.
+OF_LARGEST = 1e-13
+
+# Issue 5: of a mode's own largest value; cancelling terms cost a digit or two.
+OF_TAIL = 1e-12
+
+# Residuals of doubles above 1e-9 of the accelerations: cancellations leave 1e-13 of these.
+DOUBLE_RESIDUAL = 1e-4
+
+# The sum of moduli of order 14 with mu^k in it, by Fig. 1(c) some 1e-6: between these.
+STATED_LEAST, STATED_MOST = 1e-6, 1e-5
+
+# Poles of Pade sums of ten terms: roots of a denominator of doubles.
+POLES = 1e-6
+
+# The divergent torus of Fig. 1, summed, at order 30; at order 42.
+SUMMED_FIG1, SUMMED_FIG1_FURTHER = 1e-5, 1e-7
+
+# Corrections by two routes with the divisors of one set of frequencies: rounding of these over the smallest divisor.
+SAME_SHIFT = 1e-11
+
+# The end of a square root from the ratios of its terms; its exponent; limits of sequences made by formula.
+SERIES_END, EXPONENT, SEQUENCE_LIMIT = 1e-4, 1e-6, 1e-9
+
+# The spread of ends that are fitted to ratios of many orders.
+END_SPREAD = 1e-7
+
+# Ratios of terms at orders 36 to 42 against their limit, in many digits.
+LATE_TERM_RATIO = 1e-5
+
+# Amplitudes of short series against those of exact tori, and energies of tori against linear ones.
+SHORT_SERIES, LONGER_SERIES = 0.05, 0.02
+TRIAL_AMPLITUDE = 0.03
+LINEAR_ENERGY = 0.01
+
+# Forward differences over an increment of a tenth: first order.
+INCREMENT = 0.05
+
+# The same of H, with its anharmonic part.
+INCREMENT_OF_H = 0.1
+
+# Slopes of errors in Newton's method: the last ones are near rounding.
+NEWTON_SLOPE = 0.25
+
+# The part of the error that rounding keeps in a step of Newton's method.
+NEWTON_LINEAR = 1e-6
+
+# Profiles, growth and returns.
+
+# First-order theory at amplitudes of 1e-5.
+FIRST_ORDER_THEORY = 1e-4
+
+# Exponents of groups of modes that are measured over windows of a decade.
+GROWTH_EXPONENT = 0.15
+
+# Rates of random phases: six realisations of three sizes.
+RANDOM_RATE = 0.3
+
+# The standard deviation of some dozen samples.
+SCATTER = 0.25
+
+# Sums of mode energies against H, which has anharmonic terms.
+HARMONIC_SHARE = 0.03
+
+# Samples of times: six decades in 400.
+SAMPLED_DECADES = 0.04
+
+# Minima between samples, by parabolas: their values, times, and what is read off at them.
+RETURN_VALUE, RETURN_TIME, RETURN_PLACE = 1e-6, 1e-5, 1e-4
+
+# The same of values with more samples a period.
+FINE_RETURN_VALUE = 1e-7
+
+# Times of returns in units of the fast wiggles of the energies, or of the samples.
+WIGGLE = 1
+
+# Pictures of a long orbit and of its series: the step leaves 1e-6.
+PICTURE = 1e-5
+
+# Allowances of certificates against rounded estimates of them.
+ALLOWANCE_ESTIMATE = 0.01
+
+# The growth of terms at order 30, squared, against its limit.
+GROWTH_OF_TERMS = 0.01

@@ -22,7 +22,7 @@ from symfpu.algebra.grading import Ints
 from symfpu.algebra.residue import longest_sum
 from symfpu.algebra.selection import CosineModes
 
-ROUNDED = 0.51  # units: nearest, by balanced limbs
+NEAREST_ROUNDING = 0.51  # units: nearest, by balanced limbs
 COSINE = 0.51  # units: cosines, times weights and couplings, are rounded to the nearest
 MULTIPLIER = 1.01  # units: rounded down
 SLACK = 1 + 1e-9
@@ -114,7 +114,7 @@ class MajorantRing(DoublesRing[Bounds]):
         for parity, (rows, columns) in enumerate(self._parts(degree)):
             to_bonds = self._to_bonds[columns]
             values = known[rows, columns] @ to_bonds
-            fresh = np.outer(COSINE * sizes[rows] + ROUNDED, self._noise[parity])
+            fresh = np.outer(COSINE * sizes[rows] + NEAREST_ROUNDING, self._noise[parity])
             radii = modes[rows, columns] @ to_bonds + fresh
             self._store(self._bonds, degree, rows, values)
             self._store(self._radii, degree, rows, radii)
@@ -132,7 +132,7 @@ class MajorantRing(DoublesRing[Bounds]):
 
     def _bounds(self, degree: int, radii: Floats, sizes: Floats, power: int) -> Bounds:
         """What the kernel gave, f o g = 2 f g, with the rounding on the bonds added."""
-        fresh = ROUNDED * self._noise[self.space.parity(degree)]
+        fresh = NEAREST_ROUNDING * self._noise[self.space.parity(degree)]
         sums = 2 * self._canonical_points(degree, sizes)[:, 0]
         self._note(sums)
         doubled = 2 * self._canonical_points(degree, radii)
@@ -169,7 +169,7 @@ class MajorantRing(DoublesRing[Bounds]):
 
     def project(self, degree: int, parts: Sequence[tuple[float, Bounds]]) -> Floats:
         mask = self.space.mask(degree)
-        modes = np.full(mask.shape, ROUNDED)
+        modes = np.full(mask.shape, NEAREST_ROUNDING)
         for coefficient, bounds in parts:
             scale = coefficient / self._unit**bounds.power
             self._note(2 * scale * bounds.sizes)
@@ -196,7 +196,7 @@ class MajorantRing(DoublesRing[Bounds]):
         second = self._seed_product(degree, self._correction_radii, shifted)
         sizes = self._seed_product(degree, self._corrections, self._seed_modes)
         self._note(sizes)
-        return (first + second) * SLACK + ROUNDED
+        return (first + second) * SLACK + NEAREST_ROUNDING
 
     def solve(self, degree: int, corrected: Floats, force: Floats, multipliers: Floats) -> Floats:
         index: Ints = self.grading.harmonics(degree)[1]
@@ -206,5 +206,5 @@ class MajorantRing(DoublesRing[Bounds]):
         carried = factors != 0
         zeros = np.zeros_like(radii)
         bracket = np.divide(self._tables[degree], factors, out=zeros, where=carried)
-        radii = factors * radii + MULTIPLIER * (bracket + self._epsilon * radii) + ROUNDED
+        radii = factors * radii + MULTIPLIER * (bracket + self._epsilon * radii) + NEAREST_ROUNDING
         return np.asarray(np.where(carried, radii * SLACK, 0.0))

@@ -40,7 +40,7 @@ LARGEST_BLOCK = 2500  # unknowns in the matrix that is factored
 MOST_DIGITS = 1000
 MOST_HARMONICS = 4096
 SWEEPS = 400
-STALLED = 4  # sweeps without a smaller residual that end the search
+STALL_SWEEPS = 4  # sweeps without a smaller residual that end the search
 ROUNDING_BITS = (
     24  # of a residual in units of the last place that is rounding, before the last correction
 )
@@ -204,7 +204,7 @@ class Sweeps:
             if bits <= ROUNDING_BITS:
                 return sweep
             least, stalled = min(least, bits), 0 if bits < least else stalled + 1
-            if stalled >= STALLED:
+            if stalled >= STALL_SWEEPS:
                 break
         digits = (self.size.bit_length() - least) * math.log10(2)
         raise NoPeriodicOrbit(

@@ -65,7 +65,7 @@ PACKAGES = (
     "llvmlite",
 )
 RADII = "<f8"
-REFINED = "refined"  # kind of a torus without a series
+REFINED_KIND = "refined"  # kind of a torus without a series
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
 
@@ -165,7 +165,7 @@ def _parts(result: LindstedtSeries | QuasiPeriodic) -> tuple[Json, dict[str, Arr
     """The entries of series and torus, and their arrays."""
     if isinstance(result, RefinedTorus):
         entries, members = refined_entries(result)
-        return {"series": None, "torus": entries | {"kind": REFINED}}, members
+        return {"series": None, "torus": entries | {"kind": REFINED_KIND}}, members
     if not isinstance(result, (LindstedtSeries, QTorus)):
         entries, members = solution_entries(result)
         return {"series": None, "torus": entries}, members
@@ -507,7 +507,7 @@ def _solution(
 ) -> QuasiPeriodic | None:
     if series is not None:
         return None if body is None else _torus(body, series)
-    readers = {REFINED: refined_from, FOURIER: solution_from}
+    readers = {REFINED_KIND: refined_from, FOURIER: solution_from}
     if body is None or body["kind"] not in readers:
         kind = None if body is None else body["kind"]
         raise ValueError(f"a torus of kind {kind!r:.40} without a series")

@@ -17,7 +17,7 @@ from symfpu.cli.terminal import Interrupted
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError, SymfpuError
 
-INTERRUPTED = "interrupted: nothing is kept but what was already written"
+INTERRUPTION = "interrupted: nothing is kept but what was already written"
 
 # click's ClickException, which typer may carry inside itself
 UsageProblem: Any = typer.BadParameter.__mro__[2]
@@ -58,10 +58,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         return _fail(f"{error.filename}: {error.strerror}; name another file or folder", 2)
     except (KeyboardInterrupt, EOFError, typer.Abort):
-        return _fail(INTERRUPTED, 130)
+        return _fail(INTERRUPTION, 130)
     except UsageProblem as error:
         return _fail(f"{error.format_message()} (see symfpu --help)", int(error.exit_code))
-    return _fail(INTERRUPTED, 130) if code == 130 else int(code or 0)
+    return _fail(INTERRUPTION, 130) if code == 130 else int(code or 0)
 
 
 def _fail(message: str, code: int) -> int:

@@ -28,7 +28,7 @@ from symfpu.paper.claims_page import (
     figure_record,
     file_names,
 )
-from symfpu.paper.targets import FULL, TARGETS, full_estimate, reproduced
+from symfpu.paper.targets import LONG_TARGETS, TARGETS, full_estimate, reproduced
 
 
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
@@ -61,9 +61,12 @@ def reproduce(
             raise InputError(
                 "target", target, f"{', '.join(TARGETS)} or all", "name one or more of these"
             )
-    if full and not {*FULL, "all"} & set(targets):
+    if full and not {*LONG_TARGETS, "all"} & set(targets):
         raise InputError(
-            "full", " ".join(targets), f"--full with {', '.join(FULL)} or all", "leave out --full"
+            "full",
+            " ".join(targets),
+            f"--full with {', '.join(LONG_TARGETS)} or all",
+            "leave out --full",
         )
     folder = output_folder(path_named("output", output))
     chosen = [target for target in TARGETS if target in targets or "all" in targets]

@@ -31,8 +31,8 @@ BACKENDS = ("c", "numpy")
 COMPILERS = ("cc", "gcc", "clang")
 FLAGS = ("-std=c99", "-O2", "-march=native", "-shared", "-fPIC")
 NAME = "torus"
-ABSENT = f"$CC is not set and none of {', '.join(COMPILERS)} is in PATH"
-NO_COMPILER = f"no C compiler: {ABSENT}; install one or take 'numpy'"
+COMPILER_SEARCH = f"$CC is not set and none of {', '.join(COMPILERS)} is in PATH"
+NO_COMPILER = f"no C compiler: {COMPILER_SEARCH}; install one or take 'numpy'"
 
 
 class Backend(Protocol):

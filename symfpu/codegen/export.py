@@ -35,7 +35,7 @@ LANGUAGES = {
     "octave": OCTAVE,
 }
 
-RESERVED = frozenset().union(*(language.reserved for language in LANGUAGES.values()))
+RESERVED_WORDS = frozenset().union(*(language.reserved for language in LANGUAGES.values()))
 LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
 
 
@@ -136,7 +136,7 @@ def _refuse_orders(orders: dict[str, int]) -> None:
 def legal_name(name: str) -> str:
     """The name, if it is an identifier in every language; InputError otherwise."""
     letters = re.fullmatch(r"[a-z][a-z0-9_]*", name, re.ASCII)
-    reserved = keyword.iskeyword(name) or name in RESERVED
+    reserved = keyword.iskeyword(name) or name in RESERVED_WORDS
     if not letters or len(name) > LONGEST_NAME or reserved:
         allowed = (
             "a file name that is also an identifier: a lower-case letter, then letters, "

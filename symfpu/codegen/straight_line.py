@@ -28,7 +28,7 @@ from symfpu.series.series import LindstedtSeries
 STRAIGHT_LINE = 1000
 
 # Operations of a universal form before and after elimination: 7 s of compiling.
-LARGEST = 40_000
+LARGEST_PROGRAM = 40_000
 LARGEST_ELIMINATED = 15_000
 
 CONSTANT_DIGITS = 40
@@ -329,8 +329,8 @@ def _refuse_large(expressions: Iterable[Any]) -> None:
     size = 0
     for value in expressions:
         size += se.count_ops(value)
-        if size > LARGEST:
-            raise _too_large(LARGEST)
+        if size > LARGEST_PROGRAM:
+            raise _too_large(LARGEST_PROGRAM)
 
 
 def _too_large(largest: int) -> InputError:

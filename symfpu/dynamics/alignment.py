@@ -25,7 +25,7 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.dimension import (
     DECADES,
-    FEWEST,
+    LEAST_SAMPLES,
     Evidence,
     TorusDimension,
     fits,
@@ -47,8 +47,8 @@ STEP, SAMPLES, VECTORS, BLOCK = 0.4, 400, 7, 40
 SCHEME = BLANES_MOAN6.name
 MOST_VECTORS, MOST_SAMPLES, MOST_STEPS = 64, 1_000_000, 2**52
 LOST_ENERGY = 1e-3  # relative: an orbit that has lost so much is not one of the chain
-FEWEST_SAMPLES = 2 * FEWEST  # in all: rounding to steps unites some of the first
-SHORTEST = 100  # time, and steps
+FEWEST_SAMPLES = 2 * LEAST_SAMPLES  # in all: rounding to steps unites some of the first
+SHORTEST_RUN = 100  # time, and steps
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class AlignmentIndices:
 
         The uncertainty is that of the delete-a-block jackknife over PARTS stretches of the
         window: it sees waves longer than the samples are apart, and bends. decades : of time, cut
-        to what the samples span and widened to FEWEST of them. Raises InputError.
+        to what the samples span and widened to LEAST_SAMPLES of them. Raises InputError.
         """
         return tuple(
             Slope(k, *found)
@@ -275,12 +275,12 @@ def _steps(T: float, h: float) -> int:
     if (
         isinstance(T, bool)
         or not isinstance(T, Real)
-        or not SHORTEST * max(1.0, h) <= float(T) < math.inf
+        or not SHORTEST_RUN * max(1.0, h) <= float(T) < math.inf
     ):
         raise InputError(
             "T",
             T,
-            f"a finite time from {SHORTEST * max(1.0, h):g} up",
+            f"a finite time from {SHORTEST_RUN * max(1.0, h):g} up",
             "slopes need two decades of time",
         )
     if not float(T) / h <= MOST_STEPS:

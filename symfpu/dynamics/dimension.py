@@ -24,17 +24,17 @@ Ints = NDArray[np.int64]
 
 DECADES = 1.5  # of time, the last ones, in which slopes are fitted
 PARTS = 8  # of that range, left out one at a time for the uncertainty of a slope
-FEWEST = 4 * PARTS  # samples in it
+LEAST_SAMPLES = 4 * PARTS  # samples in it
 FLOOR = 0.1  # least uncertainty of a slope in the choice of a dimension: for what one window cannot show
-ODD = 1 / 3  # a slope so far from every integer it should be decides nothing
-SURE = 0.95  # weight of a dimension that is called decided
+ODDNESS = 1 / 3  # a slope so far from every integer it should be decides nothing
+CERTAINTY = 0.95  # weight of a dimension that is called decided
 POWER = 3  # of t: no regular orbit has a |v| that outgrows it
-OUTGROWN = 10.0  # e-foldings of |v| beyond this power that are called chaos; regular: up to 0.3
-EARLY = 10.0  # time before which growth says nothing: |v| finds its directions
+CHAOS_GROWTH = 10.0  # e-foldings of |v| beyond this power that are called chaos; regular: up to 0.3
+EARLY_TIME = 10.0  # time before which growth says nothing: |v| finds its directions
 PIECE = 1.0  # decades of time in which |v| is asked to grow as t
 STRIDE = 0.5  # decades from one such piece to the next
-LOW = 2.0  # decades with |v| as t before a torus of low dimension is believed
-FULL = 4.0  # and one of full dimension
+LOW_DECADES = 2.0  # decades with |v| as t before a torus of low dimension is believed
+FULL_DECADES = 4.0  # and one of full dimension
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Evidence:
 def torus_dimension(seen: Evidence) -> TorusDimension:
     """The verdict on an orbit that has kept its energy."""
     outgrown = outgrown_powers(seen.times, seen.growth)
-    if outgrown > OUTGROWN:
+    if outgrown > CHAOS_GROWTH:
         reason = f"|v| has grown by e^{seen.growth[-1]:.3g}, by e^{outgrown:.3g} more than t^{POWER} does"
         return TorusDimension("chaotic", None, 0.0, {}, reason)
     steps = seen.steps(seen.decades)
@@ -113,26 +113,29 @@ def expected_steps(s: int, n: int, vectors: int) -> Ints:
 def outgrown_powers(times: Floats, growth: Floats) -> float:
     """The most e-foldings by which |v| came to exceed t^POWER times the largest |v| before.
 
-    From EARLY on; 0 or more.
+    From EARLY_TIME on; 0 or more.
 
     Never less after a longer time: what has once been called chaotic stays so.
     """
-    late = times >= EARLY
+    late = times >= EARLY_TIME
     power = POWER * np.log(times[late])
     before = np.minimum.accumulate(np.maximum.accumulate(growth)[late] - power)
     return float(np.max(growth[late] - power - before, initial=0.0))
 
 
 def linear_decades(times: Floats, growth: Floats) -> float:
-    """For how many decades |v| has grown as t, counted back from the end, at most to EARLY.
+    """For how many decades |v| has grown as t, counted back from the end, at most to EARLY_TIME.
 
-    In every PIECE of them, to ODD in the exponent.
+    In every PIECE of them, to ODDNESS in the exponent.
     """
     x, y, length = np.log10(times), growth / math.log(10), 0.0
     end = float(x[-1])
-    while end - PIECE >= math.log10(EARLY) - 1e-2:
+    while end - PIECE >= math.log10(EARLY_TIME) - 1e-2:
         inside = (x >= end - PIECE - 1e-9) & (x <= end + 1e-9)
-        if np.count_nonzero(inside) < 3 or abs(np.polyfit(x[inside], y[inside], 1)[0] - 1) > ODD:
+        if (
+            np.count_nonzero(inside) < 3
+            or abs(np.polyfit(x[inside], y[inside], 1)[0] - 1) > ODDNESS
+        ):
             break
         length = float(x[-1]) - end + PIECE
         end -= STRIDE
@@ -143,7 +146,7 @@ def fits(times: Floats, values: Floats, decades: float) -> list[tuple[float, flo
     """Slopes of columns (S, k) against log10 t over the last decades, with jackknife errors."""
     x = np.log10(times)
     begin = x[-1] - _span(x, decades) - 1e-9
-    first = min(int(np.searchsorted(x, begin)), max(0, len(x) - FEWEST))
+    first = min(int(np.searchsorted(x, begin)), max(0, len(x) - LEAST_SAMPLES))
     x = x[first:]
     values = values[first:]
     part = np.arange(len(x)) * PARTS // len(x)
@@ -185,12 +188,12 @@ def _growth_doubt(seen: Evidence, outgrown: float) -> tuple[str, str]:
     """How |v| grows, and why this is not, or not yet, as on a torus; the second is empty if it is."""
     exponent, error = seen.exponent()
     reason = f"|v| grows as t^{exponent:.2f} +- {error:.2f}"
-    if exponent > 1 + ODD:
+    if exponent > 1 + ODDNESS:
         return reason, (
             f", faster than on a torus, but not by so much that it must be chaos: "
-            f"by e^{outgrown:.2g} more than t^{POWER}, where e^{OUTGROWN:g} would do; take a longer time"
+            f"by e^{outgrown:.2g} more than t^{POWER}, where e^{CHAOS_GROWTH:g} would do; take a longer time"
         )
-    if exponent < 1 - ODD:
+    if exponent < 1 - ODDNESS:
         return reason, ", on a torus as t^1 in the end: take a longer time"
     return reason, ""
 
@@ -204,11 +207,11 @@ def _slope_doubt(seen: Evidence, steps: Floats, best: int, weight: float) -> tup
         f"; log GALI_{j + 2} - log GALI_{j + 1}, the farthest from its integer, has the slope "
         f"{slope:.2f} +- {error:.2f}, on a torus of dimension {best} it is {expected[j]}"
     )
-    if abs(slope - expected[j]) > ODD or weight < SURE:
+    if abs(slope - expected[j]) > ODDNESS or weight < CERTAINTY:
         return reason, ": take a longer time"
     late = seen.steps(seen.decades / 2)[:, 0]
     j = int(np.argmax(np.abs(late - expected)))
-    if abs(late[j] - expected[j]) > ODD:
+    if abs(late[j] - expected[j]) > ODDNESS:
         return (
             reason,
             f", and log GALI_{j + 2} - log GALI_{j + 1} ends with {late[j]:.2f}: take a longer time",
@@ -222,7 +225,7 @@ def _length_doubt(seen: Evidence, s: int) -> str:
         s < seen.vectors and 2 * s <= seen.freedom
     )  # an index falls, and more will not come to join s soon
     regular = seen.freedom == 1  # knows no chaos
-    needed = LOW if special or regular else FULL
+    needed = LOW_DECADES if special or regular else FULL_DECADES
     length = linear_decades(seen.times, seen.growth)
     if length >= needed - 1e-6:
         return ""

@@ -51,7 +51,7 @@ Ints = NDArray[np.int64]
 # second, about
 BLOCK = 50_000_000
 MOST_STEPS = 2**52
-WHOLE = 1e-9  # of a step: a time that is a multiple of the step but for rounding
+STEP_ROUNDING = 1e-9  # of a step: a time that is a multiple of the step but for rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -416,7 +416,7 @@ def _whole_steps(T: float, step: float) -> int:
     ratio = abs(T) / step
     whole = (
         round(ratio)
-        if abs(ratio - round(ratio)) <= max(WHOLE, 4 * np.finfo(float).eps * ratio)
+        if abs(ratio - round(ratio)) <= max(STEP_ROUNDING, 4 * np.finfo(float).eps * ratio)
         else math.ceil(ratio)
     )
     return max(1, whole)

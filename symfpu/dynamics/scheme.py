@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 SCAN = 1e-3  # of the phase step * Omega, at which stability is looked for
 # no explicit scheme of fewer than a hundred stages is stable beyond, with steps that are worth
 # their force evaluations
-FURTHEST = 8.0
+LARGEST_PHASE = 8.0
 SLACK = 1e-9  # of the half trace: rounding
 
 
@@ -66,9 +66,9 @@ class Scheme:
         """
         if self.in_modes:
             return float(np.pi / 2 / max(map(abs, self.drifts)))
-        z = np.arange(SCAN, FURTHEST, SCAN)
+        z = np.arange(SCAN, LARGEST_PHASE, SCAN)
         unstable = np.abs(half_trace(self, z)) > 1 + SLACK
-        return float(z[np.argmax(unstable)] - SCAN) if unstable.any() else FURTHEST
+        return float(z[np.argmax(unstable)] - SCAN) if unstable.any() else LARGEST_PHASE
 
 
 def half_trace(scheme: Scheme, z: Floats) -> Floats:

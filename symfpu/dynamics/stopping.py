@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 # taking
 FACTOR = 4.0
 # bond stretches, where nothing else bounds them: fourth powers do not overflow much before
-FURTHEST = 1e100
+LARGEST_STRETCH = 1e100
 BISECTIONS = 60
 
 
@@ -111,11 +111,15 @@ def _bound(chain: Chain, energy: float, side: float) -> tuple[float, bool]:
     turns = [2 / slope for slope in slopes if slope > 0]
     if beta > 0:
         most = FACTOR * (energy + chain.N * max([0.0, *(-V(turn) for turn in turns)]))
-        return _first(lambda r: V(r) >= most, max(turns, default=0.0), FURTHEST), False
-    top = min([*turns, FURTHEST])
+        return _first(lambda r: V(r) >= most, max(turns, default=0.0), LARGEST_STRETCH), False
+    top = min([*turns, LARGEST_STRETCH])
     if V(top) >= FACTOR * energy:
         return _first(lambda r: V(r) >= FACTOR * energy, 0.0, top), False
-    return (top, False) if V(top) > energy else (_first(lambda r: V(r) < 0, top, FURTHEST), True)
+    return (
+        (top, False)
+        if V(top) > energy
+        else (_first(lambda r: V(r) < 0, top, LARGEST_STRETCH), True)
+    )
 
 
 def _first(reached: Callable[[float], bool], low: float, high: float) -> float:

@@ -17,7 +17,7 @@ from symfpu.compiled import compiled
 
 LANES = 8  # deviation vectors moved by one instruction stream
 # least ratio of a diagonal entry of R to its column, above and below which the block changes
-LENGTHEN, SHORTEN = 1e-3, 1e-5
+LONGER_BLOCK, SHORTER_BLOCK = 1e-3, 1e-5
 
 _compiled, _inlined = compiled(error_model="numpy"), compiled(error_model="numpy", keep=False)
 _tension, _stiffness = _inlined(tension), _inlined(stiffness)
@@ -194,8 +194,8 @@ def carry_frame(
         least = orthonormalise(dx, dp, rows, R)
         accumulate(R, columns, diagonal, norms)
         steps -= now
-        if least < SHORTEN and block > 1:
+        if least < SHORTER_BLOCK and block > 1:
             block //= 2
-        elif least > LENGTHEN and now == block and 2 * block <= longest:
+        elif least > LONGER_BLOCK and now == block and 2 * block <= longest:
             block *= 2
     return block

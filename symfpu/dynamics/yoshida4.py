@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from symfpu.dynamics.scheme import Scheme, palindrome
 
-OUTER = 1 / (2 - 2 ** (1 / 3))
-MIDDLE = 1 - 2 * OUTER
+OUTER_STEP = 1 / (2 - 2 ** (1 / 3))
+MIDDLE_STEP = 1 - 2 * OUTER_STEP
 
 YOSHIDA4 = Scheme(
     name="yoshida4",
     order=4,
     splitting="T + V",
     source="H. Yoshida, Phys. Lett. A 150 (1990) 262",
-    drifts=palindrome((OUTER / 2, (OUTER + MIDDLE) / 2), middle=False),
-    kicks=(OUTER, MIDDLE, OUTER),
+    drifts=palindrome((OUTER_STEP / 2, (OUTER_STEP + MIDDLE_STEP) / 2), middle=False),
+    kicks=(OUTER_STEP, MIDDLE_STEP, OUTER_STEP),
 )

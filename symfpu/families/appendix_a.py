@@ -45,12 +45,12 @@ from symfpu.tori.torus import QTorus
 Floats = NDArray[np.float64]
 
 INCREMENT = 0.1  # of the linear specific energy of the trial amplitudes, in one step
-LOWERED = 0.5  # factor of trial amplitudes without a solution
+LOWERING = 0.5  # factor of trial amplitudes without a solution
 ATTEMPTS = 20
 HALVINGS = 12  # of Delta omega
-ASTRAY = 0.5  # change of the increment from the one asked for, relative, beyond which the root is another one
+INCREMENT_CHANGE = 0.5  # change of the increment from the one asked for, relative, beyond which the root is another one
 PLACE = 1e-15  # of an energy between two tori, in their distance or in ln A
-BEYOND = 1.2  # what a step that is to pass an energy is longer than the estimate
+OVERSHOOT = 1.2  # what a step that is to pass an energy is longer than the estimate
 NO_ROOT = (
     NoRealAmplitude,
     DidNotConverge,
@@ -305,7 +305,7 @@ def _bracket(excess: Callable[[float], float]) -> tuple[float, float]:
             value = excess(x)
         except NO_ROOT as error:
             failure, without = error, x
-            x = x + math.log(LOWERED) if below == -math.inf else (below + without) / 2
+            x = x + math.log(LOWERING) if below == -math.inf else (below + without) / 2
             continue
         if value < 0:
             below = x
@@ -313,7 +313,7 @@ def _bracket(excess: Callable[[float], float]) -> tuple[float, float]:
             above = x
         if above - below < math.inf:
             return below, above
-        step = BEYOND * value / 2 or PLACE
+        step = OVERSHOOT * value / 2 or PLACE
         x = min(x - step, (x + without) / 2)
     raise failure or DidNotConverge(0, {}, math.nan)
 
@@ -337,7 +337,7 @@ class _Family:
                 second = AppendixAMember(self._torus(self.trial_shifts(raised), raised**2), step)
                 break
             except NO_ROOT as error:
-                failure, trial = error, LOWERED * trial
+                failure, trial = error, LOWERING * trial
         else:
             raise NoFurtherMember(
                 "no torus for the trial amplitudes",
@@ -440,7 +440,7 @@ class _Family:
                 "no further torus", self.seeds, self.linear + aimed, _first(failure)
             ) from failure
         gained = linear_specific_energy(self.chain, torus.amplitudes) - last.linear_specific_energy
-        if not abs(gained - last.increment) <= ASTRAY * last.increment:
+        if not abs(gained - last.increment) <= INCREMENT_CHANGE * last.increment:
             reason = (
                 f"the linear specific energy grew by {gained:.3g}, not {last.increment:.3g}: "
                 f"too long a step, or another root"

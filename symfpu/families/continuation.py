@@ -40,16 +40,16 @@ FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
 DOUBTFUL_STEP = (
     0.05  # the smallest from a doubtful member: near a saddle such ones crawl on without end
 )
-EASY, FACTOR = (
+EASY_STEPS, FACTOR = (
     4,
     1.3,
 )  # Newton steps up to which the next step along the way is longer, and by how much
 KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
-ASTRAY = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
-UNRESOLVED = 1e-6  # residual beyond which a torus is no member
-REACHED = 1e-12  # relative: what an energy asked for and that of a member may differ by
-SPARE = 1e-6  # of the distance of two tori, by which one between them may seem to lie outside
-FAR = 0.3  # relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
+DISTANCE_LIMIT = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
+RESIDUAL_LIMIT = 1e-6  # residual beyond which a torus is no member
+ENERGY_TOLERANCE = 1e-12  # relative: what an energy asked for and that of a member may differ by
+OVERHANG = 1e-6  # of the distance of two tori, by which one between them may seem to lie outside
+GUESS_CHANGE = 0.3  # relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Level:
 
     def met(self, energy: float) -> bool:
         """Whether an energy is the one asked for."""
-        return abs(energy - self.energy) <= REACHED * self.energy
+        return abs(energy - self.energy) <= ENERGY_TOLERANCE * self.energy
 
     def passed(self, energy: float) -> bool:
         """Whether an energy is the one asked for, or beyond it."""
@@ -213,7 +213,7 @@ def first_at(
         progress=progress,
     )
     astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
-    if astray > FAR:
+    if astray > GUESS_CHANGE:
         raise NoTorus(f"an amplitude is {astray:.0%} off the one expected", found, found.residual())
     return found
 
@@ -353,7 +353,7 @@ class Way:
         off = float(
             np.linalg.norm((self.variables(found, scales) - x).astype(float) - distance * tangent)
         )
-        if off > ASTRAY * max(abs(distance), SMALLEST_STEP):
+        if off > DISTANCE_LIMIT * max(abs(distance), SMALLEST_STEP):
             raise NoTorus(
                 f"the torus found is {off / abs(distance):.2g} steps off the way",
                 found,
@@ -372,7 +372,7 @@ class Way:
         found = refined_torus(guess, conditions, tolerance=self.tolerance, progress=self.progress)
         _require_resolved(found)
         along, astray = self.place(found)
-        if astray > ASTRAY or not -SPARE <= along <= 1 + SPARE:
+        if astray > DISTANCE_LIMIT or not -OVERHANG <= along <= 1 + OVERHANG:
             raise NoTorus(
                 f"the torus of {level.name} = {level.energy:.6g} is not between two neighbours",
                 found,
@@ -406,7 +406,7 @@ class Way:
                 if self.step < (DOUBTFUL_STEP if self.tori[-1].warnings else SMALLEST_STEP):
                     raise
                 self.step /= 2
-        if len(found.steps) <= EASY:
+        if len(found.steps) <= EASY_STEPS:
             self.step = min(self.step * FACTOR, LARGEST_STEP)
         self.tori = [*self.tori[-2:], found]
         return found
@@ -416,7 +416,7 @@ def _require_resolved(found: RefinedTorus) -> None:
     """Raises NoTorus for what is no member of a family."""
     if min(found.frequencies) <= 0:  # the mirror image of the family behind a saddle
         raise NoTorus("a frequency passes zero", found, found.residual())
-    if found.warnings and (residual := found.residual()) > UNRESOLVED:
+    if found.warnings and (residual := found.residual()) > RESIDUAL_LIMIT:
         raise NoTorus(f"{len(found.harmonics)} harmonics do not resolve it", found, residual)
 
 

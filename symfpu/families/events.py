@@ -14,7 +14,7 @@ import numpy as np
 
 from symfpu.breathers.floquet import floquet
 from symfpu.families.continuation import (
-    ASTRAY,
+    DISTANCE_LIMIT,
     Event,
     Level,
     Member,
@@ -26,14 +26,14 @@ from symfpu.refinement.conditions import Crossing, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
 from symfpu.refinement.tori import NoTorus, RefinedTorus, refined_torus, shifts_of
 
-SIGNIFICANT = (
+LEAST_COEFFICIENT = (
     1e-11  # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
 )
-LOCATED, LOCATIONS = (
+LOCATION_TOLERANCE, LOCATIONS = (
     1e-7,
     8,
 )  # relative change of the place of an event that is enough, and the most members spent on it
-STRONGEST = (
+MOST_CROSSINGS = (
     8  # crossings of resonances of one step, by their coefficients, that Newton's method locates
 )
 
@@ -80,7 +80,7 @@ def _signs(first: RefinedTorus, second: RefinedTorus) -> list[_Sign]:
         )
     found = []
     for h, q in zip(
-        *np.nonzero((known[0] * known[1] < 0) & (size > SIGNIFICANT) & ~seeds), strict=True
+        *np.nonzero((known[0] * known[1] < 0) & (size > LEAST_COEFFICIENT) & ~seeds), strict=True
     ):
         part = float(known[0][h, q] / (known[0][h, q] - known[1][h, q]))
         found.append(
@@ -103,7 +103,7 @@ def resonances(way: Way, after: int) -> Iterator[Event]:
     first, second = way.tori[-2:]
     signs = _signs(first, second)
     strongest = sorted(signs, key=lambda sign: -abs(sign.coefficient))[
-        : 0 if first.warnings or second.warnings else STRONGEST
+        : 0 if first.warnings or second.warnings else MOST_CROSSINGS
     ]
     for sign in signs:
         torus = _resonant(way, sign) if sign in strongest else None
@@ -158,7 +158,11 @@ def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
         return None
     along, astray = way.local(first, second).place(found)
     known = list(sign.harmonic) in found.harmonics.tolist()
-    return None if found.warnings or astray > ASTRAY or not known or not 0 <= along <= 1 else found
+    return (
+        None
+        if found.warnings or astray > DISTANCE_LIMIT or not known or not 0 <= along <= 1
+        else found
+    )
 
 
 def folds(way: Way, after: int) -> Iterator[Event]:
@@ -201,7 +205,7 @@ def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTo
     for _ in range(LOCATIONS):
         near = sorted(known, key=lambda s: abs(s - place))[:3]
         vertex = _vertex(near, [measure(known[s]) for s in near])
-        if not min(known) <= vertex <= max(known) or abs(vertex - place) < LOCATED:
+        if not min(known) <= vertex <= max(known) or abs(vertex - place) < LOCATION_TOLERANCE:
             break
         try:
             torus, place = local.at(vertex), vertex

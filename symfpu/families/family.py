@@ -38,12 +38,12 @@ from symfpu.refinement.invariance import DIGITS, long
 from symfpu.refinement.tori import TOLERANCE, NoTorus, RefinedTorus, refine_at_energy, refined_torus
 from symfpu.tori.torus import QTorus
 
-SECOND = 1.1  # ratio of the amplitudes of the second member and the first
+SECOND_RATIO = 1.1  # ratio of the amplitudes of the second member and the first
 MEMBERS = 200
 APPENDIX_A = "appendix-a"
 METHODS = ("arclength", APPENDIX_A)
 ENDED_AT_GOAL = "reached the energy asked for"
-LOWER, LOWEST = (
+LOWERING, LOWEST_SHARE = (
     0.25,
     1e-12,
 )  # factor of a first energy that no torus of the series has, and the part of it that is given up
@@ -426,7 +426,7 @@ def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedToru
         )
     )
     energy = begin.of(first)
-    above = Level(min(SECOND**2 * energy, plan.goal), plan.harmonic)
+    above = Level(min(SECOND_RATIO**2 * energy, plan.goal), plan.harmonic)
     scale = math.sqrt(above.energy / energy)
     raised = {q: scale * a for q, a in first.amplitudes.items()}
     return [
@@ -502,12 +502,12 @@ def _steps(
             goal=plan.level,
             after=after,
         )
-        if plan.chosen or after is not None or begin.energy < LOWEST * plan.first:
+        if plan.chosen or after is not None or begin.energy < LOWEST_SHARE * plan.first:
             return steps
         try:
             return itertools.chain([next(steps), next(steps)], steps)
         except NoFurtherMember:
-            begin = replace(begin, energy=LOWER * begin.energy)
+            begin = replace(begin, energy=LOWERING * begin.energy)
 
 
 def _followed(plan: Plan, kept: Kept, tell: Progress, steps: Iterator[AppendixAMember]) -> str:

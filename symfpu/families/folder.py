@@ -21,7 +21,7 @@ from symfpu.tori.torus import QTorus
 
 Json = dict[str, Any]
 BEGINNING = "1/1000"  # of the energy asked for, where a family begins by default
-SMALLEST, LARGEST = (
+SMALLEST_ENERGY, LARGEST_ENERGY = (
     Fraction(1, 10**300),
     10**300,
 )  # energies whose doubles are neither 0 nor infinite
@@ -111,10 +111,10 @@ def checked_family(
         if from_energy is None
         else exact(from_energy, "from_energy")
     )
-    if not 0 < goal < LARGEST or not SMALLEST < first < goal:
+    if not 0 < goal < LARGEST_ENERGY or not SMALLEST_ENERGY < first < goal:
         argument, value = (
             ("from_energy", from_energy)
-            if from_energy is not None and 0 < goal < LARGEST
+            if from_energy is not None and 0 < goal < LARGEST_ENERGY
             else ("to_energy", to_energy)
         )
         advice = (

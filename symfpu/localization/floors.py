@@ -33,7 +33,7 @@ Floats = NDArray[Any]
 Ints = NDArray[np.int64]
 
 EPS = 2.0**-52
-WIDER = 1.5  # times the largest harmonic of one angle: up to there left out ones are solved for
+WIDENING = 1.5  # times the largest harmonic of one angle: up to there left out ones are solved for
 SAFETY = 2.0  # on errors of first order
 CORRECTIONS = 3  # times that the rest of Newton's matrix is applied
 
@@ -171,11 +171,11 @@ def _of_newton(torus: QuasiPeriodic) -> _Errors:
 def _harmonics(torus: QuasiPeriodic) -> Ints:
     """The harmonics of a torus, one of each pair.
 
-    Of one angle also those up to WIDER times as large.
+    Of one angle also those up to WIDENING times as large.
     """
     own = _canonical_signs(np.asarray(torus.harmonics))
     if len(torus.seeds) == 1:
-        own = np.arange(int(WIDER * own.max()) + 1)[:, None]
+        own = np.arange(int(WIDENING * own.max()) + 1)[:, None]
     return np.unique(own, axis=0)
 
 

@@ -19,7 +19,7 @@ from symfpu.errors import InputError
 
 # bits; longer fractions are written in hexadecimal, which no limit of Python concerns
 LONGEST_DECIMAL = 3000
-LONGEST = 1000  # characters of a number, and the largest power of ten in it
+LONGEST_NUMBER = 1000  # characters of a number, and the largest power of ten in it
 Number = int | float | str | Fraction | Decimal
 
 
@@ -34,7 +34,7 @@ def exact(value: object, argument: str) -> Fraction:
             raise TypeError("a truth value is no number")
         if isinstance(value, str):
             exponent = re.search(r"[eE]([+-]?\d+)", value)
-            if len(value) > LONGEST or (exponent and abs(int(exponent[1])) > LONGEST):
+            if len(value) > LONGEST_NUMBER or (exponent and abs(int(exponent[1])) > LONGEST_NUMBER):
                 raise ValueError("too long")
             return Fraction(value.strip())
         if isinstance(value, Rational):

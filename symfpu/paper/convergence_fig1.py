@@ -37,9 +37,9 @@ PROBE_SHIFTS = ("1e-6", "1e-7")  # of the probe frequency from the resonance, to
 PROBE_ORDER = 14
 REAL_ROOT = 1e-9  # imaginary part below which a root of the probe counts as real
 # printed digits, then sqrt 2, sqrt 3
-INCOMMENSURABLE = ("0.19626000014142135623730950488", "0.39046000017320508075688772935")
+INCOMMENSURABLE_FREQUENCIES = ("0.19626000014142135623730950488", "0.39046000017320508075688772935")
 # the divisor of the resonance 12.6 times larger, of the other sign
-DETUNED = ("0.19626", "0.39056")
+DETUNED_FREQUENCIES = ("0.19626", "0.39056")
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ def cancellation_study(progress: Progress = unheard) -> CancellationStudy:
 def _variants(progress: Progress) -> tuple[Variant, ...]:
     """The printed case and its counterfactuals, to the paper's order."""
     printed = TWO_TORUS.frequencies
-    detuned = f"omega_2 = {DETUNED[1]}"
+    detuned = f"omega_2 = {DETUNED_FREQUENCIES[1]}"
     variants = [_variant("doubles", _series(printed, None, "doubles", progress))]
     name = f"{MORE_DIGITS} digits"
     precise = _series(printed, MORE_DIGITS, name, progress)
@@ -123,8 +123,10 @@ def _variants(progress: Progress) -> tuple[Variant, ...]:
     progress(f"convergence: {name}", NO_FRACTION)
     variants.append(_variant(name, precise, amplitude_digits=PRINTED_DIGITS))
     name = "incommensurable digits appended"
-    variants.append(_variant(name, _series(INCOMMENSURABLE, MORE_DIGITS, name, progress)))
-    variants.append(_variant(detuned, _series(DETUNED, None, detuned, progress)))
+    variants.append(
+        _variant(name, _series(INCOMMENSURABLE_FREQUENCIES, MORE_DIGITS, name, progress))
+    )
+    variants.append(_variant(detuned, _series(DETUNED_FREQUENCIES, None, detuned, progress)))
     return tuple(variants)
 
 

@@ -28,7 +28,7 @@ LEAST_CHANGE = 1e-15  # of an amplitude, relative, from which digits are counted
 # seconds for the refinement of one row, looked at between the steps of Newton's method
 LIMIT, HEAVY_LIMIT = 420.0, 3600.0
 # rows that take minutes, with --full only: their own tolerances and guess order
-HEAVY: dict[str, tuple[tuple[float, ...], int]] = {
+HEAVY_ROWS: dict[str, tuple[tuple[float, ...], int]] = {
     "Fig. 5d": ((1e-9, 1e-11), 4),
 }
 
@@ -97,9 +97,9 @@ def corrected_rows(
     *,
     full: bool = False,
 ) -> Iterator[CorrectedRow]:
-    """The corrected row of each printed torus with its series; those of HEAVY only if full."""
+    """The corrected row of each printed torus with its series; those of HEAVY_ROWS only if full."""
     for printed, series in known.items():
-        if printed.label in HEAVY and not full:
+        if printed.label in HEAVY_ROWS and not full:
             yield left_out(printed, "takes minutes; computed with --full")
         else:
             yield corrected_row(printed, progress, series=series)
@@ -147,7 +147,7 @@ def left_out(printed: PrintedTorus, reason: str) -> CorrectedRow:
 def _refined(printed: PrintedTorus, tell: Progress) -> tuple[RefinedTorus | None, int, str]:
     """The exact torus, the converged digits of its amplitudes, and what went wrong."""
     started = time.monotonic()
-    limit = HEAVY_LIMIT if printed.label in HEAVY else LIMIT
+    limit = HEAVY_LIMIT if printed.label in HEAVY_ROWS else LIMIT
 
     def timed(label: str, fraction: float) -> None:
         tell(label, fraction)
@@ -171,7 +171,7 @@ def _refinements(printed: PrintedTorus, progress: Progress) -> tuple[list[Refine
     """The tori of all tolerances until one fails, and how that one failed."""
     found: list[RefinedTorus] = []
     try:
-        tolerances, order = HEAVY.get(printed.label, (TOLERANCES, GUESS_ORDER))
+        tolerances, order = HEAVY_ROWS.get(printed.label, (TOLERANCES, GUESS_ORDER))
         guess = _guess(printed, order, progress)
         for tolerance in tolerances:
             start = found[-1] if found else guess

@@ -36,7 +36,8 @@ PAIR_DECADES = 0.5
 GROUPS_TEXT = (
     "modes of one group D_k have like energies, distinct groups quite different ones (section 5)"
 )
-STATED = ("Fig. 5a",)  # where the text says that both spectra agree; of b and d it says nothing
+# where the text says that both spectra agree; of b and d it says nothing
+STATED_FIGURES = ("Fig. 5a",)
 # a level given by its order of magnitude where neighbouring groups are five decades apart
 LEVEL_DECADES = 5.0
 HIGH_LEVEL = 1e-10  # of the energy: spectra that part below it agree in part
@@ -92,7 +93,7 @@ def agreement_claim(label: str, profiles: dict[str, Floats]) -> Claim:
         text = "PLn follows PL down to 1e-60"
         return Claim(section, text, f"{printed:.0e}", ours, judged(bool(near)))
     text = "the spectra of PL and PLn agree very precisely"
-    if label not in STATED:
+    if label not in STATED_FIGURES:
         text += " (compared in the figure, not stated)"
     return Claim(section, text, "", ours, judged(not level, level < HIGH_LEVEL))
 

@@ -31,7 +31,7 @@ TWO_SEEDS, PRINTED_M1 = (3, 5), (2, 3, 5, 6, 8, 10)
 PRINTED_D1, PRINTED_D2 = (2, 6, 8, 10), (1, 7, 9, 11, 13, 15)
 PRINTED_M2 = (1, 3, 5, 7, 9, 11, 13, 15)
 # where symfpu/paper/printed.py has the sets corrected
-AS_PRINTED = {("Example 4", 3): (*range(5, 9), *range(56, 73), *range(120, 128))}
+PRINTED_GROUPS = {("Example 4", 3): (*range(5, 9), *range(56, 73), *range(120, 128))}
 MODELS = ("alpha", "beta")
 
 
@@ -297,7 +297,7 @@ def printed_sets_claim(example: PrintedExcitation) -> Claim:
     found = excitation_sequence(example.N, example.seeds, total)[1:]
     differing = []
     for k, (corrected, modes) in enumerate(zip(example.sets, found, strict=True), 1):
-        printed = AS_PRINTED.get((example.label, k), corrected)
+        printed = PRINTED_GROUPS.get((example.label, k), corrected)
         if tuple(printed) != tuple(modes):
             off = runs(tuple(sorted(set(printed) ^ set(modes))))
             differing.append(f"; D_{k} differs in {off}, which are in earlier sets")

@@ -46,7 +46,8 @@ TARGETS: dict[str, Maker] = {
     "fig9": figure9,
     "convergence": convergence,
 }
-FULL = ("table", "fig1", "fig2", "fig9")  # targets with a part that takes many minutes, or hours
+# with a part that takes many minutes, or hours
+LONG_TARGETS = ("table", "fig1", "fig2", "fig9")
 
 
 def reproduced(target: str, folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:

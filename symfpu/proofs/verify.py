@@ -31,7 +31,7 @@ LARGEST_N = 4096
 PROBABILITY = re.compile(r"1(\.0+)?(e[+-]?0+)?|0\.0*[1-9][0-9]*|[1-9](\.[0-9]+)?e-0*[1-9][0-9]*")
 # with these Miller-Rabin is a proof below 3.3e24
 BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41)
-UNREADABLE = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError)
+READING_ERRORS = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError)
 
 Json = dict[str, Any]
 Monomial = tuple[int, ...]
@@ -52,7 +52,7 @@ def verify(path: str | Path) -> list[str]:
         return check_certificate(read_certificate(Path(path)))
     except CertificateError:
         raise
-    except UNREADABLE as error:
+    except READING_ERRORS as error:
         raise CertificateError(f"no readable certificate: {error!r:.200}") from None
 
 

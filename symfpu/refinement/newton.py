@@ -21,7 +21,7 @@ from symfpu.refinement.conditions import Condition
 from symfpu.refinement.invariance import Floats, Ints, InvarianceEquation
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
-NEAR = 3.0  # divisors up to so many times what the coupling adds to them belong to the block
+NEARNESS = 3.0  # divisors up to so many times what the coupling adds to them belong to the block
 KRYLOV, RESTARTS = 60, 4
 ACCURACY = 1e-8  # of a Krylov solution
 # relative change to come that ends the iteration, and the one that does when it no longer shrinks
@@ -144,7 +144,7 @@ class _Preconditioner:
         linear = equation.linear.astype(float)
         weights = np.where(system.mask, np.abs(system.diagonal) / linear**2, np.inf)
         weights[equation.seed_rows, equation.seed_columns] = 0
-        resonant = weights < NEAR * np.abs(system.slopes).max()
+        resonant = weights < NEARNESS * np.abs(system.slopes).max()
         count = min(max(int(resonant.sum()), SMALLEST_BLOCK), LARGEST_BLOCK, total)
         smallest = np.argpartition(weights, count - 1, axis=None)[:count]
         return np.sort(smallest)

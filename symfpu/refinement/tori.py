@@ -42,13 +42,13 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solu
 # residual of the equations of motion, relative to the largest acceleration, that ends the search
 # for harmonics
 TOLERANCE = 1e-13
-KEPT = 1e-18  # of the largest coefficient: smaller ones of a guess are left out
+SMALLEST_KEPT = 1e-18  # of the largest coefficient: smaller ones of a guess are left out
 MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
 LARGEST_GRID = 60_000_000  # values of half of the bonds; arrays of 480 MB
 MOST_HARMONICS = 40_000
 ROUNDS = 8  # choices of harmonics
 SHOWN_DIVISORS = 10
-LEAST = Fraction(1, 10**40)  # of amplitudes and coefficients
+LEAST_SIZE = Fraction(1, 10**40)  # of amplitudes and coefficients
 
 
 @dataclass(frozen=True)
@@ -255,7 +255,7 @@ def _by_seed(
         raise InputError(argument, values, allowed, advice)
     numbers = {q: exact(values[q], f"{argument}, {q}") for q in torus.seeds}
     sizes = [abs(x) if signed else x for x in numbers.values()]
-    if not all(LEAST < size < 1 / LEAST for size in sizes):
+    if not all(LEAST_SIZE < size < 1 / LEAST_SIZE for size in sizes):
         advice = "leave out a seed that is at rest"
         raise InputError(argument, dict(values), f"{allowed}, of moderate size", advice)
     return numbers
@@ -317,7 +317,7 @@ def _moderate_coefficients(torus: QuasiPeriodic) -> Floats:
     with np.errstate(over="ignore"):
         coefficients = torus.cosines.astype(float)
     largest = float(np.abs(coefficients).max(initial=0))
-    if not LEAST < largest < 1 / LEAST:  # also where it is not a number
+    if not LEAST_SIZE < largest < 1 / LEAST_SIZE:  # also where it is not a number
         given = f"coefficients up to {largest:.3g}"
         allowed = "coefficients not all 0 and of moderate size"
         raise InputError("torus", given, allowed, "take another guess")
@@ -341,7 +341,7 @@ def _rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats]:
     largest = np.abs(cosines).max()
     rows: dict[tuple[int, ...], Floats] = {}
     for nu, row in zip(harmonics.tolist(), cosines, strict=True):
-        if np.abs(row).max() > KEPT * largest:
+        if np.abs(row).max() > SMALLEST_KEPT * largest:
             sign = -1 if next((n for n in nu if n), 1) < 0 else 1
             rows[tuple(sign * n for n in nu)] = row
     return rows

@@ -21,7 +21,7 @@ State = TypeVar("State")
 
 STEPS, STEPS_DIGITS = 15, 100  # with doubles, with mpf
 # an iteration that has not come down so far after so many steps is given up
-TRIED, PROGRESS = 5, 0.1
+TRIAL_STEPS, PROGRESS = 5, 0.1
 DIFFERENCE = 1e-6  # of the largest variable
 RUNAWAY = 1e3  # growth of the residual at which an iteration is given up
 SMALLEST_PART = 1 / 64  # of the way gone already, in one step
@@ -115,7 +115,7 @@ def _iterated(
         ):
             return best
         if not size <= RUNAWAY * max(first, enough) or (
-            iteration == TRIED and best.residual > PROGRESS * first
+            iteration == TRIAL_STEPS and best.residual > PROGRESS * first
         ):
             raise NotFound(best.x, best.residual, "the iteration does not converge")
         step = -(H @ left)

@@ -23,7 +23,7 @@ Value = TypeVar("Value")
 
 CHUNK = 4_000_000  # entries of a table of cosines held at once
 GRID_POINTS = 4096  # angles at which a residual is taken, about
-SEEN_BY_DOUBLES = 1e-10  # relative residuals above it need no more digits
+DOUBLES_RESIDUAL = 1e-10  # relative residuals above it need no more digits
 GRID_POINTS_DIGITS = 16  # the same for numbers of many digits
 
 
@@ -309,7 +309,7 @@ class QuasiPeriodic(Parts):
     def _residuals(self, points: int | None) -> tuple[Numbers, Any]:
         if self.digits is not None and points is None:
             residuals, largest = self.in_doubles()._residuals(None)
-            if residuals.max() > SEEN_BY_DOUBLES * largest:
+            if residuals.max() > DOUBLES_RESIDUAL * largest:
                 return residuals, largest
         number = self._grid_points() if points is None else integer(points, "points", 1)
         with self._context():

@@ -23,7 +23,7 @@ from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbe
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders
-from symfpu.tori.quasiperiodic import GRID_POINTS_DIGITS, SEEN_BY_DOUBLES
+from symfpu.tori.quasiperiodic import DOUBLES_RESIDUAL, GRID_POINTS_DIGITS
 from symfpu.tori.resummation import pade_poles, resum
 from symfpu.tori.torus import QTorus, RootCertificate, require_series_torus
 
@@ -245,9 +245,9 @@ def _orders(torus: QTorus, steps: int, tell: Progress) -> list[_Order]:
     if torus.digits is None:
         return found
     least = min(order.residual for order in found)
-    if least < SEEN_BY_DOUBLES:
+    if least < DOUBLES_RESIDUAL:
         for k, order in enumerate(_by_order(torus, MULTIPRECISION)):
-            if found[k].residual < SEEN_BY_DOUBLES:
+            if found[k].residual < DOUBLES_RESIDUAL:
                 found[k] = order
             tell("verdict", (torus.order + 2 + k) / steps)
     return found

@@ -18,7 +18,7 @@ from tests.oracles import mode_space
 from tests.oracles.cases import CASES, SHALLOW
 from tests.oracles.trigonometric import from_amplitudes, from_monomials
 from tests.oracles.universal import multiplier
-from tests.tolerances import COEFFICIENT, FORTY_DIGITS
+from tests.tolerances import CHOSEN_RESONANCE, COEFFICIENT, FORTY_DIGITS
 
 DIGITS = 40
 ORACLE_DIGITS = 60
@@ -148,7 +148,7 @@ def test_a_small_divisor_costs_guard_digits_not_promised_ones():
     """2 omega_1 = Omega_2 to eight digits: the second order carries 1 / 1e-9, its square and so on."""
     near = "0.382683433"
     with mpmath.workdps(30):
-        assert abs(2 * mpmath.mpf(near) - 2 * mpmath.sin(mpmath.pi / 8)) < 2e-9
+        assert abs(2 * mpmath.mpf(near) - 2 * mpmath.sin(mpmath.pi / 8)) < CHOSEN_RESONANCE
     few, many = (lindstedt(Chain(8, "0.3"), (1,), (near,), 6, digits=d) for d in (30, 50))
     assert few.guard_digits > lindstedt(few.chain, (1,), ("0.39",), 6, digits=30).guard_digits
     promised_of_each_order(few, many)

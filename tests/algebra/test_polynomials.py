@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from symfpu.algebra.polynomials import evaluate, powers_of, rescaled, square_root
 from symfpu.chain.chain import Chain
 from symfpu.series.lindstedt import lindstedt
+from tests.tolerances import DIFFERENCE_OF_FIFTY, SUM_OF_FORTY
 
 rationals = st.fractions(-3, 3, max_denominator=20)
 exponents = st.tuples(st.integers(0, 3), st.integers(0, 3))
@@ -112,8 +113,8 @@ def test_frequency_terms_of_a_series_are_its_coefficients(chain, seeds, frequenc
             for i, q in enumerate(seeds):
                 powers, values = series.frequency_coefficients(q, k)
                 expected = sum(v * A[0] ** int(e[0]) * A[1] ** int(e[1]) for e, v in zip(powers, values, strict=True))
-                assert abs(terms[k, i] - mu**k * expected) < 1e-39
+                assert abs(terms[k, i] - mu**k * expected) < SUM_OF_FORTY
                 for j in range(2):
                     shift = np.array([step * int(j == n) for n in range(2)], dtype=object)
                     up, down = series.frequency_terms(squares + shift)[0], series.frequency_terms(squares - shift)[0]
-                    assert abs(slopes[k, i, j] - (up[k, i] - down[k, i]) / (2 * step)) < 1e-20
+                    assert abs(slopes[k, i, j] - (up[k, i] - down[k, i]) / (2 * step)) < DIFFERENCE_OF_FIFTY

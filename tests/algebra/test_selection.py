@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.selection import CosineModes, fold
+from tests.tolerances import THOUSAND_ROUNDINGS
 
 CHAINS = [(8, (1,)), (8, (3, 6)), (5, (1, 2, 4)), (6, (2, 4)), (2, (1,)), (7, (2, 3, 5, 6)), (9, (3,))]
 
@@ -19,7 +20,7 @@ def test_fold_gives_the_wave_number_of_the_same_cosine_up_to_sign(number, N):
     theta = (np.arange(N) + 0.5) * np.pi / N
     q = fold(number, N)
     assert 0 <= q <= N
-    assert min(abs(np.cos(number * theta) - s * np.cos(q * theta)).max() for s in (1, -1)) < 1e-12
+    assert min(abs(np.cos(number * theta) - s * np.cos(q * theta)).max() for s in (1, -1)) < THOUSAND_ROUNDINGS
 
 
 def sums_of_signs(powers, seeds):

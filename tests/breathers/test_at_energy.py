@@ -8,14 +8,18 @@ from symfpu.breathers.at_energy import NoBreatherAtEnergy, breather_at_energy
 from symfpu.breathers.balance import NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from tests.tolerances import (
+    CONDITION,
+    DISTINCTION,
+    FIXED_ENERGY,
+    HUNDRED_ROUNDINGS,
+    LAST_DIGIT,
+    NEWTON_RESIDUAL,
+    ONE_MODE_FREQUENCY,
+    RELATIVE_SHIFT,
+)
 
 ALPHA = Chain(N=32, alpha="0.33")
-
-# The energy is met to rounding; its relative change is twice that of the amplitude.
-ENERGY = 1e-13
-
-# Frequencies: rounding of sigma and of the energy, both relative.
-FREQUENCY = 1e-12
 
 
 def potential(chain, seed):
@@ -62,34 +66,34 @@ def test_one_mode_has_the_frequency_of_its_potential(chain, seed, energy):
     with mpmath.workdps(30):
         omega = frequency_at(potential(chain, seed), mpmath.mpf(energy))
     orbit = breather_at_energy(chain, seed, energy)
-    assert orbit.energy() == pytest.approx(float(energy), rel=ENERGY)
-    assert float(orbit.frequency) == pytest.approx(float(omega), rel=FREQUENCY)
+    assert orbit.energy() == pytest.approx(float(energy), rel=CONDITION)
+    assert float(orbit.frequency) == pytest.approx(float(omega), rel=ONE_MODE_FREQUENCY)
     others = np.delete(np.arange(chain.N - 1), seed - 1)
-    assert orbit.cosines[:, others] == pytest.approx(0, abs=1e-13)
-    assert orbit.residual() < 1e-12
+    assert orbit.cosines[:, others] == pytest.approx(0, abs=HUNDRED_ROUNDINGS)
+    assert orbit.residual() < NEWTON_RESIDUAL
 
 
 def test_the_energies_of_the_paper_lead_back_to_its_frequencies():
     orbit = periodic_orbit(ALPHA, 25, "1.8830741847088537")
     found = breather_at_energy(ALPHA, 25, orbit.energy())
-    assert float(found.frequency) == pytest.approx(1.8830741847088537, abs=1e-15)
-    assert found.amplitude == pytest.approx(orbit.amplitude, rel=1e-12)
+    assert float(found.frequency) == pytest.approx(1.8830741847088537, abs=LAST_DIGIT)
+    assert found.amplitude == pytest.approx(orbit.amplitude, rel=FIXED_ENERGY)
     assert found.iterations >= 1
 
 
 def test_harmonic_energy_is_another_member():
     chain = Chain(8, alpha="0.4", beta="0.1")
     total, harmonic = breather_at_energy(chain, 3, "0.4"), breather_at_energy(chain, 3, "0.4", harmonic=True)
-    assert total.energy() == pytest.approx(0.4, rel=ENERGY)
-    assert harmonic.harmonic_energies().sum() == pytest.approx(0.4, rel=ENERGY)
-    assert harmonic.energy() != pytest.approx(0.4, rel=1e-3)
+    assert total.energy() == pytest.approx(0.4, rel=CONDITION)
+    assert harmonic.harmonic_energies().sum() == pytest.approx(0.4, rel=CONDITION)
+    assert harmonic.energy() != pytest.approx(0.4, rel=DISTINCTION)
 
 
 def test_a_member_nearby_is_enough():
     chain = Chain(8, alpha="0.4", beta="0.1")
     member = breather_at_amplitude(chain, 3, "-0.8")
     found = breather_at_energy(chain, 3, 1.01 * member.energy(), guess=member)
-    assert found.energy() == pytest.approx(1.01 * member.energy(), rel=ENERGY)
+    assert found.energy() == pytest.approx(1.01 * member.energy(), rel=CONDITION)
     assert found.amplitude < 0
     with pytest.raises(NoPeriodicOrbit):
         breather_at_energy(chain, 3, 1e6 * member.energy(), guess=member)
@@ -110,8 +114,8 @@ def test_the_family_ends_at_the_barrier_of_its_potential():
     assert (error.seed, error.energy, error.harmonic) == (4, 50.0, False)
     assert error.reason
     member = breather_at_energy(chain, 4, error.reached)
-    assert float(member.frequency) == pytest.approx(error.frequency, rel=1e-9)
-    assert member.amplitude == pytest.approx(error.amplitude, rel=1e-9)
+    assert float(member.frequency) == pytest.approx(error.frequency, rel=RELATIVE_SHIFT)
+    assert member.amplitude == pytest.approx(error.amplitude, rel=RELATIVE_SHIFT)
 
 
 @pytest.mark.parametrize("energy", [0, -1, "one", float("inf")])

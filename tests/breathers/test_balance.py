@@ -12,22 +12,26 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
 from tests.oracles.oscillators import cubic_oscillator, duffing
 from tests.reference import PERIODIC_ORBITS
-from tests.tolerances import DIFFERENCE, PERIODIC_ORBIT
+from tests.tolerances import (
+    CENTRAL_DIFFERENCE,
+    DIFFERENCE,
+    DISTINCTION,
+    ELLIPTIC,
+    GRID_AVERAGE,
+    LAST_DIGIT,
+    NEWTON_RESIDUAL,
+    NO_CONVERGENCE,
+    PEER_ABSOLUTE,
+    PEER_RELATIVE,
+    PERIOD_RETURN,
+    PERIODIC_ORBIT,
+    TEN_PLACES,
+    TEN_ROUNDINGS,
+    THIRTEEN_PLACES,
+)
 
 ALPHA = Chain(N=32, alpha="0.33")
 FIG9 = "0.09844127049688513"
-
-# Newton ends at steps of 1e-14; small divisors, some 1e-4, magnify the rounding of the equations.
-RESIDUAL = 1e-12
-
-# DOP853 at rtol 1e-13 over one period; the breathers are stable, so that errors grow linearly.
-RETURN = 1e-12
-
-# sigma is rounded once, A^2 is about proportional to it; the digits of the oracle are more.
-ELLIPTIC = 1e-13
-
-# Central differences of second order with step h = 6e-4 of rates about 1: h^2 / 6, for a few harmonics.
-CENTRAL = 1e-6
 
 CASES = (
     (Chain(N=6, alpha="0.25", beta="0.3"), 4, "0.3"),
@@ -47,7 +51,7 @@ def after_one_period(orbit):
         return np.concatenate([y[len(Q) :], chain.accelerations(y[: len(Q)])])
 
     period = 2 * np.pi / float(orbit.frequency)
-    end = solve_ivp(field, (0, period), start, method="DOP853", rtol=1e-13, atol=1e-16).y[:, -1]
+    end = solve_ivp(field, (0, period), start, method="DOP853", rtol=PEER_RELATIVE, atol=PEER_ABSOLUTE).y[:, -1]
     return np.max(np.abs(end - start)) / np.max(np.abs(start))
 
 
@@ -57,15 +61,15 @@ def test_independent_numbers(known):
     assert orbit.frequency == Fraction(known.frequency)
     assert orbit.amplitude == pytest.approx(known.amplitude, rel=PERIODIC_ORBIT)
     assert orbit.energy() == pytest.approx(known.energy, rel=PERIODIC_ORBIT)
-    assert orbit.residual() < RESIDUAL
+    assert orbit.residual() < NEWTON_RESIDUAL
 
 
 @pytest.mark.parametrize(("chain", "seed", "amplitude"), CASES, ids=repr)
 def test_the_orbit_closes(chain, seed, amplitude):
     orbit = breather_at_amplitude(chain, seed, amplitude)
-    assert orbit.amplitude == pytest.approx(float(amplitude), rel=1e-15)
-    assert orbit.residual() < RESIDUAL
-    assert after_one_period(orbit) < RETURN
+    assert orbit.amplitude == pytest.approx(float(amplitude), rel=LAST_DIGIT)
+    assert orbit.residual() < NEWTON_RESIDUAL
+    assert after_one_period(orbit) < PERIOD_RETURN
 
 
 @pytest.mark.parametrize(("N", "seed"), [(2, 1), (4, 2), (6, 4), (9, 3)])
@@ -118,18 +122,18 @@ def test_the_matrix_of_newtons_method_is_the_derivative():
 def test_the_breather_of_figure_9():
     """The printed A = 1.3009 at this frequency is a root of a truncated series; the orbit has another, and A = 1.3009 another frequency."""
     orbit = periodic_orbit(ALPHA, 1, FIG9)
-    assert orbit.amplitude == pytest.approx(1.27153895251, abs=1e-10)
-    assert orbit.energy() == pytest.approx(0.014318397381, abs=1e-11)
+    assert orbit.amplitude == pytest.approx(1.27153895251, abs=PERIODIC_ORBIT)
+    assert orbit.energy() == pytest.approx(0.014318397381, abs=PERIODIC_ORBIT)
     printed = breather_at_amplitude(ALPHA, 1, "1.3009149083500795")
-    assert float(printed.frequency) == pytest.approx(0.09845654289692, abs=1e-13)
-    assert printed.energy() == pytest.approx(0.015239087871, abs=1e-11)
-    assert after_one_period(orbit) < RETURN
+    assert float(printed.frequency) == pytest.approx(0.09845654289692, abs=THIRTEEN_PLACES)
+    assert printed.energy() == pytest.approx(0.015239087871, abs=PERIODIC_ORBIT)
+    assert after_one_period(orbit) < PERIOD_RETURN
     assert periodic_orbit(ALPHA, 1, FIG9, printed.cosines).amplitude == pytest.approx(orbit.amplitude, rel=PERIODIC_ORBIT)
 
 
 def test_the_walk_stays_on_the_family():
     """At A = 3 Newton's method from the linear mode falls onto a branch in resonance, mode 17 at harmonic 15, omega = 0.09874."""
-    assert float(breather_at_amplitude(ALPHA, 1, 3).frequency) == pytest.approx(0.0999729484, abs=1e-10)
+    assert float(breather_at_amplitude(ALPHA, 1, 3).frequency) == pytest.approx(0.0999729484, abs=TEN_PLACES)
 
 
 @pytest.fixture(scope="module")
@@ -141,13 +145,13 @@ def test_energy_is_conserved_and_averages_are_those_of_a_period(orbit):
     chain, period = orbit.chain, 2 * np.pi / float(orbit.frequency)
     t = period * np.arange(4 * len(orbit.cosines)) / (4 * len(orbit.cosines))
     Q, P = orbit.positions(t), orbit.momenta(t)
-    assert chain.energy(Q, P) == pytest.approx(orbit.energy(), rel=RESIDUAL)
-    assert orbit.average_spectrum() == pytest.approx(chain.harmonic_energies(Q, P).mean(axis=0), rel=1e-12)
-    assert orbit.harmonic_energies().sum() == pytest.approx(chain.harmonic_energies(Q[0], P[0]).sum(), rel=1e-14)
-    assert orbit.harmonic_energies().sum() != pytest.approx(orbit.energy(), rel=1e-3)
+    assert chain.energy(Q, P) == pytest.approx(orbit.energy(), rel=NEWTON_RESIDUAL)
+    assert orbit.average_spectrum() == pytest.approx(chain.harmonic_energies(Q, P).mean(axis=0), rel=GRID_AVERAGE)
+    assert orbit.harmonic_energies().sum() == pytest.approx(chain.harmonic_energies(Q[0], P[0]).sum(), rel=TEN_ROUNDINGS)
+    assert orbit.harmonic_energies().sum() != pytest.approx(orbit.energy(), rel=DISTINCTION)
     assert Q.shape == P.shape == (len(t), 7)
     h = 1e-4 * period
-    assert (orbit.positions(1 + h) - orbit.positions(1 - h)) / (2 * h) == pytest.approx(orbit.momenta(1.0), abs=CENTRAL)
+    assert (orbit.positions(1 + h) - orbit.positions(1 - h)) / (2 * h) == pytest.approx(orbit.momenta(1.0), abs=CENTRAL_DIFFERENCE)
 
 
 def test_repr_is_an_answer(orbit):
@@ -199,5 +203,5 @@ def test_a_search_that_fails_carries_its_best_iterate(scale):
         periodic_orbit(ALPHA, 1, FIG9, guess)
     assert failure.value.seed == 1
     assert failure.value.iterate.shape[1] == 31
-    assert failure.value.frequency == pytest.approx(float(FIG9), rel=1e-15)
-    assert not failure.value.residual < 1e-6
+    assert failure.value.frequency == pytest.approx(float(FIG9), rel=LAST_DIGIT)
+    assert not failure.value.residual < NO_CONVERGENCE

@@ -14,11 +14,9 @@ from symfpu.breathers.fixed_force import FixedForce
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from tests.oracles.oscillators import duffing
+from tests.tolerances import BOUND_OF_FORTY, HUNDRED_ROUNDINGS, LAST_DIGIT, ORBIT_IN_DOUBLES, SPOILT_LEAST, SPOILT_MOST
 
 ALPHA = Chain(N=32, alpha="0.33")
-
-# The orbit in doubles, relative to its largest coefficient: its Newton steps end at 1e-14, small divisors magnify rounding.
-DOUBLES = 1e-13
 
 # The elliptic oracle has 30 digits.
 ORACLE = mpmath.mpf("1e-27")
@@ -39,7 +37,7 @@ def test_the_digits_continue_those_of_doubles(chain, seed, frequency, digits):
     assert precise.frequency == Fraction(frequency)
     assert precise.digits == digits
     rounded = precise.cosines[: len(orbit.cosines)].astype(float)
-    assert rounded == pytest.approx(orbit.cosines, abs=DOUBLES * np.max(np.abs(orbit.cosines)))
+    assert rounded == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES * np.max(np.abs(orbit.cosines)))
     assert precise.bound < mpmath.mpf(10) ** -digits
     assert 0 < precise.residual(3) < mpmath.mpf(10) ** (-digits - 5)  # at angles where nothing was collocated
     assert np.max(np.abs(precise.cosines[-1])) < mpmath.mpf(10) ** (-digits - 5)
@@ -50,15 +48,15 @@ def test_the_bound_is_above_the_residual_and_sees_a_wrong_digit():
     precise = periodic_orbit_digits(orbit, 30)
     t = np.linspace(0, 2 * np.pi / float(orbit.frequency), 1001)
     largest = np.max(np.abs(orbit.chain.accelerations(orbit.positions(t))))
-    assert replace(precise, digits=80).residuals(7).max() < precise.bound * largest < 1e-40
+    assert replace(precise, digits=80).residuals(7).max() < precise.bound * largest < BOUND_OF_FORTY
     with mpmath.workdps(60):
         sweeps = Sweeps(orbit, 60, None)
     sweeps.converge()
     sweeps.c[3, 4] += sweeps.size >> 100  # a digit in the 30th place
     with mpmath.workdps(60):
         spoilt = sweeps.result(30, 1)
-    assert 1e-31 < spoilt.bound < 1e-27
-    assert 1e-31 < spoilt.residuals(7).max() < spoilt.bound * largest
+    assert SPOILT_LEAST < spoilt.bound < SPOILT_MOST
+    assert SPOILT_LEAST < spoilt.residuals(7).max() < spoilt.bound * largest
 
 
 def test_duffing_to_many_digits():
@@ -82,7 +80,7 @@ def test_frequency_and_amplitude_lead_to_the_same_member():
     again = periodic_orbit_digits(orbit, 40, frequency=first.frequency)
     with mpmath.workdps(60):
         assert abs(again.amplitude - mpmath.mpf("0.5")) < mpmath.mpf("1e-38")
-        assert first.energy() == pytest.approx(again.energy(), rel=1e-15)
+        assert first.energy() == pytest.approx(again.energy(), rel=LAST_DIGIT)
 
 
 def test_a_small_block_of_the_matrix_reaches_the_same_digits(monkeypatch):
@@ -106,7 +104,7 @@ def test_the_fixed_force_is_that_of_the_chain():
     t = np.linspace(0.1, 3, 7)
     Q = np.cos(np.outer(t, np.arange(4))) @ random
     second = np.cos(np.outer(t, np.arange(4))) @ (0.7 * np.arange(4)[:, None] ** 2 * random)
-    assert np.cos(np.outer(t, np.arange(10))) @ values == pytest.approx(second + chain.accelerations(Q), abs=1e-13)
+    assert np.cos(np.outer(t, np.arange(10))) @ values == pytest.approx(second + chain.accelerations(Q), abs=HUNDRED_ROUNDINGS)
 
 
 def test_repr_is_an_answer():

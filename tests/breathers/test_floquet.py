@@ -9,20 +9,21 @@ from symfpu.breathers.floquet import DOUBLING, ELLIPTIC, QUADRUPLE, TANGENT, TRI
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.errors import InputError
+from tests.tolerances import (
+    EIGENVALUES,
+    LAST_DIGIT,
+    MAP_AT_REST,
+    MAP_BY_SCHEME,
+    MONODROMY,
+    NEWTON_RESIDUAL,
+    OBSERVED_ORDER,
+    PEER_ABSOLUTE,
+    PEER_RELATIVE,
+    TRACES,
+    VARIATIONS,
+)
 
 FIG7 = (Chain(N=32, alpha="0.33"), 1, "0.0981410995944860")
-
-# DOP853 at rtol 1e-13 along an unstable orbit: errors grow with the largest multiplier, here below 2, in some hundred steps.
-VARIATIONS = 1e-11
-
-# Estimated error of half a period is held to 1e-12; a period and 62 columns make some of it.
-SYMPLECTIC = 1e-11
-
-# Multipliers at amplitude 1e-4 differ from those of rest by (alpha A)^2 / N and the like, times T.
-AT_REST = 1e-7
-
-# Multipliers of two schemes: five halvings of the step leave 1e-10 of the map by a scheme of order 4, and some tens of that.
-BY_SCHEME = 1e-8
 
 UNSTABLE = (
     (Chain(6, beta=1), 5, "1", {TANGENT: 1}),
@@ -47,7 +48,8 @@ def variations(orbit):
 
     start = np.column_stack([np.append(orbit.positions(0.0), np.zeros(n)), np.eye(2 * n)])
     period = 2 * np.pi / float(orbit.frequency)
-    return solve_ivp(field, (0, period), start.reshape(-1), "DOP853", rtol=1e-13, atol=1e-14).y[:, -1].reshape(2 * n, -1)[:, 1:]
+    run = solve_ivp(field, (0, period), start.reshape(-1), "DOP853", rtol=PEER_RELATIVE, atol=PEER_ABSOLUTE)
+    return run.y[:, -1].reshape(2 * n, -1)[:, 1:]
 
 
 def nearest(values, others):
@@ -64,8 +66,8 @@ def test_unstable_orbits_agree_with_integrated_variations(chain, seed, amplitude
     assert result.largest > 1.01
     assert result.monodromy == pytest.approx(M, abs=VARIATIONS)
     off = np.abs(np.abs(result.multipliers) - 1) > 1e-3
-    assert nearest(result.multipliers[off], np.linalg.eigvals(M)) < 1e-9
-    assert result.largest == pytest.approx(np.max(np.abs(np.linalg.eigvals(M))), rel=1e-9)
+    assert nearest(result.multipliers[off], np.linalg.eigvals(M)) < EIGENVALUES
+    assert result.largest == pytest.approx(np.max(np.abs(np.linalg.eigvals(M))), rel=EIGENVALUES)
 
 
 @pytest.mark.parametrize("case", [FIG7, (Chain(8, alpha="0.4", beta="0.1"), 3, "1.13"), (Chain(6, beta=1), 5, "2.3")], ids=repr)
@@ -76,14 +78,14 @@ def test_the_map_is_symplectic_and_reversible_and_has_the_pairs(case):
     J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
     R = np.diag(np.repeat([1.0, -1.0], n))
     assert result.symplecticity == np.max(np.abs(M.T @ J @ M - J))
-    assert result.symplecticity < SYMPLECTIC
+    assert result.symplecticity < MONODROMY
     twice_reversed = R @ M @ R @ M
-    assert twice_reversed == pytest.approx(np.eye(2 * n), abs=SYMPLECTIC)
-    assert np.linalg.det(M) == pytest.approx(1, abs=SYMPLECTIC)
-    assert result.pairs.prod(axis=1) == pytest.approx(np.ones(n), abs=1e-15)
+    assert twice_reversed == pytest.approx(np.eye(2 * n), abs=MONODROMY)
+    assert np.linalg.det(M) == pytest.approx(1, abs=MONODROMY)
+    assert result.pairs.prod(axis=1) == pytest.approx(np.ones(n), abs=LAST_DIGIT)
     assert result.pairs.shape == (n, 2)
     sums = np.trace(M), np.trace(M @ M)
-    assert [result.multipliers.sum(), (result.multipliers**2).sum()] == pytest.approx(sums, abs=1e-10)
+    assert [result.multipliers.sum(), (result.multipliers**2).sum()] == pytest.approx(sums, abs=TRACES)
     assert monodromy(orbit) == pytest.approx(M, abs=0)
 
 
@@ -91,10 +93,10 @@ def test_the_trivial_pair_is_the_flow():
     """M carries (P, -dH/dQ) to itself: the unstable double eigenvalue of M costs half the digits, the pair here none."""
     result = floquet(periodic_orbit(*FIG7))
     flow = np.append(np.zeros(31), result.orbit.chain.accelerations(result.orbit.positions(0.0)))
-    assert np.linalg.norm(result.monodromy @ flow - flow) < 1e-11 * np.linalg.norm(flow)
+    assert np.linalg.norm(result.monodromy @ flow - flow) < MONODROMY * np.linalg.norm(flow)
     assert result.kinds[0] == TRIVIAL
     assert result.pairs[0].tolist() == [1, 1]
-    assert result.trivial_error < 1e-12
+    assert result.trivial_error < NEWTON_RESIDUAL
     assert result.kinds.count(TRIVIAL) == 1
 
 
@@ -107,8 +109,8 @@ def test_small_orbits_have_the_multipliers_of_rest(chain):
     assert result.largest == 1
     assert set(result.kinds[1:]) == {ELLIPTIC}
     expected = np.concatenate([np.exp(1j * angles), np.exp(-1j * angles)])
-    assert nearest(expected, result.multipliers) < AT_REST
-    assert nearest(result.multipliers[2:], expected) < AT_REST
+    assert nearest(expected, result.multipliers) < MAP_AT_REST
+    assert nearest(result.multipliers[2:], expected) < MAP_AT_REST
 
 
 def test_stability_is_lost_once_as_the_amplitude_grows():
@@ -138,7 +140,7 @@ def test_multipliers_by_another_scheme_agree_within_the_errors(name):
     orbit = breather_at_amplitude(*UNSTABLE[3][:3])
     one, other = floquet(orbit), floquet(orbit, scheme=name)
     assert other.instabilities == one.instabilities
-    assert nearest(other.multipliers[2:], one.multipliers) < BY_SCHEME
+    assert nearest(other.multipliers[2:], one.multipliers) < MAP_BY_SCHEME
     assert np.linalg.norm(other.monodromy - one.monodromy, 2) < 20 * (one.map_error + other.map_error)
     assert np.array_equal(monodromy(orbit, scheme=name), other.monodromy)
 
@@ -152,7 +154,7 @@ def test_the_error_of_the_tangent_map_falls_as_the_order_of_the_scheme(monkeypat
         for step in (0.8, 0.4):
             monkeypatch.setattr("symfpu.breathers.floquet.FIRST_STEP", step)
             errors.append(np.max(np.abs(monodromy(orbit, scheme=name) - exact)))
-        assert np.log2(errors[0] / errors[1]) == pytest.approx(scheme.order, abs=0.5), name
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(scheme.order, abs=OBSERVED_ORDER), name
 
 
 @pytest.mark.parametrize("function", [floquet, monodromy])

@@ -12,12 +12,9 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
 from tests.oracles.oscillators import duffing
+from tests.tolerances import NEWTON_RESIDUAL, OBSERVED_ORDER, PROMISED_RESIDUAL, SAME_ORBIT, SHOT_AMPLITUDE
 
 ALPHA = Chain(N=32, alpha="0.33")
-
-# omega - Omega is magnified in A: a relative error of the period of 1e-16 is 1e-16 omega / (2 (omega - Omega)) in A; 1e-11 at the
-# smallest amplitude here, that of seed 25.
-BALANCE = 2e-11
 
 CASES = (
     (ALPHA, 1, "0.0981410995944860"),
@@ -32,11 +29,11 @@ CASES = (
 def test_shooting_finds_the_orbit_of_harmonic_balance(chain, seed, frequency):
     """By another discretisation, from the linear mode."""
     shot, orbit = shoot(chain, seed, frequency), periodic_orbit(chain, seed, frequency)
-    assert shot.start == pytest.approx(orbit.positions(0.0), abs=BALANCE * np.max(np.abs(shot.start)))
-    assert shot.energy() == pytest.approx(orbit.energy(), rel=2 * BALANCE)
-    assert shot.harmonic_energies().sum() == pytest.approx(orbit.harmonic_energies().sum(), rel=2 * BALANCE)
+    assert shot.start == pytest.approx(orbit.positions(0.0), abs=SHOT_AMPLITUDE * np.max(np.abs(shot.start)))
+    assert shot.energy() == pytest.approx(orbit.energy(), rel=2 * SHOT_AMPLITUDE)
+    assert shot.harmonic_energies().sum() == pytest.approx(orbit.harmonic_energies().sum(), rel=2 * SHOT_AMPLITUDE)
     assert shot.frequency == orbit.frequency
-    assert shot.closure < 1e-12
+    assert shot.closure < NEWTON_RESIDUAL
 
 
 @pytest.mark.parametrize(("chain", "seed", "frequency"), CASES, ids=repr)
@@ -45,7 +42,7 @@ def test_convergence_is_quadratic(chain, seed, frequency):
     history = shoot(chain, seed, frequency).history
     seen = [(before, after) for before, after in itertools.pairwise(history[1:]) if after > 1e-13]
     assert all(after < 1e4 * before**2 for before, after in seen)
-    assert history[-1] < 1e-13
+    assert history[-1] < PROMISED_RESIDUAL
     assert len(history) <= 9
 
 
@@ -58,7 +55,7 @@ def test_one_mode_of_beta_turns_where_the_duffing_oscillator_turns(N, seed):
         shot = shoot(chain, seed, mpmath.nstr(omega, 25))
     expected = np.zeros(N - 1)
     expected[seed - 1] = 1
-    assert shot.start == pytest.approx(expected, abs=1e-12)
+    assert shot.start == pytest.approx(expected, abs=NEWTON_RESIDUAL)
 
 
 @pytest.mark.parametrize(("name", "agree"), [("blanes_moan6", 1e-11), ("aba864", 1e-10), ("yoshida4", 1e-7)])
@@ -68,7 +65,7 @@ def test_another_scheme_finds_the_same_orbit(name, agree):
     one, other = shoot(*problem), shoot(*problem, scheme=name)
     assert other.start == pytest.approx(one.start, abs=agree)
     assert other.closure < agree
-    assert other.history[-1] < 1e-12
+    assert other.history[-1] < NEWTON_RESIDUAL
 
 
 def test_the_error_of_shooting_falls_as_the_order_of_the_scheme(monkeypatch):
@@ -82,13 +79,13 @@ def test_the_error_of_shooting_falls_as_the_order_of_the_scheme(monkeypatch):
             shots.append(shoot(*problem, scheme=name))
         coarse, fine = (np.max(np.abs(shot.start - exact)) for shot in shots)
         order = np.log(coarse / fine) / np.log(shots[1].steps / shots[0].steps)
-        assert order == pytest.approx(scheme.order, abs=0.5), name
+        assert order == pytest.approx(scheme.order, abs=OBSERVED_ORDER), name
 
 
 def test_a_guess_leads_to_an_orbit_far_from_rest():
     orbit = breather_at_amplitude(ALPHA, 1, "1.27")
     shot = shoot(ALPHA, 1, orbit.frequency, 1.01 * orbit.positions(0.0))
-    assert shot.start == pytest.approx(orbit.positions(0.0), abs=1e-11)
+    assert shot.start == pytest.approx(orbit.positions(0.0), abs=SAME_ORBIT)
     assert shot.iterations == len(shot.history) - 1 > 1
     assert repr(shot).startswith("ShotOrbit(N=32, alpha=0.33, seed 1, omega=0.0984")
 
@@ -97,7 +94,7 @@ def test_modes_that_the_symmetry_forbids_stay_zero():
     orbit = breather_at_amplitude(Chain(8, alpha="0.4"), 2, "0.3")
     shot = shoot(orbit.chain, 2, orbit.frequency, orbit.positions(0.0) + 1e-3)
     assert not shot.start[::2].any()
-    assert shot.start == pytest.approx(orbit.positions(0.0), abs=1e-11)
+    assert shot.start == pytest.approx(orbit.positions(0.0), abs=SAME_ORBIT)
 
 
 @pytest.mark.parametrize("guess", ["x", 1.0, np.ones(30), np.zeros(31), np.full(31, np.nan), np.ones((2, 31))])

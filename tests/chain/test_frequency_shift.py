@@ -14,6 +14,7 @@ from symfpu.chain.frequency_shift import frequency_shift, frequency_shift_formul
 from symfpu.errors import InputError
 from symfpu.series.lindstedt import lindstedt
 from tests.oracles.cyclotomic import Cyclotomic, omega, vanishes
+from tests.tolerances import DISTINCTION, HUNDRED_ROUNDINGS, RELATIVE_SHIFT, THOUSAND_ROUNDINGS
 
 LENGTHS = range(2, 41)
 
@@ -165,11 +166,11 @@ def test_shift_is_the_lowest_correction_of_the_series_at_the_linear_frequencies(
     squares = np.array([0.3, 0.7])
     terms, _ = series.frequency_terms(squares)
     shift = frequency_shift(chain, dict(zip(seeds, np.sqrt(squares), strict=True)))
-    assert list(shift.values()) == pytest.approx(terms[order], rel=1e-8)  # divisors at the linear frequencies to 36 digits
+    assert list(shift.values()) == pytest.approx(terms[order], rel=RELATIVE_SHIFT)  # divisors at the linear frequencies to 36 digits
     Omega = {se.Symbol(f"Omega_{q}"): float(chain.frequencies()[q - 1]) for q in seeds}
     A = {se.Symbol(f"A{q}"): float(np.sqrt(x)) for q, x in zip(seeds, squares, strict=True)}
     for q, formula in frequency_shift_formula(chain, seeds).items():
-        assert float(formula.subs(Omega | A)) == pytest.approx(shift[q], rel=1e-13)
+        assert float(formula.subs(Omega | A)) == pytest.approx(shift[q], rel=HUNDRED_ROUNDINGS)
 
 
 @pytest.mark.parametrize("N", LENGTHS)
@@ -204,10 +205,10 @@ def test_printed_bracket_counts_other_seeds_twice():
     right = {n: frequency_shift(chain, {2: 0.0, n: 1.0})[2] * 2 * chain.N for n in (5, 14)} | {
         2: frequency_shift(chain, {2: 1.0})[2] * 2 * chain.N
     }
-    assert printed_bracket(chain, 2, 2, 1.0) == pytest.approx(right[2], rel=1e-12)
-    assert printed_bracket(chain, 2, 5, 1.0) == pytest.approx(2 * right[5], rel=1e-11)
-    assert printed_bracket(chain, 2, 14, 1.0) != pytest.approx(2 * right[14], rel=1e-3)
-    assert printed_bracket(chain, 2, 14, 1.0) != pytest.approx(right[14], rel=1e-3)
+    assert printed_bracket(chain, 2, 2, 1.0) == pytest.approx(right[2], rel=THOUSAND_ROUNDINGS)
+    assert printed_bracket(chain, 2, 5, 1.0) == pytest.approx(2 * right[5], rel=THOUSAND_ROUNDINGS)
+    assert printed_bracket(chain, 2, 14, 1.0) != pytest.approx(2 * right[14], rel=DISTINCTION)
+    assert printed_bracket(chain, 2, 14, 1.0) != pytest.approx(right[14], rel=DISTINCTION)
 
 
 def test_bad_amplitudes_are_named():

@@ -9,13 +9,10 @@ from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.series.lindstedt import lindstedt
+from tests.tolerances import COMMANDED_RESIDUAL, CONDITION, FIXED_ENERGY, PROMISED_RESIDUAL, SHORT_SERIES, SMALL_DISTINCTION, TEN_ROUNDINGS
 
 TORUS = ["-N", "8", "--alpha", "1/3", "--beta", "0.2", "--seeds", "1,3", "--omega", "0.3904,1.1118", "--order", "4"]
 FAMILY = ["family", "-N", "8", "--alpha", "0.4", "--beta", "0.1", "--seeds", "3", "--to-energy", "0.05", "--from-energy", "0.01"]
-
-# Newton's method promises the residual; energies and amplitudes are conditions, met to the rounding of doubles.
-RESIDUAL = 1e-13
-CONDITION = 1e-13
 
 
 def run(capsys, *argv):
@@ -60,11 +57,11 @@ def test_refine_keeps_the_frequencies_and_solves_the_equations(capsys, solved):
     assert (code, err) == (0, "")
     assert {"amplitudes", "energy", "harmonic_energy", "residual", "newton", "smallest_divisors", "verdict", "warnings"} <= set(record)
     assert record["frequencies"] == {"1": "0.3904", "3": "1.1118"}
-    assert record["residual"] < RESIDUAL < load(solved).torus.residual()
+    assert record["residual"] < PROMISED_RESIDUAL < load(solved).torus.residual()
     assert record["verdict"] == "torus"
     for q, a in load(solved).torus.amplitudes.items():
-        assert record["amplitudes"][str(q)] == pytest.approx(a, rel=0.05)
-    assert record["energy_error"] < 1e-12
+        assert record["amplitudes"][str(q)] == pytest.approx(a, rel=SHORT_SERIES)
+    assert record["energy_error"] < FIXED_ENERGY
 
 
 def test_refine_prints_the_verdict_first(capsys, solved, tmp_path):
@@ -83,7 +80,7 @@ def test_refine_at_an_energy(capsys, solved, harmonic):
     record = json.loads(out)
     assert code == 0
     assert record["harmonic_energy" if harmonic else "energy"] == pytest.approx(0.004, rel=CONDITION)
-    assert record["energy"] != pytest.approx(record["harmonic_energy"], rel=1e-6)
+    assert record["energy"] != pytest.approx(record["harmonic_energy"], rel=SMALL_DISTINCTION)
 
 
 def test_refine_at_amplitudes(capsys, solved):
@@ -91,7 +88,7 @@ def test_refine_at_amplitudes(capsys, solved):
     record = json.loads(out)
     assert code == 0
     assert record["amplitudes"] == pytest.approx({"1": 0.1, "3": 0.05}, rel=CONDITION)
-    assert record["residual"] < 1e-8
+    assert record["residual"] < COMMANDED_RESIDUAL
 
 
 BAD_REFINE = {
@@ -141,7 +138,7 @@ def test_show_prints_what_refine_has_written(capsys, refined):
     code, out, _ = run(capsys, "show", refined, "--json")
     record = json.loads(out)
     assert record["assessment"] == {"verdict": "torus", "reasons": []}
-    assert record["residual"] < RESIDUAL
+    assert record["residual"] < PROMISED_RESIDUAL
     assert len(record["test_vectors"]) == 3
 
 
@@ -151,7 +148,7 @@ def test_a_refined_torus_is_exported(capsys, refined, tmp_path):
     module = {"__name__": "orbit"}
     exec(compile((tmp_path / "orbit.py").read_text(), "orbit", "exec"), module)
     torus = load(refined).torus
-    assert module["positions"]([0.0, 1.7]) == pytest.approx(torus.positions([0.0, 1.7]), abs=1e-14)
+    assert module["positions"]([0.0, 1.7]) == pytest.approx(torus.positions([0.0, 1.7]), abs=TEN_ROUNDINGS)
     assert "series" in refusal(capsys, "export", refined, "--series", "--lang", "numpy", "-o", str(tmp_path / "series.py"))
 
 
@@ -181,7 +178,7 @@ def test_family_json_is_alone_on_standard_output(capsys):
     assert record["ending"] == "reached the energy asked for"
     assert (record["N"], record["alpha"], record["beta"], record["seeds"]) == (8, "0.4", "0.1", [3])
     assert record["members"][-1]["energy"] == pytest.approx(0.05, rel=CONDITION)
-    assert all(m["residual"] < RESIDUAL and m["verdict"] == "torus" for m in record["members"])
+    assert all(m["residual"] < PROMISED_RESIDUAL and m["verdict"] == "torus" for m in record["members"])
     assert record["events"] == []
 
 
@@ -229,7 +226,7 @@ def test_family_by_appendix_a(capsys):
     energies = [m["energy"] for m in json.loads(out)["members"]]
     assert code == 0
     assert energies == sorted(energies)
-    assert energies[-1] == pytest.approx(0.05, rel=1e-12)
+    assert energies[-1] == pytest.approx(0.05, rel=FIXED_ENERGY)
 
 
 BAD_FAMILY = {

@@ -17,6 +17,7 @@ from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from tests.tolerances import COMMANDED_SECONDS, GALI_SLOPE, VOLUME_BY_SCHEME
 
 PRESSED = """
 import os, pathlib, sys
@@ -55,7 +56,7 @@ def test_json_has_slopes_and_dimension(capsys, kept):
     assert (code, err) == (0, "")
     assert list(record["slopes"]) == ["2", "3", "4"]
     for k, slope in record["slopes"].items():
-        assert slope["value"] == pytest.approx(1 - int(k), abs=0.25)
+        assert slope["value"] == pytest.approx(1 - int(k), abs=GALI_SLOPE)
         assert 0 < slope["error"] < 0.25
     assert (record["dimension"], record["verdict"]) == (1, "regular, dimension 1")
     assert (record["N"], record["beta"], record["seeds"], record["time"]) == (8, "1", [4], 50000.0)
@@ -67,7 +68,7 @@ def test_a_scheme_is_chosen_by_name(capsys, kept):
     assert json.loads(run(capsys, *words, "--json")[1]) == records["blanes_moan6"]
     assert [record["scheme"] for record in records.values()] == list(records)
     ends = [list(record["log10_gali"].values()) for record in records.values()]
-    assert ends[0] == pytest.approx(ends[1], abs=1e-4)
+    assert ends[0] == pytest.approx(ends[1], abs=VOLUME_BY_SCHEME)
     assert ends[0] != ends[1]
     code, out, err = run(capsys, *words, "--scheme", "aba864_modes")
     assert (code, out) == (2, "")
@@ -137,7 +138,7 @@ def test_an_estimate_grows_with_the_time_and_computes_nothing(capsys, kept, tmp_
     assert out.startswith("about ")
     assert "hours" in out
     short, long = (json.loads(run(capsys, *words, "--json", "--time", time)[1])["seconds"] for time in ("1e6", "1e9"))
-    assert long / short == pytest.approx(1000, rel=0.9)
+    assert long / short == pytest.approx(1000, rel=COMMANDED_SECONDS)
     assert not (tmp_path / "out").exists()
     assert run(capsys, *words, "--time", "5")[0] == 2
 

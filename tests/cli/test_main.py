@@ -13,7 +13,7 @@ from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from tests.reference import TWO_TORUS as REFERENCE
-from tests.tolerances import AMPLITUDE
+from tests.tolerances import AMPLITUDE, SERIES_RESIDUAL
 
 SOLVE = {"-N": "16", "--alpha": "0.33", "--seeds": "1,2", "--omega": "0.19626,0.39046", "--order": "12"}
 PROPAGATE = {"-N": "32", "--seeds": "3,5", "--order": "2"}
@@ -79,8 +79,8 @@ def test_solve_with_digits_is_certified_and_judged(capsys):
         assert mpmath.nstr(solve_amplitudes(series).amplitudes[25], 30) == text
     assert record["assessment"]["verdict"] == "converged"
     assert len(record["assessment"]["residuals"]) == 9
-    assert record["assessment"]["residuals"][-1] < 1e-20
-    assert record["residual"] < 1e-20
+    assert record["assessment"]["residuals"][-1] < SERIES_RESIDUAL
+    assert record["residual"] < SERIES_RESIDUAL
 
 
 def test_solve_prints_the_verdict_first_and_its_evidence_last(capsys):
@@ -283,7 +283,7 @@ def small_rows(monkeypatch):
     """Two cheap rows in place of the paper's nine: one that is met at order 22, and a breather that is met nowhere; the first is
     one of those that only --full refines."""
     monkeypatch.setattr("symfpu.paper.table.APPENDIX_F", tuple(row for row in APPENDIX_F if row.label == "Fig. 8"))
-    monkeypatch.setattr("symfpu.paper.corrected.HEAVY", {"Fig. 1": ((1e-8, 1e-9), 4)})
+    monkeypatch.setattr("symfpu.paper.corrected.HEAVY_ROWS", {"Fig. 1": ((1e-8, 1e-9), 4)})
 
 
 def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
@@ -322,7 +322,7 @@ def test_reproduce_table_has_every_row_and_its_verdict(capsys, monkeypatch, tmp_
     quick = tuple(row for row in APPENDIX_F if row.label not in ("Fig. 5d", "Fig. 9"))
     monkeypatch.setattr("symfpu.paper.table.APPENDIX_F", quick)
     left_out = {row.label: ((1e-9, 1e-11), 4) for row in (TWO_TORUS, *quick) if row.label != "Fig. 8"}
-    monkeypatch.setattr("symfpu.paper.corrected.HEAVY", left_out)
+    monkeypatch.setattr("symfpu.paper.corrected.HEAVY_ROWS", left_out)
     code, out, err = run(capsys, "reproduce", "table", "-o", str(tmp_path), "--json")
     rows = {row["label"]: row for row in json.loads(out)["table"]}
     assert (code, err) == (0, "")

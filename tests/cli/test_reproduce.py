@@ -172,7 +172,7 @@ def test_the_estimate_names_what_takes_long(monkeypatch, tmp_path):
     monkeypatch.setattr(targets, "full_seconds", lambda figure: {"fig1": 3600.0, "fig2": 7200.0, "fig9": 9000.0}[figure])
     assert targets.full_estimate(["fig2", "fig3", "fig9"], tmp_path).startswith("--full, about: fig2 2.0 h, fig9 2.5 h; stopped")
     assert targets.full_estimate(["table"], tmp_path) == "--full, about: table 10 minutes"
-    assert set(targets.FULL) == {"table", *dimensions.VECTORS}
+    assert set(targets.LONG_TARGETS) == {"table", *dimensions.VECTORS}
 
 
 def test_the_estimate_is_that_of_the_figure_s_own_chain():

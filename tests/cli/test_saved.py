@@ -6,6 +6,7 @@ import pytest
 
 from symfpu.bundles.bundle import load, save
 from symfpu.cli.main import main
+from tests.tolerances import COARSE_STEP_ERROR, NEWTON_RESIDUAL, TEN_ROUNDINGS
 from tests.tori.solutions import CASES
 
 
@@ -26,7 +27,7 @@ def test_show(capsys, saved):
     found = record(capsys, "show", file)
     assert found["seeds"] == list(solution.seeds)
     assert set(found["amplitudes"]) == set(map(str, solution.seeds))
-    assert float(found["energy"]) == pytest.approx(float(solution.energy()), rel=1e-14)
+    assert float(found["energy"]) == pytest.approx(float(solution.energy()), rel=TEN_ROUNDINGS)
     assert {"frequencies", "harmonic_energy", "residual", "warnings", "provenance"} <= set(found)
     assert main(["show", str(file)]) == 0
     text = capsys.readouterr().out
@@ -37,13 +38,13 @@ def test_show(capsys, saved):
 def test_refine(capsys, saved, tmp_path):
     file, solution = saved
     found = record(capsys, "refine", file, "-o", tmp_path / "refined.symfpu")
-    assert found["residual"] < 1e-12
+    assert found["residual"] < NEWTON_RESIDUAL
     assert load(tmp_path / "refined.symfpu").torus.frequencies == solution.frequencies
 
 
 def test_orbit(capsys, saved):
     file, _ = saved
-    assert record(capsys, "orbit", file, "--time", "10", "--step", "0.05")["largest_deviation"] < 1e-5
+    assert record(capsys, "orbit", file, "--time", "10", "--step", "0.05")["largest_deviation"] < COARSE_STEP_ERROR
 
 
 def test_gali(capsys, saved):

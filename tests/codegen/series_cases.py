@@ -11,9 +11,8 @@ from symfpu.codegen.series_program import series_facts, series_program
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.quasiperiodic import FourierTorus
 from symfpu.tori.torus import QTorus
+from tests.tolerances import OF_LARGEST, OF_TAIL
 
-OF_LARGEST = 1e-13  # issue 5: of the largest coordinate or momentum; rounded sums leave some 1e-15
-OF_TAIL = 1e-12  # issue 5: of a mode's own largest value; cancelling terms cost a digit or two
 DIGITS = 40
 
 # chain, seeds, frequencies of the divisors (exact in doubles), order, frequency order

@@ -16,9 +16,8 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.quasiperiodic import FourierTorus
 from symfpu.tori.torus import QTorus
 from tests.codegen.compilers import compile_c
+from tests.tolerances import OF_LARGEST, OF_TAIL
 
-OF_LARGEST = 1e-13  # issue 5: of the largest coordinate or momentum; rounded sums leave some 1e-15
-OF_TAIL = 1e-12  # issue 5: of a mode's own largest value; cancelling terms cost a digit or two
 DIGITS = 40
 
 # Every amplitude is chosen freely: a sum of cosines need not be a torus to be evaluated.

@@ -15,6 +15,7 @@ import pytest
 from symfpu.codegen.gallery import GALLERY
 from symfpu.tori.quasiperiodic import FourierTorus
 from tests.codegen.compilers import program
+from tests.tolerances import HUNDRED_ROUNDINGS, TEN_ROUNDINGS
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = re.findall(r"```(c|fortran|python|octave)\n(.*?)```", (ROOT / "docs" / "export.md").read_text(), re.DOTALL)
@@ -63,4 +64,4 @@ def test_a_program_outside_uses_an_exported_file(language, code, torus, tmp_path
         command = ["./program"]
     run = subprocess.run(command, check=True, capture_output=True, text=True, cwd=tmp_path)
     expected = [float(x) for x in (of_series(torus) if stem == OF_SERIES else of_torus(torus))]
-    assert np.allclose([float(x) for x in run.stdout.split()], expected, rtol=1e-13, atol=1e-14)
+    assert np.allclose([float(x) for x in run.stdout.split()], expected, rtol=HUNDRED_ROUNDINGS, atol=TEN_ROUNDINGS)

@@ -23,6 +23,7 @@ from tests.codegen.series_cases import (
     program_of,
     universal,
 )
+from tests.tolerances import LAST_DIGIT
 
 FORMS = {"straight": 10**9, "tables": 0}
 NUMERIC = [(name, form) for name in CASES for form in FORMS if form == "tables" or name in ("order 0", "one mode", "wrapped modes")]
@@ -53,7 +54,7 @@ def test_numpy_values_are_those_of_the_series(name, form, tmp_path, monkeypatch)
         assert_close(values, exact)
     assert_frequencies(*ours.corrected_frequencies(A), case, A)
     assert ours.self_test() <= ours.TOLERANCE
-    assert np.allclose(ours.positions(1.5, A), ours.positions([1.5], A, [0] * len(A), ours.corrected_frequencies(A)[0])[0], rtol=1e-15)
+    assert np.allclose(ours.positions(1.5, A), ours.positions([1.5], A, [0] * len(A), ours.corrected_frequencies(A)[0])[0], rtol=LAST_DIGIT)
 
 
 @pytest.mark.parametrize("name", UNIVERSAL)

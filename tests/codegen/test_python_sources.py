@@ -19,6 +19,7 @@ from symfpu.codegen.torus_program import replace_digits, torus_facts, torus_prog
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.quasiperiodic import FourierTorus
+from tests.tolerances import HUNDRED_ROUNDINGS, SOURCE_OF_THIRTY
 
 LARGEST, TAIL = 1e-13, 1e-12  # of the largest coordinate, and of each mode's own largest: sums of some thousand rounded terms
 
@@ -82,7 +83,7 @@ def test_numbers_and_arrays_of_times_have_the_shapes_of_the_torus(torus, tmp_pat
     assert loaded.positions(1.5).shape == torus.positions(1.5).shape
     assert loaded.positions([1.5]).shape == torus.positions([1.5]).shape
     assert loaded.positions([]).shape == (0, torus.chain.N - 1)
-    assert np.allclose(loaded.positions(1.5), torus.positions(1.5), rtol=0, atol=1e-12)  # the default phases
+    assert np.allclose(loaded.positions(1.5), torus.positions(1.5), rtol=0, atol=HUNDRED_ROUNDINGS)  # the default phases
     with pytest.raises(ValueError, match="phases"):
         loaded.positions(1.0, [0.0] * (len(torus.seeds) + 1))
 
@@ -115,7 +116,7 @@ def test_mpmath_carries_the_digits_of_the_series(tmp_path):
         assert abs(loaded.energy("123.25") - torus.energy(mpmath.mpf("123.25"))) < mpmath.mpf(10) ** -28
     with mpmath.workdps(60):
         more = loaded.positions("123.25")
-    assert max(abs(a - b) for a, b in zip(ours, more, strict=True)) < 1e-28  # at any mp.dps
+    assert max(abs(a - b) for a, b in zip(ours, more, strict=True)) < SOURCE_OF_THIRTY  # at any mp.dps
 
 
 def test_nesting_keeps_every_coefficient(torus):

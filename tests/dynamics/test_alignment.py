@@ -15,14 +15,21 @@ from symfpu.errors import InputError, SymfpuError
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from tests.tolerances import (
+    ENERGY_LONG_STEPS,
+    ENERGY_STEPS,
+    LOG_SPACING,
+    LYAPUNOV,
+    OBSERVED_ORDER,
+    REGULAR_EXPONENT,
+    SAME_VOLUME,
+    WHOLE_NUMBERS,
+)
 
 BETA, ALPHA = Chain(8, beta=1), Chain(8, alpha="0.5")
 
 # Slopes over the last decade and a half: waves around a power law, an order of magnitude below one.
 SLOPE = 0.25
-
-# Logarithms of volumes after a thousand blocks, each of whose factors is right to 1e-16 times a squeeze of 1e5 at most.
-SAME_VOLUME = 1e-8
 
 
 @cache
@@ -68,7 +75,7 @@ def test_a_two_torus_has_dimension_two_and_all_fourteen_exponents():
     assert [s.value for s in indices.slopes()] == pytest.approx(exponents, abs=SLOPE)
     assert (indices.dimension().verdict, indices.dimension().value) == ("regular, dimension 2", 2)
     assert np.all(np.diff(indices.log10_gali, axis=1) <= 0)
-    assert indices.energy_error < 1e-5
+    assert indices.energy_error < ENERGY_LONG_STEPS
 
 
 def test_the_exponents_are_those_of_the_theory():
@@ -90,12 +97,12 @@ def test_a_chaotic_orbit_decays_exponentially():
         assert straight < bent
     assert indices.log10_gali[-1, -1] < -100
     assert 0.15 < indices.lyapunov[-1] < 0.25
-    assert indices.energy_error < 1e-8
+    assert indices.energy_error < ENERGY_STEPS
     assert indices.dimension().verdict == "chaotic"
     other = alignment_indices(BETA, *chaotic_state(3), 1e3, step=0.1, seed=5)
-    assert other.lyapunov[-1] == pytest.approx(indices.lyapunov[-1], abs=0.01)
+    assert other.lyapunov[-1] == pytest.approx(indices.lyapunov[-1], abs=LYAPUNOV)
     regular = found("one mode")
-    assert regular.lyapunov[-1] == pytest.approx(np.log(1e5) / 1e5, rel=0.5)
+    assert regular.lyapunov[-1] == pytest.approx(np.log(1e5) / 1e5, rel=REGULAR_EXPONENT)
 
 
 def test_nothing_is_concluded_before_vectors_have_grown():
@@ -137,10 +144,10 @@ def test_the_length_of_blocks_does_not_matter(block):
 
 def test_times_are_whole_steps_even_in_the_logarithm():
     indices = found("chaotic")
-    assert indices.times / indices.step == pytest.approx(np.round(indices.times / indices.step), abs=1e-9)
+    assert indices.times / indices.step == pytest.approx(np.round(indices.times / indices.step), abs=WHOLE_NUMBERS)
     assert (indices.times[0], indices.times[-1]) == (1.0, 1000.0)
     late = np.diff(np.log(indices.times[indices.times > 300]))
-    assert late == pytest.approx(late.mean(), rel=0.1)
+    assert late == pytest.approx(late.mean(), rel=LOG_SPACING)
 
 
 def test_progress_is_told():
@@ -191,7 +198,7 @@ def test_indices_by_another_scheme_differ_by_its_error(name, steps):
     errors = [np.max(np.abs(indices(step, name) - exact)) for step in steps]
     order = np.log2(errors[0] / errors[1])
     assert errors[0] < 1e-3
-    assert order == pytest.approx(particle_scheme(name).order, abs=0.5)
+    assert order == pytest.approx(particle_scheme(name).order, abs=OBSERVED_ORDER)
 
 
 def test_the_default_is_blanes_and_moan_and_the_result_names_its_scheme():

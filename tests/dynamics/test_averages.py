@@ -12,12 +12,10 @@ from symfpu.errors import InputError
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from tests.tolerances import SLOPE, THOUSAND_ROUNDINGS
 
 MIXED = Chain(7, alpha="0.3", beta="0.2")
 STEP = 0.125  # four of them between two looks
-
-# Sums of a thousand numbers in another order, and states that come from loops cut elsewhere.
-REORDERED = 1e-12
 
 
 @pytest.fixture(scope="module")
@@ -38,13 +36,13 @@ def test_averages_are_trapezoid_sums_of_the_samples(name, start):
     assert made.times == pytest.approx(np.arange(0, 60.1, 0.5))
     assert np.array_equal(made.averages[0], energies[0])
     sums = np.cumsum(0.5 * (energies[1:] + energies[:-1]), axis=0)
-    assert made.averages[1:] == pytest.approx(sums / np.arange(1, 121)[:, None, None], rel=REORDERED)
+    assert made.averages[1:] == pytest.approx(sums / np.arange(1, 121)[:, None, None], rel=THOUSAND_ROUNDINGS)
 
 
 def test_averages_at_few_samples_are_those_at_many(start):
     many = integrate(MIXED, *start, 400.0, step=STEP, samples=np.arange(0, 400.1, 0.5), averages=True)
     few = integrate(MIXED, *start, 400.0, step=STEP, samples=[150.0], averages=True)
-    assert few.averages == pytest.approx(many.averages[[0, 300, 800]], rel=REORDERED)
+    assert few.averages == pytest.approx(many.averages[[0, 300, 800]], rel=THOUSAND_ROUNDINGS)
 
 
 def test_averages_of_a_torus_are_its_closed_form(torus):
@@ -54,7 +52,7 @@ def test_averages_of_a_torus_are_its_closed_form(torus):
     largest = np.abs(torus.cosines).sum(axis=0)
     steepest = 4 * (linear * largest) ** 2  # of dE_q/dt: |P| (|dP/dt| + Omega^2 |Q|), with twice what the harmonics of P allow
     for time, found in zip(made.times[1:], made.averages[1:], strict=True):
-        assert np.all(np.abs(found - torus.average_spectrum(time)) <= looks.LOOK**2 / 12 * 2 * steepest * 2 / time + 1e-12)
+        assert np.all(np.abs(found - torus.average_spectrum(time)) <= looks.LOOK**2 / 12 * 2 * steepest * 2 / time + THOUSAND_ROUNDINGS)
 
 
 def test_looks_twice_as_dense_are_four_times_as_good(torus, monkeypatch):
@@ -65,7 +63,7 @@ def test_looks_twice_as_dense_are_four_times_as_good(torus, monkeypatch):
         made = integrate(torus.chain, *start, T, step=0.0625, samples=1, averages=True)
         errors.append(np.abs(made.averages[-1] - torus.average_spectrum(T)).max())
     rates = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert rates == pytest.approx([2, 2], abs=0.1)
+    assert rates == pytest.approx([2, 2], abs=SLOPE)
 
 
 def test_a_long_step_is_looked_at_every_time(torus):

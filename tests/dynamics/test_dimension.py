@@ -9,14 +9,15 @@ import pytest
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices
 from symfpu.dynamics.dimension import (
-    EARLY,
-    FULL,
-    LOW,
-    ODD,
-    OUTGROWN,
+    CHAOS_GROWTH,
+    EARLY_TIME,
+    FULL_DECADES,
+    LOW_DECADES,
+    ODDNESS,
     linear_decades,
     outgrown_powers,
 )
+from tests.tolerances import DECADES, LATE_DECADES, WHOLE_NUMBERS
 
 MIXED, BETA = Chain(32, alpha="0.33", beta="0.1"), Chain(8, beta=1)
 TIMES = np.geomspace(1.0, 1e7, 500)
@@ -124,7 +125,7 @@ def test_what_is_undecided_says_what_it_would_take():
 
 
 def test_a_low_dimension_needs_fewer_decades_than_a_full_one():
-    late = np.log(np.maximum(TIMES, 10 ** (7 - LOW - 0.3)))
+    late = np.log(np.maximum(TIMES, 10 ** (7 - LOW_DECADES - 0.3)))
     assert made(late, [0, -1, -1, -1]).dimension().verdict == "regular, dimension 2"
     assert made(late, [0, 0, 0, 0]).dimension().verdict == "undecided"
     assert made(np.log(TIMES), [0, 0, 0, 0]).dimension().verdict == "regular, dimension 5 or more"
@@ -141,7 +142,7 @@ def test_slopes_that_have_not_settled_decide_nothing():
 @pytest.mark.parametrize("power", [0.0, 1.0, 2.0, 3.0])
 def test_no_power_that_a_torus_may_have_is_chaos(power):
     waves = np.sin(7 * np.log(TIMES))
-    assert outgrown_powers(TIMES, power * np.log(TIMES) + waves) < OUTGROWN / 2
+    assert outgrown_powers(TIMES, power * np.log(TIMES) + waves) < CHAOS_GROWTH / 2
     assert made(power * np.log(TIMES), 0.0).dimension().verdict != "chaotic"
 
 
@@ -149,12 +150,12 @@ def test_exponential_growth_outgrows_every_power_and_that_stays():
     growth = np.log(TIMES) + 1e-3 * np.minimum(TIMES, 1e5)
     outgrown = [outgrown_powers(TIMES[:n], growth[:n]) for n in range(100, 501, 20)]
     assert outgrown == sorted(outgrown)
-    assert outgrown[0] == pytest.approx(0.0, abs=1e-9)
-    assert outgrown[-1] > 5 * OUTGROWN
+    assert outgrown[0] == pytest.approx(0.0, abs=WHOLE_NUMBERS)
+    assert outgrown[-1] > 5 * CHAOS_GROWTH
 
 
 def test_linear_growth_is_counted_back_from_the_end():
-    assert linear_decades(TIMES, np.log(TIMES)) == pytest.approx(7 - np.log10(EARLY), abs=0.1)
-    assert linear_decades(TIMES, np.log(np.maximum(TIMES, 1e4))) == pytest.approx(3.0, abs=0.01)
-    assert linear_decades(TIMES, (1 + 2 * ODD) * np.log(TIMES)) == 0.0
-    assert FULL > LOW
+    assert linear_decades(TIMES, np.log(TIMES)) == pytest.approx(7 - np.log10(EARLY_TIME), abs=DECADES)
+    assert linear_decades(TIMES, np.log(np.maximum(TIMES, 1e4))) == pytest.approx(3.0, abs=LATE_DECADES)
+    assert linear_decades(TIMES, (1 + 2 * ODDNESS) * np.log(TIMES)) == 0.0
+    assert FULL_DECADES > LOW_DECADES

@@ -27,14 +27,24 @@ from symfpu.files.archive import BundleError
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from tests.tolerances import (
+    COARSE_STEP,
+    ENERGY_WALK,
+    ESCAPE_ABSOLUTE,
+    ESCAPE_ENERGY,
+    ESCAPE_RELATIVE,
+    LAST_DIGIT,
+    LATE_LOG_SPACING,
+    ORBIT,
+    PEER_ABSOLUTE,
+    PEER_ORBIT,
+    PEER_ORBIT_YOSHIDA,
+    PEER_RELATIVE,
+    STEP_ERROR,
+    THOUSAND_ROUNDINGS,
+)
 
 MIXED = Chain(7, alpha="0.3", beta="0.2")
-
-# A thousand steps there and back, each kick rounded once.
-REVERSED = 1e-12
-
-# Integration by DOP853 with relative tolerance 1e-13 over 20 time units.
-PEER = 1e-11
 
 EVERY = pytest.mark.parametrize("name", SCHEMES)
 
@@ -50,10 +60,16 @@ def test_orbits_agree_with_dop853(name, state):
     steps = {"yoshida4": 1e-3, "aba864": 5e-3, "blanes_moan6": 0.02, "kahan_li8": 0.05, "aba864_modes": 5e-3}
     orbit = integrate(MIXED, *state, 20.0, step=steps[name], scheme=name, samples=9)
     peer = solve_ivp(
-        lambda t, y: np.append(y[6:], MIXED.accelerations(y[:6])), (0, 20), np.append(*state), "DOP853", orbit.times, rtol=1e-13, atol=1e-15
+        lambda t, y: np.append(y[6:], MIXED.accelerations(y[:6])),
+        (0, 20),
+        np.append(*state),
+        "DOP853",
+        orbit.times,
+        rtol=PEER_RELATIVE,
+        atol=PEER_ABSOLUTE,
     )
     # yoshida4 alone is of order 4 with large constants
-    assert np.hstack([orbit.Q, orbit.P]) == pytest.approx(peer.y.T, abs=5e-9 if name == "yoshida4" else PEER)
+    assert np.hstack([orbit.Q, orbit.P]) == pytest.approx(peer.y.T, abs=PEER_ORBIT_YOSHIDA if name == "yoshida4" else PEER_ORBIT)
 
 
 def test_orbits_agree_with_heyoka(state):
@@ -68,8 +84,8 @@ def test_orbits_agree_with_heyoka(state):
     peer = heyoka.taylor_adaptive(system, np.concatenate([MIXED.positions(part) for part in state]))
     peer.propagate_until(200.0)
     orbit = integrate(MIXED, *state, 200.0, step=0.05, samples=1)
-    assert MIXED.positions(orbit.Q[-1]) == pytest.approx(peer.state[:6], abs=PEER)
-    assert MIXED.positions(orbit.P[-1]) == pytest.approx(peer.state[6:], abs=PEER)
+    assert MIXED.positions(orbit.Q[-1]) == pytest.approx(peer.state[:6], abs=PEER_ORBIT)
+    assert MIXED.positions(orbit.P[-1]) == pytest.approx(peer.state[6:], abs=PEER_ORBIT)
 
 
 @EVERY
@@ -79,8 +95,8 @@ def test_time_runs_back_to_rounding(name, state):
     assert there.times[-1] == 100
     assert back.times[-1] == -100
     assert np.max(np.abs(there.Q[-1] - state[0])) > 0.1
-    assert back.Q[-1] == pytest.approx(state[0], abs=REVERSED)
-    assert back.P[-1] == pytest.approx(state[1], abs=REVERSED)
+    assert back.Q[-1] == pytest.approx(state[0], abs=THOUSAND_ROUNDINGS)
+    assert back.P[-1] == pytest.approx(state[1], abs=THOUSAND_ROUNDINGS)
 
 
 @EVERY
@@ -102,8 +118,8 @@ def test_a_refined_torus_is_followed_to_1e4_at_1e_10():
     torus = refine(solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3902", "0.7655"), 8)))
     orbit = integrate(torus.chain, torus.positions(0.0), torus.momenta(0.0), 1e4, step=0.1)
     there = torus.positions(orbit.times)
-    assert np.max(np.abs(orbit.Q - there)) < 1e-10 * np.max(np.abs(there))
-    assert orbit.energy_error < 1e-12
+    assert np.max(np.abs(orbit.Q - there)) < STEP_ERROR * np.max(np.abs(there))
+    assert orbit.energy_error < ENERGY_WALK
 
 
 def test_samples_are_log_spaced_multiples_of_a_step_that_divides_the_time(state):
@@ -111,9 +127,9 @@ def test_samples_are_log_spaced_multiples_of_a_step_that_divides_the_time(state)
     steps = np.rint(orbit.times / orbit.step)
     assert (orbit.times[0], orbit.times[-1]) == (0, 100)
     assert orbit.step <= 0.3
-    assert orbit.times == pytest.approx(steps * orbit.step, rel=1e-15)
+    assert orbit.times == pytest.approx(steps * orbit.step, rel=LAST_DIGIT)
     assert len(orbit.times) <= 51
-    assert np.diff(np.log(orbit.times[-20:])) == pytest.approx(np.full(19, np.log(steps[-1]) / 49), abs=0.03)
+    assert np.diff(np.log(orbit.times[-20:])) == pytest.approx(np.full(19, np.log(steps[-1]) / 49), abs=LATE_LOG_SPACING)
     chosen = integrate(MIXED, *state, -10.0, step=0.1, samples=[-2.5, -0.04, -7.0])
     assert chosen.times == pytest.approx([0, -2.5, -7, -10])
     seen = []
@@ -125,7 +141,7 @@ def test_the_energy_error_is_that_of_the_samples(state):
     coarse = integrate(MIXED, *state, 100.0, step=0.5, scheme="yoshida4", samples=20)
     worst = max(abs(float(MIXED.energy(Q, P)) / float(MIXED.energy(*state)) - 1) for Q, P in zip(coarse.Q, coarse.P, strict=True))
     assert coarse.energy_error == pytest.approx(worst)
-    assert 1e-6 < coarse.energy_error < 0.1
+    assert COARSE_STEP < coarse.energy_error < 0.1
     assert f"energy error {coarse.energy_error:.2g})" in repr(coarse)
     assert integrate(MIXED, np.zeros(6), np.zeros(6), 1.0, step=0.5).energy_error == 0
 
@@ -173,13 +189,13 @@ def test_an_orbit_over_the_barrier_is_stopped_at_once(name):
         (0, 100),
         np.append(Q, P),
         "DOP853",
-        rtol=1e-10,
-        atol=1e-12,
+        rtol=ESCAPE_RELATIVE,
+        atol=ESCAPE_ABSOLUTE,
         events=lambda t, y: np.min(chain.stretches(y[:7])) + 1.5,
     )
     first = run.t_events[0][0]
     assert first - 0.02 <= stopped.time <= first + 2
-    assert stopped.energy == pytest.approx(float(chain.energy(Q, P)), rel=0.1)
+    assert stopped.energy == pytest.approx(float(chain.energy(Q, P)), rel=ESCAPE_ENERGY)
 
 
 def test_an_orbit_that_starts_beyond_the_barrier_is_not_begun():
@@ -429,7 +445,7 @@ def test_a_longer_run_keeps_its_samples_and_lays_out_later_ones(tmp_path, state,
     whole = integrate(MIXED, *state, 300.0, **keywords)
     assert longer.times == pytest.approx(np.append(short.times, whole.times[whole.times > 30]))
     assert np.array_equal(longer.Q[: len(short.Q)], short.Q)
-    assert longer.Q[-1] == pytest.approx(whole.Q[-1], abs=1e-9)
+    assert longer.Q[-1] == pytest.approx(whole.Q[-1], abs=ORBIT)
 
 
 def test_what_a_longer_run_cannot_have_is_refused(tmp_path, state):

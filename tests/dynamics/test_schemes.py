@@ -11,17 +11,25 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import integrate
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.tori.frequencies import torus_at_amplitudes
+from tests.tolerances import (
+    ENERGY_WALK,
+    FAR_TAIL,
+    FORTY_TIMES_THE_STEPS,
+    ORBIT,
+    PEER_ABSOLUTE,
+    PEER_RELATIVE,
+    PRESENCE,
+    SCHEME_COEFFICIENTS,
+    SLOPE,
+    TAIL,
+    TAIL_MODE,
+    THOUSAND_ROUNDINGS,
+)
 
 EVERY = pytest.mark.parametrize("name", SCHEMES)
 
-# Coefficients are rounded to doubles; up to 18 of them, the largest 1.7.
-COEFFICIENTS = 4e-16
-
 # Slopes of errors over a factor of two in the step: the next order, h^2, changes them by less.
 ORDER_SLOPE = 0.3
-
-# Some thousand kicks, each rounded once.
-ROUNDED = 1e-12
 
 # Steps of a time of about 20 over which the error of a scheme is between rounding and one.
 STEPS = {"yoshida4": (100, 140, 200), "aba864": (40, 56, 80), "blanes_moan6": (40, 56, 80), "kahan_li8": (20, 28, 40)}
@@ -32,8 +40,8 @@ def test_the_coefficients_are_those_of_a_symmetric_scheme(name):
     scheme = SCHEMES[name]
     assert (scheme.drifts[::-1], scheme.kicks[::-1]) == (scheme.drifts, scheme.kicks)
     assert len(scheme.drifts) == len(scheme.kicks) + 1 == scheme.stages + 1
-    assert sum(scheme.drifts) == pytest.approx(1, abs=COEFFICIENTS)
-    assert sum(scheme.kicks) == pytest.approx(1, abs=COEFFICIENTS)
+    assert sum(scheme.drifts) == pytest.approx(1, abs=SCHEME_COEFFICIENTS)
+    assert sum(scheme.kicks) == pytest.approx(1, abs=SCHEME_COEFFICIENTS)
 
 
 def test_aba864_kills_the_terms_of_first_order_up_to_the_eighth():
@@ -41,8 +49,8 @@ def test_aba864_kills_the_terms_of_first_order_up_to_the_eighth():
     scheme = SCHEMES["aba864_modes"]
     times = np.cumsum(scheme.drifts[:-1])
     for k in range(8):
-        assert np.dot(scheme.kicks, times**k) == pytest.approx(1 / (k + 1), abs=COEFFICIENTS)
-    assert abs(np.dot(scheme.kicks, times**8) - 1 / 9) > 1e-5
+        assert np.dot(scheme.kicks, times**k) == pytest.approx(1 / (k + 1), abs=SCHEME_COEFFICIENTS)
+    assert abs(np.dot(scheme.kicks, times**8) - 1 / 9) > PRESENCE
 
 
 def cnoidal(chain, q, A, t):
@@ -87,8 +95,8 @@ def error_of_alpha(name, steps, A=0.4, halves=12):
 def test_the_observed_order_on_one_mode(name, error):
     errors = [error(name, n) for n in STEPS[name]]
     assert -np.polyfit(np.log(STEPS[name]), np.log(errors), 1)[0] == pytest.approx(SCHEMES[name].order, abs=ORDER_SLOPE)
-    assert error(name, 40 * STEPS[name][0]) < 1e-7
-    assert error("kahan_li8", 800) < ROUNDED
+    assert error(name, 40 * STEPS[name][0]) < FORTY_TIMES_THE_STEPS
+    assert error("kahan_li8", 800) < THOUSAND_ROUNDINGS
 
 
 def test_the_splitting_in_modes_has_order_six_for_small_kicks_and_four_for_large_ones():
@@ -102,8 +110,8 @@ def test_half_a_period_ends_at_the_other_turning_point():
     chain = Chain(6, alpha="0.5")
     time, B = half_period(chain, 0.4)
     orbit = integrate(chain, 0.4 * np.eye(5)[3], np.zeros(5), time, step=0.02, samples=1)
-    assert orbit.Q[-1, 3] == pytest.approx(B, abs=ROUNDED)
-    assert orbit.P[-1, 3] == pytest.approx(0, abs=ROUNDED)
+    assert orbit.Q[-1, 3] == pytest.approx(B, abs=THOUSAND_ROUNDINGS)
+    assert orbit.P[-1, 3] == pytest.approx(0, abs=THOUSAND_ROUNDINGS)
 
 
 def test_the_force_in_modes_is_that_of_the_chain():
@@ -112,7 +120,7 @@ def test_the_force_in_modes_is_that_of_the_chain():
     Q, P = random.normal(scale=0.2, size=(2, 3, 8))
     ends = [integrate(chain, Q, P, 2.0, step=0.005, scheme=name, samples=1) for name in ("kahan_li8", "aba864_modes")]
     particles, modes = (np.stack([end.Q, end.P]) for end in ends)
-    assert modes == pytest.approx(particles, abs=ROUNDED)
+    assert modes == pytest.approx(particles, abs=THOUSAND_ROUNDINGS)
 
 
 def scaled_oracle(chain, A, T):
@@ -128,7 +136,7 @@ def scaled_oracle(chain, A, T):
         np.subtract.at(force, q, weights * y[l] * y[m])
         return np.append(y[n:], force)
 
-    run = solve_ivp(rates, (0, T), np.append(np.eye(n)[0], np.zeros(n)), "DOP853", rtol=1e-12, atol=1e-16)
+    run = solve_ivp(rates, (0, T), np.append(np.eye(n)[0], np.zeros(n)), "DOP853", rtol=PEER_RELATIVE, atol=PEER_ABSOLUTE)
     return run.y[:n, -1]
 
 
@@ -140,8 +148,8 @@ def test_tail_modes_keep_their_relative_accuracy_in_mode_space_alone():
     errors = {}
     for name in ("aba864_modes", "kahan_li8"):
         errors[name] = np.abs(integrate(chain, *start, T, step=0.05, scheme=name, samples=1).Q[-1] / exact - 1)
-    assert np.min(np.abs(exact)) < 1e-35
-    assert np.max(errors["aba864_modes"]) < 1e-9
+    assert np.min(np.abs(exact)) < FAR_TAIL
+    assert np.max(errors["aba864_modes"]) < ORBIT
     assert np.max(errors["kahan_li8"][:2]) < 1e-4
     assert np.min(errors["kahan_li8"][4:]) > 1
 
@@ -155,10 +163,10 @@ def test_tails_of_an_orbit_are_those_of_the_series():
         made = integrate(torus.chain, *start, 300.0, step=step, scheme="aba864_modes", samples=times)
         there = torus.positions(made.times)
         largest = np.abs(there).max(axis=0)
-        assert np.all(largest[5:] < 1e-30)
+        assert np.all(largest[5:] < TAIL_MODE)
         errors.append(np.max(np.abs(made.Q - there) / largest, axis=0))
-    assert np.max(errors[1]) < 1e-8
-    assert np.log2(errors[0][4:] / errors[1][4:]) == pytest.approx([4, 4, 4], abs=0.1)
+    assert np.max(errors[1]) < TAIL
+    assert np.log2(errors[0][4:] / errors[1][4:]) == pytest.approx([4, 4, 4], abs=SLOPE)
 
 
 @pytest.mark.parametrize(
@@ -181,4 +189,4 @@ def test_rotations_do_not_grow():
     """Six million rotations of a nearly harmonic chain: the largest relative change of H is a random walk of roundings, not a growth."""
     chain = Chain(4, alpha="1e-9")
     orbit = integrate(chain, [0.1, 0.2, 0.3], [0.0, 0.1, 0.0], 2e5, step=0.25, scheme="aba864_modes", samples=50)
-    assert orbit.energy_error < 1e-12
+    assert orbit.energy_error < ENERGY_WALK

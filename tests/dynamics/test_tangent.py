@@ -12,6 +12,7 @@ from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import PARTICLE_SCHEMES, SCHEMES, particle_scheme
 from symfpu.dynamics.tangent import moving_frame, tangent_map_along, tangent_steps
 from symfpu.errors import InputError
+from tests.tolerances import HUNDRED_ROUNDINGS, ORBIT, PEER_ABSOLUTE, PEER_RELATIVE, TANGENT_MAP
 
 MIXED = Chain(7, alpha="0.3", beta="0.2")
 EYE = np.eye(12)
@@ -27,12 +28,6 @@ STEPS = {
     "blanes_moan6": (16, 20, 26, 32, 40),
     "kahan_li8": (8, 10, 13, 16, 20),
 }
-
-# What the tangent map promises: some dozen stages with rounded products of matrices of norm about one.
-SYMPLECTIC = 1e-13
-
-# Some hundred stages, each rounded once, in another order of sums.
-ROUNDED = 1e-13
 
 # Slopes of errors over a few halvings: the next order changes them by less.
 ORDER_SLOPE = 0.2
@@ -69,8 +64,8 @@ def dop853(state):
         (0, 4.1),
         np.append(*state),
         "DOP853",
-        rtol=1e-13,
-        atol=1e-15,
+        rtol=PEER_RELATIVE,
+        atol=PEER_ABSOLUTE,
         dense_output=True,
     )
     return motion.sol
@@ -84,14 +79,14 @@ def test_the_observed_order_of_orbit_and_deviations_is_that_of_the_scheme(state,
     for f, exact in ((moved, orbit), (tangent_map, deviations)):
         errors = [np.max(np.abs(f(state, 4.0 / n, int(n), scheme=scheme) - exact)) for n in steps]
         assert order_of(errors, steps) == pytest.approx(scheme.order, abs=ORDER_SLOPE)
-    assert orbit == pytest.approx(dop853(state)(4.0), abs=1e-9)
+    assert orbit == pytest.approx(dop853(state)(4.0), abs=ORBIT)
 
 
 @EVERY
 def test_the_step_is_reversible(state, scheme):
     there = tangent_steps(MIXED, *state, EYE[:, :6], EYE[:, 6:], 0.3, 20, scheme=scheme)
     back = np.hstack(tangent_steps(MIXED, *there, -0.3, 20, scheme=scheme)[2:])
-    assert back == pytest.approx(EYE, abs=ROUNDED)
+    assert back == pytest.approx(EYE, abs=HUNDRED_ROUNDINGS)
 
 
 @EVERY
@@ -105,7 +100,7 @@ def test_the_tangent_map_along_an_orbit_is_that_of_the_motion(state, scheme, mon
     exact = tangent_map(state, 0.01, 200, scheme=KAHAN_LI8)
     # the dense output of DOP853 is of order 7
     along = tangent_map_along(MIXED, stretches, 2.0, 60, scheme=KAHAN_LI8)
-    assert along == pytest.approx(exact, abs=1e-9)
+    assert along == pytest.approx(exact, abs=ORBIT)
     steps = np.array(STEPS[scheme.name]) // 2
     errors = [np.max(np.abs(tangent_map_along(MIXED, stretches, 2.0, int(n), scheme=scheme) - exact)) for n in steps]
     assert order_of(errors, steps) == pytest.approx(scheme.order, abs=ALONG_SLOPE)
@@ -137,7 +132,7 @@ def test_the_tangent_map_is_symplectic(state, share, scheme):
     step = share * scheme.stable_phase / MIXED.frequencies()[-1]
     J = np.kron([[0, 1], [-1, 0]], np.eye(6))
     M = tangent_map(state, step, 5, scheme=scheme)
-    assert np.max(np.abs(M.T @ J @ M - J)) < SYMPLECTIC
+    assert np.max(np.abs(M.T @ J @ M - J)) < TANGENT_MAP
 
 
 def test_vectors_do_not_know_of_each_other(state):
@@ -145,11 +140,11 @@ def test_vectors_do_not_know_of_each_other(state):
     whole = tangent_map(state, 0.25, 6)
     for i, e in enumerate(EYE):
         alone = tangent_steps(MIXED, *state, e[None, :6], e[None, 6:], 0.25, 6)
-        assert np.hstack(alone[2:])[0] == pytest.approx(whole[:, i], abs=ROUNDED)
+        assert np.hstack(alone[2:])[0] == pytest.approx(whole[:, i], abs=HUNDRED_ROUNDINGS)
     first = tangent_steps(MIXED, *state, EYE[:, :6], EYE[:, 6:], 0.25, 2)
     both = np.hstack(tangent_steps(MIXED, *first, 0.25, 4)[2:]).T
-    assert both == pytest.approx(whole, abs=ROUNDED)
-    assert tangent_map(state, 0.25, 0) == pytest.approx(EYE, abs=ROUNDED)
+    assert both == pytest.approx(whole, abs=HUNDRED_ROUNDINGS)
+    assert tangent_map(state, 0.25, 0) == pytest.approx(EYE, abs=HUNDRED_ROUNDINGS)
 
 
 def test_another_scheme_can_be_passed(state):
@@ -159,8 +154,8 @@ def test_another_scheme_can_be_passed(state):
     middle = Q + h / 2 * P
     after = P + h * MIXED.accelerations(middle)
     found = tangent_steps(MIXED, Q, P, EYE[:, :6], EYE[:, 6:], h, 1, scheme=LEAPFROG)
-    assert found[0] == pytest.approx(middle + h / 2 * after, abs=ROUNDED)
-    assert found[1] == pytest.approx(after, abs=ROUNDED)
+    assert found[0] == pytest.approx(middle + h / 2 * after, abs=HUNDRED_ROUNDINGS)
+    assert found[1] == pytest.approx(after, abs=HUNDRED_ROUNDINGS)
 
 
 def test_the_work_grows_as_the_chain():

@@ -12,6 +12,7 @@ from symfpu.families.appendix_a import NoFurtherMember, _Family, appendix_a, app
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import shifts, solve_amplitudes
 from symfpu.tori.frequencies import checked_plan
+from tests.tolerances import INCREMENT, INCREMENT_OF_H, LINEAR_ENERGY, RELATIVE_SHIFT, SLOPE, SMALL_SHIFT, TEN_ROUNDINGS, TRIAL_AMPLITUDE
 
 LOW = (Chain(32, alpha="0.33"), (1, 2, 3, 4), {1: 0.05, 2: 0.025, 3: 0.0165, 4: 0.012}, 4)
 WIDE = (Chain(32, alpha="0.33"), (1, 11, 21, 31), {1: 0.2, 11: 0.02, 21: 0.01, 31: 0.01}, 4)
@@ -66,10 +67,10 @@ def bracket(chain, amplitudes, divisors, *, printed):
 def test_trial_frequencies_are_the_right_bracket_twice(case):
     chain, seeds, amplitudes, order = case
     middle = bracket(chain, amplitudes, {}, printed=False)
-    assert list(middle.values()) == pytest.approx(list(frequency_shift(chain, amplitudes).values()), rel=1e-9)
+    assert list(middle.values()) == pytest.approx(list(frequency_shift(chain, amplitudes).values()), rel=RELATIVE_SHIFT)
     final = bracket(chain, amplitudes, {q: chain.frequencies()[q - 1] + middle[q] for q in seeds}, printed=False)
     ours = family_of(chain, seeds, order).trial_shifts(np.array(list(amplitudes.values())))
-    assert ours == pytest.approx(list(final.values()), rel=1e-8)
+    assert ours == pytest.approx(list(final.values()), rel=SMALL_SHIFT)
 
 
 def solved(case, shifted):
@@ -86,7 +87,7 @@ def test_printed_bracket_misses_the_trial_amplitudes():
             bracket(chain, amplitudes, {q: chain.frequencies()[q - 1] + x for q, x in middle.items()}, printed=p)
             for p, middle in ((p, bracket(chain, amplitudes, {}, printed=p)) for p in (False, True))
         )
-        assert solved(case, right) == pytest.approx(amplitudes, rel=0.03)
+        assert solved(case, right) == pytest.approx(amplitudes, rel=TRIAL_AMPLITUDE)
         if error is None:
             with pytest.raises(NoRealAmplitude, match="A_31"):
                 solved(case, wrong)
@@ -102,12 +103,12 @@ def test_energies_grow_by_the_stated_increment(families, index):
     assert len(family.members) == 5
     assert family.failure is None
     for before, after in itertools.pairwise(family.members[1:]):
-        assert after.linear_specific_energy - before.linear_specific_energy == pytest.approx(after.increment, rel=0.05)
-        assert after.energy - before.energy == pytest.approx(chain.N * after.increment, rel=0.1)
+        assert after.linear_specific_energy - before.linear_specific_energy == pytest.approx(after.increment, rel=INCREMENT)
+        assert after.energy - before.energy == pytest.approx(chain.N * after.increment, rel=INCREMENT_OF_H)
         assert after.harmonic_energy > before.harmonic_energy
     first = family.members[0]
     assert {m.increment for m in family.members} == {first.increment}
-    assert first.increment == pytest.approx(0.1 * linear_specific_energy(chain, CASES[index][2]), rel=1e-14)
+    assert first.increment == pytest.approx(0.1 * linear_specific_energy(chain, CASES[index][2]), rel=TEN_ROUNDINGS)
 
 
 @pytest.mark.parametrize("index", range(len(CASES)))
@@ -117,7 +118,7 @@ def test_linear_mode_energies_grow_alike(families, index):
     for before, after in itertools.pairwise(families[index].members[1:]):
         linear = chain.frequencies()
         gains = [linear[q - 1] ** 2 / 2 * (after.amplitudes[q] ** 2 - before.amplitudes[q] ** 2) for q in seeds]
-        assert gains == pytest.approx([chain.N * after.increment / len(seeds)] * len(seeds), rel=0.05)
+        assert gains == pytest.approx([chain.N * after.increment / len(seeds)] * len(seeds), rel=INCREMENT)
 
 
 def test_other_index_placements_do_not_grow_the_modes_alike():
@@ -148,7 +149,7 @@ def test_error_of_the_increment_is_of_first_order_in_it():
     for increment in increments:
         members = appendix_a(Chain(16, beta="0.3"), (1, 2), {1: 0.6, 2: 0.3}, 3, members=3, increment=increment).members
         errors.append(abs((members[2].linear_specific_energy - members[1].linear_specific_energy) / increment - 1))
-    assert np.polyfit(np.log(increments), np.log(errors), 1)[0] == pytest.approx(1, abs=0.1)
+    assert np.polyfit(np.log(increments), np.log(errors), 1)[0] == pytest.approx(1, abs=SLOPE)
 
 
 def test_printed_neighbours_may_have_no_amplitudes():
@@ -216,7 +217,7 @@ def test_members_have_the_orders_asked_for():
     chain, seeds, start, _ = LOW
     (member,) = appendix_a(chain, seeds, start, 5, members=1, frequency_order=4, coordinate_order=3).members
     assert (member.torus.series.order, member.torus.frequency_order, member.torus.order) == (5, 4, 3)
-    assert member.energy == pytest.approx(32 * member.linear_specific_energy, rel=0.01)
+    assert member.energy == pytest.approx(32 * member.linear_specific_energy, rel=LINEAR_ENERGY)
 
 
 @pytest.mark.parametrize(

@@ -21,27 +21,24 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from tests.families.cases import ROUND, whole
 from tests.oracles.oscillators import cubic_oscillator
-
-# `family` asks for 1e-13; small divisors and other times between the grid points leave some of it.
-RESIDUAL = 1e-12
-
-# Two solvers of one orbit, each to its rounding over the smallest divisor, some 1e-4.
-SAME_ORBIT = 1e-11
-
-# Ratios are conditions of Newton's method, met to the rounding of doubles of the coefficients.
-RATIO = 1e-12
-
-# Energies at the ends of a family are conditions too.
-ENERGY = 1e-12
-
-# The shift is known to 1e-18, some 1e-11 of itself; the place of its minimum to the root of that at worst, in relation to H.
-FOLD = 1e-6
-
-# The oracle has 48 harmonics of dt/dphi; the 48th of the slowest orbit looked at leaves some 3e-12 of the amplitude.
-OSCILLATOR = 1e-11
-
-# Energies of located resonances, relative; Newton's method solves for the divisor itself, to some 1e-15.
-LOCATED = 1e-8
+from tests.tolerances import (
+    DISTINCTION,
+    FIVE_PLACES,
+    FIXED_ENERGY,
+    FIXED_RATIO,
+    FOLD,
+    LAST_DIGIT,
+    LINEAR_LIMIT,
+    LOOSE_MEMBER,
+    LOW_ACCURACY,
+    NEWTON_RESIDUAL,
+    OSCILLATOR,
+    RESONANCE_ENERGY,
+    RESONANT_AMPLITUDE,
+    SAME_ORBIT,
+    SIX_PLACES,
+    TEN_ROUNDINGS,
+)
 
 # A step of at most 0.6 in ln A, thus 1.2 in ln H, is halved eight times.
 STABILITY = 0.01
@@ -87,23 +84,23 @@ def test_a_family_reaches_its_energy_with_tori_only(found):
     """It begins and ends where asked for; every member solves the equations of motion, also at other times than its own."""
     result = found()
     first, goal = {breathers: (0.01, 0.5), folded: (0.001, 0.05), resonant: (0.004, 0.05), destabilised: (0.01, 1.6)}[found]
-    assert energies(result)[0] == pytest.approx(first, rel=ENERGY)
-    assert energies(result)[-1] == pytest.approx(goal, rel=ENERGY)
+    assert energies(result)[0] == pytest.approx(first, rel=FIXED_ENERGY)
+    assert energies(result)[-1] == pytest.approx(goal, rel=FIXED_ENERGY)
     assert (np.diff(energies(result)) > 0).all()
     assert result.ending == "reached the energy asked for"
     for m in result.members:
         assert m.verdict == "torus"
-        assert m.residual < RESIDUAL
-        assert m.torus.residual(23) < RESIDUAL
-        assert m.energy == pytest.approx(float(m.torus.energy()), rel=1e-15)
-        assert m.harmonic_energy == pytest.approx(float(m.torus.harmonic_energies().sum()), rel=1e-15)
+        assert m.residual < NEWTON_RESIDUAL
+        assert m.torus.residual(23) < NEWTON_RESIDUAL
+        assert m.energy == pytest.approx(float(m.torus.energy()), rel=LAST_DIGIT)
+        assert m.harmonic_energy == pytest.approx(float(m.torus.harmonic_energies().sum()), rel=LAST_DIGIT)
     assert f"{len(result.members)} members, H = " in repr(result)
 
 
 def test_it_begins_where_it_is_asked_to():
     """By default at a thousandth of the goal."""
     begun = family(ROUND, (3,), "0.5", members=1)
-    assert begun.members[0].energy == pytest.approx(0.0005, rel=ENERGY)
+    assert begun.members[0].energy == pytest.approx(0.0005, rel=FIXED_ENERGY)
     assert begun.ending == "was left after 1 members, the most asked for"
 
 
@@ -124,8 +121,8 @@ def test_both_ends_have_the_energies_asked_for(case, harmonic):
     chain, seeds, first, goal, options = ENDS[case]
     found = family(chain, seeds, goal, from_energy=first, harmonic=harmonic, **options)
     measured = [m.harmonic_energy if harmonic else m.energy for m in found.members]
-    assert measured[0] == pytest.approx(float(first), rel=ENERGY)
-    assert measured[-1] == pytest.approx(float(goal), rel=ENERGY)
+    assert measured[0] == pytest.approx(float(first), rel=FIXED_ENERGY)
+    assert measured[-1] == pytest.approx(float(goal), rel=FIXED_ENERGY)
     assert measured == sorted(measured)
     assert found.ending == "reached the energy asked for"
     for energy in (first, goal):
@@ -139,7 +136,7 @@ def test_a_goal_just_below_a_turn_of_the_energy_is_not_passed_by():
     """A step leads over the turn at H = 0.8127149; both members beside it are below the goal, and the family is not."""
     near = family(LOOP, (1,), "0.8127", from_energy="0.02", tolerance=1e-10)
     assert near.ending == "reached the energy asked for"
-    assert energies(near)[-1] == pytest.approx(0.8127, rel=ENERGY)
+    assert energies(near)[-1] == pytest.approx(0.8127, rel=FIXED_ENERGY)
     assert (np.diff(energies(near)) > 0).all()
 
 
@@ -175,25 +172,25 @@ def averages(torus):
 def test_members_keep_the_ratio_of_their_averaged_energies():
     for m in folded().members[::4]:
         mine = averages(m.torus)
-        assert mine[0] == pytest.approx(mine[1], rel=RATIO)
-        assert m.amplitudes[1] / m.amplitudes[2] != pytest.approx(2, rel=1e-4)
+        assert mine[0] == pytest.approx(mine[1], rel=FIXED_RATIO)
+        assert m.amplitudes[1] / m.amplitudes[2] != pytest.approx(2, rel=DISTINCTION)
 
 
 @pytest.mark.parametrize("ratios", [{"amplitude_ratio": {3: "1/2", 1: 1}}, {"energy_ratio": {1: 3, 3: 1}}], ids=["amplitudes", "energies"])
 def test_members_keep_the_ratio_asked_for(ratios):
     for m in family(Chain(6, beta="0.3"), (1, 3), "0.02", from_energy="0.01", **ratios).members:
         if "amplitude_ratio" in ratios:
-            assert m.amplitudes[3] / m.amplitudes[1] == pytest.approx(0.5, rel=RATIO)
+            assert m.amplitudes[3] / m.amplitudes[1] == pytest.approx(0.5, rel=FIXED_RATIO)
         else:
             mine = averages(m.torus)
-            assert mine[0] / mine[2] == pytest.approx(3, rel=RATIO)
+            assert mine[0] / mine[2] == pytest.approx(3, rel=FIXED_RATIO)
 
 
 def test_the_goal_may_be_a_harmonic_energy():
     found = family(ROUND, (3,), "0.5", from_energy="0.2", harmonic=True)
-    assert found.members[0].harmonic_energy == pytest.approx(0.2, rel=ENERGY)
-    assert found.members[-1].harmonic_energy == pytest.approx(0.5, rel=ENERGY)
-    assert found.members[-1].energy != pytest.approx(found.members[-1].harmonic_energy, rel=1e-3)
+    assert found.members[0].harmonic_energy == pytest.approx(0.2, rel=FIXED_ENERGY)
+    assert found.members[-1].harmonic_energy == pytest.approx(0.5, rel=FIXED_ENERGY)
+    assert found.members[-1].energy != pytest.approx(found.members[-1].harmonic_energy, rel=DISTINCTION)
 
 
 def test_a_fold_of_a_frequency_is_passed_and_located():
@@ -210,7 +207,7 @@ def test_a_fold_of_a_frequency_is_passed_and_located():
     (turn,) = [x.real for x in shifts.deriv().roots() if abs(x.imag) < 1e-9 and abs(x.real - about) < 0.25]
     assert shifts.deriv(2)(turn) > 0
     assert fold.energy == pytest.approx(np.exp(turn), rel=FOLD)
-    assert fold.value == pytest.approx(float(PAIR.linear_frequency(2)) + shifts(turn), abs=1e-15)
+    assert fold.value == pytest.approx(float(PAIR.linear_frequency(2)) + shifts(turn), abs=LAST_DIGIT)
     assert folded().members[fold.after].energy <= fold.energy <= folded().members[fold.after + 1].energy
     signs = [float(shifts_of(m.torus)[1]) > 0 for m in folded().members]
     assert signs == sorted(signs)
@@ -225,8 +222,8 @@ def test_a_resonance_is_named_and_located():
     first, second = resonant().members[event.after : event.after + 2]
     assert first.energy < event.energy < second.energy
     at = breather_at_energy(LONG, 1, repr(event.energy))
-    assert 15 * float(at.frequency) == pytest.approx(LONG.frequencies()[16], abs=LOCATED * 0.005)
-    assert event.value == pytest.approx(at.cosines[15, 16], rel=1e-4)
+    assert 15 * float(at.frequency) == pytest.approx(LONG.frequencies()[16], abs=RESONANCE_ENERGY * 0.005)
+    assert event.value == pytest.approx(at.cosines[15, 16], rel=RESONANT_AMPLITUDE)
     assert "resonance of mode 17 with harmonic (15) at H = 0.0392110" in repr(event)
 
 
@@ -243,14 +240,14 @@ def test_a_resonance_of_two_frequencies_is_located():
     at = member_at_energy(found, repr(event.energy), harmonic=False)
     first, second = (divisor(m.torus) for m in found.members[event.after : event.after + 2])
     assert first * second < 0
-    assert abs(divisor(at)) < LOCATED * abs(second - first)
+    assert abs(divisor(at)) < RESONANCE_ENERGY * abs(second - first)
 
 
 def test_a_resonance_between_the_first_members_is_found():
     later = next(e for e in resonant().events if e.mode == 17)
     found = family(LONG, (1,), "0.043", from_energy="0.0385", members=2)
     assert [(e.mode, e.harmonic, e.after) for e in found.events] == [(17, (15,), 0)]
-    assert found.events[0].energy == pytest.approx(later.energy, rel=LOCATED)
+    assert found.events[0].energy == pytest.approx(later.energy, rel=RESONANCE_ENERGY)
 
 
 @pytest.mark.long
@@ -292,7 +289,7 @@ def test_a_family_that_comes_back_to_rest_ends_there():
     assert first.amplitudes[1] > other.amplitudes[1] > last.amplitudes[1]
     shift = omega(other) - LOOP.frequencies()[0]
     assert abs(omega(other) - of_the_limit(other)) > 0.01 * shift
-    assert omega(last) == pytest.approx(of_the_limit(last), abs=1e-5 * shift)
+    assert omega(last) == pytest.approx(of_the_limit(last), abs=LINEAR_LIMIT * shift)
 
 
 def test_a_beginning_beyond_the_series_is_led_up_to():
@@ -301,10 +298,10 @@ def test_a_beginning_beyond_the_series_is_led_up_to():
         first_torus(LOOP, {1: np.sqrt(2 * 0.5) / LOOP.frequencies()[0]})
     found = family(LOOP, (1,), "0.6", from_energy="0.5", tolerance=1e-10)
     assert found.ending == "reached the energy asked for"
-    assert found.members[0].energy == pytest.approx(0.5, rel=ENERGY)
+    assert found.members[0].energy == pytest.approx(0.5, rel=FIXED_ENERGY)
     for m in found.members:
         assert m.verdict == "torus"
-        assert omega(m) == pytest.approx(float(breather_at_energy(LOOP, 1, m.energy).frequency), rel=1e-8)
+        assert omega(m) == pytest.approx(float(breather_at_energy(LOOP, 1, m.energy).frequency), rel=LOOSE_MEMBER)
 
 
 @pytest.mark.long
@@ -355,7 +352,7 @@ def test_a_family_turns_below_a_barrier():
             assert omega(m) == pytest.approx(float(rate), rel=OSCILLATOR)
             assert abs(m.amplitudes[2]) == pytest.approx(abs(float(amplitude)), rel=OSCILLATOR)
     assert barrier == pytest.approx(4)
-    assert energies(found).max() < barrier * (1 + 1e-14)
+    assert energies(found).max() < barrier * (1 + TEN_ROUNDINGS)
     (turn,) = [e for e in found.events if e.kind == "fold"]
     assert turn.what == "A_2"
     assert [m.energy > turn.energy for m in known].count(True) >= 2
@@ -368,7 +365,7 @@ def test_a_family_that_cannot_go_on_says_so():
     found = family(Chain(2, beta="-0.5"), (1,), "20", from_energy="0.1", tolerance=1e-9)
     assert found.ending.startswith(f"ended at H = {found.members[-1].energy:.7g}: ")
     assert re.search(r"steps along the way down to 0\.0\d+ from a doubtful member; the smallest divisor there is ", found.ending)
-    assert all(m.residual < 1e-6 for m in found.members)
+    assert all(m.residual < LOW_ACCURACY for m in found.members)
     assert energies(found).max() < 2
     with pytest.raises(NotInFamily, match="ended at H = "):
         member_at_energy(found, "20", harmonic=False)
@@ -378,12 +375,12 @@ def test_the_family_goes_on_where_its_series_ends():
     """docs/convergence.md: orbit and fold of the fixed-frequency scheme coincide at A = 1.0812, omega = 0.098352. Before it the roots of
     the truncated series approach the member of their frequency; behind it they do not."""
     at = breather_at_amplitude(LONG, 1, "1.0812")
-    assert float(at.frequency) == pytest.approx(0.098352, abs=1e-6)
-    assert at.energy() == pytest.approx(0.00926, abs=1e-5)
+    assert float(at.frequency) == pytest.approx(0.098352, abs=SIX_PLACES)
+    assert at.energy() == pytest.approx(0.00926, abs=FIVE_PLACES)
     before = [m for m in resonant().members if m.amplitudes[1] < 0.95]
     behind = [m for m in resonant().members if m.amplitudes[1] > 1.2]
     assert before
-    assert behind[-1].energy == pytest.approx(0.05, rel=ENERGY)
+    assert behind[-1].energy == pytest.approx(0.05, rel=FIXED_ENERGY)
 
     def missed(m, order):
         frequency = m.torus.frequencies[0].limit_denominator(10**14)
@@ -401,11 +398,11 @@ def test_at_energy_is_on_the_family():
     """Not the ratio of the nearest member's amplitudes, which changes along a family of equal energies."""
     torus = member_at_energy(folded(), "0.02", harmonic=False)
     mine = averages(torus)
-    assert mine[0] == pytest.approx(mine[1], rel=RATIO)
-    assert float(torus.energy()) == pytest.approx(0.02, rel=RATIO)
-    assert torus.residual() < RESIDUAL
+    assert mine[0] == pytest.approx(mine[1], rel=FIXED_RATIO)
+    assert float(torus.energy()) == pytest.approx(0.02, rel=FIXED_RATIO)
+    assert torus.residual() < NEWTON_RESIDUAL
     harmonic = member_at_energy(folded(), "0.02", harmonic=True)
-    assert float(harmonic.harmonic_energies().sum()) == pytest.approx(0.02, rel=RATIO)
+    assert float(harmonic.harmonic_energies().sum()) == pytest.approx(0.02, rel=FIXED_RATIO)
     breather = member_at_energy(breathers(), "0.1", harmonic=False)
     assert breather.amplitudes[3] == pytest.approx(breather_at_energy(ROUND, 3, "0.1").amplitude, rel=SAME_ORBIT)
 
@@ -430,10 +427,10 @@ def test_a_frequency_may_have_several_members():
     tori = member_at_frequency(family_, 2, wanted)
     assert len(tori) == 2
     for torus in tori:
-        assert float(torus.frequencies[1]) == pytest.approx(float(wanted), abs=1e-15)
+        assert float(torus.frequencies[1]) == pytest.approx(float(wanted), abs=LAST_DIGIT)
         averages = torus.average_spectrum()
-        assert torus.residual() < 1e-12
-        assert averages[1] / averages[0] == pytest.approx(1, rel=RATIO)
+        assert torus.residual() < NEWTON_RESIDUAL
+        assert averages[1] / averages[0] == pytest.approx(1, rel=FIXED_RATIO)
     assert tori[0].energy() < tori[1].energy()
     assert len(member_at_frequency(breathers(), 3, breathers().members[2].torus.frequencies[0])) == 1
 
@@ -451,14 +448,14 @@ def test_appendix_a_gives_series_of_growing_energy():
     found = whole("appendix-a")
     assert found.ending == "reached the energy asked for"
     assert (np.diff(energies(found)) > 0).all()
-    assert energies(found)[0] == pytest.approx(0.002, rel=ENERGY)
-    assert energies(found)[-1] == pytest.approx(0.01, rel=ENERGY)
+    assert energies(found)[0] == pytest.approx(0.002, rel=FIXED_ENERGY)
+    assert energies(found)[-1] == pytest.approx(0.01, rel=FIXED_ENERGY)
     for m in found.members:
         assert m.torus.order == 4
-        assert m.energy == pytest.approx(float(m.torus.energy()), rel=1e-15)
+        assert m.energy == pytest.approx(float(m.torus.energy()), rel=LAST_DIGIT)
         assert m.residual == m.torus.residual()
     refined = member_at_energy(found, "0.005", harmonic=False)
-    assert float(refined.energy()) == pytest.approx(0.005, rel=RATIO)
+    assert float(refined.energy()) == pytest.approx(0.005, rel=FIXED_RATIO)
 
 
 def test_appendix_a_ends_honestly():

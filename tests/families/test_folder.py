@@ -19,8 +19,7 @@ from symfpu.files.archive import BundleError
 from symfpu.refinement.tori import RefinedTorus
 from tests.bundles.test_bundle import same
 from tests.families.cases import ROUND, RUNS, whole
-
-ENERGY = 1e-12  # of the ends of a family: conditions like the others
+from tests.tolerances import FIXED_ENERGY
 
 
 def energies(found):
@@ -79,11 +78,11 @@ def test_a_family_goes_on_to_another_goal(tmp_path):
     near = family(ROUND, (3,), "0.01", folder=tmp_path)
     far = family(ROUND, (3,), "0.05", folder=tmp_path)
     assert [m.energy for m in far.members[: len(near.members)]] == [m.energy for m in near.members]
-    assert far.members[-1].energy == pytest.approx(0.05, rel=ENERGY)
+    assert far.members[-1].energy == pytest.approx(0.05, rel=FIXED_ENERGY)
     alike(family(ROUND, (3,), "0.01", folder=tmp_path), near)
     files = sorted(tmp_path.iterdir())
     nearer = family(ROUND, (3,), "0.005", folder=tmp_path)
-    assert nearer.members[-1].energy == pytest.approx(0.005, rel=ENERGY)
+    assert nearer.members[-1].energy == pytest.approx(0.005, rel=FIXED_ENERGY)
     assert [m.energy for m in nearer.members[:-1]] == [m.energy for m in far.members if m.energy < 0.005]
     assert sorted(tmp_path.iterdir()) == files
     alike(family(ROUND, (3,), "0.05", folder=tmp_path), far)
@@ -98,11 +97,11 @@ def test_a_family_of_version_01_is_gone_on_with(tmp_path):
     facts = json.loads((folder.parent / "facts.json").read_text())["family"]["energies"]
     known = family(start, (1,), "0.01", folder=tmp_path)
     assert known.ending == "reached the energy asked for"
-    assert energies(known)[:-1] == pytest.approx([float(e) for e in facts[:-1]], rel=ENERGY)
-    assert energies(known)[-1] == pytest.approx(0.01, rel=ENERGY)
+    assert energies(known)[:-1] == pytest.approx([float(e) for e in facts[:-1]], rel=FIXED_ENERGY)
+    assert energies(known)[-1] == pytest.approx(0.01, rel=FIXED_ENERGY)
     on = family(start, (1,), "0.012", folder=tmp_path)
-    assert energies(on)[:-1] == pytest.approx([float(e) for e in facts], rel=ENERGY)
-    assert energies(on)[-1] == pytest.approx(0.012, rel=ENERGY)
+    assert energies(on)[:-1] == pytest.approx([float(e) for e in facts], rel=FIXED_ENERGY)
+    assert energies(on)[-1] == pytest.approx(0.012, rel=FIXED_ENERGY)
 
 
 class Killed(BaseException):

@@ -10,6 +10,7 @@ from symfpu.breathers.floquet import ELLIPTIC, TRIVIAL
 from symfpu.chain.chain import Chain
 from symfpu.families.family import family
 from symfpu.figures.family import draw_family, plot_amplitudes, plot_multipliers, plot_shifts, plot_spectra
+from tests.tolerances import LAST_DIGIT
 
 
 @lru_cache
@@ -37,7 +38,7 @@ def test_shifts_have_a_line_for_each_seed_and_one_for_each_fold(ax):
     first, second, fold = ax.get_lines()
     for i, line in enumerate((first, second)):
         shifts = [float(m.torus.frequencies[i]) / pair().chain.frequencies()[i] - 1 for m in pair().members]
-        assert line.get_xdata() == pytest.approx(shifts, abs=1e-15)
+        assert line.get_xdata() == pytest.approx(shifts, abs=LAST_DIGIT)
         assert list(line.get_ydata()) == energies(pair())
     assert set(fold.get_ydata()) == {e.energy for e in pair().events if e.kind == "fold"}
     assert (ax.get_xlabel(), ax.get_ylabel(), ax.get_yscale()) == (r"$\omega_q / \Omega_q - 1$", "$H$", "log")
@@ -84,7 +85,7 @@ def test_spectra_are_of_members_from_the_first_to_the_last(ax):
     for line, m in ((lines[0], pair().members[0]), (lines[-1], pair().members[-1])):
         spectrum = m.torus.average_spectrum()
         assert list(line.get_xdata()) == list(range(1, 8))
-        assert line.get_ydata() == pytest.approx(spectrum / spectrum.sum(), rel=1e-15)
+        assert line.get_ydata() == pytest.approx(spectrum / spectrum.sum(), rel=LAST_DIGIT)
     assert all(label for label in (ax.get_xlabel(), ax.get_ylabel()))
     assert len(ax.get_legend().get_texts()) == len(lines) <= 6
 

@@ -20,13 +20,11 @@ from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.quasiperiodic import FourierTorus
+from tests.tolerances import KNOWN_ERROR, LONG_SERIES_RESIDUAL, RELATIVE_SHIFT, SMALL_CHANGE, TWO_DIGITS, UNSEEN_TAIL
 
 # A floor is an estimate of first order, made twice as large: four times the energy of the error, and more where errors do not add up.
 # Rounding in long doubles is taken at random, ten times and more its size in single modes of some orbits.
 LOOSE = 1e6
-
-# Two orbits of one energy, each met to rounding, have frequencies in doubles: 1e-16 of some 1e-4 of it that the amplitude shifts.
-SAME_ENERGY = 1e-9
 
 # The many digits of the truth, and those of its sums.
 DIGITS = 60
@@ -104,16 +102,16 @@ def test_the_stated_case():
     chain, seed, energy = STATED
     truth = precise("alpha, small").average_spectrum().astype(float)
     member = family(chain, (seed,), "0.001", from_energy=energy, members=1).members[0].torus
-    assert truth[27] == pytest.approx(2.7e-75, rel=0.1)
+    assert truth[27] == pytest.approx(2.7e-75, rel=TWO_DIGITS)
     for solution in (orbit("alpha, small"), member):
         E, floor = solution.average_spectrum(), spectrum_floor(solution)
-        assert truth[27] < 1e-20 * E[27]
+        assert truth[27] < UNSEEN_TAIL * E[27]
         assert E[27] <= floor[27]
         known = floor < E
         assert known.tolist() == sorted(known, reverse=True)
         assert 12 <= known.sum() <= 18
         off = np.abs(np.sqrt(E) - np.sqrt(truth))
-        assert (off[known] <= np.sqrt(floor[known]) + SAME_ENERGY * np.sqrt(truth[known])).all()
+        assert (off[known] <= np.sqrt(floor[known]) + RELATIVE_SHIFT * np.sqrt(truth[known])).all()
 
 
 @pytest.mark.parametrize("case", BREATHERS)
@@ -125,7 +123,7 @@ def test_coefficients_know_their_errors(case):
     with mpmath.workdps(DIGITS):
         off = np.abs(np.array(right) - breather.cosines).astype(float)
     assert (off <= errors).all()
-    assert errors.max() < 1e-10 * breather.amplitude
+    assert errors.max() < KNOWN_ERROR * breather.amplitude
     refined = refine(torus_of(breather))
     assert coefficient_errors(refined).shape == refined.cosines.shape
 
@@ -158,7 +156,7 @@ def test_the_floor_of_a_refined_torus_is_above_its_error():
     """The truth is a series that has converged far below doubles."""
     chain, seeds, frequencies = Chain(8, beta=1), (1, 3), ("0.39020", "1.11119")
     truth = solve_amplitudes(lindstedt(chain, seeds, frequencies, 12, digits=DIGITS))
-    assert truth.residual() < 1e-24
+    assert truth.residual() < LONG_SERIES_RESIDUAL
     refined = refine(truth)
     errors = error_energies(refined, truth)
     require_above(spectrum_floor(refined), errors)
@@ -205,5 +203,5 @@ def test_fits_stop_at_the_floor():
     fit = fit_profile(chain, E, 1, power=2.0, floor=spectrum_floor(breather))
     right = fit_profile(chain, truth, 1, power=2.0, modes=fit.modes, floor=0.0)
     assert fit.modes == tuple(range(2, 13))
-    assert fit.line.slope == pytest.approx(right.line.slope, rel=1e-3)
+    assert fit.line.slope == pytest.approx(right.line.slope, rel=SMALL_CHANGE)
     assert fit_profile(chain, E, 1, power=2.0, floor=0.0).line.slope > 0.8 * right.line.slope

@@ -25,7 +25,7 @@ from symfpu.localization.laws import (
 )
 from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.tori.at_energy import torus_at_energy
-from tests.tolerances import ROUNDING
+from tests.tolerances import HUNDRED_ROUNDINGS, LEAST_SQUARES, ROUNDING, SCATTER, THOUSAND_ROUNDINGS
 
 ALPHA, BETA = Chain(N=64, alpha="0.33"), Chain(N=64, beta="0.3")
 FIG_4A, FIG_4B = 1.5625e-8, 1.5625e-6  # specific energies
@@ -58,7 +58,7 @@ def test_lines_are_the_group_energies(chain, s, epsilon):
     expected = np.log10(group_energy(chain, s, epsilon, k) / (chain.N * epsilon))
     for denominator in (None, chain.N, chain.N - 1):
         line = profile_law(chain, s, epsilon, denominator=denominator)
-        assert line(q / (denominator or chain.N)) == pytest.approx(expected, rel=1e-13)  # sums of a few terms up to 60
+        assert line(q / (denominator or chain.N)) == pytest.approx(expected, rel=HUNDRED_ROUNDINGS)  # sums of a few terms up to 60
 
 
 def test_caption_of_figure_2a():
@@ -130,10 +130,12 @@ def test_fit_recovers_a_line(power):
     e = 10 ** line(np.arange(1, 64) / 64)
     e[:8] = (1 - e[8:].sum()) / 8  # a share each: the sum is 1
     fit = fit_profile(ALPHA, 7.0 * e, 8, power=power, floor=0.0)
-    assert (fit.line.slope, fit.line.intercept, fit.line.power) == pytest.approx((-50.0, 3.0, 2.0), rel=1e-10)  # lstsq, condition 1e3
+    assert (fit.line.slope, fit.line.intercept, fit.line.power) == pytest.approx(
+        (-50.0, 3.0, 2.0), rel=LEAST_SQUARES
+    )  # lstsq, condition 1e3
     assert fit.modes == tuple(range(9, 64))
-    assert max(fit.errors) < 1e-10
-    assert fit.scatter < 1e-12
+    assert max(fit.errors) < LEAST_SQUARES
+    assert fit.scatter < THOUSAND_ROUNDINGS
     middle = fit_profile(ALPHA, e, 8, modes="middle", power=2.0, floor=0.0)
     assert middle.modes == middle_modes(ALPHA, 8)
     assert repr(middle).startswith("ProfileFit(log10 e = (-50 +- ")
@@ -149,17 +151,18 @@ def test_error_bars_are_those_of_repeated_draws():
     for i, values in enumerate(([f.line.slope for f in fits], [f.line.intercept for f in fits])):
         stated = math.sqrt(np.mean([f.errors[i] ** 2 for f in fits]))
         # 300 draws: 4 %; the jackknife over 15 blocks is high by about 1/15, more at the ends: 20 % in all
-        assert stated == pytest.approx(np.std(values), rel=0.25)
+        assert stated == pytest.approx(np.std(values), rel=SCATTER)
 
 
 def test_modes_below_the_floor_are_never_used():
     kappa = np.arange(1, 64) / 64
     e = 10 ** ProfileLine(-50.0, 0.0)(kappa)
     noisy = np.maximum(e, 1e-23 * e[0])
+    higher, highest = (tuple(q for q in range(9, 64) if e[q - 1] > floor) for floor in (1e-22 * e[0], 1e-18))
     fit = fit_profile(ALPHA, noisy, 8)
-    assert fit.modes == tuple(q for q in range(9, 64) if e[q - 1] > 1e-22 * e[0])
-    assert fit.line.slope == pytest.approx(-50.0, rel=1e-10)
-    assert fit_profile(ALPHA, noisy, 8, floor=np.full(63, 1e-18)).modes == tuple(q for q in range(9, 64) if e[q - 1] > 1e-18)
+    assert fit.modes == higher
+    assert fit.line.slope == pytest.approx(-50.0, rel=LEAST_SQUARES)
+    assert fit_profile(ALPHA, noisy, 8, floor=np.full(63, 1e-18)).modes == highest
     assert fit_profile(ALPHA, noisy, 8, floor=0.0).line.slope > -35
 
 

@@ -8,7 +8,7 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.localization.profiles import fpu_trajectory, normalised_averages, packet_amplitudes, profile_distance
 from tests.localization.refusals import refused
-from tests.tolerances import ROUNDING
+from tests.tolerances import HARMONIC_SHARE, HUNDRED_ROUNDINGS, ROUNDING
 
 CHAIN = Chain(4, alpha=1)
 
@@ -30,7 +30,9 @@ def test_a_nearly_harmonic_chain_keeps_the_energies_of_the_modes():
     Q, P = fpu_trajectory(chain, {2: 0.3, 5: 0.1}, {2: 1.0, 5: 2.0})
     orbit = integrate(chain, Q, P, 100.0, step=0.25, scheme="aba864_modes", samples=20)
     start = chain.harmonic_energies(Q, P)
-    assert orbit.harmonic_energies() == pytest.approx(np.broadcast_to(start, orbit.Q.shape), abs=1e-13)  # 400 exact rotations, each rounded
+    assert orbit.harmonic_energies() == pytest.approx(
+        np.broadcast_to(start, orbit.Q.shape), abs=HUNDRED_ROUNDINGS
+    )  # 400 exact rotations, each rounded
 
 
 @pytest.mark.parametrize("share", ["energy", "amplitude"])
@@ -52,7 +54,7 @@ def test_normalised_averages_are_those_of_the_paper():
     spectra = normalised_averages(orbits)
     assert spectra.shape == orbits.Q.shape
     # H counts the anharmonic energy, a few per cent, which is no E_q
-    assert spectra.sum(axis=-1) == pytest.approx(1, abs=0.03)
+    assert spectra.sum(axis=-1) == pytest.approx(1, abs=HARMONIC_SHARE)
     assert spectra * orbits.energies[0][:, None] == pytest.approx(orbits.averages, rel=ROUNDING)
     with pytest.raises(InputError, match="averages=True"):
         normalised_averages(integrate(chain, Q, P, 50.0, step=0.25, samples=5))

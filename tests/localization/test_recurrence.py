@@ -8,7 +8,7 @@ from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.localization.recurrence import NoRecurrence, recurrence
 from symfpu.paper.printed import FIG9_BREATHER
 from tests.localization.refusals import refused
-from tests.tolerances import ROUNDING
+from tests.tolerances import FINE_RETURN_VALUE, RETURN_PLACE, RETURN_TIME, RETURN_VALUE, ROUNDING, WIGGLE
 
 
 def test_recurrence_of_commensurable_signals():
@@ -16,10 +16,10 @@ def test_recurrence_of_commensurable_signals():
     a, b = 0.4 * (1 - np.cos(2 * t)), 0.1 * (1 - np.cos(t))  # away from mode 1, in modes 2 and 3
     found = recurrence(t, np.stack([1 - a - b, a, b], axis=-1))
     # symmetric to every multiple of pi, so the vertex is exact but for the fourth order in the spacing
-    assert found.times == pytest.approx(np.pi * np.arange(1, 7), abs=1e-4)
-    assert found.returned == pytest.approx([0.8, 1, 0.8, 1, 0.8, 1], abs=1e-6)
+    assert found.times == pytest.approx(np.pi * np.arange(1, 7), abs=RETURN_PLACE)
+    assert found.returned == pytest.approx([0.8, 1, 0.8, 1, 0.8, 1], abs=RETURN_VALUE)
     assert found.first == (found.times[0], found.returned[0])
-    assert found.best[1] == pytest.approx(1, abs=1e-6)
+    assert found.best[1] == pytest.approx(1, abs=RETURN_VALUE)
     assert found.excursion == pytest.approx(np.max(a + b), rel=ROUNDING)
     assert repr(found).startswith("Recurrence(6 returns, first at t=3.1416 of 80.000")
 
@@ -36,7 +36,7 @@ def test_wiggles_make_no_returns():
     t = np.arange(0, 100.0, 0.05)
     moved = 0.4 * (1 - np.cos(2 * np.pi * t / 40)) * (1 + 0.2 * np.sin(7 * t))
     found = recurrence(t, np.stack([1 - moved, moved], axis=-1))
-    assert found.times == pytest.approx([40, 80], abs=1)
+    assert found.times == pytest.approx([40, 80], abs=WIGGLE)
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.3])
@@ -46,9 +46,9 @@ def test_recurrence_of_two_modes_that_beat(shift):
     t = np.concatenate([[0.0], np.arange(1.0, 1300.0, 2.0) + shift])
     moved = part * np.sin(rate * t / 2) ** 2
     found = recurrence(t, np.stack([3 * (1 - moved), 3 * moved], axis=-1))
-    assert found.times == pytest.approx([2 * np.pi / rate, 4 * np.pi / rate], rel=1e-5)
-    assert found.returned == pytest.approx(1, abs=1e-7)
-    assert found.excursion == pytest.approx(part, abs=1e-4)
+    assert found.times == pytest.approx([2 * np.pi / rate, 4 * np.pi / rate], rel=RETURN_TIME)
+    assert found.returned == pytest.approx(1, abs=FINE_RETURN_VALUE)
+    assert found.excursion == pytest.approx(part, abs=RETURN_PLACE)
     assert found.first[0] == found.times[0]
 
 
@@ -70,8 +70,8 @@ def test_recurrence_of_the_original_fpu_trajectory(energy, time, returned):
     A = {1: FIG9_BREATHER.amplitudes[0]} if energy is None else packet_amplitudes(chain, (1,), energy)
     orbit = integrate(chain, *fpu_trajectory(chain, A), 15000.0, step=0.25, samples=np.arange(0, 15000.5, 2.0))
     found = recurrence(orbit.times, orbit.harmonic_energies())
-    assert found.first[0] == pytest.approx(time, abs=1)  # fast wiggles of the energies move a minimum by less than their period
-    assert found.first[1] == pytest.approx(returned, abs=1e-4)
+    assert found.first[0] == pytest.approx(time, abs=WIGGLE)  # fast wiggles of the energies move a minimum by less than their period
+    assert found.first[1] == pytest.approx(returned, abs=RETURN_PLACE)
     assert found.excursion > 0.75
 
 

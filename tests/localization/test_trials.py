@@ -14,7 +14,7 @@ from symfpu.localization.laws import profile_law
 from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.localization.trials import ProfileInvariance, profile_invariance, slope_by_energy
 from symfpu.tori.at_energy import torus_at_energy
-from tests.tolerances import ROUNDING
+from tests.tolerances import LEAST_SQUARES, RANDOM_RATE, ROUNDING, SMALL_CHANGE, THOUSAND_ROUNDINGS
 
 ALPHA, BETA = Chain(N=32, alpha="0.33"), Chain(N=32, beta="0.3")
 
@@ -26,8 +26,8 @@ def test_rate_of_the_laws_themselves(chain):
     kappa = np.arange(1, 32) / 32
     spectra = np.array([10 ** profile_law(chain, 4, e)(kappa) for e in energies])
     trend = slope_by_energy(chain, 4, energies, spectra, floor=0.0)
-    assert trend.rate == pytest.approx(8.0, rel=1e-9)  # least squares twice
-    assert trend.error < 1e-9
+    assert trend.rate == pytest.approx(8.0, rel=LEAST_SQUARES)  # least squares twice
+    assert trend.error < LEAST_SQUARES
 
 
 @pytest.mark.parametrize(("chain", "order"), [(Chain(N=16, alpha="0.33"), 7), (Chain(N=16, beta="0.3"), 4)])
@@ -37,7 +37,7 @@ def test_middle_slopes_of_tori_follow_log_energy(chain, order):
     tori = [torus_at_energy(chain, (1, 2), e * 16, harmonic=True, order=order) for e in energies]
     spectra = np.array([torus.average_spectrum() for torus in tori])
     trend = slope_by_energy(chain, 2, energies, spectra, modes="middle", floor=0.0)
-    assert trend.rate == pytest.approx(8.0, rel=1e-3)  # the next order is smaller by lambda / M^2 < 1e-4
+    assert trend.rate == pytest.approx(8.0, rel=SMALL_CHANGE)  # the next order is smaller by lambda / M^2 < 1e-4
     with pytest.raises(InputError, match="spectra"):
         slope_by_energy(chain, 2, energies[:2], spectra[:2])
 
@@ -50,7 +50,7 @@ def test_one_spectrum_by_hand():
     orbit = integrate(chain, Q, P, 500.0, step=1.0, scheme="aba864_modes", samples=np.arange(0, 501.0))
     E = orbit.harmonic_energies()
     by_hand = (E[1:-1].sum(axis=0) + 0.5 * (E[0] + E[-1])) / 500
-    assert result.spectra[1][0] == pytest.approx(by_hand / by_hand.sum(), rel=1e-9)  # the same looks, summed in another order
+    assert result.spectra[1][0] == pytest.approx(by_hand / by_hand.sum(), rel=THOUSAND_ROUNDINGS)  # the same looks, summed in another order
     level = math.log10(32 * result.spectra[1][0][5])  # q = 6: of the kappas q/16 of all sizes, 3/16 alone is in the middle of D_1
     assert result.levels()[0][1, 0] == pytest.approx(level, rel=ROUNDING)
     common = np.arange(3, 16)  # q/16 beyond M = 1/8
@@ -58,7 +58,7 @@ def test_one_spectrum_by_hand():
     for per_mode, values in ((False, logs), (True, logs + np.log10([[16], [32], [64]]))):
         change = values.max(axis=0) - values.min(axis=0)
         moved, kappa = result.moved(per_mode=per_mode)
-        assert moved == pytest.approx(change.max(), rel=1e-12)
+        assert moved == pytest.approx(change.max(), rel=THOUSAND_ROUNDINGS)
         assert kappa == common[np.argmax(change)] / 16
 
 
@@ -71,7 +71,7 @@ def test_equal_phases_raise_the_tail_and_random_ones_do_not():
     equal = profile_invariance(ALPHA, "1/8", 1.5625e-8, sizes, T, step=1.0)
     random = profile_invariance(ALPHA, "1/8", 1.5625e-8, sizes, T, phases="random", realisations=6, seed=1, step=1.0)
     assert 0.7 < equal.growth[1].rate < equal.late_growth[1] < 1.0  # 0.84, 0.91
-    assert random.growth[1].rate == pytest.approx(0.0, abs=0.3)  # six realisations of three sizes
+    assert random.growth[1].rate == pytest.approx(0.0, abs=RANDOM_RATE)  # six realisations of three sizes
     assert np.isnan(equal.levels()[1]).all()
     assert (random.levels()[1][:, 0] > 0).all()
     assert "equal phases" in repr(equal)
@@ -111,5 +111,5 @@ def test_levels_compare_the_same_kappas():
     spectra = tuple(10.0 ** (-40 * np.arange(1, chain.N) / chain.N)[None, :] for chain in chains)
     floors = tuple(np.zeros(chain.N - 1) for chain in chains)
     found = ProfileInvariance(Fraction(1, 8), 1e-8, 1.0, "equal", chains, spectra, floors, ())
-    assert [trend.rate for trend in found.growth.values()] == pytest.approx([1.0] * 6, abs=1e-12)
-    assert list(found.late_growth.values()) == pytest.approx([1.0] * 6, abs=1e-12)
+    assert [trend.rate for trend in found.growth.values()] == pytest.approx([1.0] * 6, abs=THOUSAND_ROUNDINGS)
+    assert list(found.late_growth.values()) == pytest.approx([1.0] * 6, abs=THOUSAND_ROUNDINGS)

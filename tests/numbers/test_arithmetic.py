@@ -28,6 +28,7 @@ from symfpu.numbers.arithmetic import (
 )
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
+from tests.tolerances import HUNDRED_ROUNDINGS, PRODUCT_OF_FORTY, TRANSFORM_OF_FORTY
 
 PRECISION = 150  # bits
 
@@ -71,7 +72,7 @@ def test_dot_of_rows_and_columns_of_very_different_size():
         product = MULTIPRECISION.dot(left, right)
         for i in range(3):
             for j in range(2):
-                assert abs(product[i, j] / mpmath.fdot(left[i], right[:, j]) - 1) < 1e-37
+                assert abs(product[i, j] / mpmath.fdot(left[i], right[:, j]) - 1) < PRODUCT_OF_FORTY
 
 
 def test_dot_has_the_shapes_of_matmul():
@@ -161,12 +162,12 @@ def test_transforms_of_the_chain_agree_with_doubles():
         many = [f(MULTIPRECISION.array(Q)) for f in (chain.positions, chain.modes, chain.stretches, chain.accelerations)]
         energies = [f(MULTIPRECISION.array(Q), MULTIPRECISION.array(P)) for f in (chain.energy, chain.harmonic_energies)]
         back = chain.modes(many[0])
-        assert abs(back - MULTIPRECISION.array(Q)).max() < 1e-38
+        assert abs(back - MULTIPRECISION.array(Q)).max() < TRANSFORM_OF_FORTY
     few = [f(Q) for f in (chain.positions, chain.modes, chain.stretches, chain.accelerations)]
     few += [f(Q, P) for f in (chain.energy, chain.harmonic_energies)]
     for ours, theirs in zip(many + energies, few, strict=True):
         assert ours.shape == theirs.shape
-        assert np.allclose(ours.astype(float), theirs, rtol=1e-13, atol=1e-13)
+        assert np.allclose(ours.astype(float), theirs, rtol=HUNDRED_ROUNDINGS, atol=HUNDRED_ROUNDINGS)
 
 
 def refused(error, call, *arguments, **options):

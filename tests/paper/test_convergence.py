@@ -10,8 +10,8 @@ import pytest
 from symfpu.breathers.balance import periodic_orbit
 from symfpu.errors import InputError
 from symfpu.paper.convergence_fig1 import (
-    DETUNED,
-    INCOMMENSURABLE,
+    DETUNED_FREQUENCIES,
+    INCOMMENSURABLE_FREQUENCIES,
     SHOWN_ORDERS,
     _coincidence,
     _pole,
@@ -22,7 +22,27 @@ from symfpu.paper.convergence_fig9 import _singularity, breather_study, scheme_l
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, FIG9_BREATHER, TWO_TORUS
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
-from tests.tolerances import ALIKE, ROUNDING, SINGULARITY, TERM_RATIO
+from tests.tolerances import (
+    ALIKE,
+    END_SPREAD,
+    EXPONENT,
+    FIVE_DIGITS,
+    FOUR_DIGITS,
+    FOUR_PLACES,
+    LATE_TERM_RATIO,
+    NEWTON_RESIDUAL,
+    PERIODIC_ORBIT,
+    ROUNDING,
+    SEQUENCE_LIMIT,
+    SERIES_END,
+    SEVEN_DIGITS,
+    SINGULARITY,
+    SIX_PLACES,
+    SMALL_CHANGE,
+    SUMMED_FIG1_FURTHER,
+    TERM_RATIO,
+    THERE_AND_BACK,
+)
 
 RATIO = 1.494248  # by how much the harmonic (5,-4) of mode 3 grows every two orders, from orders 36 .. 42
 END = 1.2869859  # amplitude at which the breather's series ends: 30 digits, order 242
@@ -86,7 +106,11 @@ def test_at_the_pole_the_frequency_of_mode_3_is_that_of_the_harmonic(torus):
     assert terms[1:, 2].sum() == pytest.approx(shift, rel=TERM_RATIO)
 
 
-@pytest.mark.parametrize(("frequencies", "digits"), [(TWO_TORUS.frequencies, 40), (INCOMMENSURABLE, 40), (INCOMMENSURABLE, None)], ids=str)
+@pytest.mark.parametrize(
+    ("frequencies", "digits"),
+    [(TWO_TORUS.frequencies, 40), (INCOMMENSURABLE_FREQUENCIES, 40), (INCOMMENSURABLE_FREQUENCIES, None)],
+    ids=str,
+)
 def test_neither_digits_nor_incommensurable_frequencies_change_how_amplitudes_settle(torus, frequencies, digits):
     ours = amplitude_history(lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, frequencies, 14, digits=digits)).differences()
     theirs = amplitude_history(torus.series).differences()
@@ -96,12 +120,12 @@ def test_neither_digits_nor_incommensurable_frequencies_change_how_amplitudes_se
 
 
 def test_incommensurable_frequencies_leave_the_terms_as_they_are(torus):
-    assert sizes(torus_of(INCOMMENSURABLE)) == pytest.approx(sizes(torus), rel=ALIKE)
+    assert sizes(torus_of(INCOMMENSURABLE_FREQUENCIES)) == pytest.approx(sizes(torus), rel=ALIKE)
 
 
 def test_printed_frequencies_grow_and_detuned_ones_fall(torus):
     """omega_2 = 0.39056 makes one divisor eleven times larger: the terms of mode 1 fall to the last order."""
-    printed, detuned = heights(sizes(torus)), heights(sizes(torus_of(DETUNED)))
+    printed, detuned = heights(sizes(torus)), heights(sizes(torus_of(DETUNED_FREQUENCIES)))
     assert printed == sorted(printed)
     assert printed[2] > 3 * printed[1] > 3 * printed[0]
     assert detuned[0] > 3 * detuned[1] > 9 * detuned[2]
@@ -109,9 +133,10 @@ def test_printed_frequencies_grow_and_detuned_ones_fall(torus):
 
 def test_detuning_moves_the_harmonic_to_the_other_side_of_mode_3():
     """Omega_3^2 - (4 omega_2 - 5 omega_1)^2 becomes 12.6 times larger, and negative."""
-    near, far = ((2 * math.sin(3 * math.pi / 32)) ** 2 - (4 * float(b) - 5 * float(a)) ** 2 for a, b in (TWO_TORUS.frequencies, DETUNED))
-    assert near == pytest.approx(3.4083795e-5, rel=1e-6)
-    assert far / near == pytest.approx(-12.6309, rel=1e-4)
+    linear = (2 * math.sin(3 * math.pi / 32)) ** 2
+    near, far = (linear - (4 * float(b) - 5 * float(a)) ** 2 for a, b in (TWO_TORUS.frequencies, DETUNED_FREQUENCIES))
+    assert near == pytest.approx(3.4083795e-5, rel=SEVEN_DIGITS)
+    assert far / near == pytest.approx(-12.6309, rel=FIVE_DIGITS)
 
 
 def test_the_first_coincidence_of_the_printed_frequencies_is_far(torus):
@@ -129,8 +154,8 @@ def test_a_coincidence_is_in_lowest_terms(first, second, shortest):
 
 def test_the_printed_frequency_has_a_periodic_orbit_of_another_amplitude():
     orbit = periodic_orbit(FIG9_BREATHER.chain, 1, FIG9_BREATHER.frequencies[0])
-    assert orbit.amplitude == pytest.approx(PERIODIC, abs=1e-11)
-    assert orbit.residual() < 1e-12
+    assert orbit.amplitude == pytest.approx(PERIODIC, abs=PERIODIC_ORBIT)
+    assert orbit.residual() < NEWTON_RESIDUAL
     assert float(FIG9_BREATHER.amplitudes[0]) > END > orbit.amplitude
 
 
@@ -138,7 +163,7 @@ def test_the_breathers_series_ends_in_a_square_root(breather):
     end, spread, exponent = _singularity(breather)
     assert end == pytest.approx(END, rel=SINGULARITY)
     assert spread < SINGULARITY
-    assert exponent == pytest.approx(0.5, abs=1e-3)
+    assert exponent == pytest.approx(0.5, abs=SMALL_CHANGE)
 
 
 def test_roots_of_the_breather_fall_and_stay_above_the_end_of_the_series(breather):
@@ -168,9 +193,9 @@ def test_the_singularity_of_a_binomial_series_is_found(end, exponent):
             return terms, None
 
     found, spread, power = _singularity(Binomial())
-    assert found == pytest.approx(end, rel=1e-9)
-    assert power == pytest.approx(exponent, rel=1e-6)
-    assert spread < 1e-9
+    assert found == pytest.approx(end, rel=SEQUENCE_LIMIT)
+    assert power == pytest.approx(exponent, rel=EXPONENT)
+    assert spread < SEQUENCE_LIMIT
 
 
 @pytest.mark.long
@@ -185,13 +210,13 @@ def test_the_study_of_fig_1():
                 assert delta == pytest.approx(printed.differences[k], rel=20 * ALIKE)
     assert heights(detuned.sums) == sorted(heights(detuned.sums), reverse=True)
     assert detuned.residuals.min() < printed.residuals.min() / 100
-    assert [study.ratios[k] for k in (36, 38, 40, 42)] == pytest.approx([RATIO] * 4, rel=1e-5)
-    assert 1 / study.pole == pytest.approx(RATIO, rel=1e-3)
-    assert study.divisor == pytest.approx(3.408e-5, rel=1e-3)
+    assert [study.ratios[k] for k in (36, 38, 40, 42)] == pytest.approx([RATIO] * 4, rel=LATE_TERM_RATIO)
+    assert 1 / study.pole == pytest.approx(RATIO, rel=TERM_RATIO)
+    assert study.divisor == pytest.approx(3.408e-5, rel=FOUR_DIGITS)
     assert study.coincidence == (19523, -9813)
     assert study.assessment.headline == "asymptotic, best at order 12"
     assert tuple(study.resummed) == tuple(study.amplitudes) == SHOWN_ORDERS
-    assert study.resummed[42] < 1e-7 < study.residuals[12] < study.residuals[42]
+    assert study.resummed[42] < SUMMED_FIG1_FURTHER < study.residuals[12] < study.residuals[42]
     assert len(labels) == 2 + 5 + 1
 
 
@@ -208,10 +233,10 @@ def test_the_series_reaches_its_frequency_before_its_end_up_to_a_limit(omega, be
 def test_at_the_limit_the_breather_is_the_end_of_its_series():
     limit = scheme_limit(FIG9_BREATHER.chain, 1, ("0.0005", "0.05"))
     end, reached = series_end(FIG9_BREATHER.chain, 1, float(limit.orbit.frequency))
-    assert reached == pytest.approx(float(limit.orbit.frequency), abs=1e-11)
-    assert end == pytest.approx(limit.orbit.amplitude, rel=1e-4)  # the two curves touch: the end is found from ratios of its terms
-    assert limit.orbit.amplitude == pytest.approx(1.0812, abs=1e-4)  # followed by arclength in the fixed-divisor problem, another route
-    assert limit.orbit.energy() == pytest.approx(0.0092638, abs=2e-6)
+    assert reached == pytest.approx(float(limit.orbit.frequency), abs=PERIODIC_ORBIT)
+    assert end == pytest.approx(limit.orbit.amplitude, rel=SERIES_END)  # the two curves touch: the end is found from ratios of its terms
+    assert limit.orbit.amplitude == pytest.approx(1.0812, abs=FOUR_PLACES)  # by arclength in the fixed-divisor problem
+    assert limit.orbit.energy() == pytest.approx(0.0092638, abs=SIX_PLACES)
     assert limit.family.members[-1].energy > 5 * limit.orbit.energy()
     assert all(m.verdict == "torus" for m in limit.family.members)
 
@@ -225,7 +250,7 @@ def test_a_range_without_the_limit_is_refused():
 def test_the_study_of_fig_9():
     study = breather_study()
     assert study.assessment.headline == "not a torus"
-    assert (study.orbit.amplitude, study.singularity, study.exponent) == pytest.approx((PERIODIC, END, 0.5), abs=1e-4)
-    assert study.spread < 1e-7
+    assert (study.orbit.amplitude, study.singularity, study.exponent) == pytest.approx((PERIODIC, END, 0.5), abs=SERIES_END)
+    assert study.spread < END_SPREAD
     assert float(study.at_printed.frequency) > float(study.orbit.frequency)
-    assert study.amplitudes[242] == pytest.approx(float(FIG9_BREATHER.amplitudes[0]), rel=1e-12)
+    assert study.amplitudes[242] == pytest.approx(float(FIG9_BREATHER.amplitudes[0]), rel=THERE_AND_BACK)

@@ -13,14 +13,14 @@ from symfpu.chain.chain import Chain
 from symfpu.paper import corrected, series_errors
 from symfpu.paper.claims import PaperFigure
 from symfpu.paper.claims_page import draw_panels, figure_markdown, write_panel_csv
-from symfpu.paper.corrected import HEAVY, CorrectedRow, corrected_row, corrected_rows, left_out
+from symfpu.paper.corrected import HEAVY_ROWS, CorrectedRow, corrected_row, corrected_rows, left_out
 from symfpu.paper.corrected_page import corrected_line, corrected_panels, corrected_record, corrected_text
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
 from symfpu.paper.series_errors import ScalingStudy, SeriesErrors, decay, scaling_study
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
-from tests.tolerances import CONVERGED_DIGITS, RATE_OF_MU, SLOPE
+from tests.tolerances import CONVERGED_DIGITS, LAST_DIGIT, PROMISED_RESIDUAL, RATE_OF_MU, SLOPE, SMALL_CHANGE, TEN_ROUNDINGS, TWELVE_DIGITS
 
 BY_LABEL = {row.label: row for row in (TWO_TORUS, *APPENDIX_F)}
 SMALL = replace(BY_LABEL["Fig. 7"], order=20)
@@ -53,11 +53,11 @@ def test_a_breather_is_the_periodic_orbit(label):
     assert row.energies["H"] == pytest.approx(orbit.energy(), rel=CONVERGED_DIGITS)
     assert row.energies["harmonic energy at t = 0"] == pytest.approx(orbit.harmonic_energies().sum(), rel=CONVERGED_DIGITS)
     assert row.energies["harmonic energy, time average"] == pytest.approx(orbit.average_spectrum().sum(), rel=CONVERGED_DIGITS)
-    assert row.residual < 1e-13
+    assert row.residual < PROMISED_RESIDUAL
     assert row.digits == 12
     assert row.deviations == {printed.seeds[0]: float(printed.amplitudes[0]) / amplitude - 1}
     if label == "Fig. 9":  # docs/convergence.md, question (ii)
-        assert amplitude == pytest.approx(1.27153895251, rel=5e-12)
+        assert amplitude == pytest.approx(1.27153895251, rel=TWELVE_DIGITS)
 
 
 def test_the_amplitudes_of_fig_1_do_not_depend_on_the_guess(pair):
@@ -93,8 +93,8 @@ def test_errors_do_not_depend_on_the_sign_of_a_harmonic(pair):
 def test_an_exact_series_has_no_error():
     """Fig. 8 at order 8: the torus is the series, all coefficients to rounding."""
     row = corrected_row(replace(BY_LABEL["Fig. 8"], order=8))
-    assert row.errors.given[8] < 1e-15
-    assert row.errors.solved[8] < 1e-14
+    assert row.errors.given[8] < LAST_DIGIT
+    assert row.errors.solved[8] < TEN_ROUNDINGS
     assert row.decays["given"].rounding
     assert 1e-3 < row.decays["given"].factor < 1e-2
 
@@ -105,7 +105,7 @@ def test_errors_of_the_amplitudes_are_those_of_the_history(breather):
         value = solve_amplitudes(series, frequency_order=K).amplitudes[1]
         assert breather.errors.amplitudes[K] == abs(value / breather.torus.amplitudes[1] - 1)
     assert 1 not in breather.errors.solved
-    assert breather.errors.solved[7] == pytest.approx(breather.errors.solved[6], rel=1e-3)  # omega^(7) is zero
+    assert breather.errors.solved[7] == pytest.approx(breather.errors.solved[6], rel=SMALL_CHANGE)  # omega^(7) is zero
 
 
 def test_fig_1_falls_to_order_9_and_then_grows(pair):
@@ -213,8 +213,8 @@ def test_heavy_rows_are_computed_in_full_only(monkeypatch):
     known = dict.fromkeys(BY_LABEL.values())
     rows = list(corrected_rows(known))
     assert [row.printed.label for row in rows] == list(BY_LABEL)
-    assert set(asked) == set(BY_LABEL) - set(HEAVY)
-    assert all("--full" in row.verdict for row in rows if row.printed.label in HEAVY)
+    assert set(asked) == set(BY_LABEL) - set(HEAVY_ROWS)
+    assert all("--full" in row.verdict for row in rows if row.printed.label in HEAVY_ROWS)
     asked.clear()
     list(corrected_rows(known, full=True))
     assert asked == list(BY_LABEL)
@@ -263,7 +263,7 @@ def test_the_record_is_strict_json(two_rows, study):
     assert record[1] == {"refined": False, "verdict": "not refined: more than 5 s"}
     assert record[0]["amplitudes"] == {"1": "0.185736029576"}
     assert float(record[0]["energies"]["H"]) == two_rows[0].energies["H"]
-    assert record[0]["errors"]["given"]["3"] == pytest.approx(two_rows[0].errors.given[3], rel=1e-14)
+    assert record[0]["errors"]["given"]["3"] == pytest.approx(two_rows[0].errors.given[3], rel=TEN_ROUNDINGS)
     assert record[0]["exponents_of_mu"]["1"]["solved"] is None
     assert record[0]["decays"]["given"]["last_falling_order"] == two_rows[0].decays["given"].last
 
@@ -292,10 +292,10 @@ def test_data_and_pictures_are_written(two_rows, study, tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("label", [row.label for row in APPENDIX_F if len(row.seeds) > 2 and row.label not in HEAVY])
+@pytest.mark.parametrize("label", [row.label for row in APPENDIX_F if len(row.seeds) > 2 and row.label not in HEAVY_ROWS])
 def test_the_series_tend_to_the_exact_tori(label):
     row = corrected_row(BY_LABEL[label])
-    assert row.residual < 1e-13
+    assert row.residual < PROMISED_RESIDUAL
     assert row.digits >= 10
     solved, given = row.decays["solved"], row.decays["given"]
     assert given.rounding or given.last >= 0.9 * row.printed.order - 1

@@ -10,6 +10,7 @@ from symfpu.paper.printed import APPENDIX_F, FIG1_AMPLITUDE_ORDER, TWO_TORUS
 from symfpu.paper.table import amplitude_row, energies, rounds_to
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
+from tests.tolerances import ONE_PLACE, PERIODIC_ORBIT, STATED_LEAST, STATED_MOST, TWO_DIGITS
 
 
 @cache
@@ -42,7 +43,7 @@ def test_average_energy_needs_one_half():
     """Averaged with the factor 1/2, the modes share the energy H up to the anharmonic part; without it, twice that."""
     series = lindstedt(Chain(N=8, alpha="0.1"), (1,), ("0.3902",), 6)
     torus = solve_amplitudes(series)
-    assert torus.average_spectrum().sum() / torus.energy() == pytest.approx(1, abs=0.05)
+    assert torus.average_spectrum().sum() / torus.energy() == pytest.approx(1, abs=ONE_PLACE)
 
 
 ORDERS = {"Fig. 2": 4, "Fig. 5a": 6, "Fig. 5b": 6, "Fig. 5d": 4, "Fig. 9": 242}
@@ -57,7 +58,7 @@ def test_appendix_f_is_met_at_these_frequency_orders(label):
 
 def test_middle_modes_are_met_to_nine_digits():
     assert row("Fig. 5c").best == 6
-    assert row("Fig. 5c").digits[6] == pytest.approx(9, abs=0.2)
+    assert row("Fig. 5c").digits[6] == pytest.approx(9, abs=ONE_PLACE)
 
 
 @pytest.mark.parametrize(("label", "true", "ratio"), [("Fig. 7", 0.1857360295755, 2.7e-5), ("Fig. 8", 0.05121215917411, 4.0e-5)])
@@ -65,8 +66,8 @@ def test_two_breathers_are_not_met(label, true, ratio):
     found = row(label)
     assert found.met == ()
     last = found.history.amplitudes[max(found.history.amplitudes)][0]
-    assert last == pytest.approx(true, rel=1e-11)
-    assert float(found.printed.amplitudes[0]) / last - 1 == pytest.approx(ratio, rel=0.02)
+    assert last == pytest.approx(true, rel=PERIODIC_ORBIT)
+    assert float(found.printed.amplitudes[0]) / last - 1 == pytest.approx(ratio, rel=TWO_DIGITS)
     assert "met at no frequency order" in found.verdict
 
 
@@ -95,8 +96,8 @@ def test_figure_1c_shows_mu_to_the_k(two_torus):
     amplitudes = amplitude_history(two_torus).amplitudes[FIG1_AMPLITUDE_ORDER]
     bare, folded = (two_torus.absolute_sums(1, amplitudes, with_mu=flag) for flag in (False, True))
     assert bare[1][14] > 1e11
-    assert 1e-6 < folded[1][14] < 1e-5
-    assert np.log10(folded[0][14] / folded[1][14]) == pytest.approx(3.7, abs=0.05)
+    assert STATED_LEAST < folded[1][14] < STATED_MOST
+    assert np.log10(folded[0][14] / folded[1][14]) == pytest.approx(3.7, abs=ONE_PLACE)
 
 
 def test_energy_error_of_figure_1(two_torus):

@@ -14,7 +14,7 @@ from symfpu.paper.printed import APPENDIX_F, FIG1_DIGITS, TWO_TORUS, PrintedToru
 from symfpu.paper.table import MET_DIGITS, agreement_digits, amplitude_row, energies, rounds_to
 from tests.reference import BETA_BREATHER, PERIODIC_ORBITS
 from tests.reference import TWO_TORUS as REFERENCE
-from tests.tolerances import AMPLITUDE, PERIODIC_ORBIT, ROUNDING
+from tests.tolerances import AMPLITUDE, PERIODIC_ORBIT, PRESENCE, ROUNDING, THOUSAND_ROUNDINGS, WHOLE_NUMBERS
 
 
 def printed(amplitude, energy="1", order=12):
@@ -35,7 +35,7 @@ def printed(amplitude, energy="1", order=12):
     ("ours", "theirs", "digits"), [((1.001, 2.0), ("1", "2"), 3.0), ((1.0, 2.0002), ("1", "2"), 4.0), ((0.5,), ("0.5",), 16.0)]
 )
 def test_agreement_is_that_of_the_worst_amplitude(ours, theirs, digits):
-    assert agreement_digits(ours, theirs) == pytest.approx(digits, abs=1e-9)
+    assert agreement_digits(ours, theirs) == pytest.approx(digits, abs=WHOLE_NUMBERS)
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_printed_breathers_differ_from_the_periodic_orbits(orbit):
     data = next(p for p in APPENDIX_F if p.seeds == (orbit.seed,) and p.frequencies == (orbit.frequency,))
     row = amplitude_row(data)
     assert row.torus.amplitudes[orbit.seed] == pytest.approx(orbit.amplitude, rel=PERIODIC_ORBIT)
-    assert abs(float(data.amplitudes[0]) / orbit.amplitude - 1) > 1e-5
+    assert abs(float(data.amplitudes[0]) / orbit.amplitude - 1) > PRESENCE
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +136,7 @@ def test_figure_1_is_computed_from_the_printed_frequencies(computed):
         assert max(abs(total[0]), abs(harmonic[0])) < ROUNDING  # one time and many are summed in another order
         assert np.abs(total).max() < np.abs(harmonic).max()
     assert data.sums[0].shape == (31,)
-    assert (data.sums[0] >= data.sums[1] * (1 - 1e-12)).all()
+    assert (data.sums[0] >= data.sums[1] * (1 - THOUSAND_ROUNDINGS)).all()
 
 
 @pytest.mark.long

@@ -9,6 +9,7 @@ from symfpu.chain.propagation import coupling_sequence, excitation_sequence
 from symfpu.errors import InputError, SymfpuError
 from symfpu.proofs.certificates import prove_propagation, random_point
 from symfpu.series.lindstedt import lindstedt
+from tests.tolerances import ERROR_PROBABILITY
 
 
 def test_proved_case():
@@ -66,7 +67,7 @@ def test_zero_without_a_proof_is_undecided_with_a_probability(monkeypatch):
     once, twice = (prove_propagation(6, (2, 3), 2, model="beta", points=n) for n in (1, 2))
     assert once.verdict == twice.verdict == "undecided"
     assert [(u.mode, u.orders) for u in once.undecided] == [(4, (1,))]
-    assert 0 < once.undecided[0].error_probability < 1e-6
+    assert 0 < once.undecided[0].error_probability < ERROR_PROBABILITY
     assert twice.undecided[0].error_probability < once.undecided[0].error_probability ** 1.5
 
 

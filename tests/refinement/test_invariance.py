@@ -9,7 +9,7 @@ import pytest
 from symfpu.chain.chain import Chain
 from symfpu.refinement import invariance
 from symfpu.refinement.invariance import OVERSAMPLING, InvarianceEquation, Lattice, dilated, rational
-from tests.tolerances import EPS, ROUNDING
+from tests.tolerances import EPS, LAST_DIGIT, ROUNDING
 
 LONG_EPS = float(np.finfo(np.longdouble).eps)
 LONG_ROUNDING = 256 * LONG_EPS  # as ROUNDING
@@ -229,7 +229,7 @@ def test_divisors_keep_their_digits_where_frequencies_cancel(chain, seeds, shift
         found = np.vectorize(as_mpf)(equation.divisors(numbers))
         error = np.abs(found / exact - 1)
         assert (error <= 8 * LONG_EPS * condition).all()
-        assert error.max() < 1e-15
+        assert error.max() < LAST_DIGIT
         omega = [chain.linear_frequency(q) + as_mpf(x) for q, x in zip(seeds, numbers, strict=True)]
         rates = np.array([mpmath.fdot(nu, omega) for nu in equation.harmonics.tolist()])
         assert largest(np.vectorize(as_mpf)(equation.rates(numbers)) - rates) < 16 * LONG_EPS

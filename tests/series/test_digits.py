@@ -21,7 +21,18 @@ from symfpu.tori.amplitudes import amplitude_history, shifts, solve_amplitudes
 from tests.oracles import mode_space
 from tests.oracles.oscillators import cubic_oscillator, duffing
 from tests.reference import BETA_BREATHER, MISPRINTED, PERIODIC_ORBITS, TWO_TORUS
-from tests.tolerances import LAST_PLACE, PERIODIC_ORBIT, SAME_AS_DOUBLES, TINY_RESIDUAL
+from tests.tolerances import (
+    AMPLITUDE_OF_TWENTY_EIGHT,
+    DIFFERENCE_OF_DOUBLES,
+    ENERGY_OF_FIFTY,
+    LAST_DIGIT,
+    LAST_PLACE,
+    PERIODIC_ORBIT,
+    PLACE_37,
+    SAME_AS_DOUBLES,
+    SHIFT_OF_TWENTY_EIGHT,
+    TINY_RESIDUAL,
+)
 
 REFERENCES = [TWO_TORUS, BETA_BREATHER]
 PRINTED = 40  # decimal places of the reference values
@@ -216,7 +227,7 @@ def test_both_misprints_are_slips_of_one_place():
     """Without the three inserted digits, and with one digit replaced, the printed strings are ours."""
     (first, ours), (second, theirs) = MISPRINTED.items()
     with mpmath.workdps(60):
-        assert abs(mpmath.mpf(first[:24] + first[27:]) - mpmath.mpf(ours)) < 0.51e-37
+        assert abs(mpmath.mpf(first[:24] + first[27:]) - mpmath.mpf(ours)) < PLACE_37
     assert [i for i, (a, b) in enumerate(zip(second, theirs, strict=True)) if a != b] == [24]
 
 
@@ -291,7 +302,7 @@ def test_a_one_mode_reduction_converges_to_the_elliptic_functions():
         series = lindstedt(chain, (1,), (mpmath.nstr(omega, 30),), 16, digits=28)
         errors = [abs(solve_amplitudes(series, frequency_order=K).amplitudes[1] / amplitude - 1) for K in range(1, 17)]
     assert all(b < a / 25 for a, b in itertools.pairwise(errors))
-    assert errors[-1] < 1e-26
+    assert errors[-1] < AMPLITUDE_OF_TWENTY_EIGHT
 
 
 def test_the_cubic_oscillator_to_many_digits():
@@ -301,7 +312,7 @@ def test_the_cubic_oscillator_to_many_digits():
         quadratic = mpmath.mpf("0.4") / mpmath.sqrt(6) * mpmath.sqrt(3) ** 3 * chain.B(2, 2, 2)
         omega, amplitude = cubic_oscillator(mpmath.mpf(3), quadratic, mpmath.mpf("0.01"))
         torus = solve_amplitudes(lindstedt(chain, (2,), (mpmath.nstr(omega, 30),), 16, digits=28))
-        assert abs(torus.amplitudes[2] / amplitude - 1) < 1e-20  # omega - Omega, some 1e-7, is known to 28 places
+        assert abs(torus.amplitudes[2] / amplitude - 1) < SHIFT_OF_TWENTY_EIGHT  # omega - Omega, some 1e-7, is known to 28 places
 
 
 # --- tori of many digits against those of doubles
@@ -341,7 +352,9 @@ def test_amplitudes_averages_and_residuals_are_those_of_doubles(pair):
     same(list(many.amplitudes.values()), list(few.amplitudes.values()))
     same(many.average_spectrum(), few.average_spectrum())
     assert np.allclose(many.average_spectrum(17.0), few.average_spectrum(17.0), rtol=SAME_AS_DOUBLES)
-    assert many.residual(5) == pytest.approx(few.residual(5), rel=1e-6, abs=1e-15)  # the doubles cancel down to rounding
+    assert many.residual(5) == pytest.approx(
+        few.residual(5), rel=DIFFERENCE_OF_DOUBLES, abs=LAST_DIGIT
+    )  # the doubles cancel down to rounding
     assert (many.harmonics == few.harmonics).all()
     same(many.cosines, few.cosines)
     assert many.frequency_order == few.frequency_order
@@ -361,7 +374,7 @@ def test_the_energy_is_that_of_the_state(pair):
     many, _ = pair
     Q, P = many.positions(1.5), many.momenta(1.5)
     with mpmath.workdps(50):
-        assert abs(many.chain.energy(Q, P) / many.energy(1.5) - 1) < 1e-44
+        assert abs(many.chain.energy(Q, P) / many.energy(1.5) - 1) < ENERGY_OF_FIFTY
 
 
 @pytest.mark.parametrize(

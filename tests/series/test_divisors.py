@@ -14,7 +14,7 @@ from symfpu.errors import InputError, ResonantDivisor
 from symfpu.series.divisors import Float64Divisors, UniversalDivisors
 from symfpu.series.lindstedt import lindstedt
 from tests.oracles.universal import DIGITS, multiplier
-from tests.tolerances import MULTIPLIER, NEAR_RESONANCE
+from tests.tolerances import MULTIPLIER, NEAR_RESONANCE, RELATIVE_SHIFT
 
 N, SEEDS, FREQUENCIES = 8, (1, 3), ("0.391", "1.113")
 
@@ -92,7 +92,7 @@ def test_smallest_divisors_are_sorted_and_those_of_brute_force(N, seeds, frequen
     expected = brute_force(chain, seeds, frequencies, 5)
     assert len(kept) == 10
     assert [d.size for d in kept] == sorted(d.size for d in kept)
-    assert [d.size for d in kept] == pytest.approx([size for size, *_ in expected[:10]], rel=1e-9)
+    assert [d.size for d in kept] == pytest.approx([size for size, *_ in expected[:10]], rel=RELATIVE_SHIFT)
     where = {(q, nu): order for _, q, nu, order in expected}
     assert all(where[d.mode, d.harmonic] == d.order for d in kept)
     assert repr(kept[0]) in repr(series)

@@ -12,7 +12,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence, reachable_modes
 from symfpu.errors import InputError, TooLarge
 from symfpu.series.lindstedt import lindstedt
-from tests.tolerances import ROUNDING
+from tests.tolerances import LAST_DIGIT, ROUNDING, THOUSAND_ROUNDINGS
 
 FEW = settings(max_examples=15)
 
@@ -102,7 +102,7 @@ def test_a_longer_series_begins_with_the_shorter_one():
     chain = Chain(8, alpha="0.3")
     short, long = (lindstedt(chain, (1, 2), ("0.395", "0.77"), order) for order in (3, 5))
     for k in range(4):
-        assert np.allclose(short.coordinates[k], long.coordinates[k], rtol=1e-12, atol=0)
+        assert np.allclose(short.coordinates[k], long.coordinates[k], rtol=THOUSAND_ROUNDINGS, atol=0)
 
 
 def test_beta_enters_two_orders_up_when_both_couplings_act():
@@ -119,7 +119,7 @@ def test_weak_alpha_tends_to_beta():
     for k in range(3):
         (nu, small), (other, terms) = both.harmonic_terms([0.3], 2 * k), beta.harmonic_terms([0.3], k)
         assert (nu == other).all()
-        assert np.allclose(small, terms, rtol=1e-12, atol=1e-15)
+        assert np.allclose(small, terms, rtol=THOUSAND_ROUNDINGS, atol=LAST_DIGIT)
 
 
 def test_progress_counts_the_orders():

@@ -8,7 +8,7 @@ import symengine as se
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.series.lindstedt import lindstedt
-from tests.tolerances import COEFFICIENT, ROUNDING
+from tests.tolerances import CENTRAL_DIFFERENCE, COEFFICIENT, DIFFERENCE_ROUNDING, ROUNDING
 
 AMPLITUDES = {1: 0.31, 2: 0.17}
 
@@ -75,7 +75,7 @@ def test_frequency_derivatives_are_differences(series):
     for j in range(2):
         shift = step * np.eye(2)[j]
         difference = (series.frequency_terms(squares + shift)[0] - series.frequency_terms(squares - shift)[0]) / (2 * step)
-        assert np.allclose(jacobian[:, :, j], difference, rtol=1e-6, atol=1e-10)  # step^2 and EPS / step
+        assert np.allclose(jacobian[:, :, j], difference, rtol=CENTRAL_DIFFERENCE, atol=DIFFERENCE_ROUNDING)  # step^2 and EPS / step
 
 
 def test_the_lowest_correction_of_a_beta_breather_is_the_textbook_one():

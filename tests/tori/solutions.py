@@ -33,7 +33,16 @@ from symfpu.tori.quasiperiodic import FourierTorus
 from symfpu.tori.resummation import resum
 from symfpu.tori.verdict import assess
 from tests.bundles.test_bundle import same
-from tests.tolerances import DIFFERENCE, GRID_AVERAGE, QUADRATURE, ROUNDING
+from tests.tolerances import (
+    DIFFERENCE,
+    DOUBLE_MULTIPLIER,
+    FIXED_ENERGY,
+    GRID_AVERAGE,
+    NEWTON_RESIDUAL,
+    QUADRATURE,
+    ROUNDING,
+    SERIES_RESIDUAL,
+)
 
 CHAIN = Chain(8, alpha="0.3", beta="0.1")
 PHASES = {1: 0.4, 2: -1.3}
@@ -277,12 +286,12 @@ class SolutionTests:
         refined = refine(solution)
         assert type(refined) is RefinedTorus
         assert refined.frequencies == solution.frequencies
-        assert refined.residual() < 1e-12
+        assert refined.residual() < NEWTON_RESIDUAL
         expected = solution.positions(TIMES).astype(float)
         assert np.abs(refined.positions(TIMES) - expected).max() < self.close * np.abs(expected).max()
         energy = 1.02 * float(solution.energy())
         raised = refine_at_energy(solution, energy, harmonic=False)
-        assert float(raised.energy()) == pytest.approx(energy, rel=1e-12)
+        assert float(raised.energy()) == pytest.approx(energy, rel=FIXED_ENERGY)
 
     def test_multipliers_belong_to_one_angle(self, solution):
         if self.one_angle:
@@ -290,7 +299,7 @@ class SolutionTests:
             assert isinstance(found, Floquet)
             assert found.orbit is solution
             assert found.stable
-            assert np.allclose(found.kappa[1:], floquet(breather()).kappa[1:], atol=1e-5 + self.close)
+            assert np.allclose(found.kappa[1:], floquet(breather()).kappa[1:], atol=DOUBLE_MULTIPLIER + self.close)
             return
         with pytest.raises(InputError, match=r"^orbit = 'a torus of 2 angles'.*normal frequencies of tori.*not available.*alignment"):
             floquet(solution)
@@ -298,7 +307,7 @@ class SolutionTests:
     def test_many_digits_of_one_angle(self, solution):
         if self.one_angle:
             precise = periodic_orbit_digits(solution, 20)
-            assert precise.bound < 1e-20
+            assert precise.bound < SERIES_RESIDUAL
             assert precise.frequency == solution.frequency
             expected = precise.positions(TIMES).astype(float)
             assert np.abs(solution.positions(TIMES).astype(float) - expected).max() < self.close
@@ -309,7 +318,7 @@ class SolutionTests:
     def test_it_is_a_guess_for_harmonic_balance(self, solution):
         if self.one_angle:
             orbit = breather_at_amplitude(CHAIN, SEED, float(solution.amplitude) * 1.01, solution)
-            assert orbit.residual() < 1e-12
+            assert orbit.residual() < NEWTON_RESIDUAL
             return
         with pytest.raises(InputError, match=r"^guess = 'a torus of 2 angles'.*one seed"):
             periodic_orbit(CHAIN, SEED, FREQUENCY, solution)

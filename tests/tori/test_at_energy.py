@@ -8,7 +8,7 @@ from symfpu.errors import InputError, SymfpuError
 from symfpu.tori import at_energy
 from symfpu.tori.at_energy import NoTorusAtEnergy, torus_at_energy
 from symfpu.tori.frequencies import torus_at_amplitudes
-from tests.tolerances import FIXED_ENERGY
+from tests.tolerances import FIXED_ENERGY, LAST_DIGIT, RELATIVE_SHIFT, TEN_ROUNDINGS
 
 CASES = [
     (Chain(16, alpha="0.33"), (1, 2), "0.01", 4),
@@ -32,7 +32,7 @@ def test_energy_and_mode_energies_are_met(chain, seeds, energy, order, harmonic)
     modes = torus.average_spectrum()[np.array(seeds) - 1]
     assert modes / modes.sum() == pytest.approx(np.array(list(weights.values())) / sum(weights.values()), rel=FIXED_ENERGY)
     again = torus_at_amplitudes(chain, torus.amplitudes, order)
-    assert [float(w) for w in again.frequencies] == pytest.approx([float(w) for w in torus.frequencies], rel=1e-14)
+    assert [float(w) for w in again.frequencies] == pytest.approx([float(w) for w in torus.frequencies], rel=TEN_ROUNDINGS)
     assert again.warnings == torus.warnings
 
 
@@ -43,7 +43,7 @@ def test_energy_and_amplitude_ratio_are_met(chain, seeds, energy, order, harmoni
     torus = torus_at_energy(chain, seeds, energy, harmonic=harmonic, order=order, amplitude_ratio=ratio)
     assert measured(torus, harmonic) == pytest.approx(float(energy), rel=FIXED_ENERGY)
     for i, q in enumerate(seeds):
-        assert torus.amplitudes[q] / torus.amplitudes[seeds[0]] == pytest.approx(1 / (i + 1), rel=1e-15)
+        assert torus.amplitudes[q] / torus.amplitudes[seeds[0]] == pytest.approx(1 / (i + 1), rel=LAST_DIGIT)
 
 
 def test_the_two_energies_are_not_one():
@@ -89,7 +89,7 @@ def test_unreachable_energies_say_how_far_the_family_goes(chain, seeds, energy):
     assert error.reason in str(error)
     assert "\n" not in str(error)
     last = torus_at_amplitudes(chain, error.amplitudes, 2)
-    assert float(last.energy()) == pytest.approx(error.reached, rel=1e-9)
+    assert float(last.energy()) == pytest.approx(error.reached, rel=RELATIVE_SHIFT)
     assert last.residual(64) < 1.1 * at_energy.LARGEST_RESIDUAL
 
 

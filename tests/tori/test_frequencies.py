@@ -11,7 +11,7 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.tori import frequencies
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.frequencies import NoSelfConsistentFrequencies, torus_at_amplitudes
-from tests.tolerances import ROUNDING, SLOPE, THERE_AND_BACK
+from tests.tolerances import FORTY_DIGITS, LAST_DIGIT, LAST_PRINTED_PLACE, RELATIVE_SHIFT, ROUNDING, SAME_SHIFT, SLOPE, THERE_AND_BACK
 
 ROUND_TRIPS = [
     (Chain(16, alpha="0.33"), {1: "0.58", 2: "0.41"}, 8),
@@ -43,7 +43,7 @@ def test_many_digits_go_there_and_back():
     torus = torus_at_amplitudes(Chain(16, alpha="0.33"), {1: "0.2", 2: "0.1"}, 6, digits=40)
     assert torus.certificate.certified
     back = solve_amplitudes(torus.series)
-    assert max(abs(back.amplitudes[q] / torus.amplitudes[q] - 1) for q in (1, 2)) < 1e-39
+    assert max(abs(back.amplitudes[q] / torus.amplitudes[q] - 1) for q in (1, 2)) < FORTY_DIGITS
     doubles = torus_at_amplitudes(Chain(16, alpha="0.33"), {1: "0.2", 2: "0.1"}, 6)
     assert [float(w) for w in torus.frequencies] == pytest.approx([float(w) for w in doubles.frequencies], rel=ROUNDING)
 
@@ -75,7 +75,7 @@ def test_printed_amplitudes_of_figure_2_have_the_printed_frequencies():
     """At frequency order 4, which the amplitudes belong to; omega - Omega is 1.6e-6 .. 1.6e-7 and met to 1e-10 of it."""
     printed = APPENDIX_F[0]
     torus = torus_at_amplitudes(printed.chain, dict(zip(printed.seeds, printed.amplitudes, strict=True)), 6, frequency_order=4)
-    assert [float(w) for w in torus.frequencies] == pytest.approx([float(w) for w in printed.frequencies], rel=0, abs=1e-16)
+    assert [float(w) for w in torus.frequencies] == pytest.approx([float(w) for w in printed.frequencies], rel=0, abs=LAST_PRINTED_PLACE)
     assert (torus.frequency_order, torus.order) == (4, 6)
 
 
@@ -101,14 +101,14 @@ def test_divisors_are_those_of_the_frequencies_found():
         for w in (chain.frequencies()[:2].tolist(), torus.frequencies)
     )
     shift = np.array([float(w) for w in torus.frequencies]) - chain.frequencies()[:2]
-    assert list(frequency_shift(chain, amplitudes).values()) == pytest.approx(at_linear, rel=1e-9)
-    assert shift == pytest.approx(at_found, rel=1e-11)
+    assert list(frequency_shift(chain, amplitudes).values()) == pytest.approx(at_linear, rel=RELATIVE_SHIFT)
+    assert shift == pytest.approx(at_found, rel=SAME_SHIFT)
     assert np.abs(at_found / at_linear - 1).min() > 0.03
 
 
 def test_middle_mode_of_alpha_keeps_its_frequency():
     torus = torus_at_amplitudes(Chain(16, alpha=1), {8: "0.3"}, 6)
-    assert float(torus.frequencies[0]) == pytest.approx(2**0.5, rel=1e-15)
+    assert float(torus.frequencies[0]) == pytest.approx(2**0.5, rel=LAST_DIGIT)
     assert "do not determine" in torus.warnings[0]
 
 

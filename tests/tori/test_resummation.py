@@ -16,7 +16,7 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.resummation import LARGEST_SUM, pade_amplitudes, pade_frequencies, pade_poles, pade_sum, resum, resum_by_order
 from tests.reference import PERIODIC_ORBITS
-from tests.tolerances import BRANCH_POINT, HIGH_PRECISION, PADE_TABLE, RESUMMED, ROUNDING
+from tests.tolerances import BRANCH_POINT, HIGH_PRECISION, PADE_TABLE, POLES, RESIDUAL_ROUNDING, RESUMMED, ROUNDING, SUMMED_FIG1
 
 DIGITS = 40
 
@@ -257,9 +257,9 @@ def test_poles_of_a_sum_of_geometric_series(poles):
     spare = 5
     coefficients = [math.fsum(i / r**k for i, r in enumerate(poles, 1)) for k in range(1, 2 * len(poles) + spare + 1)]
     found = pade_poles(frequency_series(coefficients), 1, {1: 1.0})
-    assert found == pytest.approx(np.array(sorted(poles, key=abs)), rel=1e-6)
+    assert found == pytest.approx(np.array(sorted(poles, key=abs)), rel=POLES)
     shrunk = pade_poles(frequency_series(coefficients), 1, {1: 0.5})
-    assert shrunk == pytest.approx(4 * found, rel=1e-6)
+    assert shrunk == pytest.approx(4 * found, rel=POLES)
 
 
 def test_too_few_terms_have_no_poles():
@@ -273,7 +273,7 @@ def test_the_nearest_pole_of_the_duffing_oscillator_is_where_its_terms_end():
     ratios = [float(b / a) for a, b in zip(terms[16:, 0], terms[17:, 0], strict=False)]
     limit = np.polyfit(1 / np.arange(17, 27), ratios, 2)[2]
     nearest = pade_poles(torus.series, 6, torus.amplitudes)[0]
-    assert nearest.imag == pytest.approx(0, abs=1e-6)
+    assert nearest.imag == pytest.approx(0, abs=POLES)
     assert nearest.real < 0
     assert 1 < nearest.real * limit < 1 + BRANCH_POINT
 
@@ -303,7 +303,7 @@ def test_the_divergent_torus_of_fig_1_is_summed(two_torus):
     assert two_torus.residual() > 4e-4
     residuals = [t.residual() for t in resum_by_order(two_torus, (18, 24, 30))]
     assert residuals == sorted(residuals, reverse=True)
-    assert residuals[-1] < 1e-5
+    assert residuals[-1] < SUMMED_FIG1
     assert resum(two_torus).residual() == residuals[-1]
 
 
@@ -352,9 +352,9 @@ def test_the_lowest_orders_have_nothing_to_accelerate(name, order):
     torus = solve_amplitudes(lindstedt(chain, seeds, frequencies, highest), order=order)
     summed = resum(torus)
     assert summed.cosines == pytest.approx(torus.cosines, rel=ROUNDING, abs=0)
-    assert summed.residual() == pytest.approx(torus.residual(), rel=1e-9)
+    assert summed.residual() == pytest.approx(torus.residual(), rel=RESIDUAL_ROUNDING)
 
 
 def test_by_order_is_the_resummation_of_the_shorter_torus(two_torus):
     for order, summed in zip((0, 5, 12), resum_by_order(two_torus, (0, 5, 12)), strict=True):
-        assert summed.residual() == pytest.approx(resum(replace(two_torus, order=order)).residual(), rel=1e-9)
+        assert summed.residual() == pytest.approx(resum(replace(two_torus, order=order)).residual(), rel=RESIDUAL_ROUNDING)

@@ -14,6 +14,7 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.series.tables import LOG10_2
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.root_certificate import ball, certify_root, frequency_balls
+from tests.tolerances import ALLOWANCE_ESTIMATE, TEN_ROUNDINGS
 
 DIGITS = 40
 
@@ -116,8 +117,8 @@ def test_a_box_beside_the_root_is_not_certified(name, sign, tori):
     assert not certificate.certified
     seed, step, allowed = inequality(certificate.reason)
     assert seed in torus.seeds
-    assert step == pytest.approx(2 * allowed, rel=0.01)
-    assert allowed == pytest.approx(float(torus.amplitudes[seed]) ** 2 * 10.0**-DIGITS, rel=0.01)
+    assert step == pytest.approx(2 * allowed, rel=ALLOWANCE_ESTIMATE)
+    assert allowed == pytest.approx(float(torus.amplitudes[seed]) ** 2 * 10.0**-DIGITS, rel=ALLOWANCE_ESTIMATE)
 
 
 @pytest.mark.parametrize("name", GOOD)
@@ -227,7 +228,7 @@ def test_balls_are_the_numbers_of_the_series(tori):
         for k, row in enumerate(frequency_balls(series)):
             for i, polynomial in enumerate(row):
                 value = sum((c * flint.arb(0.3) ** e[0] * flint.arb(0.2) ** e[1] for e, c in polynomial.items()), start=flint.arb(0))
-                assert abs(float(value.mid()) - float(terms[k, i])) <= 1e-14 * max(1e-3, abs(float(terms[k, i])))
+                assert abs(float(value.mid()) - float(terms[k, i])) <= TEN_ROUNDINGS * max(1e-3, abs(float(terms[k, i])))
 
 
 def test_a_ball_holds_its_fraction():

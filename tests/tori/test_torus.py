@@ -17,7 +17,18 @@ from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.quasiperiodic import mean_cosine
 from symfpu.tori.resummation import pade_amplitudes, pade_frequencies, resum
 from symfpu.tori.torus import QTorus
-from tests.tolerances import COEFFICIENT, DIFFERENCE, GRID_AVERAGE, ORBIT, QUADRATURE, ROUNDING, SLOPE
+from tests.tolerances import (
+    COEFFICIENT,
+    DIFFERENCE,
+    GRID_AVERAGE,
+    ORBIT,
+    PEER_ABSOLUTE,
+    PEER_RELATIVE,
+    QUADRATURE,
+    RESIDUAL_ROUNDING,
+    ROUNDING,
+    SLOPE,
+)
 
 PHASES = {1: 0.4, 2: -1.3}
 
@@ -150,8 +161,8 @@ def test_the_orbit_is_that_of_the_equations_of_motion(couplings, seeds, frequenc
         start,
         method="DOP853",
         t_eval=times,
-        rtol=1e-12,
-        atol=1e-15,
+        rtol=PEER_RELATIVE,
+        atol=PEER_ABSOLUTE,
     )
     scale = max(torus.amplitudes.values())
     assert np.abs(orbit.y[:7].T - torus.positions(times)).max() < ORBIT * scale
@@ -193,7 +204,7 @@ def test_residuals_are_by_mode_and_on_the_grid(breather):
         np.abs(breather.series.chain.accelerations(replace(breather, phases={3: 2 * np.pi * (j + 1 / 3) / 32}).positions(0.0))).max()
         for j in range(32)
     ]
-    assert breather.residual(32) == pytest.approx(residuals.max() / max(force), rel=1e-9)
+    assert breather.residual(32) == pytest.approx(residuals.max() / max(force), rel=RESIDUAL_ROUNDING)
     with pytest.raises(InputError, match="points"):
         breather.residual(0)
 

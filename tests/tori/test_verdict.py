@@ -17,7 +17,18 @@ from symfpu.paper.printed import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.verdict import RATIO_ORDERS, LargestTerm, _growth, _root_uncertainty, assess, short
-from tests.tolerances import RESIDUAL_ROUNDING, ROUNDING, SAME_AS_DOUBLES
+from tests.tolerances import (
+    DIFFERENCE_OF_DOUBLES,
+    DOUBLE_RESIDUAL,
+    GROWTH_OF_TERMS,
+    LAST_DIGIT,
+    LONG_SERIES_RESIDUAL,
+    RESIDUAL_ROUNDING,
+    ROUNDING,
+    SAME_AS_DOUBLES,
+    SEQUENCE_LIMIT,
+    SUMMED_FIG1,
+)
 
 
 def solved(printed, highest, *, digits=None, **options):
@@ -90,7 +101,7 @@ def test_other_amplitudes_are_not_those_of_a_torus(change):
     moved = replace(torus, amplitudes={25: change * torus.amplitudes[25]})
     assessment = assess(torus.series, moved)
     assert assessment.word == "not a torus"
-    assert assessment.root_uncertainty == pytest.approx(abs(1 / change - 1), rel=1e-6)
+    assert assessment.root_uncertainty == pytest.approx(abs(1 / change - 1), rel=DIFFERENCE_OF_DOUBLES)
 
 
 def test_a_torus_of_another_series_is_refused():
@@ -126,7 +137,7 @@ def test_with_digits_residuals_go_on_where_doubles_end():
         points = 16 if k > 3 else 64
         assert assessment.residuals[k] == pytest.approx(replace(torus, order=k).residual(points), rel=RESIDUAL_ROUNDING)
     assert (assessment.residuals[1:] < assessment.residuals[:-1]).all()
-    assert assessment.residuals[-1] < 1e-24
+    assert assessment.residuals[-1] < LONG_SERIES_RESIDUAL
     assert "certified" not in " ".join(assessment.reasons)
     assert assessment.record()["certified"] is True
 
@@ -140,7 +151,7 @@ def test_energy_errors_are_the_range_of_the_energy_along_the_orbit(name):
     for k in range(5):
         energies = replace(torus, order=k).energy(times).astype(float)
         expected = (energies.max() - energies.min()) / energies.mean()
-        assert assessment.energy_errors[k] == pytest.approx(expected, rel=1e-6, abs=16 * ROUNDING)
+        assert assessment.energy_errors[k] == pytest.approx(expected, rel=DIFFERENCE_OF_DOUBLES, abs=16 * ROUNDING)
 
 
 @pytest.mark.parametrize("name", ["torus of Fig. 1", "beta", "mixed", "small torus, digits"])
@@ -157,7 +168,7 @@ def test_largest_terms_are_the_largest_and_have_their_divisors(name):
             linear = 2 * mpmath.sin(term.mode * mpmath.pi / (2 * chain.N))
             base = dict(zip(torus.seeds, omega, strict=True)).get(term.mode, linear)
             expected = base**2 - mpmath.fsum(n * w for n, w in zip(term.harmonic, omega, strict=True)) ** 2
-        assert term.divisor == pytest.approx(float(expected), rel=1e-15, abs=0)
+        assert term.divisor == pytest.approx(float(expected), rel=LAST_DIGIT, abs=0)
     assert [term.order for term in assessment.terms] == list(range(torus.order + 1))
     assert (assessment.terms[0].mode, assessment.terms[0].harmonic, assessment.terms[0].divisor) in [(1, (1, 0), 0.0), (2, (0, 1), 0.0)]
 
@@ -167,9 +178,9 @@ def test_the_torus_of_fig_1_is_undone_by_one_small_divisor():
     last = assessment.terms[-1]
     assert (last.mode, last.harmonic) == (3, (5, -4))
     assert "mode 3, harmonic (5,-4), divisor 3.4e-05" in " ".join(assessment.reasons)
-    assert assessment.growth**2 == pytest.approx(1.494248, rel=1e-2)  # tests/paper/test_convergence.py
+    assert assessment.growth**2 == pytest.approx(1.494248, rel=GROWTH_OF_TERMS)  # tests/paper/test_convergence.py
     assert assessment.radius == 1 / assessment.growth
-    assert assessment.resummed_residual < 1e-5 < assessment.residuals.min()
+    assert assessment.resummed_residual < SUMMED_FIG1 < assessment.residuals.min()
 
 
 @pytest.mark.parametrize("rate", [0.25, 1.5])
@@ -177,9 +188,9 @@ def test_the_torus_of_fig_1_is_undone_by_one_small_divisor():
 def test_growth_of_a_geometric_sequence_is_its_rate(rate, step):
     """With alpha, orders of the other parity may be of another size: only those of the last one's parity count."""
     terms = [LargestTerm(k, rate**k * (7 if step == 2 and k % 2 else 3), 1, (1,), 1.0) for k in range(24)]
-    assert _growth(terms, step) == pytest.approx(rate, rel=1e-9)
+    assert _growth(terms, step) == pytest.approx(rate, rel=SEQUENCE_LIMIT)
     bent = [*terms, *(replace(terms[-1], order=23 + j, size=terms[-1].size * 2.0**j) for j in range(1, step * RATIO_ORDERS + 1))]
-    assert _growth(bent, step) == pytest.approx(2.0, rel=1e-9)
+    assert _growth(bent, step) == pytest.approx(2.0, rel=SEQUENCE_LIMIT)
 
 
 def test_growth_needs_two_orders_beyond_the_seeds_own():
@@ -238,7 +249,7 @@ def test_digits_change_no_word_and_no_evidence(doubles, digits):
     assert (plain.word, plain.frequency_order) == (precise.word, precise.frequency_order)
     assert [(t.order, t.mode, t.harmonic) for t in plain.terms] == [(t.order, t.mode, t.harmonic) for t in precise.terms]
     visible = plain.residuals > 1e-9
-    assert plain.residuals[visible] == pytest.approx(precise.residuals[visible], rel=1e-4)
+    assert plain.residuals[visible] == pytest.approx(precise.residuals[visible], rel=DOUBLE_RESIDUAL)
     for K, amplitudes in plain.amplitudes.items():
         assert amplitudes == pytest.approx(tuple(map(float, precise.amplitudes[K])), rel=SAME_AS_DOUBLES)
 

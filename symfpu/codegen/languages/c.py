@@ -34,14 +34,14 @@ TIMES = 16  # evaluated together: two vectors of AVX-512
 CHUNK = 32  # harmonics between two accumulations: their waves are 8 kB
 TILE = 4  # modes of a register tile
 LARGEST_PRODUCT = 4  # highest power written as a product
-EXACT = 2**53  # integers below are exact in doubles
+EXACT_INTEGERS = 2**53  # integers below are exact in doubles
 INT = 2**31
-HARMLESS = {"*/": "* /", "/*": "/ *", "??": "? ?"}  # in comments
+REPLACEMENTS = {"*/": "* /", "/*": "/ *", "??": "? ?"}  # in comments
 
 
 def comment(text: str) -> str:
     """A fact as lines of a comment, which it cannot end."""
-    for sign, harmless in HARMLESS.items():
+    for sign, harmless in REPLACEMENTS.items():
         text = text.replace(sign, harmless)
     lines = textwrap.wrap(
         text,
@@ -106,7 +106,7 @@ class _Printer(C99CodePrinter):  # type: ignore[misc]
 
     def _print_Rational(self, expr: sympy.Rational) -> str:
         p, q = int(expr.p), int(expr.q)
-        if max(abs(p), q) > EXACT:
+        if max(abs(p), q) > EXACT_INTEGERS:
             return repr(p / q)
         return f"{p}.0/{q}.0"
 
@@ -226,7 +226,7 @@ def _mode_rows(N: int, blocks: Sequence[Words], last: int) -> list[int]:
     return [rows.get(q, last) for q in range(1, N)]
 
 
-RESERVED = """
+RESERVED_WORDS = """
     auto break case char const continue default do double else enum extern float for goto
     if inline int long main register restrict return short signed sizeof static struct
     switch typedef union unsigned void volatile while
@@ -244,5 +244,5 @@ C = Language(
     },
     torus_words=_torus,
     series_words=_series,
-    reserved=frozenset(RESERVED.split()),
+    reserved=frozenset(RESERVED_WORDS.split()),
 )

@@ -42,10 +42,10 @@ TERMS = 100  # of a sum in one statement
 TIMES = 64  # evaluated together
 TILE = 256  # harmonics of one matrix product: cosines and sines of 64 times are 256 kB
 WORD = 24  # bits of the leading parts of omega / 2 pi: times halves of a time they are exact
-EXACT = 2**53  # integers below are doubles
+EXACT_INTEGERS = 2**53  # integers below are doubles
 BREAKS = re.compile(r"(?<=[ (])|(?<=[^*]\*)(?!\*)|(?<=/)")  # after blank, bracket, star, slash
-OPEN = "\N{WHITE SQUARE}"  # stands for the module's name, and occurs nowhere else
-HARMLESS = {"\\": "/", "*/": "* /", "/*": "/ *"}  # in comments
+PLACEHOLDER = "\N{WHITE SQUARE}"  # stands for the module's name, and occurs nowhere else
+REPLACEMENTS = {"\\": "/", "*/": "* /", "/*": "/ *"}  # in comments
 TABLES = {"default_phases"}
 TABLES |= {"nu_even", "nu_odd", "rates_even", "rates_odd", "c_even", "c_odd"}
 
@@ -54,7 +54,7 @@ def comment(text: str) -> str:
     """A fact as lines of a comment, without what the preprocessor takes for comments of C."""
     one_line = " ".join(text.split())
     text = one_line.encode("ascii", "backslashreplace").decode()
-    for sign, harmless in HARMLESS.items():
+    for sign, harmless in REPLACEMENTS.items():
         text = text.replace(sign, harmless)
     lines = textwrap.wrap(
         text,
@@ -171,7 +171,7 @@ class _Printer(FCodePrinter):  # type: ignore[misc]
         return literal(float(number))
 
     def _print_Rational(self, number: sympy.Rational) -> str:
-        if max(abs(number.p), number.q) > EXACT:
+        if max(abs(number.p), number.q) > EXACT_INTEGERS:
             return literal(float(number))
         p, q = float(number.p), float(number.q)
         return f"{literal(p)}/{literal(q)}"
@@ -195,19 +195,19 @@ class Modules(Language):
         """Raises InputError for a name that the module needs itself."""
         name = words["name"]
         macro = f"{name.upper()}_SELF_TEST"
-        code = super().filled(kind, words | {"name": OPEN, "macro": macro})
+        code = super().filled(kind, words | {"name": PLACEHOLDER, "macro": macro})
         own = _identifiers(code) | TABLES
         legal = re.fullmatch(r"[a-z][a-z0-9_]{0,49}", name.lower(), re.ASCII)
         if not legal or name.lower() in own:
             allowed = "a file name that is a Fortran identifier the module does not use itself"
             raise InputError("path", name, allowed, "rename the file")
-        return code.replace(OPEN, name)
+        return code.replace(PLACEHOLDER, name)
 
 
 def _identifiers(code: str) -> set[str]:
     """Names outside strings and comments, but for those that begin with the module's."""
     bare = re.sub(r"'[^'\n]*'|!.*", "", code)
-    names = re.findall(rf"(?<![\w{OPEN}])[a-z]\w*", bare.lower())
+    names = re.findall(rf"(?<![\w{PLACEHOLDER}])[a-z]\w*", bare.lower())
     return set(names)
 
 

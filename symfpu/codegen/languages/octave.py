@@ -129,7 +129,7 @@ def _series(program: SeriesProgram) -> Words:
     return words
 
 
-RESERVED = """
+RESERVED_WORDS = """
     catch classdef elseif end_try_catch end_unwind_protect endarguments endclassdef endenumeration
     endevents endfor endfunction endif endmethods endparfor endproperties endspmd endswitch endwhile
     global otherwise parfor persistent spmd try until unwind_protect unwind_protect_cleanup
@@ -156,5 +156,5 @@ OCTAVE = Language(
     },
     torus_words=_torus,
     series_words=_series,
-    reserved=frozenset(RESERVED.split()),
+    reserved=frozenset(RESERVED_WORDS.split()),
 )
