@@ -167,7 +167,9 @@ class MajorantRing(Float64Ring):
             self._power_radii[power] = np.zeros_like(self._bonds)
         self._store(self._power_radii[power], degree, np.arange(len(radii)), radii)
 
-    def project(self, degree: int, parts: Sequence[tuple[float, Bounds]]) -> Floats:  # type: ignore[override]
+    def project(  # type: ignore[override]
+        self, degree: int, parts: Sequence[tuple[float, Bounds]]
+    ) -> Floats:
         mask = self.space.mask(degree)
         modes = np.full(mask.shape, ROUNDED)
         for coefficient, bounds in parts:

@@ -1,5 +1,6 @@
-"""The q-breather of a prescribed energy: harmonic balance bordered by the energy, along the
-family from rest.
+"""The q-breather of a prescribed energy: harmonic balance bordered by the energy.
+
+The family is followed from rest, in growing steps of the energy.
 """
 
 from __future__ import annotations
@@ -34,11 +35,13 @@ SMALLEST_START = 1e-12  # of the energy asked for: the least at which a first me
 
 
 class NoBreatherAtEnergy(SymfpuError):
-    """No breather of this energy: raised by `breather_at_energy` where the family from rest ends below it.
+    """No breather of this energy: the family from rest ends below it.
+
+    Raised by `breather_at_energy`.
 
     seed : the mode. energy : asked for; harmonic : whether it is sum E_q.
-    reached, frequency, amplitude : of the member with the largest energy, all dimensionless; frequency None
-        if there was none.
+    reached, frequency, amplitude : of the member with the largest energy, all dimensionless;
+        frequency None if there was none.
     reason : of the last failure. Ours.
     """
 
@@ -55,21 +58,22 @@ class NoBreatherAtEnergy(SymfpuError):
         self.frequency = None if member is None else float(member.frequency)
         self.amplitude = 0.0 if member is None else member.amplitude
         kind = "harmonic energy" if harmonic else "energy"
-        last = (
-            "no member was found"
-            if member is None
-            else f"the last has omega = {self.frequency:.12g}, A = {self.amplitude:.6g}"
-        )
+        last = "no member was found"
+        if member is not None:
+            last = f"the last has omega = {self.frequency:.12g}, A = {self.amplitude:.6g}"
+        why, *_ = self.reason.partition("; the best")
         super().__init__(
-            f"no breather of seed {seed} at {kind} {energy:.6g}: the family from rest was followed over 0 .. {self.reached:.6g}, {last}; "
-            f"it ended because: {self.reason.partition('; the best')[0]}; ask for {kind} below {self.reached:.6g}"
+            f"no breather of seed {seed} at {kind} {energy:.6g}: "
+            f"the family from rest was followed over 0 .. {self.reached:.6g}, {last}; "
+            f"it ended because: {why}; ask for {kind} below {self.reached:.6g}"
         )
 
 
 @dataclass(frozen=True)
 class Level:
-    """The condition that H, or the harmonic energy at t = 0, has a given value: momenta vanish,
-    Q_q(0) = sum_n c[n, q].
+    """The condition that H, or the harmonic energy at t = 0, has a given value.
+
+    Momenta vanish then, and Q_q(0) = sum_n c[n, q].
     """
 
     chain: Chain
@@ -104,15 +108,16 @@ def breather_at_energy(
     """The q-breather of a seed mode with the given energy; frequency and amplitude are found.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
-    energy : H, or with harmonic=True the harmonic energy sum E_q at t = 0, when every momentum vanishes; a
-        positive exact number.
+    energy : H, or with harmonic=True the harmonic energy sum E_q at t = 0, when every momentum
+        vanishes; a positive exact number.
     harmonic : which of the two.
-    guess : a member nearby, any solution of this seed and chain; None follows the family from rest, with
-        A > 0.
+    guess : a member nearby, any solution of this seed and chain; None follows the family from
+        rest, with A > 0.
 
-    Harmonic balance, as `periodic_orbit`; the breathers of section 6.4 by their energy, where the paper gives
-    frequencies.
-    Raises InputError; NoBreatherAtEnergy if the family from rest ends before; with a guess NoPeriodicOrbit.
+    Harmonic balance, as `periodic_orbit`; the breathers of section 6.4 by their energy, where the
+    paper gives frequencies.
+    Raises InputError; NoBreatherAtEnergy if the family from rest ends before; with a guess
+    NoPeriodicOrbit.
 
     >>> orbit = breather_at_energy(Chain(N=32, alpha="0.33"), 25, "0.00465")
     >>> round(float(orbit.frequency), 12), round(float(orbit.energy()), 15)
@@ -161,7 +166,7 @@ def _positive(energy: Number) -> Fraction:
 
 
 def _member(guess: object, chain: Chain, seed: int) -> PeriodicOrbit:
-    """A guess as a periodic orbit; raises InputError where it is none, or of another seed or chain."""
+    """A guess as a periodic orbit of this seed and chain; raises InputError for any other."""
     member = as_periodic_orbit(guess, "guess", ONE_SEED)
     if (member.chain, member.seed) != (chain, seed):
         given = f"of seed {member.seed}, {member.chain!r}"

@@ -25,18 +25,17 @@ from symfpu.numbers.typed import Number, decimal, exact, seed_modes
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
 Floats = NDArray[np.float64]
-Condition = Callable[
-    [Floats], tuple[float, Floats]
-]  # of z: what has to vanish, relative to what it is made of, and its derivatives
+# of z: what has to vanish, relative to what it is made of, and its derivatives
+Condition = Callable[[Floats], tuple[float, Floats]]
 LARGEST_SYSTEM = 8192  # unknowns; a matrix of 512 MB
 TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonics may reach
-STEP, ROUNDING_STEP = (
-    1e-14,
-    1e-9,
-)  # relative Newton step that ends the iteration, at once or when it no longer shrinks
+STEP = 1e-14  # relative Newton step that ends the iteration at once
+ROUNDING_STEP = 1e-9  # the one that ends it when it no longer shrinks
 ITERATIONS = 25
 GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or down
-REACH = 0.3  # change of a coefficient from one guess to its orbit, relative to the largest, that stays on the family
+# change of a coefficient from one guess to its orbit, relative to the largest, that stays on
+# the family
+REACH = 0.3
 ONE_ANGLE = "a solution of one angle"
 ONE_SEED = "take a solution of one seed, or None"
 SMALLEST_PART = 1 / 64  # of the way from rest, in one step
@@ -45,20 +44,23 @@ SMALLEST_PART = 1 / 64  # of the way from rest, in one step
 class NoPeriodicOrbit(SymfpuError):
     """Newton's method found no periodic orbit: raised by `periodic_orbit` and its sisters.
 
-    seed : the mode. iterate : the one with the smallest residual, cosine coefficients, shape (H+1, N-1).
-    frequency, residual : of it, dimensionless; the residual relative to the largest acceleration. Ours.
+    seed : the mode. iterate : the one with the smallest residual, cosine coefficients, shape
+        (H+1, N-1).
+    frequency, residual : of it, dimensionless; the residual relative to the largest acceleration.
+        Ours.
     """
 
     def __init__(self, balance: Balance, reason: str, z: Floats) -> None:
-        self.seed, self.iterate, self.frequency = (
-            balance.seed,
-            balance.cosines(z),
-            balance.frequency(z),
-        )
+        self.seed = balance.seed
+        self.iterate = balance.cosines(z)
+        self.frequency = balance.frequency(z)
         self.residual = residual(balance.chain, self.frequency, self.iterate)
+        amplitude = z[balance.first]
         super().__init__(
-            f"no periodic orbit of seed {self.seed}: {reason}; the best iterate, omega = {self.frequency:.12g} and A = "
-            f"{z[balance.first]:.6g} with {balance.harmonics} harmonics, leaves {self.residual:.2g} of the largest acceleration; "
+            f"no periodic orbit of seed {self.seed}: {reason}; "
+            f"the best iterate, omega = {self.frequency:.12g} and A = {amplitude:.6g} "
+            f"with {balance.harmonics} harmonics, "
+            f"leaves {self.residual:.2g} of the largest acceleration; "
             f"start from a guess nearer to the orbit, such as an orbit of smaller amplitude"
         )
 
@@ -77,8 +79,8 @@ class PeriodicOrbit(FourierTorus):
 
     >>> from symfpu import periodic_orbit
     >>> periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905")
-    PeriodicOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, A=0.4051586230417, H=0.012798422083, 13 harmonics,
-    residual ...)
+    PeriodicOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, A=0.4051586230417, H=0.012798422083,
+    13 harmonics, residual ...)
     """
 
     iterations: int
@@ -122,8 +124,9 @@ def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicO
 
 
 def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Harmonics n and places q - 1 of the coefficients that the symmetry allows, in the order of
-    the vectors z.
+    """Harmonics n and places q - 1 of the coefficients that the symmetry allows.
+
+    They stand in the order of the vectors z.
     """
     n, q = np.indices((harmonics + 1, chain.N - 1))
     places = np.nonzero(((q + 1 - n * seed) % 2 == 0) & ((n % 2 == 1) | (chain.alpha != 0)))
@@ -131,8 +134,9 @@ def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp],
 
 
 class Balance:
-    """The equations n^2 omega^2 c + force = 0 up to a number of harmonics, for vectors z = (the c
-    that are unknowns, sigma).
+    """The equations n^2 omega^2 c + force = 0 up to a number of harmonics.
+
+    Their unknowns are vectors z: the c that the symmetry allows, then sigma.
     """
 
     def __init__(self, chain: Chain, seed: int, harmonics: int) -> None:
@@ -180,8 +184,9 @@ class Balance:
         return diagonal * z[:-1] + force[self.n, self.q], np.column_stack([J, self.n**2 * z[:-1]])
 
     def newton(self, z: Floats, given: int | Condition) -> tuple[Floats, int]:
-        """The solution with the same z[given], or that meets a condition, and the number of
-        steps; raises NoPeriodicOrbit.
+        """The solution with the same z[given], or that meets a condition, and the number of steps.
+
+        Raises NoPeriodicOrbit.
         """
         free = np.arange(len(z)) if callable(given) else np.delete(np.arange(len(z)), given)
         best, least, before, size = z, np.inf, np.inf, float(np.max(np.abs(z[:-1])))
@@ -224,9 +229,7 @@ def held_amplitude(balance: Balance) -> int:
 
 
 def residual(chain: Chain, omega: float, cosines: Floats) -> float:
-    """Largest |Q'' - force| at times between the collocation points, relative to the largest
-    acceleration.
-    """
+    """Largest |Q'' - force| between the collocation points, over the largest acceleration."""
     n, points = np.arange(len(cosines)), 6 * len(cosines)
     table = np.cos(np.outer(np.pi / points * (np.arange(points) + 1 / 3), n))
     force = chain.accelerations(table @ cosines)
@@ -241,14 +244,14 @@ def periodic_orbit(
 
     chain, seed : the model and the mode; all quantities are dimensionless.
     frequency : omega, an exact number.
-    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1), of which those that the
-        symmetry forbids are dropped; None follows the family from rest, with the amplitude of the lowest
-        order.
+    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1), of which those that
+        the symmetry forbids are dropped; None follows the family from rest, with the amplitude of
+        the lowest order.
 
-    Newton's method on the Fourier coefficients of Eq. eqmo (harmonic balance), where the paper has the series
-    of section 6.4. The orbit is one near the guess: a frequency may have several.
-    Raises InputError; without a guess NoRealAmplitude or UndeterminedAmplitudes if the lowest order has no
-    amplitude; NoPeriodicOrbit with the best iterate.
+    Newton's method on the Fourier coefficients of Eq. eqmo (harmonic balance), where the paper
+    has the series of section 6.4. The orbit is one near the guess: a frequency may have several.
+    Raises InputError; without a guess NoRealAmplitude or UndeterminedAmplitudes if the lowest
+    order has no amplitude; NoPeriodicOrbit with the best iterate.
 
     >>> orbit = periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
     >>> round(float(orbit.energy()), 12)
@@ -303,8 +306,8 @@ def breather_at_amplitude(
 
     chain, seed : the model and the mode; all quantities are dimensionless.
     amplitude : A, the coefficient of cos(omega t) in Q_seed, an exact number, not 0.
-    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1); None follows the family from
-        rest.
+    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1); None follows the
+        family from rest.
 
     Harmonic balance with A among the equations: the gauge of Eq. qq0, A is not Q_seed(0).
     Raises InputError, and NoPeriodicOrbit with the best iterate.
@@ -360,8 +363,9 @@ def orbit_near(
     given: Callable[[Balance], int | Condition],
     reach: float = GROWTH,
 ) -> PeriodicOrbit:
-    """The orbit near cosines and sigma, with as many harmonics as it needs, none of them changed by
-    more than reach.
+    """The orbit near cosines and sigma, with as many harmonics as it needs.
+
+    No coefficient is changed by more than reach.
 
     given : of a balance, the place of what keeps its value, or the condition to meet. reach :
     relative to the largest coefficient. Raises NoPeriodicOrbit.
@@ -379,21 +383,15 @@ def orbit_near(
         z, steps = balance.newton(balance.vector(cosines, sigma), given(balance))
         cosines, sigma, iterations = balance.cosines(z), float(z[-1]), iterations + steps
         if balance.frequency(z) <= 0:
-            raise NoPeriodicOrbit(
-                balance,
-                f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2",
-                z,
-            )
+            reason = f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2"
+            raise NoPeriodicOrbit(balance, reason, z)
         heights = np.max(np.abs(cosines), axis=1) / np.max(np.abs(cosines))
         if np.max(heights[-max(2, harmonics // 8) :]) <= TAIL:
             break
         harmonics *= 2
         if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
-            raise NoPeriodicOrbit(
-                balance,
-                f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g} of the largest",
-                z,
-            )
+            last = f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g}"
+            raise NoPeriodicOrbit(balance, f"{last} of the largest", z)
     change = float(np.max(np.abs(z - balance.vector(guess, sigma)))) / float(
         np.max(np.abs(cosines))
     )
@@ -415,7 +413,10 @@ def orbit_near(
 def _walk(
     chain: Chain, seed: int, amplitude: float, sigma: float, *, by_amplitude: bool
 ) -> PeriodicOrbit:
-    """The member at the end of the way from rest, on which A grows about with the part gone and sigma with its square."""
+    """The member at the end of the way from rest.
+
+    On it A grows about with the part gone, and sigma with its square.
+    """
     gone, step, iterations = 0.0, 1.0, 0
     scale, cosines = (
         1.0,

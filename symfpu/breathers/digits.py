@@ -1,5 +1,6 @@
-"""Periodic orbits to any number of digits: harmonic balance in fixed point, corrected through a
-factored matrix of doubles.
+"""Periodic orbits to any number of digits: harmonic balance in fixed point.
+
+A factored matrix of doubles corrects them.
 
 One sweep takes the residual in fixed point, solves Newton's equations for it in doubles with the
 matrix at the orbit in doubles, and gains about as many digits as that orbit has. Harmonics beyond
@@ -55,18 +56,18 @@ class PreciseOrbit(FourierTorus):
     Made by `periodic_orbit_digits`. Ours: the breathers of section 6.4 beyond doubles.
 
     chain, seeds : the model and its one seed. frequencies : omega, exact, shape (1,).
-    harmonics : 0 .. H, shape (H+1, 1). cosines : mpf, shape (H+1, N-1), harmonic 0 first. phases : 0 of the
-        seed, radians.
+    harmonics : 0 .. H, shape (H+1, 1). cosines : mpf, shape (H+1, N-1), harmonic 0 first.
+        phases : 0 of the seed, radians.
     digits : of the largest coefficient.
-    bound : above |Q'' - force| of every mode at every time, relative to the largest acceleration: the sum of
-        the sizes of all Fourier coefficients of the residual, up to harmonic 3H, taken with 64 bits more than
-        the orbit has.
+    bound : above |Q'' - force| of every mode at every time, relative to the largest acceleration:
+        the sum of the sizes of all Fourier coefficients of the residual, up to harmonic 3H, taken
+        with 64 bits more than the orbit has.
     sweeps : corrections made.
 
     >>> from symfpu import Chain, periodic_orbit, periodic_orbit_digits
     >>> periodic_orbit_digits(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"), 30)
-    PreciseOrbit(N=8, alpha=0.3, seed 1, omega=0.3905.., A=0.405158623041734.., 30 digits, 46 harmonics,
-    residual below ...)
+    PreciseOrbit(N=8, alpha=0.3, seed 1, omega=0.3905.., A=0.405158623041734.., 30 digits,
+    46 harmonics, residual below ...)
     """
 
     bound: Any = field(default=mpmath.inf)
@@ -80,8 +81,9 @@ class PreciseOrbit(FourierTorus):
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
         exact_omega = mpmath.mpf(self.frequency.numerator) / self.frequency.denominator
         omega, A = mpmath.nstr(exact_omega, 15), mpmath.nstr(self.amplitude, 15)
+        which = f"seed {self.seed}, omega={omega}.., A={A}.., {self.digits} digits"
         quality = f"{len(self.cosines) - 1} harmonics, residual below {mpmath.nstr(self.bound, 2)}"
-        return f"PreciseOrbit({chain}, seed {self.seed}, omega={omega}.., A={A}.., {self.digits} digits, {quality})"
+        return f"PreciseOrbit({chain}, {which}, {quality})"
 
 
 def periodic_orbit_digits(
@@ -95,11 +97,11 @@ def periodic_orbit_digits(
 
     orbit : a solution of one angle, whose phase (radians) is kept; all else is dimensionless.
     digits : 1 .. 1000.
-    frequency, amplitude : exact numbers, at most one of them; the member with that omega or that A near the
-        orbit. Neither: the frequency of the orbit.
+    frequency, amplitude : exact numbers, at most one of them; the member with that omega or that
+        A near the orbit. Neither: the frequency of the orbit.
 
-    Newton-like sweeps on harmonic balance, Eq. eqmo; ours. Raises InputError, and NoPeriodicOrbit if the
-    sweeps gain no digits.
+    Newton-like sweeps on harmonic balance, Eq. eqmo; ours. Raises InputError, and NoPeriodicOrbit
+    if the sweeps gain no digits.
 
     >>> from symfpu.chain.chain import Chain
     >>> orbit = periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
@@ -174,8 +176,9 @@ class Sweeps:
         self._factor()
 
     def _factor(self) -> None:
-        """The matrix of the low harmonics at the orbit in doubles, and the diagonal of the high
-        ones.
+        """The matrix of the low harmonics, and the diagonal of the high ones.
+
+        Both at the orbit in doubles.
         """
         from scipy.linalg import lu_factor
 

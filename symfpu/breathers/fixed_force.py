@@ -51,7 +51,7 @@ class FixedForce:
     def equations(self, c: Integers, squared: int, harmonics: int) -> Integers:
         """n^2 omega^2 c + force for all modes, shape (H+1, N-1) to (harmonics+1, N-1).
 
-        Squared is omega^2.
+        squared : omega^2.
         """
         total = self._nonlinear(c, harmonics)
         n = np.arange(len(c)).astype(object)[:, None]
@@ -67,9 +67,9 @@ class FixedForce:
         return np.negative(self._product(tension, self.modes))
 
     def _tension(self, r: Sequence[int], harmonics: int) -> list[int]:
-        """Cosine coefficients of c_3 r^2 + c_4 r^3 + ...
+        """Cosine coefficients of the anharmonic tension of one bond, c_3 r^2 and so on.
 
-        Of one bond: d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0.
+        They are those of d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0.
         """
         degree, total = len(r) - 1, np.zeros(harmonics + 1, dtype=object)
         twice = flint.fmpz_poly([*r[:0:-1], 2 * r[0], *r[1:]])

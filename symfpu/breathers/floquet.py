@@ -1,9 +1,11 @@
-"""Floquet multipliers of a q-breather: its tangent map over a period, and the stability that they decide.
+"""Floquet multipliers of a q-breather: its tangent map over a period, and its stability.
 
-The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives M = R H^-1 R H with the symplectic
-inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with a = 1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in
-pairs with lambda + 1/lambda = 2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M, is a simple kappa = 0 whose
-left eigenvector is the acceleration at t = 0, B f = 0. So every pair is exactly reciprocal, and the double 1 costs no digits.
+The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives
+M = R H^-1 R H with the symplectic inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with
+a = 1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in pairs with
+lambda + 1/lambda = 2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M,
+is a simple kappa = 0 whose left eigenvector is the acceleration at t = 0, B f = 0. So every pair
+is exactly reciprocal, and the double 1 costs no digits.
 """
 
 from __future__ import annotations
@@ -24,11 +26,12 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Floats = NDArray[np.float64]
 MORE_ANGLES = (
-    "normal frequencies of tori of more angles are not available; take a breather of one seed, or let "
-    "alignment_indices tell whether the orbit is regular"
+    "normal frequencies of tori of more angles are not available; take a breather of one seed, "
+    "or let alignment_indices tell whether the orbit is regular"
 )
 ACCURACY = 1e-12  # of the tangent map, relative to its largest entry
-FIRST_STEP = 0.1  # over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
+# over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
+FIRST_STEP = 0.1
 DOUBLINGS = 5
 SAFETY = 8  # times the error that a kappa may have: what it may be off the circle
 TRIVIAL, ELLIPTIC = "trivial", "on the circle"
@@ -42,19 +45,22 @@ class Floquet:
     Made by `floquet`. Ours.
 
     orbit : the orbit.
-    pairs : (lambda, 1/lambda), |lambda| >= 1, shape (N-1, 2), the trivial pair (1, 1) first, then by falling
-        size and growing angle.
-    kinds : of every pair: "trivial", "on the circle", "real > 0" (tangent bifurcation at +1), "real < 0"
-        (period doubling at -1), "complex quadruple" (Krein collision; two pairs make one quadruple).
-    kappa : (lambda + 1/lambda - 2)/4; tolerance : how far each may be off because of the errors of map and
-        orbit; both (N-1,).
+    pairs : (lambda, 1/lambda), |lambda| >= 1, shape (N-1, 2), the trivial pair (1, 1) first, then
+        by falling size and growing angle.
+    kinds : of every pair: "trivial", "on the circle", "real > 0" (tangent bifurcation at +1),
+        "real < 0" (period doubling at -1), "complex quadruple" (Krein collision; two pairs make
+        one quadruple).
+    kappa : (lambda + 1/lambda - 2)/4; tolerance : how far each may be off because of the errors
+        of map and orbit; both (N-1,).
     monodromy : M in modes, rows and columns Q_1 .., P_1 ..; shape (2(N-1), 2(N-1)).
-    symplecticity : largest entry of M^T J M - J. map_error : estimated error of the half-period map.
+    symplecticity : largest entry of M^T J M - J. map_error : estimated error of the half-period
+        map.
     trivial_error : by how much the trivial pair of the computed map misses kappa = 0.
 
     >>> from symfpu import Chain, periodic_orbit
     >>> floquet(periodic_orbit(Chain(N=4, beta=1), 2, "1.4168"))
-    Floquet(N=4, beta=1, seed 2, omega=1.4168, stable, largest |multiplier| 1, symplecticity error ...)
+    Floquet(N=4, beta=1, seed 2, omega=1.4168, stable, largest |multiplier| 1,
+    symplecticity error ...)
     """
 
     orbit: QuasiPeriodic
@@ -68,15 +74,13 @@ class Floquet:
     trivial_error: float
 
     def __repr__(self) -> str:
-        verdict = (
-            "stable"
-            if self.stable
-            else "unstable: " + ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
-        )
-        return (
-            f"Floquet({repr(self.orbit.chain)[6:-1]}, seed {self.orbit.seed}, omega={decimal(self.orbit.frequency)}, {verdict}, "
-            f"largest |multiplier| {self.largest:.12g}, symplecticity error {self.symplecticity:.1g})"
-        )
+        chain = repr(self.orbit.chain).removeprefix("Chain(").removesuffix(")")
+        which = f"seed {self.orbit.seed}, omega={decimal(self.orbit.frequency)}"
+        unstable = ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
+        verdict = "stable" if self.stable else f"unstable: {unstable}"
+        largest = f"largest |multiplier| {self.largest:.12g}"
+        quality = f"symplecticity error {self.symplecticity:.1g}"
+        return f"Floquet({chain}, {which}, {verdict}, {largest}, {quality})"
 
     @property
     def multipliers(self) -> NDArray[np.complex128]:
@@ -112,14 +116,14 @@ def monodromy(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floats:
 def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
-    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others; dimensionless. Of a truncated
-        series, multipliers are as good as the orbit is.
+    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others; dimensionless. Of
+        a truncated series, multipliers are as good as the orbit is.
     scheme : of the integrator, on T + V; with one of lower order errors and tolerances are larger.
 
-    The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time; ours. A
-    kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its
-    error to first order: the error of B^T C over the cosine between its left and right eigenvector. Raises
-    InputError.
+    The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time;
+    ours. A kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is
+    SAFETY times its error to first order: the error of B^T C over the cosine between its left and
+    right eigenvector. Raises InputError.
 
     >>> from symfpu.chain.chain import Chain
     >>> from symfpu.breathers.balance import breather_at_amplitude
@@ -201,7 +205,10 @@ def _kind(kappa: complex, tolerance: float) -> str:
 
 
 def _pair(kappa: complex, kind: str) -> tuple[complex, complex]:
-    """(lambda, 1/lambda) with |lambda| >= 1 of lambda + 1/lambda = 2 + 4 kappa; on the circle exp(+-i angle)."""
+    """(lambda, 1/lambda) of lambda + 1/lambda = 2 + 4 kappa, with |lambda| >= 1.
+
+    On the circle they are exp(+-i angle).
+    """
     if kind == ELLIPTIC:
         angle = 2 * np.arcsin(np.sqrt(np.clip(-kappa.real, 0.0, 1.0)))
         return complex(np.cos(angle), np.sin(angle)), complex(np.cos(angle), -np.sin(angle))

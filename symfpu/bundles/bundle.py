@@ -1,4 +1,6 @@
-"""A series and its torus, or any other solution, in one file: a ZIP archive of bundle.json and of arrays that numpy.load reads.
+"""A series and its torus, or any other solution, in one file.
+
+The file is a ZIP archive of bundle.json and of arrays that numpy.load reads.
 
 Everything but the tables is in bundle.json: numbers that must come back exactly are strings, and
 a digest covers the whole. The tables are flat arrays, order after order and row after row:
@@ -71,8 +73,9 @@ LONG_RUN = 100  # periods of the slowest seed at which the last test vector is t
 
 
 class OrbitPoint(NamedTuple):
-    """A point of the torus for tests of other programs: t, and Q_1 .. Q_(N-1) and P_1 .. P_(N-1)
-    at t, as decimals.
+    """A point of the torus for tests of other programs, as decimals.
+
+    t : the time. Q, P : Q_1 .. Q_(N-1) and P_1 .. P_(N-1) at t.
     """
 
     t: str
@@ -86,10 +89,12 @@ class Bundle:
 
     All is dimensionless; the format is ours.
 
-    series : None for a solution without one. torus : any solution, of the class that was saved, or None.
+    series : None for a solution without one. torus : any solution, of the class that was saved,
+        or None.
     verdict : None if none was saved.
     provenance : created (UTC), command, versions by package.
-    test_vectors : a few points of the torus as it was when it was saved: t, Q and P, (N-1,), as decimals.
+    test_vectors : a few points of the torus as it was when it was saved: t, Q and P, (N-1,), as
+        decimals.
 
     >>> import tempfile
     >>> from symfpu import lindstedt
@@ -107,11 +112,11 @@ class Bundle:
     def __repr__(self) -> str:
         torus = "no torus"
         if isinstance(self.torus, QTorus):
-            torus = (
-                f"QTorus of frequency order {self.torus.frequency_order}, order {self.torus.order}"
-            )
+            orders = f"frequency order {self.torus.frequency_order}, order {self.torus.order}"
+            torus = f"QTorus of {orders}"
         verdict = "a verdict" if self.verdict is not None else "no verdict"
-        saved = f"saved {self.provenance['created']} by symfpu {self.provenance['versions'].get('symfpu', 'of unknown version')}"
+        version = self.provenance["versions"].get("symfpu", "of unknown version")
+        saved = f"saved {self.provenance['created']} by symfpu {version}"
         held = f"{self.series!r}, {torus}" if self.series else repr(self.torus)
         return f"Bundle({held}, {verdict}, {saved})"
 
@@ -128,17 +133,18 @@ def save(
 
     path : of the file, which is written whole or not at all.
     result : what to keep, with all its digits; dimensionless.
-    verdict : any dictionary that JSON gives back unchanged. command : what made the result. created : default
-        now.
+    verdict : any dictionary that JSON gives back unchanged. command : what made the result.
+        created : default now.
 
     A torus is evaluated at a few times, which go into the file as test vectors. The format is ours.
-    Raises InputError for other arguments and for a file that cannot be written; an existing file stays as it
-    was then.
+    Raises InputError for other arguments and for a file that cannot be written; an existing file
+    stays as it was then.
 
     >>> import tempfile
     >>> from symfpu.series.lindstedt import lindstedt
+    >>> series = lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2)
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     load(save(f"{folder}/a", lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2))).series.seeds
+    ...     load(save(f"{folder}/a", series)).series.seeds
     (3,)
     """
     path = _path(path)
@@ -181,12 +187,14 @@ def _schema(result: LindstedtSeries | QuasiPeriodic) -> int:
 
 
 def load(path: Path | str) -> Bundle:
-    """The series and the torus that `save` wrote, exactly as they were; nothing in the file is executed.
+    """The series and the torus that `save` wrote, exactly as they were.
+
+    Nothing in the file is executed.
 
     path : of the file. Everything in it is dimensionless but for the date. The format is ours.
 
-    Raises BundleError for a file that is damaged, foreign, newer than this symfpu or too large for the free
-    memory; OSError for one that is missing or not to be read.
+    Raises BundleError for a file that is damaged, foreign, newer than this symfpu or too large
+    for the free memory; OSError for one that is missing or not to be read.
 
     >>> import tempfile
     >>> from symfpu.series.lindstedt import lindstedt
@@ -440,9 +448,8 @@ def _torus(body: Json, series: LindstedtSeries) -> QTorus:
         *(integer(body[name], name, 0) for name in ("order", "frequency_order")),
     )
     if max(order, frequency_order) > series.order or series.frequencies is None:
-        raise ValueError(
-            f"no torus of order {order} and frequency order {frequency_order} can come from this series"
-        )
+        orders = f"order {order} and frequency order {frequency_order}"
+        raise ValueError(f"no torus of {orders} can come from this series")
     return QTorus(
         series=series,
         amplitudes=_by_seed(body["amplitudes"], series.seeds),

@@ -17,8 +17,9 @@ Array = NDArray[Any]
 
 
 def refined_entries(torus: RefinedTorus) -> tuple[Json, dict[str, Array]]:
-    """The entries of a document and the arrays `harmonics` and `cosines`, from which the same
-    torus is made again.
+    """The entries of a document and the arrays from which the same torus is made again.
+
+    The arrays are `harmonics` and `cosines`.
     """
     entries: Json = {
         **chain_entries(torus.chain),

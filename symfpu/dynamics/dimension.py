@@ -1,4 +1,4 @@
-"""What alignment indices say of an orbit: on a torus, of which dimension; chaotic; or not yet to be told.
+"""What alignment indices say of an orbit: the dimension of its torus, chaos, or nothing yet.
 
 Two things are looked at. The first deviation vector grows as t on every torus, in the end, and
 exponentially on a chaotic orbit. The volumes GALI_k fall as powers of t that depend on the
@@ -25,7 +25,8 @@ Ints = NDArray[np.int64]
 DECADES = 1.5  # of time, the last ones, in which slopes are fitted
 PARTS = 8  # of that range, left out one at a time for the uncertainty of a slope
 FEWEST = 4 * PARTS  # samples in it
-FLOOR = 0.1  # least uncertainty of a slope in the choice of a dimension: for what one window cannot show
+# least uncertainty of a slope in the choice of a dimension: for what one window cannot show
+FLOOR = 0.1
 ODD = 1 / 3  # a slope so far from every integer it should be decides nothing
 SURE = 0.95  # weight of a dimension that is called decided
 POWER = 3  # of t: no regular orbit has a |v| that outgrows it
@@ -56,7 +57,9 @@ class TorusDimension:
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Indices as they are judged. times (S,). growth (S,) : log |v_1|, natural. log10_gali (S, vectors-1).
+    """Indices as they are judged.
+
+    times : (S,). growth : log |v_1|, natural, (S,). log10_gali : (S, vectors-1).
 
     freedom : degrees of freedom n of the chain. decades : in which slopes are fitted.
     """
@@ -84,7 +87,8 @@ def torus_dimension(seen: Evidence) -> TorusDimension:
     """The verdict on an orbit that has kept its energy."""
     outgrown = outgrown_powers(seen.times, seen.growth)
     if outgrown > OUTGROWN:
-        reason = f"|v| has grown by e^{seen.growth[-1]:.3g}, by e^{outgrown:.3g} more than t^{POWER} does"
+        grown = f"|v| has grown by e^{seen.growth[-1]:.3g}"
+        reason = f"{grown}, by e^{outgrown:.3g} more than t^{POWER} does"
         return TorusDimension("chaotic", None, 0.0, {}, reason)
     steps = seen.steps(seen.decades)
     weights, best = _weights(steps, seen)
@@ -182,13 +186,17 @@ def _weights(steps: Floats, seen: Evidence) -> tuple[dict[int, float], int]:
 
 
 def _growth_doubt(seen: Evidence, outgrown: float) -> tuple[str, str]:
-    """How |v| grows, and why this is not, or not yet, as on a torus; the second is empty if it is."""
+    """How |v| grows, and why this is not, or not yet, as on a torus.
+
+    The second is empty if it is.
+    """
     exponent, error = seen.exponent()
     reason = f"|v| grows as t^{exponent:.2f} +- {error:.2f}"
     if exponent > 1 + ODD:
         return reason, (
             f", faster than on a torus, but not by so much that it must be chaos: "
-            f"by e^{outgrown:.2g} more than t^{POWER}, where e^{OUTGROWN:g} would do; take a longer time"
+            f"by e^{outgrown:.2g} more than t^{POWER}, where e^{OUTGROWN:g} would do; "
+            f"take a longer time"
         )
     if exponent < 1 - ODD:
         return reason, ", on a torus as t^1 in the end: take a longer time"
@@ -196,7 +204,10 @@ def _growth_doubt(seen: Evidence, outgrown: float) -> tuple[str, str]:
 
 
 def _slope_doubt(seen: Evidence, steps: Floats, best: int, weight: float) -> tuple[str, str]:
-    """The slope farthest from its integer, and whether slopes decide nothing or have not settled."""
+    """The slope farthest from its integer, and why slopes decide nothing or have not settled.
+
+    The second is empty if they decide.
+    """
     expected = expected_steps(best, seen.freedom, seen.vectors)
     j = int(np.argmax(np.abs(steps[:, 0] - expected)))
     slope, error = steps[j]
@@ -209,18 +220,15 @@ def _slope_doubt(seen: Evidence, steps: Floats, best: int, weight: float) -> tup
     late = seen.steps(seen.decades / 2)[:, 0]
     j = int(np.argmax(np.abs(late - expected)))
     if abs(late[j] - expected[j]) > ODD:
-        return (
-            reason,
-            f", and log GALI_{j + 2} - log GALI_{j + 1} ends with {late[j]:.2f}: take a longer time",
-        )
+        ending = f"log GALI_{j + 2} - log GALI_{j + 1} ends with {late[j]:.2f}"
+        return reason, f", and {ending}: take a longer time"
     return reason, ""
 
 
 def _length_doubt(seen: Evidence, s: int) -> str:
-    """Whether |v| has grown as t for too short a time to believe in a torus of dimension s; empty if not."""
-    special = (
-        s < seen.vectors and 2 * s <= seen.freedom
-    )  # an index falls, and more will not come to join s soon
+    """Whether |v| has grown as t for too short a time to believe in dimension s; empty if not."""
+    # an index falls, and more will not come to join s soon
+    special = s < seen.vectors and 2 * s <= seen.freedom
     regular = seen.freedom == 1  # knows no chaos
     needed = LOW if special or regular else FULL
     length = linear_decades(seen.times, seen.growth)

@@ -1,5 +1,6 @@
-"""The run behind the alignment indices: a frame from mark to mark, kept on disk and taken up
-again bitwise, and the time it will take.
+"""The run behind the alignment indices: a frame moved from mark to mark.
+
+It is kept on disk and taken up again bitwise; and the time that it will take.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ TRIAL = 0.2  # seconds of a measurement
 
 
 class OrbitLost(SymfpuError):
-    """An orbit that went to infinity, as orbits of the alpha model over its barrier do, or a step too long.
+    """An orbit that went to infinity.
+
+    As orbits of the alpha model over its barrier do; or the step is too long.
 
     Raised by `alignment_indices`. Ours.
 
@@ -51,9 +54,10 @@ class OrbitLost(SymfpuError):
 class FrameRun:
     """A frame after so many steps, the product of its triangular factors, and the samples so far.
 
-    marks : numbers of steps at which there are samples, (S,). longest : block, in steps. volumes
-    : log(R_jj / |R e_j|) at every mark, (S, vectors), and growth : log R_11, (S,), natural
-    logarithms. every : seconds between two checkpoints.
+    marks : numbers of steps at which there are samples, (S,). longest : block, in steps.
+    volumes : log(R_jj / |R e_j|) at every mark, (S, vectors), and growth : log R_11, (S,),
+        natural logarithms.
+    every : seconds between two checkpoints.
     """
 
     def __init__(
@@ -137,9 +141,9 @@ class FrameRun:
         }
 
     def _ends(self) -> Iterator[int]:
-        """Where loops end: at marks, and between them after portions that depend on the arguments
-        alone, since each end is also the end of a block: so an interrupted run rounds like one
-        that was not.
+        """Where loops end: at marks, and after portions that depend on the arguments alone.
+
+        Each end is also the end of a block: so an interrupted run rounds like one that was not.
         """
         while self.done < self.marks[-1]:
             following = int(self.marks[np.searchsorted(self.marks, self.done, side="right")])

@@ -1,5 +1,6 @@
-"""Many orbits as one array that a compiled loop moves: in the coordinates of the splitting of a
-scheme.
+"""Many orbits as one array that a compiled loop moves.
+
+The array holds the coordinates of the splitting of a scheme.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ Floats = NDArray[np.float64]
 class Motion:
     """Coordinates of M orbits, shape (M, 2, length), and how they move.
 
-    Bounds : of the bond stretches, for each orbit.
+    bounds : of the bond stretches, for each orbit.
     """
 
     def __init__(self, chain: Chain, scheme: Scheme, step: float, bounds: Floats) -> None:
@@ -69,8 +70,9 @@ class Motion:
     def look(
         self, state: Floats, looks: int, stride: int, each: Callable[..., Any]
     ) -> tuple[list[int], Floats, Floats]:
-        """Moves all orbits and looks at them every `stride` steps: steps done, and the Q and P
-        seen, shapes (M, looks, N-1).
+        """Moves all orbits and looks at them every `stride` steps.
+
+        Returns the steps done, and the Q and P seen, shapes (M, looks, N-1).
         """
         from symfpu.dynamics.orbit_loops import look_at_modes, look_at_particles
 

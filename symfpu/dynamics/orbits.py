@@ -1,5 +1,6 @@
-"""Orbits of the chain for long times: many at once, sampled at log-spaced times, with checkpoints
-from which they go on bitwise.
+"""Orbits of the chain for long times: many at once, sampled at log-spaced times.
+
+Checkpoints let them go on bitwise.
 """
 
 from __future__ import annotations
@@ -58,16 +59,17 @@ class Orbit:
     """An orbit, or several, at sampled times. Made by `integrate`; dimensionless.
 
     chain : the model. scheme : of the integrator, its coefficients. step : signed, as taken.
-    times : (S,), multiples of the step, from 0. Q, P : mode coordinates and momenta (Eq. lintra), shape
-        (S, ..., N-1).
+    times : (S,), multiples of the step, from 0. Q, P : mode coordinates and momenta (Eq. lintra),
+        shape (S, ..., N-1).
     energies : total energy H (Eq. fpuham2), shape (S, ...).
-    averages : time averages of the E_q (Eq. harmonicene) from 0 to each sample, shape (S, ..., N-1), if asked
-        for.
+    averages : time averages of the E_q (Eq. harmonicene) from 0 to each sample, shape
+        (S, ..., N-1), if asked for.
     seconds : of this run, without what a checkpoint brought.
 
     >>> from symfpu import Chain, integrate
     >>> integrate(Chain(N=4, beta=1), [0.1, 0, 0], [0, 0, 0], 100, step=0.125)
-    Orbit(N=4, beta=1, T=100, kahan_li8, step 0.125, 129 samples, H=0.00293214917955, energy error ...)
+    Orbit(N=4, beta=1, T=100, kahan_li8, step 0.125, 129 samples, H=0.00293214917955,
+    energy error ...)
     """
 
     chain: Chain
@@ -122,31 +124,35 @@ def integrate(
     workers: int = 1,
     progress: Callable[[int, int], None] | None = None,
 ) -> Orbit:
-    """The orbit from mode coordinates Q and momenta P at time 0 to T, sampled at multiples of the step.
+    """The orbit from mode coordinates Q and momenta P at time 0 to time T.
+
+    It is sampled at multiples of the step.
 
     chain : the model; Q, P, T and step are dimensionless.
     Q, P : shapes (..., N-1), many orbits at once.
     T : a time, negative for the past.
     step : its length is cut to a whole number of steps.
     scheme : of symfpu.dynamics.schemes; aba864_modes splits harmonic + anharmonic, others T + V.
-    samples : about how many, log-spaced from one step to T and 0; or times between 0 and T, shape (S,), each
-        moved to the nearest step.
-    averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if longer;
-        samples are then moved to looks.
-    file : written every so many seconds, at the end, and when the interrupt key is pressed, whole or not at
-        all; with the same arguments an interrupted or killed run goes on from it and ends in the same bits.
-        With a larger T, a multiple of the same step, it goes on too. Samples there are stay. A number of
-        samples is laid out for the new T, and those beyond the old are taken; times are taken as they are,
-        and where they have the old end among them the bits are those of a run to this T from the start.
+    samples : about how many, log-spaced from one step to T and 0; or times between 0 and T, shape
+        (S,), each moved to the nearest step.
+    averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if
+        longer; samples are then moved to looks.
+    file : written every so many seconds, at the end, and when the interrupt key is pressed, whole
+        or not at all; with the same arguments an interrupted or killed run goes on from it and
+        ends in the same bits. With a larger T, a multiple of the same step, it goes on too.
+        Samples there are stay. A number of samples is laid out for the new T, and those beyond
+        the old are taken; times are taken as they are, and where they have the old end among them
+        the bits are those of a run to this T from the start.
     every : those seconds.
     workers : threads, among which orbits are shared out.
     progress : called as (steps done, steps).
 
-    Solves Eq. eqmo, in particles or in modes. Section 3.2 averages P^2 + Omega^2 Q^2 without the factor 1/2;
-    the averages here are of Eq. harmonicene, with it.
-    Raises InputError, also for a file of other parameters or of a longer run, and for times before its end
-    that it has not; BundleError for one that is no checkpoint; UnstableStep and EscapedOrbit with time, mode
-    and energy; RunInterrupted, a KeyboardInterrupt, where there is a file.
+    Solves Eq. eqmo, in particles or in modes. Section 3.2 averages P^2 + Omega^2 Q^2 without the
+    factor 1/2; the averages here are of Eq. harmonicene, with it.
+    Raises InputError, also for a file of other parameters or of a longer run, and for times
+    before its end that it has not; BundleError for one that is no checkpoint; UnstableStep and
+    EscapedOrbit with time, mode and energy; RunInterrupted, a KeyboardInterrupt, where there is a
+    file.
 
     >>> integrate(Chain(N=2, beta=1), [0.0], [1.0], 100, step=0.125, samples=4).times
     array([  0.   ,   0.125,   1.125,  10.75 , 100.   ])
@@ -271,8 +277,10 @@ class _Run:
         return kept
 
     def _ends(self) -> Iterator[int]:
-        """Where loops end: at samples and after blocks of steps that depend on the chain and the
-        scheme alone, so that an interrupted run rounds like one that was not.
+        """Where loops end: at samples, and after blocks of steps.
+
+        Blocks depend on the chain and the scheme alone, so that an interrupted run rounds like
+        one that was not.
         """
         size = (
             self.chain.N

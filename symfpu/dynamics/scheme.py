@@ -1,6 +1,4 @@
-"""What an integrator is: drifts and kicks by turns, symmetric, of one splitting of the
-Hamiltonian.
-"""
+"""What an integrator is: drifts and kicks by turns, symmetric, of one splitting of H."""
 
 from __future__ import annotations
 
@@ -48,8 +46,9 @@ class Scheme:
         return self.splitting != "T + V"
 
     def merged(self, step: float) -> tuple[float, Floats, Floats]:
-        """First drift, kicks, and the drift after each kick in a row of steps of this length: the
-        last one leads into the next step.
+        """First drift, kicks, and the drift after each kick in a row of steps of this length.
+
+        The last drift leads into the next step.
         """
         first, *between, last = self.drifts
         kicks = step * np.array(self.kicks)
@@ -58,8 +57,9 @@ class Scheme:
 
     @cached_property
     def stable_phase(self) -> float:
-        """The largest z to which a mode with step * Omega below z stays bounded, by the trace of the
-        step of the harmonic chain.
+        """The largest z such that modes with step * Omega below z stay bounded.
+
+        By the trace of the step of the harmonic chain.
 
         Exact rotations are stable at any step; we stop where one of them passes a right angle,
         since steps of half a period resonate with the kicks.
@@ -72,7 +72,9 @@ class Scheme:
 
 
 def half_trace(scheme: Scheme, z: Floats) -> Floats:
-    """Half the trace of the step matrix of an oscillator of frequency z, T + V.
+    """Half the trace of the step matrix of an oscillator of frequency z, on T + V.
+
+    Outside of -1 .. 1 the step is unstable.
 
     Beyond -1..1 it is unstable.
     """
@@ -85,7 +87,8 @@ def half_trace(scheme: Scheme, z: Floats) -> Floats:
 
 
 def palindrome(half: Sequence[float], *, middle: bool) -> tuple[float, ...]:
-    """A symmetric row of coefficients from its first half, whose last entry is the middle one or
-    occurs twice.
+    """A symmetric row of coefficients from its first half.
+
+    The last entry of the half is the middle one, or occurs twice.
     """
     return (*half, *reversed(half[:-1] if middle else half))

@@ -1,5 +1,7 @@
-"""When an orbit is stopped: a step beyond stability, an escape over a barrier of the potential of
-the bonds, numbers that overflow.
+"""When an orbit is stopped.
+
+At a step beyond stability, an escape over a barrier of the potential of the bonds, or numbers
+that overflow.
 """
 
 from __future__ import annotations
@@ -30,7 +32,8 @@ class OrbitStopped(SymfpuError):
 
     Raised by `integrate` and its users. Ours.
 
-    time : of the stop; mode : of the largest (growth of) harmonic energy; energy : total; dimensionless.
+    time : of the stop; mode : of the largest (growth of) harmonic energy; energy : total;
+        dimensionless.
     orbit : its place among several, () for one.
     """
 
@@ -61,7 +64,7 @@ class EscapedOrbit(OrbitStopped):
 
 
 class UnstableStep(OrbitStopped):
-    """The step is beyond the stability of the scheme, or so coarse that energy is no longer conserved.
+    """The step is beyond the stability of the scheme, or too coarse to conserve the energy.
 
     Raised by `integrate`. Ours.
 
@@ -90,8 +93,9 @@ def potential(chain: Chain, r: float) -> float:
 
 
 def stretch_bounds(chain: Chain, energy: float) -> tuple[float, float, bool]:
-    """Stretches that no bond of an orbit of this energy leaves unless it escapes or the step is too
-    coarse; whether it can escape.
+    """Stretches that no bond of an orbit of this energy leaves, and whether it can escape.
+
+    A bond leaves them only if the orbit escapes or the step is too coarse.
 
     While all bonds are inside their wells each holds no more than the whole energy: it stays
     where V <= energy. Where that is beyond a barrier, the bond may pass, and has passed for good
@@ -119,8 +123,9 @@ def _bound(chain: Chain, energy: float, side: float) -> tuple[float, bool]:
 
 
 def _first(reached: Callable[[float], bool], low: float, high: float) -> float:
-    """Where a condition begins to hold between low and high, by bisection in the logarithm while
-    the numbers are far apart.
+    """Where a condition begins to hold between low and high, by bisection.
+
+    In the logarithm, while the numbers are far apart.
     """
     for _ in range(2 * BISECTIONS):
         middle = math.sqrt(max(low, 1e-200) * high) if high > 2 * low else 0.5 * (low + high)

@@ -108,8 +108,10 @@ def tangent_map_along(
 
     stretches : bond stretches r_j of the orbit at times (T,), shape (T, N), as often as wanted.
     scheme : on T + V; time runs with its drifts, so that forces given as functions of time keep
-    the order. Returns shape (2(N-1), 2(N-1)): rows and columns are Q_1 .. Q_(N-1), P_1 ..
-    P_(N-1). Raises InputError.
+        the order.
+
+    Returns shape (2(N-1), 2(N-1)); rows and columns are Q_1 .. Q_(N-1), P_1 .. P_(N-1).
+    Raises InputError.
     """
     from symfpu.dynamics.tangent_loops import carry_along
 

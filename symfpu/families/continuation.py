@@ -45,16 +45,18 @@ EASY, FACTOR = (
     1.3,
 )  # Newton steps up to which the next step along the way is longer, and by how much
 KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
-ASTRAY = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
+# distance from the predicted point, in steps, beyond which a member belongs to another family
+ASTRAY = 0.5
 UNRESOLVED = 1e-6  # residual beyond which a torus is no member
 REACHED = 1e-12  # relative: what an energy asked for and that of a member may differ by
 SPARE = 1e-6  # of the distance of two tori, by which one between them may seem to lie outside
-FAR = 0.3  # relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
+# relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
+FAR = 0.3
 
 
 @dataclass(frozen=True)
 class Level:
-    """An energy asked for: H, or with `harmonic` the harmonic energy sum E_q, at the angles zero."""
+    """An energy asked for, H or with `harmonic` sum E_q, at the angles zero."""
 
     energy: float
     harmonic: bool
@@ -90,12 +92,12 @@ class Level:
 class Member:
     """One torus of a family; dimensionless.
 
-    torus : the solution. amplitudes : by seed. energy : H, harmonic_energy : sum E_q, both at the angles
-        zero.
-    residual : of the equations of motion, relative to the largest acceleration. warnings : reasons to doubt
-        it.
-    multipliers : of a breather, if asked for. Ours; Appendix A has the linear specific energy of Eq. linespe
-        instead.
+    torus : the solution. amplitudes : by seed. energy : H, harmonic_energy : sum E_q, both at the
+        angles zero.
+    residual : of the equations of motion, relative to the largest acceleration.
+        warnings : reasons to doubt it.
+    multipliers : of a breather, if asked for. Ours; Appendix A has the linear specific energy of
+        Eq. linespe instead.
 
     >>> from symfpu import Chain, family
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").members[0]
@@ -135,13 +137,15 @@ class Member:
 
 @dataclass(frozen=True)
 class Event:
-    """Something on the way between the members `after` and `after` + 1 of a family; dimensionless. Ours.
+    """Something on the way between two members of a family; dimensionless. Ours.
 
-    kind : 'fold' (what : the quantity that turns), 'resonance' (a divisor changes its sign; mode, harmonic)
-        or 'stability' (what : the instability that begins or ends).
+    after : the number of the first of the two.
+    kind : 'fold' (what : the quantity that turns), 'resonance' (a divisor changes its sign; mode,
+        harmonic) or 'stability' (what : the instability that begins or ends).
     energy : H there. value : of the quantity that turns, or of the divisor's coefficient.
     mode, harmonic : q and nu, integers, shape (s,), of a resonance; else 0 and ().
-    interpolated : between the members, not found by Newton's method: good to some per cent of their distance.
+    interpolated : between the members, not found by Newton's method: good to some per cent of
+        their distance.
 
     >>> Event("resonance", "", 3, 0.0125, 1e-9, mode=5, harmonic=(3,))
     resonance of mode 5 with harmonic (3) at H = 0.0125, coefficient 1e-09
@@ -332,7 +336,7 @@ class Way:
         return np.concatenate([np.log(A), shifts_of(torus) / scales])
 
     def at(self, distance: float) -> RefinedTorus:
-        """The torus whose way from the last one, along the secant, has this length; raises NoTorus."""
+        """The torus at this length of way from the last one, along the secant; raises NoTorus."""
         last, before = self.tori[-1], self.tori[-2]
         scales = self.scales()
         x, difference = (
@@ -361,7 +365,7 @@ class Way:
         return found
 
     def between(self, level: Level) -> RefinedTorus:
-        """The torus of an energy between the last two, one below and one beyond it; raises NoTorus."""
+        """The torus of an energy between those of the last two; raises NoTorus."""
         before, last = self.tori[-2:]
         low, high = level.of(before), level.of(last)
         part = (level.energy - low) / (high - low)
@@ -380,7 +384,10 @@ class Way:
         return found
 
     def place(self, torus: RefinedTorus) -> tuple[float, float]:
-        """How far along the way between the last two tori another one is, and off it, in their distance."""
+        """How far along the way between the last two tori another one is, and how far off it.
+
+        Both in the distance of the two.
+        """
         scales = self.scales()
         start, end, here = (
             self.variables(x, scales).astype(float) for x in (*self.tori[-2:], torus)

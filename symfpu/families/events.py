@@ -58,7 +58,10 @@ class _Sign(NamedTuple):
 
 
 def _signs(first: RefinedTorus, second: RefinedTorus) -> list[_Sign]:
-    """The divisors of significant coefficients that change their sign between two tori, as they come."""
+    """The divisors of significant coefficients that change their sign between two tori.
+
+    As they come.
+    """
     rows = {tuple(nu): i for i, nu in enumerate(first.harmonics.tolist())}
     pairs = [
         (rows[nu], j) for j, nu in enumerate(map(tuple, second.harmonics.tolist())) if nu in rows
@@ -162,7 +165,10 @@ def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
 
 
 def folds(way: Way, after: int) -> Iterator[Event]:
-    """The quantities that turn about the middle of the last three tori, by parabolas through nearer ones."""
+    """The quantities that turn about the middle of the last three tori.
+
+    By parabolas through nearer ones.
+    """
     three = way.tori[-3:]
     if len(three) < 3:
         return
@@ -212,7 +218,9 @@ def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTo
 
 
 def crossing(way: Way, goal: Level) -> tuple[int, RefinedTorus] | None:
-    """The torus of the goal where the energy passes it and turns between the last three tori, all below.
+    """The torus of the goal where the energy turns between the last three tori.
+
+    All of them are below the goal, which the energy passes.
 
     With the number of these three that come before it. None where the energy does not turn, or
     below the goal. Raises NoTorus.
@@ -236,7 +244,10 @@ def _vertex(s: Sequence[float], y: Sequence[float]) -> float:
 
 
 def stability_change(way: Way, first: Member, second: Member, after: int) -> Event | None:
-    """The place between two breathers where one becomes unstable or stable, halved down from the step."""
+    """The place between two breathers where one becomes unstable or stable.
+
+    The step is halved down to it.
+    """
     if (
         first.multipliers is None
         or second.multipliers is None
@@ -273,7 +284,7 @@ def stability_change(way: Way, first: Member, second: Member, after: int) -> Eve
 
 
 def events_between(way: Way, first: Member, second: Member, after: int) -> list[Event]:
-    """What happens between two neighbours, the last of the way, and the folds at the first of them."""
+    """What happens between the last two members of the way, and the folds at the first of them."""
     change = stability_change(way, first, second, after)
     return [*folds(way, after - 1), *resonances(way, after), *([change] if change else [])]
 
@@ -296,7 +307,8 @@ def continued(
 
     Ends with NoTorus where the family cannot be followed.
 
-    members : so far, the last of the way; it grows with what is found. The member at the goal has its energy.
+    members : so far, the last of the way; it grows with what is found. The member at the goal has
+        its energy.
     """
     while True:
         way.advance(goal)

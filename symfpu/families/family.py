@@ -55,7 +55,9 @@ APPENDIX_MEMBERS = (
 
 
 class NotInFamily(SymfpuError):
-    """No member of a family has this energy or frequency: raised by `family`, `member_at_energy` and others.
+    """No member of a family has this energy or frequency.
+
+    Raised by `family`, `member_at_energy` and others.
 
     quantity : its name; value : asked for; reached : the range of the members, (least, largest);
         dimensionless.
@@ -75,13 +77,15 @@ class NotInFamily(SymfpuError):
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Tori of growing energy with one ratio of amplitudes or mode energies, and what happens on the way.
+    """Tori of growing energy with one ratio of amplitudes or mode energies.
+
+    And what happens on the way.
 
     Made by `family`; dimensionless. Ours, or Appendix A.
 
     chain, seeds : the model and the s modes. members : in order of the way.
-    events : folds, resonances and changes of stability, between members. ending : why it was not followed
-        further.
+    events : folds, resonances and changes of stability, between members. ending : why it was not
+        followed further.
     harmonic : whether its goal was a harmonic energy.
     energy_ratio : of the averaged mode energies by seed, where it is these that keep their ratio.
 
@@ -111,7 +115,8 @@ class Family:
         return (
             f"Family({repr(self.chain)[6:-1]}, seeds={','.join(map(str, self.seeds))}, "
             f"{len(self.members)} members{doubts}, "
-            f"H = {min(energies):.6g} .. {max(energies):.6g}, {events or 'no events'}; it {self.ending})"
+            f"H = {min(energies):.6g} .. {max(energies):.6g}, "
+            f"{events or 'no events'}; it {self.ending})"
         )
 
 
@@ -124,12 +129,13 @@ def _counted(n: int, kind: str) -> str:
 def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> RefinedTorus:
     """The torus of a family that has this energy, by Newton's method from the nearest member.
 
-    found : the family. energy : an exact number, dimensionless; H, or with `harmonic` sum E_q, both at the
-        angles zero.
+    found : the family. energy : an exact number, dimensionless; H, or with `harmonic` sum E_q,
+        both at the angles zero.
 
-    It keeps the ratio that the family keeps. A family by Appendix A keeps none: there the amplitudes have the
-    ratio of the nearest member. Eq. eqmo; ours.
-    Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine_at_energy` does.
+    It keeps the ratio that the family keeps. A family by Appendix A keeps none: there the
+    amplitudes have the ratio of the nearest member. Eq. eqmo; ours.
+    Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine_at_energy`
+    does.
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> round(float(member_at_energy(tori, "0.0007", harmonic=False).energy()), 12)
@@ -153,13 +159,15 @@ def member_at_frequency(found: Family, seed: int, frequency: Number) -> tuple[Re
 
     One for every pair of neighbouring members with the frequency between them.
 
-    found : the family. seed : one of its seeds. frequency : omega_seed, an exact number, dimensionless.
+    found : the family. seed : one of its seeds. frequency : omega_seed, an exact number,
+        dimensionless.
 
     They keep the ratio that the family keeps. Eq. eqmo; ours.
     Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine` does.
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
-    >>> [round(A, 9) for torus in member_at_frequency(tori, 1, "0.3902") for A in torus.amplitudes.values()]
+    >>> [torus] = member_at_frequency(tori, 1, "0.3902")
+    >>> [round(A, 9) for A in torus.amplitudes.values()]
     [0.099777085]
     """
     _require_family(found)
@@ -185,7 +193,7 @@ def _require_family(found: object) -> None:
 
 
 def _between(found: Family, k: int, place: int, omega: Fraction, part: float) -> RefinedTorus:
-    """The torus with this frequency, about as far on the way from member k to the next as `part` says."""
+    """The torus with this frequency, between member k and the next, near the given part."""
     seed = found.seeds[place]
     with mpmath.workdps(2 * DIGITS):
         exact_omega = mpmath.mpf(omega.numerator) / omega.denominator
@@ -219,23 +227,24 @@ def family(
 ) -> Family:
     """The family of tori of these seeds from small energy to `to_energy`.
 
-    chain, seeds : the model and distinct modes; energies, amplitudes and frequencies are dimensionless.
+    chain, seeds : the model and distinct modes; energies, amplitudes and frequencies are
+        dimensionless.
     to_energy : the goal, an exact number.
     harmonic : whether energies are sum E_q at the angles zero instead of H.
-    amplitude_ratio, energy_ratio : by seed, at most one; energy_ratio is of mode energies averaged over the
-        torus. Default equal mode energies.
-    from_energy : of the first member; default a thousandth of the goal, a tenth with 'appendix-a', or where
-        the family in the folder began; where the series there lead to no torus it is reached by a family from
-        below.
+    amplitude_ratio, energy_ratio : by seed, at most one; energy_ratio is of mode energies
+        averaged over the torus. Default equal mode energies.
+    from_energy : of the first member; default a thousandth of the goal, a tenth with
+        'appendix-a', or where the family in the folder began; where the series there lead to no
+        torus it is reached by a family from below.
     members : the most.
-    multipliers : of breathers, with changes of stability. tolerance : as for `refine`. Both only with
-        'arclength'.
-    method : 'arclength', Newton's method and pseudo-arclength continuation; or 'appendix-a', the algorithm of
-        the paper's Appendix A, corrected, whose members are truncated series of `order` and whose mode
-        energies grow alike (no ratio is kept).
+    multipliers : of breathers, with changes of stability. tolerance : as for `refine`. Both only
+        with 'arclength'.
+    method : 'arclength', Newton's method and pseudo-arclength continuation; or 'appendix-a', the
+        algorithm of the paper's Appendix A, corrected, whose members are truncated series of
+        `order` and whose mode energies grow alike (no ratio is kept).
     order : of those series.
-    folder : every member is kept there as a file at once; an interrupted family goes on from it, with other
-        goals too.
+    folder : every member is kept there as a file at once; an interrupted family goes on from it,
+        with other goals too.
     progress : called as (label, fraction done).
 
     The last member of a family that reaches its goal has this energy, to 1e-12. Of a folder with
@@ -243,9 +252,9 @@ def family(
     folder that version 0.1 wrote stay as they are: the first one has about from_energy. A family
     that cannot be followed to its goal is returned as far as it went; `ending` says where and why
     it ended. One that comes back to the linear limit ends there.
-    Raises InputError for arguments out of range and for a folder that holds another family; where there is no
-    first member, NoTorus, or NotInFamily if the family turns or ends below `from_energy`; RunInterrupted, a
-    KeyboardInterrupt, where there is a folder.
+    Raises InputError for arguments out of range and for a folder that holds another family; where
+    there is no first member, NoTorus, or NotInFamily if the family turns or ends below
+    `from_energy`; RunInterrupted, a KeyboardInterrupt, where there is a folder.
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> [round(member.energy, 6) for member in tori.members]
@@ -373,7 +382,9 @@ def _ended(kept: Kept, end: NoTorus, step: float) -> str:
 
 
 def _up_to_goal(plan: Plan, kept: Kept, at_goal: Callable[[int], Member]) -> Family:
-    """The part up to the goal of a family that was followed beyond it. Raises InputError if it begins beyond.
+    """The part up to the goal of a family that was followed beyond it.
+
+    Raises InputError if it begins beyond.
 
     at_goal : gives the member at the goal between a member, by its place, and the one before.
     """
@@ -395,9 +406,12 @@ def _refined(members: Sequence[Member]) -> list[RefinedTorus]:
 
 
 def _begun(plan: Plan, kept: Kept, report: Report, *, lower: bool) -> str:
-    """The first two members: from short series, or, where these fail, from a family that begins lower.
+    """The first two members: from short series, or from a family that begins lower.
 
-    lower : whether such a family is looked for. Returns why there is no second member; empty if there is.
+    The second where the first fail.
+
+    lower : whether such a family is looked for. Returns why there is no second member; empty if
+        there is.
     """
     if len(kept.members) >= min(2, plan.most):
         return ""
@@ -416,7 +430,10 @@ def _begun(plan: Plan, kept: Kept, report: Report, *, lower: bool) -> str:
 
 
 def _from_series(plan: Plan, kept: Kept, report: Report) -> list[RefinedTorus]:
-    """The torus of the first energy, or the one member there is, and one a little above, up to the goal."""
+    """The torus of the first energy, or the one member there is, and one a little above.
+
+    Both are below the goal, or at it.
+    """
     ratio = ratio_conditions(plan.seeds, plan.ratio, energies=plan.energies)
     begin = Level(plan.first, plan.harmonic)
     known = _refined(kept.members)
@@ -436,7 +453,7 @@ def _from_series(plan: Plan, kept: Kept, report: Report) -> list[RefinedTorus]:
 
 
 def _led_up(plan: Plan, kept: Kept, report: Report) -> tuple[list[RefinedTorus], str]:
-    """The torus of the first energy, at the end of a family from a small part of it, and the next one.
+    """The torus of the first energy, and the next one, by a family from a small part of it.
 
     With why there is no next one. Raises NotInFamily where that family does not reach the energy.
     """

@@ -1,4 +1,7 @@
-"""The checked arguments of a family; its members and events as they are kept, in memory and in a folder."""
+"""The checked arguments of a family, and its members and events as they are kept.
+
+In memory, and in a folder if there is one.
+"""
 
 from __future__ import annotations
 
@@ -177,7 +180,10 @@ def _seeds(described: Json) -> tuple[int, ...]:
 
 
 class Kept:
-    """Members and events so far, in memory and, if there is a folder, on disk after every member."""
+    """Members and events so far, in memory and after every member on disk.
+
+    On disk only if there is a folder.
+    """
 
     def __init__(self, plan: Plan, folder: Path | None) -> None:
         self.plan, self.folder = plan, folder
