@@ -83,18 +83,20 @@ class Level:
     def __call__(self, balance: Balance) -> Condition:
         def condition(z: Floats) -> tuple[float, Floats]:
             Q = balance.cosines(z).sum(axis=0)
-            if self.harmonic:
-                gradient = self.chain.frequencies() ** 2 * Q
-                value = float(gradient @ Q) / 2
-            else:
-                gradient, value = (
-                    -self.chain.accelerations(Q),
-                    float(self.chain.energy(Q, np.zeros_like(Q))),
-                )
+            value, gradient = self._at(Q)
             scale = self.energy / np.max(np.abs(z[:-1]))
-            return (value - self.energy) / scale, np.append(gradient[balance.q], 0.0) / scale
+            excess = (value - self.energy) / scale
+            return excess, np.append(gradient[balance.q], 0.0) / scale
 
         return condition
+
+    def _at(self, Q: Floats) -> tuple[float, Floats]:
+        """The energy of the state at rest Q, and its derivatives by Q."""
+        if self.harmonic:
+            gradient = self.chain.frequencies() ** 2 * Q
+            return float(gradient @ Q) / 2, gradient
+        energy = self.chain.energy(Q, np.zeros_like(Q))
+        return float(energy), -self.chain.accelerations(Q)
 
 
 def breather_at_energy(
@@ -125,37 +127,35 @@ def breather_at_energy(
     """
     (seed,), target = seed_modes((seed,), chain.N), _positive(energy)
     if not isinstance(harmonic, bool):
-        raise InputError(
-            "harmonic", harmonic, "True or False", "say whether energy means sum E_q at t = 0"
-        )
+        advice = "say whether energy means sum E_q at t = 0"
+        raise InputError("harmonic", harmonic, "True or False", advice)
+    goal = float(target)
     if guess is not None:
         member = _member(guess, chain, seed)
-        return orbit_near(
-            chain, seed, member.cosines, member.sigma, Level(chain, float(target), harmonic), REACH
-        )
+        level = Level(chain, goal, harmonic)
+        return orbit_near(chain, seed, member.cosines, member.sigma, level, REACH)
     members: list[tuple[float, PeriodicOrbit]] = []
-    aim, growth, iterations = float(target), LARGEST_GROWTH, 0
+    aim, growth, iterations = goal, LARGEST_GROWTH, 0
     while True:
         try:
             orbit = _next(chain, seed, aim, harmonic, members[-2:])
         except NoPeriodicOrbit as failure:
             if not members:
                 aim /= LARGEST_GROWTH
-                if aim > SMALLEST_START * float(target):
+                if aim > SMALLEST_START * goal:
                     continue
             elif growth - 1 > SMALLEST_GROWTH:
                 growth = growth**0.5
-                aim = min(float(target), members[-1][0] * growth)
+                aim = min(goal, members[-1][0] * growth)
                 continue
-            raise NoBreatherAtEnergy(
-                seed, float(target), harmonic, members[-1][1] if members else None, failure
-            ) from failure
+            last = members[-1][1] if members else None
+            raise NoBreatherAtEnergy(seed, goal, harmonic, last, failure) from failure
         iterations += orbit.iterations
-        if aim == float(target):
+        if aim == goal:
             return replace(orbit, iterations=iterations)
         members.append((aim, orbit))
         growth = min(LARGEST_GROWTH, growth**1.5)
-        aim = min(float(target), aim * growth)
+        aim = min(goal, aim * growth)
 
 
 def _positive(energy: Number) -> Fraction:
@@ -170,12 +170,8 @@ def _member(guess: object, chain: Chain, seed: int) -> PeriodicOrbit:
     member = as_periodic_orbit(guess, "guess", ONE_SEED)
     if (member.chain, member.seed) != (chain, seed):
         given = f"of seed {member.seed}, {member.chain!r}"
-        raise InputError(
-            "guess",
-            given,
-            f"a solution of seed {seed} of the same chain",
-            "take a member nearby, or None",
-        )
+        allowed = f"a solution of seed {seed} of the same chain"
+        raise InputError("guess", given, allowed, "take a member nearby, or None")
     return member
 
 
@@ -192,36 +188,39 @@ def _next(
     members: list[tuple[float, PeriodicOrbit]],
 ) -> PeriodicOrbit:
     """The member at an energy near those of the last two, or near the linear mode."""
+    level = Level(chain, energy, harmonic)
     if not members:
-        linear = float(chain.frequencies()[seed - 1])
-        cosines = np.zeros((2, chain.N - 1))
-        cosines[1, seed - 1] = (2 * energy) ** 0.5 / linear
-        shift = frequency_shift(chain, {seed: float(cosines[1, seed - 1])})[seed]
-        return orbit_near(
-            chain,
-            seed,
-            cosines,
-            shift * (2 * linear + shift),
-            Level(chain, energy, harmonic),
-            REACH,
-        )
-    last, member = members[-1]
-    ratio = energy / last
-    if len(members) == 1:
-        return orbit_near(
-            chain,
-            seed,
-            member.cosines * ratio**0.5,
-            member.sigma * ratio,
-            Level(chain, energy, harmonic),
-            REACH,
-        )
-    first, before = members[0]
+        cosines, sigma = _linear_guess(chain, seed, energy)
+    elif len(members) == 1:
+        [(last, member)] = members
+        ratio = energy / last
+        cosines, sigma = member.cosines * ratio**0.5, member.sigma * ratio
+    else:
+        cosines, sigma = _secant_guess(members, energy)
+    return orbit_near(chain, seed, cosines, sigma, level, REACH)
+
+
+def _linear_guess(chain: Chain, seed: int, energy: float) -> tuple[Floats, float]:
+    """Cosines and sigma of the linear mode of this energy, with the lowest shift."""
+    linear = float(chain.frequencies()[seed - 1])
+    amplitude = (2 * energy) ** 0.5 / linear
+    cosines = np.zeros((2, chain.N - 1))
+    cosines[1, seed - 1] = amplitude
+    shift = frequency_shift(chain, {seed: amplitude})[seed]
+    return cosines, shift * (2 * linear + shift)
+
+
+def _secant_guess(
+    members: list[tuple[float, PeriodicOrbit]], energy: float
+) -> tuple[Floats, float]:
+    """Cosines on the secant in the square root of the energy, sigma on that in the energy."""
+    (first, before), (last, member) = members
     weight = (energy**0.5 - last**0.5) / (last**0.5 - first**0.5)
-    old = np.zeros((max(len(before.cosines), len(member.cosines)), chain.N - 1))
+    length = max(len(before.cosines), len(member.cosines))
+    old = np.zeros((length, before.cosines.shape[1]))
     new = old.copy()
-    old[: len(before.cosines)], new[: len(member.cosines)] = before.cosines, member.cosines
-    sigma = member.sigma + (energy - last) / (last - first) * (member.sigma - before.sigma)
-    return orbit_near(
-        chain, seed, new + weight * (new - old), sigma, Level(chain, energy, harmonic), REACH
-    )
+    old[: len(before.cosines)] = before.cosines
+    new[: len(member.cosines)] = member.cosines
+    slope = (energy - last) / (last - first)
+    sigma = member.sigma + slope * (member.sigma - before.sigma)
+    return new + weight * (new - old), sigma

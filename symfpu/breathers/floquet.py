@@ -96,7 +96,9 @@ class Floquet:
     def instabilities(self) -> dict[str, int]:
         """Number of unstable pairs, or of quadruples, by kind; empty if stable."""
         counts = Counter(kind for kind in self.kinds if kind not in (TRIVIAL, ELLIPTIC))
-        return {kind: count // 2 if kind == QUADRUPLE else count for kind, count in counts.items()}
+        if QUADRUPLE in counts:
+            counts[QUADRUPLE] //= 2
+        return dict(counts)
 
     @property
     def largest(self) -> float:
@@ -110,7 +112,8 @@ def monodromy(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floats:
     scheme : of the integrator, on T + V. Returns shape (2(N-1), 2(N-1)). Raises InputError.
     """
     periodic = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
-    return _whole(_half(periodic, particle_scheme(scheme))[0])
+    half, _ = _half(periodic, particle_scheme(scheme))
+    return _whole(half)
 
 
 def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
@@ -137,46 +140,54 @@ def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]
     force = periodic.chain.accelerations(periodic.positions(0.0))
-    basis = np.linalg.svd(force[None, :])[
-        2
-    ].T  # the acceleration, then an orthonormal basis of what is perpendicular to it
-    flow, rest = basis[:, 0], basis[:, 1:]
+    # the acceleration, then an orthonormal basis of what is perpendicular to it
+    _, _, basis = np.linalg.svd(force[None, :])
+    flow, rest = basis.T[:, 0], basis.T[:, 1:]
     trivial = float(np.linalg.norm(C.T @ (B @ flow)))
-    error = map_error * float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2)) + trivial
+    sizes = float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2))
+    error = map_error * sizes + trivial
     kappa, left, right = eig(rest.T @ B.T @ C @ rest, left=True)
-    tolerance = (
-        SAFETY
-        * error
-        / np.maximum(np.abs(np.einsum("ij,ij->j", left.conj(), right)), np.finfo(float).tiny)
-    )
+    cosines = np.abs(np.einsum("ij,ij->j", left.conj(), right))
+    tolerance = SAFETY * error / np.maximum(cosines, np.finfo(float).tiny)
     kinds = [_kind(k, t) for k, t in zip(kappa, tolerance, strict=True)]
     pairs = np.array([_pair(k, kind) for k, kind in zip(kappa, kinds, strict=True)]).reshape(-1, 2)
-    order = np.lexsort((np.angle(pairs[:, 0]), -np.abs(pairs[:, 0]).round(12)))
-    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    larger = pairs[:, 0]
+    order = np.lexsort((np.angle(larger), -np.abs(larger).round(12)))
     return Floquet(
-        orbit,
-        np.vstack([[[1.0, 1.0]], pairs[order]]),
-        (TRIVIAL, *(kinds[i] for i in order)),
-        np.append(0.0, kappa[order]),
-        np.append(SAFETY * error, tolerance[order]),
-        whole,
-        float(np.max(np.abs(whole.T @ J @ whole - J))),
-        map_error,
-        trivial,
+        orbit=orbit,
+        pairs=np.vstack([[[1.0, 1.0]], pairs[order]]),
+        kinds=(TRIVIAL, *(kinds[i] for i in order)),
+        kappa=np.append(0.0, kappa[order]),
+        tolerance=np.append(SAFETY * error, tolerance[order]),
+        monodromy=whole,
+        symplecticity=_symplecticity_error(whole),
+        map_error=map_error,
+        trivial_error=trivial,
     )
+
+
+def _symplecticity_error(M: Floats) -> float:
+    """Largest entry of M^T J M - J."""
+    n = len(M) // 2
+    zero, one = np.zeros((n, n)), np.eye(n)
+    J = np.block([[zero, one], [-one, zero]])
+    return float(np.max(np.abs(M.T @ J @ M - J)))
 
 
 def _half(orbit: PeriodicOrbit, scheme: Scheme) -> tuple[Floats, float]:
     """The tangent map over half a period and its estimated error, in the spectral norm."""
-    chain, duration = orbit.chain, np.pi / float(orbit.frequency)
-    r = chain.stretches(orbit.positions(np.linspace(0, duration, 2 * len(orbit.cosines))))
+    chain, omega = orbit.chain, float(orbit.frequency)
+    duration = np.pi / omega
+    times = np.linspace(0, duration, 2 * len(orbit.cosines))
+    r = chain.stretches(orbit.positions(times))
     stiffest = float(np.max(np.abs(bonds.stiffness(chain.law(), r))))
     steps = int(np.ceil(duration * np.sqrt(stiffest) / FIRST_STEP))
     coefficients = chain.stretches(orbit.cosines)
-    rates = np.arange(len(coefficients)) * float(orbit.frequency)
+    rates = np.arange(len(coefficients)) * omega
 
     def stretches(t: Floats) -> Floats:
-        return np.asarray(np.cos(np.multiply.outer(t, rates)) @ coefficients)
+        angles = np.multiply.outer(t, rates)
+        return np.asarray(np.cos(angles) @ coefficients)
 
     coarse = tangent_map_along(chain, stretches, duration, steps, scheme=scheme)
     for _ in range(DOUBLINGS):
@@ -186,14 +197,18 @@ def _half(orbit: PeriodicOrbit, scheme: Scheme) -> tuple[Floats, float]:
         if error <= ACCURACY * max(1.0, float(np.max(np.abs(fine)))):
             break
         coarse = fine
-    return fine, error + np.sqrt(steps) * float(np.finfo(float).eps * np.linalg.norm(fine, 2))
+    rounding = float(np.finfo(float).eps * np.linalg.norm(fine, 2))
+    return fine, error + np.sqrt(steps) * rounding
 
 
 def _whole(half: Floats) -> Floats:
     """R H^-1 R H with the symplectic inverse."""
     n = len(half) // 2
-    A, B, C, D = half[:n, :n], half[:n, n:], half[n:, :n], half[n:, n:]
-    return np.block([[D.T, B.T], [C.T, A.T]]) @ half
+    upper, lower = half[:n], half[n:]
+    A, B = upper[:, :n], upper[:, n:]
+    C, D = lower[:, :n], lower[:, n:]
+    reversed_half = np.block([[D.T, B.T], [C.T, A.T]])  # R H^-1 R
+    return reversed_half @ half
 
 
 def _kind(kappa: complex, tolerance: float) -> str:
@@ -211,7 +226,8 @@ def _pair(kappa: complex, kind: str) -> tuple[complex, complex]:
     """
     if kind == ELLIPTIC:
         angle = 2 * np.arcsin(np.sqrt(np.clip(-kappa.real, 0.0, 1.0)))
-        return complex(np.cos(angle), np.sin(angle)), complex(np.cos(angle), -np.sin(angle))
+        x, y = np.cos(angle), np.sin(angle)
+        return complex(x, y), complex(x, -y)
     if kind != QUADRUPLE:
         kappa = complex(kappa.real, 0.0)
     root = np.sqrt(kappa + 1 + 0j) + np.sqrt(kappa + 0j)

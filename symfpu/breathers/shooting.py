@@ -150,9 +150,8 @@ def _analysed(orbit: ShotOrbit) -> Floats:
         if np.max(relative[-samples // 8 :]) <= TAIL:
             last = int(np.flatnonzero(relative > NOISE)[-1])
             return np.asarray(cosines[: max(last, 1) + 1])
-    reason = (
-        f"the last of {samples} harmonics of the orbit is still {relative[-1]:.1g} of the largest"
-    )
+    last_one = f"the last of {samples} harmonics of the orbit"
+    reason = f"{last_one} is still {relative[-1]:.1g} of the largest"
     raise ShootingFailed(orbit.seed, reason, orbit.start, orbit.history)
 
 
@@ -202,25 +201,30 @@ def shoot(
     integrator = particle_scheme(scheme)
     if guess is None:
         start = np.zeros(chain.N - 1)
-        start[seed - 1] = lowest_amplitude(chain, seed, detuning(chain, seed, omega)[0])
+        shift, _ = detuning(chain, seed, omega)
+        start[seed - 1] = lowest_amplitude(chain, seed, shift)
     else:
         start = _start(chain, seed, guess)
-    modes = np.arange(1, chain.N)
-    allowed = (
-        (modes - seed) % 2 == 0 if chain.alpha == 0 or seed % 2 == 0 else np.full(len(modes), True)
-    )
+    allowed = np.full(chain.N - 1, True)
+    if chain.alpha == 0 or seed % 2 == 0:
+        allowed = (np.arange(1, chain.N) - seed) % 2 == 0
     start = np.where(allowed, start, 0.0)
     half, rate = np.pi / float(omega), float(omega)
     steps = _steps(chain, integrator, seed, start, half)
     start, history = _newton(chain, integrator, seed, start, np.flatnonzero(allowed), half, steps)
-    none = np.zeros((0, chain.N - 1))
-    step = half / (2 * steps)
-    Q, P, *_ = tangent_steps(
-        chain, start, 0 * start, none, none, step, 4 * steps, scheme=integrator
-    )
+    Q, P = _moved(chain, integrator, start, half / (2 * steps), 4 * steps)
     distance = max(np.max(np.abs(Q - start)), np.max(np.abs(P)) / rate)
     closure = float(distance / np.max(np.abs(start)))
     return ShotOrbit(chain, (seed,), (omega,), start, closure, history, steps)
+
+
+def _moved(
+    chain: Chain, scheme: Scheme, start: Floats, step: float, count: int
+) -> tuple[Floats, Floats]:
+    """Q and P after so many steps from the start at rest."""
+    none = np.zeros((0, chain.N - 1))
+    Q, P, *_ = tangent_steps(chain, start, 0 * start, none, none, step, count, scheme=scheme)
+    return Q, P
 
 
 def _newton(
@@ -238,71 +242,60 @@ def _newton(
     """
     directions = np.eye(chain.N - 1)[free]
     still = 0 * directions
-    size, before, history, best = float(np.max(np.abs(start))), np.inf, [], start
+    history: list[float] = []
+    size, before, best = float(np.max(np.abs(start))), np.inf, start
+
+    def failed(reason: str) -> ShootingFailed:
+        return ShootingFailed(seed, reason, best, tuple(history))
+
     for _ in range(ITERATIONS + 1):
         state = start, 0 * start
         moved = tangent_steps(chain, *state, directions, still, half / steps, steps, scheme=scheme)
         _, P, _, slopes = moved
-        history.append(float(np.max(np.abs(P)) * half / (np.pi * np.max(np.abs(start)))))
-        if not np.isfinite(history[-1]):
-            raise ShootingFailed(
-                seed, "the motion runs away to infinity", best, tuple(history[:-1])
-            )
-        best = start if history[-1] == min(history) else best
-        if before <= STEP or (
-            before < ROUNDING_STEP and len(history) > 2 and history[-1] > history[-2] / 2
-        ):
+        velocity = np.pi * np.max(np.abs(start))  # omega max|Q| times half a period
+        residual = float(np.max(np.abs(P)) * half / velocity)
+        if not np.isfinite(residual):
+            raise failed("the motion runs away to infinity")
+        history.append(residual)
+        best = start if residual == min(history) else best
+        stalled = len(history) > 2 and residual > history[-2] / 2
+        if before <= STEP or (before < ROUNDING_STEP and stalled):
             return best, tuple(history)
         try:
             step = np.linalg.solve(slopes[:, free].T, P[free])
         except np.linalg.LinAlgError:
-            raise ShootingFailed(
-                seed, "the matrix of Newton's method is singular", best, tuple(history)
-            ) from None
+            raise failed("the matrix of Newton's method is singular") from None
         start = start.copy()
         start[free] -= step
         reached = float(np.max(np.abs(start)))
         if not size / GROWTH < reached < size * GROWTH:
-            raise ShootingFailed(
-                seed,
-                f"the largest coordinate goes from {size:.3g} to {reached:.3g}",
-                best,
-                tuple(history),
-            )
+            raise failed(f"the largest coordinate goes from {size:.3g} to {reached:.3g}")
         before = float(np.max(np.abs(step))) / reached
-    raise ShootingFailed(seed, f"no convergence in {ITERATIONS} steps", best, tuple(history))
+    raise failed(f"no convergence in {ITERATIONS} steps")
 
 
 def _start(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
+    shape = f"shape ({chain.N - 1},)"
     try:
         start = np.array(guess, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError(
-            "guess", guess, f"an array of shape ({chain.N - 1},)", "pass numbers"
-        ) from error
+        raise InputError("guess", guess, f"an array of {shape}", "pass numbers") from error
     if start.shape != (chain.N - 1,):
-        raise InputError(
-            "guess", start.shape, f"the shape ({chain.N - 1},)", "pass the mode coordinates Q(0)"
-        )
-    if not np.isfinite(start).all() or start[seed - 1] == 0:
-        raise InputError(
-            "guess",
-            start[seed - 1],
-            f"finite numbers, Q_{seed}(0) not 0",
-            "give the seed an amplitude",
-        )
+        advice = "pass the mode coordinates Q(0)"
+        raise InputError("guess", start.shape, f"the {shape}", advice)
+    given = start[seed - 1]
+    if not np.isfinite(start).all() or given == 0:
+        allowed = f"finite numbers, Q_{seed}(0) not 0"
+        raise InputError("guess", given, allowed, "give the seed an amplitude")
     return start
 
 
 def _steps(chain: Chain, scheme: Scheme, seed: int, start: Floats, half: float) -> int:
     """Steps with which half a period from the guess is integrated to ACCURACY."""
-    steps, none = int(np.ceil(half / FIRST_STEP)), np.zeros((0, chain.N - 1))
+    steps = int(np.ceil(half / FIRST_STEP))
 
     def end(steps: int) -> Floats:
-        Q, P, *_ = tangent_steps(
-            chain, start, 0 * start, none, none, half / steps, steps, scheme=scheme
-        )
-        return np.concatenate([Q, P])
+        return np.concatenate(_moved(chain, scheme, start, half / steps, steps))
 
     coarse = end(steps)
     for _ in range(DOUBLINGS):
@@ -310,7 +303,8 @@ def _steps(chain: Chain, scheme: Scheme, seed: int, start: Floats, half: float) 
         fine = end(steps)
         if not np.isfinite(fine).all():
             raise ShootingFailed(seed, "the motion from the guess runs away to infinity", start, ())
-        if np.max(np.abs(fine - coarse)) <= (2**scheme.order - 1) * ACCURACY * np.max(np.abs(fine)):
+        wanted = (2**scheme.order - 1) * ACCURACY * np.max(np.abs(fine))
+        if np.max(np.abs(fine - coarse)) <= wanted:
             break
         coarse = fine
     return steps
