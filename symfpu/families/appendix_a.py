@@ -54,12 +54,8 @@ HALVINGS = 12  # of Delta omega
 ASTRAY = 0.5
 PLACE = 1e-15  # of an energy between two tori, in their distance or in ln A
 BEYOND = 1.2  # what a step that is to pass an energy is longer than the estimate
-NO_ROOT = (
-    NoRealAmplitude,
-    DidNotConverge,
-    InputError,
-    UndeterminedAmplitudes,
-)  # InputError: resonant or negative frequencies
+# InputError: resonant or negative frequencies
+NO_ROOT = (NoRealAmplitude, DidNotConverge, InputError, UndeterminedAmplitudes)
 
 
 class NoFurtherMember(SymfpuError):

@@ -21,7 +21,7 @@ from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import SymfpuError
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import Amplitude, Condition, Energy, Plane, ratio_conditions
-from symfpu.refinement.invariance import DIGITS, Floats
+from symfpu.refinement.invariance import DIGITS, Floats, Ints
 from symfpu.refinement.newton import Report
 from symfpu.refinement.tori import (
     TOLERANCE,
@@ -37,13 +37,10 @@ from symfpu.tori.torus import QTorus
 
 GUESS_ORDER = 2  # of the series that begins a family
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
-DOUBTFUL_STEP = (
-    0.05  # the smallest from a doubtful member: near a saddle such ones crawl on without end
-)
-EASY, FACTOR = (
-    4,
-    1.3,
-)  # Newton steps up to which the next step along the way is longer, and by how much
+# the smallest from a doubtful member: near a saddle such ones crawl on without end
+DOUBTFUL_STEP = 0.05
+EASY = 4  # Newton steps up to which the next step along the way is longer
+FACTOR = 1.3  # by how much
 KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
 # distance from the predicted point, in steps, beyond which a member belongs to another family
 ASTRAY = 0.5
@@ -118,18 +115,12 @@ class Member:
         return "doubtful" if self.warnings else "torus"
 
     def __repr__(self) -> str:
-        rates = ", ".join(
-            f"omega_{q}={float(w):.12g}"
-            for q, w in zip(self.torus.seeds, self.torus.frequencies, strict=True)
-        )
+        by_seed = zip(self.torus.seeds, self.torus.frequencies, strict=True)
+        rates = ", ".join(f"omega_{q}={float(w):.12g}" for q, w in by_seed)
         amplitudes = ", ".join(f"A_{q}={a:.8g}" for q, a in self.amplitudes.items())
-        stability = (
-            ""
-            if self.multipliers is None
-            else ", stable"
-            if self.multipliers.stable
-            else ", unstable"
-        )
+        stability = ""
+        if self.multipliers is not None:
+            stability = ", stable" if self.multipliers.stable else ", unstable"
         doubts = "".join(f"; {w}" for w in self.warnings)
         where = f"H={self.energy:.10g}, {rates}, {amplitudes}, residual {self.residual:.2g}"
         return f"Member({self.verdict}, {where}{stability}{doubts})"
@@ -161,18 +152,15 @@ class Event:
     interpolated: bool = False
 
     def __repr__(self) -> str:
-        where = (
-            f"H = {self.energy:.3g} (interpolated)"
-            if self.interpolated
-            else f"H = {self.energy:.10g}"
-        )
+        where = f"H = {self.energy:.10g}"
+        if self.interpolated:
+            where = f"H = {self.energy:.3g} (interpolated)"
         if self.kind == "resonance":
             harmonic = ",".join(map(str, self.harmonic))
             what = f"mode {self.mode} with harmonic ({harmonic})"
             return f"resonance of {what} at {where}, coefficient {self.value:.2g}"
-        return f"{self.kind}: {self.what} at {where}" + (
-            f", {self.value:.10g}" if self.kind == "fold" else ""
-        )
+        value = f", {self.value:.10g}" if self.kind == "fold" else ""
+        return f"{self.kind}: {self.what} at {where}{value}"
 
 
 def first_torus(
@@ -210,12 +198,9 @@ def first_at(
     ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found
     are far from those of the series: a torus of another family may have the energy.
     """
-    found = refined_torus(
-        _short_series(chain, amplitudes),
-        [level.condition, *ratio],
-        tolerance=tolerance,
-        report=report,
-    )
+    guess = _short_series(chain, amplitudes)
+    conditions = [level.condition, *ratio]
+    found = refined_torus(guess, conditions, tolerance=tolerance, report=report)
     astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
     if astray > FAR:
         raise NoTorus(f"an amplitude is {astray:.0%} off the one expected", found, found.residual())
@@ -226,12 +211,11 @@ def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
     """The series of lowest orders about the frequencies that these amplitudes shift."""
     shifts = frequency_shift(chain, amplitudes)
     with mpmath.workdps(DIGITS):
-        omega = [
-            Fraction(text(chain.linear_frequency(q) + mpmath.mpf(shifts[q]), 25))
-            for q in amplitudes
-        ]
+        shifted = [chain.linear_frequency(q) + mpmath.mpf(shifts[q]) for q in amplitudes]
+        omega = [Fraction(text(w, 25)) for w in shifted]
     series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
-    return QTorus(series, dict(amplitudes), dict.fromkeys(amplitudes, 0.0), 0, GUESS_ORDER)
+    phases = dict.fromkeys(amplitudes, 0.0)
+    return QTorus(series, dict(amplitudes), phases, 0, GUESS_ORDER)
 
 
 def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
@@ -250,7 +234,8 @@ def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
 def series_member(torus: QTorus) -> Member:
     """A torus of a series with its energies and its residual."""
     amplitudes = {q: float(a) for q, a in torus.amplitudes.items()}
-    energy, harmonic = float(torus.energy()), float(torus.harmonic_energies().sum())
+    energy = float(torus.energy())
+    harmonic = float(torus.harmonic_energies().sum())
     return Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings)
 
 
@@ -262,8 +247,10 @@ def returned(members: Sequence[Member], *, tolerance: float) -> bool:
     Two tori of the same amplitudes nearer to each other than the root of the tolerance are one:
     Newton's method leads from one to the other.
     """
-    first, last = members[0], members[-1]
-    if len(members) < 3 or not last.energy < min(first.energy, members[-2].energy):
+    if len(members) < 3:
+        return False
+    first, (before, last) = members[0], members[-2:]
+    if not last.energy < min(first.energy, before.energy):
         return False
     if any(abs(last.amplitudes[q]) >= abs(a) for q, a in first.amplitudes.items()):
         return False
@@ -271,17 +258,9 @@ def returned(members: Sequence[Member], *, tolerance: float) -> bool:
         other = first_torus(first.torus.chain, last.amplitudes, tolerance=tolerance)
     except SymfpuError:
         return False
-    rows = {tuple(nu): i for i, nu in enumerate(other.harmonics.tolist())}
-    zero = 0 * other.cosines[0]
-    same = np.array(
-        [
-            other.cosines[rows[nu]] if nu in rows else zero
-            for nu in map(tuple, last.torus.harmonics.tolist())
-        ]
-    )
-    return bool(
-        np.abs(last.torus.cosines - same).max() < np.sqrt(tolerance) * np.abs(other.cosines).max()
-    )
+    same = _cosines_at(last.torus.harmonics, other, 0 * other.cosines[0])
+    difference = np.abs(last.torus.cosines - same).max()
+    return bool(difference < np.sqrt(tolerance) * np.abs(other.cosines).max())
 
 
 class Way:
@@ -319,49 +298,43 @@ class Way:
 
         The largest relative one, not far below any before.
         """
-        linear = self.tori[0].chain.frequencies()[np.array(self.tori[0].seeds) - 1]
-        relative = [
-            float(np.max(np.abs(shifts_of(torus)).astype(float) / linear))
-            for torus in self.tori[-2:]
-        ]
+        torus = self.tori[0]
+        linear = torus.chain.frequencies()[np.array(torus.seeds) - 1]
+        shifts = [np.abs(shifts_of(torus)).astype(float) for torus in self.tori[-2:]]
+        relative = [float(np.max(shift / linear)) for shift in shifts]
         self.largest = max(self.largest, *relative)
-        return np.asarray(max(relative[-1], KEPT_SCALE * self.largest) * linear)
+        size = max(relative[-1], KEPT_SCALE * self.largest)
+        return np.asarray(size * linear)
 
-    def _conditions(self, plane: Plane) -> list[Condition]:
-        return [plane, *ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)]
+    def _conditions(self, first: Condition) -> list[Condition]:
+        """A condition, and the ratio that the family keeps."""
+        ratio = ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)
+        return [first, *ratio]
 
     def variables(self, torus: RefinedTorus, scales: Floats) -> Floats:
         """Where a torus is, (ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
         A = np.array([np.longdouble(abs(a)) for a in torus.amplitudes.values()])
-        return np.concatenate([np.log(A), shifts_of(torus) / scales])
+        shifts = shifts_of(torus) / scales
+        return np.concatenate([np.log(A), shifts])
 
     def at(self, distance: float) -> RefinedTorus:
         """The torus at this length of way from the last one, along the secant; raises NoTorus."""
-        last, before = self.tori[-1], self.tori[-2]
+        before, last = self.tori[-2:]
         scales = self.scales()
-        x, difference = (
-            self.variables(last, scales),
-            self.variables(last, scales) - self.variables(before, scales),
-        )
+        x = self.variables(last, scales)
+        difference = x - self.variables(before, scales)
         length = float(np.linalg.norm(difference.astype(float)))
         tangent = (difference / length).astype(float)
         plane = Plane(tuple(x), tuple(tangent.tolist()), tuple(scales.tolist()), distance)
-        found = refined_torus(
-            extrapolated(before, last, distance / length),
-            self._conditions(plane),
-            tolerance=self.tolerance,
-            report=self.report,
-        )
+        guess = extrapolated(before, last, distance / length)
+        conditions = self._conditions(plane)
+        found = refined_torus(guess, conditions, tolerance=self.tolerance, report=self.report)
         _require_resolved(found)
-        off = float(
-            np.linalg.norm((self.variables(found, scales) - x).astype(float) - distance * tangent)
-        )
+        gone = (self.variables(found, scales) - x).astype(float)
+        off = float(np.linalg.norm(gone - distance * tangent))
         if off > ASTRAY * max(abs(distance), SMALLEST_STEP):
-            raise NoTorus(
-                f"the torus found is {off / abs(distance):.2g} steps off the way",
-                found,
-                found.residual(),
-            )
+            reason = f"the torus found is {off / abs(distance):.2g} steps off the way"
+            raise NoTorus(reason, found, found.residual())
         return found
 
     def between(self, level: Level) -> RefinedTorus:
@@ -369,18 +342,14 @@ class Way:
         before, last = self.tori[-2:]
         low, high = level.of(before), level.of(last)
         part = (level.energy - low) / (high - low)
-        ratio = ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)
-        conditions = [level.condition, *ratio]
+        conditions = self._conditions(level.condition)
         guess = extrapolated(before, last, part - 1)
         found = refined_torus(guess, conditions, tolerance=self.tolerance, report=self.report)
         _require_resolved(found)
         along, astray = self.place(found)
         if astray > ASTRAY or not -SPARE <= along <= 1 + SPARE:
-            raise NoTorus(
-                f"the torus of {level.name} = {level.energy:.6g} is not between two neighbours",
-                found,
-                found.residual(),
-            )
+            torus = f"the torus of {level.name} = {level.energy:.6g}"
+            raise NoTorus(f"{torus} is not between two neighbours", found, found.residual())
         return found
 
     def place(self, torus: RefinedTorus) -> tuple[float, float]:
@@ -389,12 +358,11 @@ class Way:
         Both in the distance of the two.
         """
         scales = self.scales()
-        start, end, here = (
-            self.variables(x, scales).astype(float) for x in (*self.tori[-2:], torus)
-        )
-        secant = end - start
-        along = float((here - start) @ secant) / float(secant @ secant)
-        off = float(np.linalg.norm(here - start - along * secant))
+        three = (*self.tori[-2:], torus)
+        start, end, here = (self.variables(x, scales).astype(float) for x in three)
+        secant, gone = end - start, here - start
+        along = float(gone @ secant) / float(secant @ secant)
+        off = float(np.linalg.norm(gone - along * secant))
         return along, off / float(np.linalg.norm(secant))
 
     def advance(self, goal: Level) -> RefinedTorus:
@@ -409,7 +377,8 @@ class Way:
                     found = self.local(self.tori[-1], found).between(goal)
                 break
             except NoTorus:
-                if self.step < (DOUBTFUL_STEP if self.tori[-1].warnings else SMALLEST_STEP):
+                smallest = DOUBTFUL_STEP if self.tori[-1].warnings else SMALLEST_STEP
+                if self.step < smallest:
                     raise
                 self.step /= 2
         if len(found.steps) <= EASY:
@@ -428,18 +397,17 @@ def _require_resolved(found: RefinedTorus) -> None:
 
 def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> FourierTorus:
     """The guess on the line through two tori, `ratio` of their distance beyond the second."""
-    rows = {tuple(nu): i for i, nu in enumerate(before.harmonics.tolist())}
-    earlier = np.array(
-        [
-            before.cosines[rows[nu]] if nu in rows else 0 * last.cosines[0]
-            for nu in map(tuple, last.harmonics.tolist())
-        ]
-    )
+    earlier = _cosines_at(last.harmonics, before, 0 * last.cosines[0])
     cosines = last.cosines + ratio * (last.cosines - earlier)
-    frequencies = tuple(
-        b + Fraction(ratio) * (b - a)
-        for a, b in zip(before.frequencies, last.frequencies, strict=True)
-    )
-    return FourierTorus(
-        last.chain, last.seeds, frequencies, last.harmonics, cosines, dict(last.phases)
-    )
+    omega = zip(before.frequencies, last.frequencies, strict=True)
+    frequencies = tuple(b + Fraction(ratio) * (b - a) for a, b in omega)
+    phases = dict(last.phases)
+    return FourierTorus(last.chain, last.seeds, frequencies, last.harmonics, cosines, phases)
+
+
+def _cosines_at(harmonics: Ints, torus: QuasiPeriodic, missing: Floats) -> Floats:
+    """The cosines of a torus at these harmonics, (H, s); a row `missing` where it has none."""
+    rows = {tuple(nu): i for i, nu in enumerate(torus.harmonics.tolist())}
+    wanted = map(tuple, harmonics.tolist())
+    found = [torus.cosines[rows[nu]] if nu in rows else missing for nu in wanted]
+    return np.array(found)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -45,10 +46,8 @@ MEMBERS = 200
 APPENDIX_A = "appendix-a"
 METHODS = ("arclength", APPENDIX_A)
 ENDED_AT_GOAL = "reached the energy asked for"
-LOWER, LOWEST = (
-    0.25,
-    1e-12,
-)  # factor of a first energy that no torus of the series has, and the part of it that is given up
+LOWER = 0.25  # factor of a first energy that no torus of the series has
+LOWEST = 1e-12  # the part of it that is given up
 APPENDIX_MEMBERS = (
     20  # about how many steps lead with Appendix A from the beginning to the energy asked for
 )
@@ -67,10 +66,12 @@ class NotInFamily(SymfpuError):
     def __init__(
         self, quantity: str, value: float, reached: tuple[float, float], ending: str
     ) -> None:
-        self.quantity, self.value, self.reached, self.ending = quantity, value, reached, ending
+        self.quantity, self.value = quantity, value
+        self.reached, self.ending = reached, ending
+        least, largest = reached
         super().__init__(
             f"no member has {quantity} = {value:.10g}: "
-            f"the family goes from {reached[0]:.10g} to {reached[1]:.10g} and {ending}; "
+            f"the family goes from {least:.10g} to {largest:.10g} and {ending}; "
             f"take a value in this range, or follow the family further"
         )
 
@@ -104,20 +105,17 @@ class Family:
     energy_ratio: Mapping[int, float] | None = field(repr=False, default=None)
 
     def __repr__(self) -> str:
-        energies = [m.energy for m in self.members]
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        seeds = ",".join(map(str, self.seeds))
         doubtful = sum(m.verdict != "torus" for m in self.members)
         doubts = f", {doubtful} of them doubtful" if doubtful else ""
-        kinds = {
-            kind: sum(e.kind == kind for e in self.events)
-            for kind in ("fold", "resonance", "stability")
-        }
-        events = ", ".join(_counted(n, kind) for kind, n in kinds.items() if n)
-        return (
-            f"Family({repr(self.chain)[6:-1]}, seeds={','.join(map(str, self.seeds))}, "
-            f"{len(self.members)} members{doubts}, "
-            f"H = {min(energies):.6g} .. {max(energies):.6g}, "
-            f"{events or 'no events'}; it {self.ending})"
-        )
+        members = f"{len(self.members)} members{doubts}"
+        energies = [m.energy for m in self.members]
+        H = f"H = {min(energies):.6g} .. {max(energies):.6g}"
+        counts = Counter(event.kind for event in self.events)
+        kinds = [kind for kind in ("fold", "resonance", "stability") if counts[kind]]
+        events = ", ".join(_counted(counts[kind], kind) for kind in kinds) or "no events"
+        return f"Family({chain}, seeds={seeds}, {members}, {H}, {events}; it {self.ending})"
 
 
 def _counted(n: int, kind: str) -> str:
@@ -358,11 +356,9 @@ def _ending(plan: Plan, kept: Kept) -> str:
         return ENDED_AT_GOAL
     if returned(kept.members, tolerance=plan.tolerance):
         return f"{_turned(kept)}returned to the linear limit"
-    return (
-        f"was left after {len(kept.members)} members, the most asked for"
-        if len(kept.members) >= plan.most
-        else ""
-    )
+    if len(kept.members) < plan.most:
+        return ""
+    return f"was left after {len(kept.members)} members, the most asked for"
 
 
 def _turned(kept: Kept) -> str:
@@ -390,7 +386,8 @@ def _up_to_goal(plan: Plan, kept: Kept, at_goal: Callable[[int], Member]) -> Fam
     """
     energies = [plan.level.of_member(m) for m in kept.members]
     beyond = next(k for k, energy in enumerate(energies) if plan.level.passed(energy))
-    members, events = kept.members[: beyond + 1], [e for e in kept.events if e.after < beyond]
+    members = kept.members[: beyond + 1]
+    events = [e for e in kept.events if e.after < beyond]
     if not plan.level.met(energies[beyond]):
         if beyond == 0:
             allowed = f"more than {energies[0]:.10g}, where the family in the folder begins"
@@ -408,10 +405,9 @@ def _refined(members: Sequence[Member]) -> list[RefinedTorus]:
 def _begun(plan: Plan, kept: Kept, report: Report, *, lower: bool) -> str:
     """The first two members: from short series, or from a family that begins lower.
 
-    The second where the first fail.
+    lower : whether such a family is looked for, where short series fail.
 
-    lower : whether such a family is looked for. Returns why there is no second member; empty if
-        there is.
+    Returns why there is no second member; empty if there is.
     """
     if len(kept.members) >= min(2, plan.most):
         return ""
@@ -437,19 +433,17 @@ def _from_series(plan: Plan, kept: Kept, report: Report) -> list[RefinedTorus]:
     ratio = ratio_conditions(plan.seeds, plan.ratio, energies=plan.energies)
     begin = Level(plan.first, plan.harmonic)
     known = _refined(kept.members)
-    first = (
-        known[0]
-        if known
-        else first_at(begin, plan.chain, plan.start, ratio, tolerance=plan.tolerance, report=report)
-    )
+
+    def near_rest(level: Level, amplitudes: Mapping[int, float]) -> RefinedTorus:
+        tolerance = plan.tolerance
+        return first_at(level, plan.chain, amplitudes, ratio, tolerance=tolerance, report=report)
+
+    first = known[0] if known else near_rest(begin, plan.start)
     energy = begin.of(first)
     above = Level(min(SECOND**2 * energy, plan.goal), plan.harmonic)
     scale = math.sqrt(above.energy / energy)
     raised = {q: scale * a for q, a in first.amplitudes.items()}
-    return [
-        first,
-        first_at(above, plan.chain, raised, ratio, tolerance=plan.tolerance, report=report),
-    ]
+    return [first, near_rest(above, raised)]
 
 
 def _led_up(plan: Plan, kept: Kept, report: Report) -> tuple[list[RefinedTorus], str]:
@@ -479,13 +473,15 @@ def _led_up(plan: Plan, kept: Kept, report: Report) -> tuple[list[RefinedTorus],
 def _by_appendix_a(plan: Plan, order: int, kept: Kept, tell: Progress) -> Family:
     """The same by the algorithm of Appendix A, gone on with from the members there are."""
     increment = (plan.goal - plan.first) / plan.chain.N / APPENDIX_MEMBERS
-    known = [
-        AppendixAMember(m.torus, increment) for m in kept.members if isinstance(m.torus, QTorus)
-    ]
+    tori = [m.torus for m in kept.members if isinstance(m.torus, QTorus)]
+    known = [AppendixAMember(torus, increment) for torus in tori]
+
+    def at_goal(k: int) -> Member:
+        between = member_at(plan.level, known[k - 1], known[k])
+        return series_member(between.torus)
+
     if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
-        return _up_to_goal(
-            plan, kept, lambda k: series_member(member_at(plan.level, known[k - 1], known[k]).torus)
-        )
+        return _up_to_goal(plan, kept, at_goal)
     why = f"was left after {len(kept.members)} members, the most asked for"
     if len(kept.members) >= plan.most:
         return _family(plan, kept.members, (), why)
