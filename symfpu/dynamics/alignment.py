@@ -116,10 +116,8 @@ class AlignmentIndices:
         window: it sees waves longer than the samples are apart, and bends. decades : of time, cut
         to what the samples span and widened to FEWEST of them. Raises InputError.
         """
-        return tuple(
-            Slope(k, *found)
-            for k, found in enumerate(fits(self.times, self.log10_gali, decades), start=2)
-        )
+        found = fits(self.times, self.log10_gali, decades)
+        return tuple(Slope(k, *fit) for k, fit in enumerate(found, start=2))
 
     def dimension(self, decades: float = DECADES) -> TorusDimension:
         """The dimension s of the torus by how each further vector changes the slope.
@@ -259,45 +257,31 @@ def seconds_needed(
 def _samples(samples: int) -> int:
     count = integer(samples, "samples", FEWEST_SAMPLES)
     if count > MOST_SAMPLES:
-        raise InputError(
-            "samples",
-            count,
-            f"{FEWEST_SAMPLES} to {MOST_SAMPLES}",
-            "a few hundred show all there is",
-        )
+        allowed = f"{FEWEST_SAMPLES} to {MOST_SAMPLES}"
+        raise InputError("samples", count, allowed, "a few hundred show all there is")
     return count
 
 
 def _vectors(n: int, vectors: int | None) -> int:
     count = min(VECTORS, 2 * n) if vectors is None else integer(vectors, "vectors", 2)
-    if count > min(2 * n, MOST_VECTORS):
-        raise InputError(
-            "vectors", count, f"2 to {min(2 * n, MOST_VECTORS)}", "the phase space holds no more"
-        )
+    most = min(2 * n, MOST_VECTORS)
+    if count > most:
+        raise InputError("vectors", count, f"2 to {most}", "the phase space holds no more")
     return count
 
 
 def _steps(T: float, h: float) -> int:
     """Steps to T, the last one perhaps beyond it."""
-    if (
-        isinstance(T, bool)
-        or not isinstance(T, Real)
-        or not SHORTEST * max(1.0, h) <= float(T) < math.inf
-    ):
-        raise InputError(
-            "T",
-            T,
-            f"a finite time from {SHORTEST * max(1.0, h):g} up",
-            "slopes need two decades of time",
-        )
-    if not float(T) / h <= MOST_STEPS:
-        raise InputError(
-            "T",
-            T,
-            f"at most 2^52 steps, {h * MOST_STEPS:.3g}",
-            "take a shorter time, or a longer step",
-        )
-    return math.ceil(float(T) / h - 1e-9)
+    shortest = SHORTEST * max(1.0, h)
+    is_number = isinstance(T, Real) and not isinstance(T, bool)
+    if not is_number or not shortest <= float(T) < math.inf:
+        allowed = f"a finite time from {shortest:g} up"
+        raise InputError("T", T, allowed, "slopes need two decades of time")
+    steps = float(T) / h
+    if not steps <= MOST_STEPS:
+        allowed = f"at most 2^52 steps, {h * MOST_STEPS:.3g}"
+        raise InputError("T", T, allowed, "take a shorter time, or a longer step")
+    return math.ceil(steps - 1e-9)
 
 
 def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:

@@ -132,11 +132,14 @@ def linear_decades(times: Floats, growth: Floats) -> float:
 
     In every PIECE of them, to ODD in the exponent.
     """
-    x, y, length = np.log10(times), growth / math.log(10), 0.0
-    end = float(x[-1])
+    x, y = np.log10(times), growth / math.log(10)
+    length, end = 0.0, float(x[-1])
     while end - PIECE >= math.log10(EARLY) - 1e-2:
         inside = (x >= end - PIECE - 1e-9) & (x <= end + 1e-9)
-        if np.count_nonzero(inside) < 3 or abs(np.polyfit(x[inside], y[inside], 1)[0] - 1) > ODD:
+        if np.count_nonzero(inside) < 3:
+            break
+        slope, _ = np.polyfit(x[inside], y[inside], 1)
+        if abs(slope - 1) > ODD:
             break
         length = float(x[-1]) - end + PIECE
         end -= STRIDE
@@ -173,14 +176,16 @@ def _weights(steps: Floats, seen: Evidence) -> tuple[dict[int, float], int]:
 
     Errors are enlarged where no s fits.
     """
-    n, errors = seen.freedom, np.maximum(steps[:, 1], FLOOR)
+    n, most = seen.freedom, min(seen.vectors, seen.freedom)
+    slopes, errors = steps[:, 0], np.maximum(steps[:, 1], FLOOR)
     squares = {}
-    for s in range(1, min(seen.vectors, n) + 1):
-        off = (steps[:, 0] - expected_steps(s, n, seen.vectors)) / errors
+    for s in range(1, most + 1):
+        off = (slopes - expected_steps(s, n, seen.vectors)) / errors
         squares[s] = float(np.sum(off**2))
     best = min(squares, key=lambda s: squares[s])
-    scale = max(1.0, squares[best] / len(errors))
-    weights = {s: math.exp((squares[best] - square) / (2 * scale)) for s, square in squares.items()}
+    least = squares[best]
+    scale = max(1.0, least / len(errors))
+    weights = {s: math.exp((least - square) / (2 * scale)) for s, square in squares.items()}
     total = sum(weights.values())
     return {s: w / total for s, w in weights.items()}, best
 
@@ -209,20 +214,26 @@ def _slope_doubt(seen: Evidence, steps: Floats, best: int, weight: float) -> tup
     The second is empty if they decide.
     """
     expected = expected_steps(best, seen.freedom, seen.vectors)
-    j = int(np.argmax(np.abs(steps[:, 0] - expected)))
+    off = np.abs(steps[:, 0] - expected)
+    j = int(np.argmax(off))
     slope, error = steps[j]
     reason = (
-        f"; log GALI_{j + 2} - log GALI_{j + 1}, the farthest from its integer, has the slope "
+        f"; {_difference(j)}, the farthest from its integer, has the slope "
         f"{slope:.2f} +- {error:.2f}, on a torus of dimension {best} it is {expected[j]}"
     )
-    if abs(slope - expected[j]) > ODD or weight < SURE:
+    if off[j] > ODD or weight < SURE:
         return reason, ": take a longer time"
     late = seen.steps(seen.decades / 2)[:, 0]
-    j = int(np.argmax(np.abs(late - expected)))
-    if abs(late[j] - expected[j]) > ODD:
-        ending = f"log GALI_{j + 2} - log GALI_{j + 1} ends with {late[j]:.2f}"
+    off = np.abs(late - expected)
+    j = int(np.argmax(off))
+    if off[j] > ODD:
+        ending = f"{_difference(j)} ends with {late[j]:.2f}"
         return reason, f", and {ending}: take a longer time"
     return reason, ""
+
+
+def _difference(j: int) -> str:
+    return f"log GALI_{j + 2} - log GALI_{j + 1}"
 
 
 def _length_doubt(seen: Evidence, s: int) -> str:

@@ -64,16 +64,18 @@ class FrameRun:
         self, frame: MovingFrame, marks: Ints, step: float, longest: int, every: float
     ) -> None:
         self.frame, self.step, self.longest, self.every = frame, step, longest, every
-        m = frame.vectors
-        self.portion = max(longest, PORTION // (frame.chain.N * len(frame.dx)))
+        m, work = frame.vectors, frame.chain.N * len(frame.dx)
+        self.portion = max(longest, PORTION // work)
         self.done, self.block = 0, longest
-        self.columns, self.diagonal, self.norms = np.eye(m), np.zeros(m), np.zeros(m)
+        self.columns = np.eye(m)
+        self.diagonal, self.norms = np.zeros(m), np.zeros(m)
         self.path: Path | None = None
         self._sample_at(marks)
 
     def _sample_at(self, marks: Ints) -> None:
         self.marks = marks
-        self.volumes, self.growth = np.zeros((len(marks), self.frame.vectors)), np.zeros(len(marks))
+        self.volumes = np.zeros((len(marks), self.frame.vectors))
+        self.growth = np.zeros(len(marks))
 
     def keep_in(self, path: Path, start: Json) -> None:
         """Goes on from the file, if there is one, which may hold a shorter run.
@@ -82,10 +84,11 @@ class FrameRun:
         know it by all its digits instead, the last of which are the machine's.
         """
         self.path, frame = path, self.frame
+        chain = frame.chain
         known = {
-            "N": frame.chain.N,
-            "alpha": decimal(frame.chain.alpha),
-            "beta": decimal(frame.chain.beta),
+            "N": chain.N,
+            "alpha": decimal(chain.alpha),
+            "beta": decimal(chain.beta),
             "vectors": frame.vectors,
             "scheme": frame.scheme.name,
             "step": repr(self.step),
@@ -94,10 +97,9 @@ class FrameRun:
             "block": self.longest,
             "portion": self.portion,
         }
-        made = known | {
-            "start": digest(np.stack([frame.x, frame.p])),
-            "first vectors": digest(np.stack([frame.dx, frame.dp])),
-        }
+        state = digest(np.stack([frame.x, frame.p]))
+        vectors = digest(np.stack([frame.dx, frame.dp]))
+        made = known | {"start": state, "first vectors": vectors}
         self.parameters = known | start
         kept = read_checkpoint(path, self.parameters, ALIGNMENT, made)
         if kept is None:
@@ -146,8 +148,9 @@ class FrameRun:
         Each end is also the end of a block: so an interrupted run rounds like one that was not.
         """
         while self.done < self.marks[-1]:
-            following = int(self.marks[np.searchsorted(self.marks, self.done, side="right")])
-            yield min(following, (self.done // self.portion + 1) * self.portion)
+            place = np.searchsorted(self.marks, self.done, side="right")
+            portions = self.done // self.portion + 1
+            yield min(int(self.marks[place]), portions * self.portion)
 
     def go(self, tell: Progress) -> None:
         """To the last mark. Raises OrbitLost; RunInterrupted where the run is kept in a file."""
@@ -159,32 +162,22 @@ class FrameRun:
                 look(place, end == last, partial(tell, f"t = {end * self.step:.3g}", end / last))
 
     def _move_to(self, end: int) -> None:
-        self.block = carried(
-            self.frame,
-            end - self.done,
-            self.block,
-            self.longest,
-            self.columns,
-            self.diagonal,
-            self.norms,
-        )
+        steps = end - self.done
+        product = (self.columns, self.diagonal, self.norms)
+        self.block = carried(self.frame, steps, self.block, self.longest, *product)
         if not np.isfinite(self.norms).all():
             raise OrbitLost(float(end * self.step), self.step)
         self.done = end
         place = int(np.searchsorted(self.marks, end))
         if self.marks[place] == end:
-            self.volumes[place], self.growth[place] = self.diagonal - self.norms, self.diagonal[0]
+            self.volumes[place] = self.diagonal - self.norms
+            self.growth[place] = self.diagonal[0]
 
     def _write(self) -> None:
         assert self.path is not None
         block = np.array([float(self.block)])
-        write_checkpoint(
-            self.path,
-            self.parameters,
-            self.done,
-            self._arrays(self.done) | {"block": block},
-            ALIGNMENT,
-        )
+        arrays = self._arrays(self.done) | {"block": block}
+        write_checkpoint(self.path, self.parameters, self.done, arrays, ALIGNMENT)
 
 
 def carried(

@@ -190,19 +190,20 @@ class _Run:
         Q: Floats,
         P: Floats,
     ) -> None:
-        self.chain, self.scheme, self.T, self.steps, self.shape = chain, scheme, T, steps, Q.shape
-        self.step = T / steps
+        self.chain, self.scheme = chain, scheme
+        self.T, self.steps, self.step = T, steps, T / steps
+        self.shape = Q.shape
         Q, P = Q.reshape(-1, chain.N - 1), P.reshape(-1, chain.N - 1)
-        self.orbits, self.done, self.begun = len(Q), 0, time.perf_counter()
+        self.orbits, self.done = len(Q), 0
+        self.begun = time.perf_counter()
         self.path: Path | None = None
         self.every, self.stride = math.inf, 0
         energies = np.asarray(chain.energy(Q, P))
         for energy in energies:
             require_stable(chain, scheme, self.step, float(energy))
         limits = [stretch_bounds(chain, float(energy)) for energy in energies]
-        self.escapes = [
-            limit[2] or energy < 0 for limit, energy in zip(limits, energies, strict=True)
-        ]
+        can_escape = [escapes for _, _, escapes in limits]
+        self.escapes = [can or energy < 0 for can, energy in zip(can_escape, energies, strict=True)]
         self.start = chain.harmonic_energies(Q, P)
         bounds = np.array([limit[:2] for limit in limits]).reshape(-1, 2)
         self.motion = Motion(chain, scheme, self.step, bounds)
@@ -210,15 +211,15 @@ class _Run:
         self.Q[0], self.P[0] = Q, P
         self.state = self.motion.coordinates(Q, P)
         stretches = np.asarray(chain.stretches(Q))
-        outside = ((stretches < bounds[:, :1]) | (stretches > bounds[:, 1:])).any(axis=1)
+        below, above = stretches < bounds[:, :1], stretches > bounds[:, 1:]
+        outside = (below | above).any(axis=1)
         if outside.any():
             self._stop(int(np.argmax(outside)), 0, escaped=True)
 
     def _sample_at(self, sampled: Ints) -> None:
         self.sampled = sampled
-        self.Q, self.P, self.averages = (
-            np.zeros((len(sampled), self.orbits, self.chain.N - 1)) for _ in range(3)
-        )
+        shape = (len(sampled), self.orbits, self.chain.N - 1)
+        self.Q, self.P, self.averages = (np.zeros(shape) for _ in range(3))
 
     def take_averages(self, stride: int) -> None:
         """Looks at the orbits every so many steps."""
@@ -282,17 +283,16 @@ class _Run:
         Blocks depend on the chain and the scheme alone, so that an interrupted run rounds like
         one that was not.
         """
-        size = (
-            self.chain.N
-            if not self.scheme.in_modes
-            else self.chain.N**2 * (2 if self.chain.beta else 1)
-        )
+        size = self.chain.N
+        if self.scheme.in_modes:
+            size = self.chain.N**2 * (2 if self.chain.beta else 1)
         block = max(1, BLOCK // (size * self.scheme.stages))
         if self.stride:
             block = self.stride * min(LOOKS, max(1, block // self.stride))
         while self.done < self.steps:
-            following = int(self.sampled[np.searchsorted(self.sampled, self.done, side="right")])
-            yield min(following, (self.done // block + 1) * block)
+            place = np.searchsorted(self.sampled, self.done, side="right")
+            blocks = self.done // block + 1
+            yield min(int(self.sampled[place]), blocks * block)
 
     def go(self, each: Callable[..., Any], progress: Callable[[int, int], None]) -> None:
         """To the last step. Raises OrbitStopped.
@@ -307,10 +307,13 @@ class _Run:
 
     def _move_to(self, end: int, each: Callable[..., Any]) -> None:
         before = self.state.copy()
-        done = self._moved(end - self.done, each)
-        inside = np.isfinite(self.state).all(axis=(1, 2)) & (np.array(done) == end - self.done)
-        if not inside.all():
-            self._stopped_in_block(before, int(np.argmin(np.where(inside, self.steps, done))), done)
+        steps = end - self.done
+        done = self._moved(steps, each)
+        finite = np.isfinite(self.state).all(axis=(1, 2))
+        well = finite & (np.array(done) == steps)
+        if not well.all():
+            first = int(np.argmin(np.where(well, self.steps, done)))
+            self._stopped_in_block(before, first, done)
         self.done = end
         place = int(np.searchsorted(self.sampled, end))
         if self.sampled[place] == end:
@@ -340,7 +343,8 @@ class _Run:
 
     def _stop(self, row: int, steps: int, *, escaped: bool) -> None:
         Q, P = (part[0] for part in self.motion.modes(self.state[row : row + 1]))
-        growth = np.abs(self.chain.harmonic_energies(Q, P) - (self.start[row] if steps else 0.0))
+        begun_with = self.start[row] if steps else 0.0
+        growth = np.abs(self.chain.harmonic_energies(Q, P) - begun_with)
         place: tuple[int, ...] = ()
         if len(self.shape) > 1:
             place = tuple(int(i) for i in np.unravel_index(row, self.shape[:-1]))
@@ -367,17 +371,8 @@ class _Run:
         energies = np.asarray(self.chain.energy(Q, P))
         times = np.asarray(self.T * (self.sampled / self.steps), dtype=np.float64)
         averages = self.averages.reshape(Q.shape) if self.stride else None
-        return Orbit(
-            self.chain,
-            self.scheme,
-            self.step,
-            times,
-            Q,
-            P,
-            energies,
-            averages,
-            time.perf_counter() - self.begun,
-        )
+        seconds = time.perf_counter() - self.begun
+        return Orbit(self.chain, self.scheme, self.step, times, Q, P, energies, averages, seconds)
 
 
 def _start(
@@ -388,24 +383,15 @@ def _start(
     chain.positions(Q), chain.positions(P)  # refuses other shapes
     Q, P = np.array(Q, dtype=np.float64), np.array(P, dtype=np.float64)
     if Q.shape != P.shape:
-        raise InputError(
-            "P", P.shape, f"the shape of Q, {Q.shape}", "pass one momentum for each coordinate"
-        )
+        advice = "pass one momentum for each coordinate"
+        raise InputError("P", P.shape, f"the shape of Q, {Q.shape}", advice)
     with np.errstate(over="ignore", invalid="ignore"):
         if not Q.size or not np.isfinite(chain.energy(Q, P)).all():
-            raise InputError(
-                "Q, P",
-                "a state whose energy is not finite" if Q.size else (),
-                "finite numbers",
-                "start from a finite state",
-            )
+            given = "a state whose energy is not finite" if Q.size else ()
+            raise InputError("Q, P", given, "finite numbers", "start from a finite state")
     for name, value in (("T", T), ("step", step)):
-        if (
-            isinstance(value, bool)
-            or not isinstance(value, Real)
-            or not math.isfinite(float(value))
-            or value == 0
-        ):
+        is_number = isinstance(value, Real) and not isinstance(value, bool)
+        if not is_number or not math.isfinite(float(value)) or value == 0:
             raise InputError(name, value, "a finite number other than 0", "pass a time")
     if step < 0:
         raise InputError("step", step, "a positive number", "for the past take a negative T")
@@ -413,19 +399,13 @@ def _start(
 
 
 def _whole_steps(T: float, step: float) -> int:
-    if not abs(T) / step <= MOST_STEPS:
-        raise InputError(
-            "T",
-            T,
-            f"at most 2^52 steps, {step * MOST_STEPS:.3g}",
-            "take a shorter time, or a longer step",
-        )
     ratio = abs(T) / step
-    whole = (
-        round(ratio)
-        if abs(ratio - round(ratio)) <= max(WHOLE, 4 * np.finfo(float).eps * ratio)
-        else math.ceil(ratio)
-    )
+    if not ratio <= MOST_STEPS:
+        allowed = f"at most 2^52 steps, {step * MOST_STEPS:.3g}"
+        raise InputError("T", T, allowed, "take a shorter time, or a longer step")
+    nearest = round(ratio)
+    rounding = max(WHOLE, 4 * np.finfo(float).eps * ratio)
+    whole = nearest if abs(ratio - nearest) <= rounding else math.ceil(ratio)
     return max(1, whole)
 
 
@@ -436,6 +416,7 @@ def _is_count(samples: object) -> TypeGuard[int]:
 
 def _sample_steps(T: float, steps: int, samples: object) -> Ints:
     """Steps after which samples are taken, 0 and the last among them."""
+    allowed = "a whole number, or times between 0 and T"
     if _is_count(samples):
         count = min(integer(samples, "samples", 1), steps)
         inner = np.rint(np.geomspace(1, steps, count)) if count > 1 else np.array([steps])
@@ -443,14 +424,8 @@ def _sample_steps(T: float, steps: int, samples: object) -> Ints:
         try:
             inner = np.rint(np.asarray(samples, dtype=np.float64) / T * steps)
         except (TypeError, ValueError) as error:
-            raise InputError(
-                "samples", samples, "a whole number, or times between 0 and T", "pass one of them"
-            ) from error
+            raise InputError("samples", samples, allowed, "pass one of them") from error
         if inner.ndim != 1 or not ((inner >= 0) & (inner <= steps)).all():
-            raise InputError(
-                "samples",
-                samples,
-                f"a whole number, or times between 0 and T = {T:.10g}",
-                "leave out the others",
-            )
-    return np.unique(np.concatenate([[0], inner, [steps]]).astype(np.int64))
+            raise InputError("samples", samples, f"{allowed} = {T:.10g}", "leave out the others")
+    marks = np.concatenate([[0], inner, [steps]])
+    return np.unique(marks.astype(np.int64))

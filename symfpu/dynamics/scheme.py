@@ -75,14 +75,16 @@ def half_trace(scheme: Scheme, z: Floats) -> Floats:
     """Half the trace of the step matrix of an oscillator of frequency z, on T + V.
 
     Outside of -1 .. 1 the step is unstable.
-
-    Beyond -1..1 it is unstable.
     """
     # rows (a b), (c d)
-    a, b, c, d = np.ones_like(z), np.zeros_like(z), np.zeros_like(z), np.ones_like(z)
+    a, b = np.ones_like(z), np.zeros_like(z)
+    c, d = np.zeros_like(z), np.ones_like(z)
     for drift, kick in itertools.zip_longest(scheme.drifts, scheme.kicks, fillvalue=0.0):
-        a, b = a + drift * z * c, b + drift * z * d
-        c, d = c - kick * z * a, d - kick * z * b
+        drifted, kicked = drift * z, kick * z
+        a = a + drifted * c
+        b = b + drifted * d
+        c = c - kicked * a
+        d = d - kicked * b
     return 0.5 * (a + d)
 
 

@@ -75,8 +75,9 @@ class UnstableStep(OrbitStopped):
 def require_stable(chain: Chain, scheme: Scheme, step: float, energy: float) -> None:
     """Raises UnstableStep for a step that lets a harmonic mode grow."""
     Omega = chain.frequencies()
-    if abs(step) * Omega[-1] > scheme.stable_phase:
-        mode = int(np.argmax(abs(step) * Omega > scheme.stable_phase)) + 1
+    unstable = abs(step) * Omega > scheme.stable_phase
+    if unstable[-1]:
+        mode = int(np.argmax(unstable)) + 1
         largest = scheme.stable_phase / Omega[-1]
         raise UnstableStep(
             f"a step of {abs(step):.6g} of {scheme.name} is unstable",
@@ -114,12 +115,17 @@ def _bound(chain: Chain, energy: float, side: float) -> tuple[float, bool]:
     slopes = [-alpha + sign * math.sqrt(square) for sign in (1, -1)] if square >= 0 else []
     turns = [2 / slope for slope in slopes if slope > 0]
     if beta > 0:
-        most = FACTOR * (energy + chain.N * max([0.0, *(-V(turn) for turn in turns)]))
-        return _first(lambda r: V(r) >= most, max(turns, default=0.0), FURTHEST), False
+        depth = max([0.0, *(-V(turn) for turn in turns)])
+        most = FACTOR * (energy + chain.N * depth)
+        outermost = max(turns, default=0.0)
+        return _first(lambda r: V(r) >= most, outermost, FURTHEST), False
     top = min([*turns, FURTHEST])
-    if V(top) >= FACTOR * energy:
-        return _first(lambda r: V(r) >= FACTOR * energy, 0.0, top), False
-    return (top, False) if V(top) > energy else (_first(lambda r: V(r) < 0, top, FURTHEST), True)
+    height, enough = V(top), FACTOR * energy
+    if height >= enough:
+        return _first(lambda r: V(r) >= enough, 0.0, top), False
+    if height > energy:
+        return top, False
+    return _first(lambda r: V(r) < 0, top, FURTHEST), True
 
 
 def _first(reached: Callable[[float], bool], low: float, high: float) -> float:

@@ -154,6 +154,8 @@ def moving_frame(
     dx = _particles(chain, "dQ", dQ, (vectors, n))
     dp = _particles(chain, "dP", dP, (vectors, n))
     h = step_length(step)
+    kicks = h * np.array(scheme.kicks, dtype=float)
+    drifts = h * np.array(scheme.drifts, dtype=float)
     return MovingFrame(
         chain=chain,
         scheme=scheme,
@@ -162,8 +164,8 @@ def moving_frame(
         p=np.pad(p, 1),
         dx=_in_lanes(chain, dx),
         dp=_in_lanes(chain, dp),
-        kicks=h * np.array(scheme.kicks, dtype=float),
-        drifts=h * np.array(scheme.drifts, dtype=float),
+        kicks=kicks,
+        drifts=drifts,
     )
 
 
