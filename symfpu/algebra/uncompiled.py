@@ -1,6 +1,6 @@
 """What the kernels write in machine code, in NumPy, for NUMBA_DISABLE_JIT=1.
 
-That setting interprets all.
+That setting has all loops interpreted.
 """
 
 from __future__ import annotations

@@ -187,7 +187,7 @@ class Advance(Protocol):
 def progress_bar(label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Advance]:
     """A function that shows on standard error what is being done.
 
-    A bar on a terminal, lines elsewhere.
+    It shows a bar on a terminal, and lines elsewhere.
 
     label : what is done first. kept : what stands when the interrupt key is pressed, and how to
         go on.
@@ -249,10 +249,8 @@ class Bar:
 class Lines:
     """A line for each step that is seen.
 
-    The first after some seconds, then with pauses that grow with time.
-
-    A thread looks on, so that a step which began during a pause has its line, too, however silent
-    it is.
+    The first comes after some seconds, then others with pauses that grow with time. A thread
+    looks on, so that a step which began during a pause has its line, too, however silent it is.
     """
 
     def __init__(self, label: str) -> None:

@@ -122,7 +122,7 @@ class AlignmentIndices:
     def dimension(self, decades: float = DECADES) -> TorusDimension:
         """The dimension s of the torus by how each further vector changes the slope.
 
-        Or chaos, or neither yet (sections 3.2, 4).
+        The answer may also be chaos, or neither yet (sections 3.2, 4).
 
         Chaotic is an orbit whose first vector has outgrown t^POWER by more than OUTGROWN
         e-foldings: that is never taken back. Otherwise log GALI_j - log GALI_(j-1) has the slope

@@ -1,6 +1,6 @@
 """Running time averages of the harmonic energies along orbits.
 
-By the trapezoid rule over looks at equal times.
+They follow the trapezoid rule over looks at equal times.
 """
 
 from __future__ import annotations

@@ -117,9 +117,8 @@ def expected_steps(s: int, n: int, vectors: int) -> Ints:
 def outgrown_powers(times: Floats, growth: Floats) -> float:
     """The most e-foldings by which |v| came to exceed t^POWER times the largest |v| before.
 
-    From EARLY on; 0 or more.
-
-    Never less after a longer time: what has once been called chaotic stays so.
+    It counts from EARLY on and is 0 or more. It is never less after a longer time: what has once
+    been called chaotic stays so.
     """
     late = times >= EARLY
     power = POWER * np.log(times[late])
@@ -130,7 +129,7 @@ def outgrown_powers(times: Floats, growth: Floats) -> float:
 def linear_decades(times: Floats, growth: Floats) -> float:
     """For how many decades |v| has grown as t, counted back from the end, at most to EARLY.
 
-    In every PIECE of them, to ODD in the exponent.
+    It has done so in every PIECE of them, to ODD in the exponent.
     """
     x, y = np.log10(times), growth / math.log(10)
     length, end = 0.0, float(x[-1])

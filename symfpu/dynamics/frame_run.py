@@ -1,6 +1,6 @@
 """The run behind the alignment indices: a frame moved from mark to mark.
 
-It is kept on disk and taken up again bitwise; and the time that it will take.
+It is kept on disk and taken up again bitwise; the time that it will take is estimated here too.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ TRIAL = 0.2  # seconds of a measurement
 class OrbitLost(SymfpuError):
     """An orbit that went to infinity.
 
-    As orbits of the alpha model over its barrier do; or the step is too long.
+    Orbits of the alpha model over its barrier do so, and any orbit with too long a step.
 
     Raised by `alignment_indices`. Ours.
 

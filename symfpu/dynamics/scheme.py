@@ -59,7 +59,7 @@ class Scheme:
     def stable_phase(self) -> float:
         """The largest z such that modes with step * Omega below z stay bounded.
 
-        By the trace of the step of the harmonic chain.
+        It follows from the trace of the step of the harmonic chain.
 
         Exact rotations are stable at any step; we stop where one of them passes a right angle,
         since steps of half a period resonate with the kicks.

@@ -1,7 +1,7 @@
 """When an orbit is stopped.
 
-At a step beyond stability, an escape over a barrier of the potential of the bonds, or numbers
-that overflow.
+The reasons are a step beyond stability, an escape over a barrier of the potential of the bonds,
+and numbers that overflow.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def _bound(chain: Chain, energy: float, side: float) -> tuple[float, bool]:
 def _first(reached: Callable[[float], bool], low: float, high: float) -> float:
     """Where a condition begins to hold between low and high, by bisection.
 
-    In the logarithm, while the numbers are far apart.
+    It goes by the logarithm while the numbers are far apart.
     """
     for _ in range(2 * BISECTIONS):
         middle = math.sqrt(max(low, 1e-200) * high) if high > 2 * low else 0.5 * (low + high)

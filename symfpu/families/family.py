@@ -80,9 +80,7 @@ class NotInFamily(SymfpuError):
 class Family:
     """Tori of growing energy with one ratio of amplitudes or mode energies.
 
-    And what happens on the way.
-
-    Made by `family`; dimensionless. Ours, or Appendix A.
+    Events tell what happens on the way. Made by `family`; dimensionless. Ours, or Appendix A.
 
     chain, seeds : the model and the s modes. members : in order of the way.
     events : folds, resonances and changes of stability, between members. ending : why it was not

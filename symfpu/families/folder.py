@@ -1,6 +1,6 @@
 """The checked arguments of a family, and its members and events as they are kept.
 
-In memory, and in a folder if there is one.
+They are kept in memory, and in a folder if there is one.
 """
 
 from __future__ import annotations
@@ -179,7 +179,7 @@ def _seeds(described: Json) -> tuple[int, ...]:
 class Kept:
     """Members and events so far, in memory and after every member on disk.
 
-    On disk only if there is a folder.
+    They are on disk only if there is a folder.
     """
 
     def __init__(self, plan: Plan, folder: Path | None) -> None:

@@ -177,7 +177,7 @@ def least_packet(chain: Chain, specific_energy: float) -> float:
 def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") -> float:
     """Width of the natural packet of the alpha model: (alpha^2 eps)^(1/4) N, or with 1/5.
 
-    Section 6.4.3.
+    It is that of section 6.4.3.
 
     chain : the alpha model. specific_energy : eps = E/N. Both and the width, a number of modes, are
         dimensionless.

@@ -1,6 +1,6 @@
 """Energy profiles of orbits (sections 3.2, 4.1).
 
-FPU-trajectories, packets, normalised spectra, distances.
+They are of FPU-trajectories and packets: normalised spectra, and distances between them.
 
 An `Orbit` integrated with averages=True is a running spectrum: its `averages` are Ebar_q(t), its
 `harmonic_energies()` E_q(t). The closed form of a torus is `torus.average_spectrum(T)`; PLn is
@@ -30,7 +30,7 @@ def fpu_trajectory(
 ) -> tuple[Floats, Floats]:
     """Initial conditions (Q, P), each (N-1,), of the FPU-trajectory with these seeds.
 
-    Definition 4 of the paper.
+    They are those of Definition 4 of the paper.
 
     chain : the model. amplitudes, phases : by seed, dimensionless and in radians; phases left out
         are 0.

@@ -129,10 +129,8 @@ def _power_of_the_law(chain: Chain) -> float:
 class ProfileInvariance:
     """Profiles of packets of the same M and eps in chains of several lengths.
 
-    Section 6.1; dimensionless.
-
-    Made by `profile_invariance`. fraction : M = s/N. specific_energy : eps. T : the time averaged
-    over.
+    They are those of section 6.1; dimensionless. Made by `profile_invariance`.
+    fraction : M = s/N. specific_energy : eps. T : the time averaged over.
     phases : equal or random. chains : by size.
     spectra : by size, e_kappa of every realisation, (R, N-1). fits : of their mean, with the
         power of the law.

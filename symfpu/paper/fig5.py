@@ -1,6 +1,6 @@
 """Fig. 5: average spectra of tori with seeds anywhere in the spectrum.
 
-By series and by integration.
+They are computed by series and by integration.
 """
 
 from __future__ import annotations

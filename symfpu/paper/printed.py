@@ -19,7 +19,7 @@ from symfpu.chain.chain import Chain
 class PrintedTorus:
     """One example: chain, seeds, chosen frequencies and coordinate order.
 
-    With the printed amplitudes and energy.
+    The amplitudes and the energy are as printed.
     """
 
     label: str
@@ -203,7 +203,7 @@ FIG1_CLAIMS = {
 class PrintedExcitation:
     """A sequence of mode excitations D_1, D_2, ... of the alpha model.
 
-    Printed in sections 6.2 and 6.4.2.
+    It is printed in sections 6.2 and 6.4.2.
     """
 
     label: str
@@ -265,7 +265,7 @@ FIG6_CHAIN, FIG6_WIDTH = 256, 4
 class PrintedLine:
     """log10 e_kappa = slope * kappa + intercept + power * log10 kappa, as a caption has it.
 
-    For seeds 1 .. s.
+    The seeds are 1 .. s.
 
     chains : those of the panel. specific_energy : E/N with the caption's E.
     """

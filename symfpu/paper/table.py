@@ -1,6 +1,6 @@
 """The paper's numbers (Eq. Table1) computed anew, beside the printed ones.
 
-From the printed frequencies.
+They follow from the printed frequencies.
 """
 
 from __future__ import annotations

@@ -55,7 +55,7 @@ LEAST = Fraction(1, 10**40)  # of amplitudes and coefficients
 class NearResonance:
     """A small divisor (nu.omega)^2 - Omega_q^2 of a torus, and the coefficient under it.
 
-    That is c_q[nu].
+    The coefficient is c_q[nu].
     """
 
     mode: int
@@ -358,7 +358,7 @@ def chosen_harmonics(
 ) -> tuple[Ints, bool]:
     """Harmonics whose coefficients are expected above the tolerance.
 
-    And whether more would not fit.
+    The second result says whether more would not fit.
 
     ln |c[nu]| is fitted by a - sum w_i |nu_i|; all harmonics within the reach of the fit are
     taken, one of each pair +-nu.

@@ -1,6 +1,6 @@
 """Quasi-periodic solutions by their cosine coefficients.
 
-Orbit, energies, averages and residuals.
+They give the orbit, its energies, their averages, and residuals.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ else:
 class QuasiPeriodic(Parts):
     """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
 
-    What every torus and breather can do.
+    This is what every torus and breather can do.
 
     chain : the model. seeds, frequencies, phases : the s angles.
     harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : c_q[nu]; shape (H, N-1).
