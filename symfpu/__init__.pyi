@@ -1,6 +1,7 @@
 """The public names of symfpu, each once, by what they are about; a new one is a line here.
 
-Type checkers read this file; symfpu/__init__.py loads each name from its module when it is first used.
+Type checkers read this file; symfpu/__init__.py loads each name from its module when it is first
+used.
 """
 
 # the chain, and what its couplings alone decide

@@ -1,4 +1,6 @@
-"""The decorator of all compiled loops: numba's, with a cache on disk wherever there is a place for it.
+"""The decorator of all compiled loops: numba's, with a cache on disk.
+
+The cache lies wherever there is a place for it.
 
 Numba keeps machine code beside the source or in the user's cache folder, and refuses a function
 where it may write to neither, as in a read-only installation without a home. There the cache is a

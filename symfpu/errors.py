@@ -32,10 +32,12 @@ def _rebuilt(kind: type[SymfpuError], args: tuple[Any, ...]) -> SymfpuError:
 
 
 class RunInterrupted(KeyboardInterrupt):
-    """The interrupt key in a run that is kept on disk: raised by `integrate`, `alignment_indices`, `family`.
+    """The interrupt key in a run that is kept on disk.
 
-    No SymfpuError: what catches errors lets it pass. place : how far the run is, in words. path : where it is
-    kept; the same call goes on from there. Ours.
+    Raised by `integrate`, `alignment_indices` and `family`.
+
+    No SymfpuError: what catches errors lets it pass. place : how far the run is, in words.
+    path : where it is kept; the same call goes on from there. Ours.
     """
 
     def __init__(self, place: str, path: str) -> None:

@@ -12,7 +12,10 @@ LONGEST_EXPRESSION = 20_000
 
 
 def latex(expression: Any) -> str:
-    """LaTeX of a SymEngine expression, with A1 as A_{1} and theta1 as a Greek letter, in math delimiters."""
+    """LaTeX of a SymEngine expression, in math delimiters.
+
+    A1 is written as A_{1} and theta1 as a Greek letter.
+    """
     if len(str(expression)) > LONGEST_EXPRESSION:
         return str(expression._repr_latex_())
     import sympy
@@ -35,8 +38,8 @@ def latex_lines(expression: Any, width: int = 110) -> list[str]:
 def init_printing() -> None:
     """Notebooks show SymEngine expressions, such as the terms of a series, as formulas from now on.
 
-    Importing symfpu does it where IPython is loaded already; where IPython comes later the user may call it.
-    Harmless outside of notebooks, and a second time. Ours. Raises nothing.
+    Importing symfpu does it where IPython is loaded already; where IPython comes later the user
+    may call it. Harmless outside of notebooks, and a second time. Ours. Raises nothing.
 
     >>> import symengine
     >>> init_printing()

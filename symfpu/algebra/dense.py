@@ -193,7 +193,7 @@ class DenseRing(ABC, Generic[Bonds]):
         self._keep_in_range(degree, modes)
 
     def _store(self, target: Floats, degree: int, rows: Ints, values: Floats) -> None:
-        """Values (rows, points) of canonical monomials and their conjugates into the kernel's rows."""
+        """Values (rows, points) of canonical monomials and conjugates into the kernel's rows."""
         base = int(self.grading.first_row[degree])
         slices, _, width = target.shape
         lanes = np.moveaxis(values.reshape(len(rows), slices, width), 1, 0)

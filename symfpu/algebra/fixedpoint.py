@@ -115,7 +115,10 @@ class FixedPointRing:
         return list(self._pool.map(lambda item: work(*item), enumerate(self._images)))
 
     def _cosines(self, weights: NDArray[Any]) -> Floats:
-        """Residues of weight_j cos(q (j + 1/2) pi / N) on half of the bonds; (primes, N-1, points)."""
+        """Residues of weight_j cos(q (j + 1/2) pi / N) on half of the bonds.
+
+        Shape (primes, N-1, points).
+        """
         N, half, bits = self.space.N, self.space.half, self.precision.bits
         odd = 2 * np.arange(half) + 1
         angles = np.outer(np.arange(1, N), odd) % (4 * N)
@@ -260,7 +263,7 @@ class FixedPointRing:
         return self._rounded_where(products, carried[index])
 
     def _check_range(self, corrected: Modes, force: Modes, factors: Floats, seeds: Ints) -> None:
-        """Refuse the last products, which have no bound beforehand, beyond the range of the residues."""
+        """Refuse the last products beyond the range of the residues: they have no bound before."""
         below = -self.precision.bits
         sizes = np.abs(force.table.floats(below))
         sizes[:, seeds] += np.abs(corrected.table.floats(below))

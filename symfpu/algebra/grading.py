@@ -196,7 +196,7 @@ class Grading:
         return self._layout[degree][1]
 
     def conjugate(self, degree: int) -> Ints:
-        """For each canonical monomial, the row of its conjugate (counted from first_row[degree])."""
+        """For each canonical monomial the row of its conjugate, from first_row[degree] on."""
         return self._layout[degree][2]
 
     def powers(self, degree: int) -> Ints:

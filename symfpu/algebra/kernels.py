@@ -74,8 +74,9 @@ def _row_code(
     stop: Any,
     modulus: Any,
 ) -> Any:
-    """out[o + table[t + n]] += weight left[i] right[j + n] for start <= n < stop; `lanes` is a tuple
-    whose length is the row's.
+    """out[o + table[t + n]] += weight left[i] right[j + n] for start <= n < stop.
+
+    lanes : a tuple whose length is the row's.
 
     modulus : None, or a number: then every product is taken modulo it. One piece of code on
     purpose: it emits one loop.
@@ -265,7 +266,10 @@ def multiply_elements(left, right, modulus, out):  # type: ignore[no-untyped-def
 
 @compiled()
 def multiply_rows(values, factors, moduli):  # type: ignore[no-untyped-def]
-    """values[i] *= factors[i] modulo moduli[i], in -p/2 .. p/2; values (primes, count), overwritten."""
+    """values[i] *= factors[i] modulo moduli[i], in -p/2 .. p/2.
+
+    values : (primes, count), overwritten.
+    """
     for i in range(len(values)):
         modulus, factor = moduli[i], factors[i]
         inverse = 1.0 / modulus

@@ -1,4 +1,4 @@
-"""Values and derivatives of the nodes of a program: in doubles at many points, or in any arithmetic."""
+"""Values and derivatives of the nodes of a program: in doubles, or in any arithmetic."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which cosine can appear in which monomial: the selection rules of products of cosines on N points.
+"""Which cosine can appear in which monomial: selection rules of products of cosines.
 
 On the points theta_j = (j + 1/2) pi / N the cosines T_q = cos(q theta), q = 0 .. N-1, are a
 basis, and 2 T_l T_m = T_(l+m) + T_(l-m) with T_N = 0, T_(2N-q) = -T_q. A monomial with powers e_i
@@ -45,7 +45,7 @@ class PowerTable:
             self._residues.append(self._wave_numbers(powers))
 
     def _wave_numbers(self, powers: Ints) -> NDArray[np.bool_]:
-        """Whether signed sums of the seeds reach each residue modulo 2N; lower degrees are known."""
+        """Whether signed sums of the seeds reach each residue modulo 2N, lower degrees known."""
         residues, turn = np.arange(2 * self.N), 2 * self.N
         degree = len(self._residues)
         if degree == 0:

@@ -1,4 +1,7 @@
-"""What the kernels write in machine code, in NumPy: for NUMBA_DISABLE_JIT=1, which interprets all."""
+"""What the kernels write in machine code, in NumPy, for NUMBA_DISABLE_JIT=1.
+
+That setting has all loops interpreted.
+"""
 
 from __future__ import annotations
 

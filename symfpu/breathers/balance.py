@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -25,18 +26,17 @@ from symfpu.numbers.typed import Number, decimal, exact, seed_modes
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
 Floats = NDArray[np.float64]
-Condition = Callable[
-    [Floats], tuple[float, Floats]
-]  # of z: what has to vanish, relative to what it is made of, and its derivatives
+# of z: what has to vanish, relative to what it is made of, and its derivatives
+Condition = Callable[[Floats], tuple[float, Floats]]
 LARGEST_SYSTEM = 8192  # unknowns; a matrix of 512 MB
 TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonics may reach
-STEP, ROUNDING_STEP = (
-    1e-14,
-    1e-9,
-)  # relative Newton step that ends the iteration, at once or when it no longer shrinks
+STEP = 1e-14  # relative Newton step that ends the iteration at once
+ROUNDING_STEP = 1e-9  # the one that ends it when it no longer shrinks
 ITERATIONS = 25
 GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or down
-REACH = 0.3  # change of a coefficient from one guess to its orbit, relative to the largest, that stays on the family
+# change of a coefficient from one guess to its orbit, relative to the largest, that stays on
+# the family
+REACH = 0.3
 ONE_ANGLE = "a solution of one angle"
 ONE_SEED = "take a solution of one seed, or None"
 SMALLEST_PART = 1 / 64  # of the way from rest, in one step
@@ -45,20 +45,23 @@ SMALLEST_PART = 1 / 64  # of the way from rest, in one step
 class NoPeriodicOrbit(SymfpuError):
     """Newton's method found no periodic orbit: raised by `periodic_orbit` and its sisters.
 
-    seed : the mode. iterate : the one with the smallest residual, cosine coefficients, shape (H+1, N-1).
-    frequency, residual : of it, dimensionless; the residual relative to the largest acceleration. Ours.
+    seed : the mode. iterate : the one with the smallest residual, cosine coefficients, shape
+        (H+1, N-1).
+    frequency, residual : of it, dimensionless; the residual relative to the largest acceleration.
+        Ours.
     """
 
     def __init__(self, balance: Balance, reason: str, z: Floats) -> None:
-        self.seed, self.iterate, self.frequency = (
-            balance.seed,
-            balance.cosines(z),
-            balance.frequency(z),
-        )
+        self.seed = balance.seed
+        self.iterate = balance.cosines(z)
+        self.frequency = balance.frequency(z)
         self.residual = residual(balance.chain, self.frequency, self.iterate)
+        amplitude = z[balance.first]
         super().__init__(
-            f"no periodic orbit of seed {self.seed}: {reason}; the best iterate, omega = {self.frequency:.12g} and A = "
-            f"{z[balance.first]:.6g} with {balance.harmonics} harmonics, leaves {self.residual:.2g} of the largest acceleration; "
+            f"no periodic orbit of seed {self.seed}: {reason}; "
+            f"the best iterate, omega = {self.frequency:.12g} and A = {amplitude:.6g} "
+            f"with {balance.harmonics} harmonics, "
+            f"leaves {self.residual:.2g} of the largest acceleration; "
             f"start from a guess nearer to the orbit, such as an orbit of smaller amplitude"
         )
 
@@ -77,8 +80,8 @@ class PeriodicOrbit(FourierTorus):
 
     >>> from symfpu import periodic_orbit
     >>> periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905")
-    PeriodicOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, A=0.4051586230417, H=0.012798422083, 13 harmonics,
-    residual ...)
+    PeriodicOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, A=0.4051586230417, H=0.012798422083,
+    13 harmonics, residual ...)
     """
 
     iterations: int
@@ -115,41 +118,48 @@ def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicO
     if isinstance(solution, PeriodicOrbit) and not solution.phases[solution.seed]:
         return solution
     chain, seed, omega = solution.chain, solution.seed, solution.frequency
-    sigma = detuning(chain, seed, omega)[1]
-    return orbit_of(
-        chain, seed, omega, solution.by_harmonic().astype(float), iterations=0, sigma=sigma
-    )
+    _, sigma = detuning(chain, seed, omega)
+    cosines = solution.by_harmonic().astype(float)
+    return orbit_of(chain, seed, omega, cosines, iterations=0, sigma=sigma)
 
 
 def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Harmonics n and places q - 1 of the coefficients that the symmetry allows, in the order of
-    the vectors z.
+    """Harmonics n and places q - 1 of the coefficients that the symmetry allows.
+
+    They stand in the order of the vectors z.
     """
     n, q = np.indices((harmonics + 1, chain.N - 1))
-    places = np.nonzero(((q + 1 - n * seed) % 2 == 0) & ((n % 2 == 1) | (chain.alpha != 0)))
-    return places[0], places[1]
+    reflected = (q + 1 - n * seed) % 2 == 0
+    in_time = (n % 2 == 1) | (chain.alpha != 0)
+    harmonic, place = np.nonzero(reflected & in_time)
+    return harmonic, place
 
 
 class Balance:
-    """The equations n^2 omega^2 c + force = 0 up to a number of harmonics, for vectors z = (the c
-    that are unknowns, sigma).
+    """The equations n^2 omega^2 c + force = 0 up to a number of harmonics.
+
+    Their unknowns are vectors z: the c that the symmetry allows, then sigma.
     """
 
     def __init__(self, chain: Chain, seed: int, harmonics: int) -> None:
         self.chain, self.seed, self.harmonics = chain, seed, harmonics
         self.n, self.q = unknowns(chain, seed, harmonics)
         linear = chain.frequencies()
-        self.detuning = self.n**2 * linear[seed - 1] ** 2 - linear[self.q] ** 2
-        self.first = int(np.flatnonzero((self.n == 1) & (self.q == seed - 1))[0])
+        own, driven = linear[self.q], linear[seed - 1]
+        self.detuning = self.n**2 * driven**2 - own**2
+        is_first = (self.n == 1) & (self.q == seed - 1)
+        self.first = int(np.flatnonzero(is_first)[0])
         # of every bond by a unit of each mode
         self.stretch = chain.stretches(np.eye(chain.N - 1))
         points = 2 * harmonics + 1  # enough for cubic products
-        ends = np.where(np.arange(points + 1) % points == 0, 0.5, 1.0)
-        self.table = np.cos(np.pi / points * np.outer(np.arange(points + 1), np.arange(points + 1)))
+        k = np.arange(points + 1)
+        ends = np.where(k % points == 0, 0.5, 1.0)
+        self.table = np.cos(np.pi / points * np.outer(k, k))
         self.analysis = 2 / points * ends[:, None] * self.table * ends
 
     def vector(self, cosines: Floats, sigma: float) -> Floats:
-        padded = np.zeros((max(self.harmonics + 1, len(cosines)), self.chain.N - 1))
+        length = max(self.harmonics + 1, len(cosines))
+        padded = np.zeros((length, self.chain.N - 1))
         padded[: len(cosines)] = cosines
         return np.append(padded[self.n, self.q], sigma)
 
@@ -160,57 +170,80 @@ class Balance:
 
     def frequency(self, z: Floats) -> float:
         linear = float(self.chain.frequencies()[self.seed - 1])
-        return linear + float(z[-1]) / (linear + math.sqrt(max(linear**2 + float(z[-1]), 0.0)))
+        sigma = float(z[-1])
+        squared = max(linear**2 + sigma, 0.0)
+        return linear + sigma / (linear + math.sqrt(squared))
 
     def system(self, z: Floats) -> tuple[Floats, Floats]:
         """The equations, shape (n,), and their derivatives by z, shape (n, n+1)."""
-        law = self.chain.law()
-        diagonal = self.detuning + self.n**2 * z[-1]
-        r = self.table[:, : self.harmonics + 1] @ self.cosines(z) @ self.stretch
-        force = -(self.analysis @ bonds.anharmonic_tension(law, r) @ self.stretch.T)
+        law, c, sigma = self.chain.law(), z[:-1], z[-1]
+        diagonal = self.detuning + self.n**2 * sigma
+        synthesis = self.table[:, : self.harmonics + 1]
+        r = synthesis @ self.cosines(z) @ self.stretch
+        tension = bonds.anharmonic_tension(law, r)
+        force = -(self.analysis @ tension @ self.stretch.T)
         slope = self.analysis @ bonds.anharmonic_stiffness(law, r)
+        J = self._coupling(slope) + np.diag(diagonal)
+        equations = diagonal * c + force[self.n, self.q]
+        return equations, np.column_stack([J, self.n**2 * c])
+
+    def _coupling(self, slope: Floats) -> Floats:
+        """Derivatives of the force by the unknowns.
+
+        slope : cosine coefficients of the anharmonic part of V'' of every bond, overwritten.
+        """
         slope[1:] /= 2  # coefficients of exp(i k theta), k of both signs
         stiffness = np.einsum("kj,pj,qj->kpq", slope, self.stretch, self.stretch, optimize=True)
         n, q = self.n[:, None], self.q[:, None]
-        J = (
-            -stiffness[abs(n - self.n), q, self.q]
-            - np.where(n > 0, stiffness[n + self.n, q, self.q], 0.0)
-            + np.diag(diagonal)
-        )
-        return diagonal * z[:-1] + force[self.n, self.q], np.column_stack([J, self.n**2 * z[:-1]])
+        difference = stiffness[abs(n - self.n), q, self.q]
+        total = stiffness[n + self.n, q, self.q]
+        return np.asarray(-difference - np.where(n > 0, total, 0.0))
 
     def newton(self, z: Floats, given: int | Condition) -> tuple[Floats, int]:
-        """The solution with the same z[given], or that meets a condition, and the number of
-        steps; raises NoPeriodicOrbit.
+        """The solution with the same z[given], or that meets a condition, and the number of steps.
+
+        Raises NoPeriodicOrbit.
         """
-        free = np.arange(len(z)) if callable(given) else np.delete(np.arange(len(z)), given)
-        best, least, before, size = z, np.inf, np.inf, float(np.max(np.abs(z[:-1])))
+        places = np.arange(len(z))
+        free = places if callable(given) else np.delete(places, given)
+        best, least, before = z, np.inf, np.inf
+        size = _largest(z[:-1])
         for iteration in range(1, ITERATIONS + 1):
             equations, jacobian = self.system(z)
-            imbalance = float(np.max(np.abs(equations)) / np.max(np.abs(z[:-1])))
+            imbalance = _largest(equations) / _largest(z[:-1])
             if imbalance < least:
                 best, least = z, imbalance
             if callable(given):
                 value, row = given(z)
-                equations, jacobian = np.append(equations, value), np.vstack([jacobian, row])
+                equations = np.append(equations, value)
+                jacobian = np.vstack([jacobian, row])
             try:
                 step = np.linalg.solve(jacobian[:, free], equations)
             except np.linalg.LinAlgError:
-                raise NoPeriodicOrbit(
-                    self, "the matrix of Newton's method is singular", best
-                ) from None
+                reason = "the matrix of Newton's method is singular"
+                raise NoPeriodicOrbit(self, reason, best) from None
             z = z.copy()
             z[free] -= step
-            reached = float(np.max(np.abs(z[:-1])))
+            reached = _largest(z[:-1])
             if not size / GROWTH < reached < size * GROWTH:
-                raise NoPeriodicOrbit(
-                    self, f"the largest coefficient goes from {size:.3g} to {reached:.3g}", best
-                )
-            relative = float(np.max(np.abs(step[free < len(z) - 1]))) / reached
-            if relative <= STEP or (relative < ROUNDING_STEP and relative > before / 2):
+                reason = f"the largest coefficient goes from {size:.3g} to {reached:.3g}"
+                raise NoPeriodicOrbit(self, reason, best)
+            of_coefficients = step[free < len(z) - 1]
+            relative = _largest(of_coefficients) / reached
+            if relative <= STEP or before / 2 < relative < ROUNDING_STEP:
                 return z, iteration
             before = relative
         raise NoPeriodicOrbit(self, f"no convergence in {ITERATIONS} steps", best)
+
+
+def _largest(values: NDArray[np.floating[Any]]) -> float:
+    return float(np.max(np.abs(values)))
+
+
+def relative_heights(cosines: Floats) -> Floats:
+    """The largest coefficient of every harmonic over the largest of all; shape (H+1,)."""
+    heights = np.max(np.abs(cosines), axis=1)
+    return np.asarray(heights / np.max(np.abs(cosines)))
 
 
 def held_frequency(balance: Balance) -> int:
@@ -224,14 +257,14 @@ def held_amplitude(balance: Balance) -> int:
 
 
 def residual(chain: Chain, omega: float, cosines: Floats) -> float:
-    """Largest |Q'' - force| at times between the collocation points, relative to the largest
-    acceleration.
-    """
+    """Largest |Q'' - force| between the collocation points, over the largest acceleration."""
     n, points = np.arange(len(cosines)), 6 * len(cosines)
-    table = np.cos(np.outer(np.pi / points * (np.arange(points) + 1 / 3), n))
+    angles = np.pi / points * (np.arange(points) + 1 / 3)
+    table = np.cos(np.outer(angles, n))
     force = chain.accelerations(table @ cosines)
-    largest = max(float(np.max(np.abs(force))), float(np.finfo(float).tiny))
-    return float(np.max(np.abs(table @ ((n[:, None] * omega) ** 2 * cosines) + force))) / largest
+    largest = max(_largest(force), float(np.finfo(float).tiny))
+    rates = n[:, None] * omega
+    return _largest(table @ (rates**2 * cosines) + force) / largest
 
 
 def periodic_orbit(
@@ -241,14 +274,14 @@ def periodic_orbit(
 
     chain, seed : the model and the mode; all quantities are dimensionless.
     frequency : omega, an exact number.
-    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1), of which those that the
-        symmetry forbids are dropped; None follows the family from rest, with the amplitude of the lowest
-        order.
+    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1), of which those that
+        the symmetry forbids are dropped; None follows the family from rest, with the amplitude of
+        the lowest order.
 
-    Newton's method on the Fourier coefficients of Eq. eqmo (harmonic balance), where the paper has the series
-    of section 6.4. The orbit is one near the guess: a frequency may have several.
-    Raises InputError; without a guess NoRealAmplitude or UndeterminedAmplitudes if the lowest order has no
-    amplitude; NoPeriodicOrbit with the best iterate.
+    Newton's method on the Fourier coefficients of Eq. eqmo (harmonic balance), where the paper
+    has the series of section 6.4. The orbit is one near the guess: a frequency may have several.
+    Raises InputError; without a guess NoRealAmplitude or UndeterminedAmplitudes if the lowest
+    order has no amplitude; NoPeriodicOrbit with the best iterate.
 
     >>> orbit = periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
     >>> round(float(orbit.energy()), 12)
@@ -267,20 +300,18 @@ def positive_frequency(frequency: Number) -> Fraction:
     """The exact number that a frequency denotes; raises InputError."""
     omega = exact(frequency, "frequency")
     if omega <= 0:
-        raise InputError(
-            "frequency", frequency, "a positive number", "take one near the linear frequency"
-        )
+        advice = "take one near the linear frequency"
+        raise InputError("frequency", frequency, "a positive number", advice)
     return omega
 
 
 def detuning(chain: Chain, seed: int, omega: Fraction) -> tuple[float, float]:
     """omega - Omega_seed and sigma = omega^2 - Omega_seed^2, without loss of digits."""
     with mpmath.workdps(50):
-        linear, target = (
-            chain.linear_frequency(seed),
-            mpmath.mpf(omega.numerator) / omega.denominator,
-        )
-        return float(target - linear), float((target - linear) * (target + linear))
+        linear = chain.linear_frequency(seed)
+        target = mpmath.mpf(omega.numerator) / omega.denominator
+        shift = target - linear
+        return float(shift), float(shift * (target + linear))
 
 
 def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
@@ -288,12 +319,14 @@ def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
 
     Raises NoRealAmplitude or UndeterminedAmplitudes.
     """
-    coefficient, order = frequency_shift(chain, {seed: 1.0})[seed], 2 // chain.degree_step
+    coefficient = frequency_shift(chain, {seed: 1.0})[seed]
+    order = 2 // chain.degree_step
     if coefficient == 0:
         raise UndeterminedAmplitudes((seed,), order)
-    if shift / coefficient <= 0:
-        raise NoRealAmplitude(seed, shift / coefficient, order)
-    return float((shift / coefficient) ** 0.5)
+    squared = shift / coefficient
+    if squared <= 0:
+        raise NoRealAmplitude(seed, squared, order)
+    return float(squared**0.5)
 
 
 def breather_at_amplitude(
@@ -303,8 +336,8 @@ def breather_at_amplitude(
 
     chain, seed : the model and the mode; all quantities are dimensionless.
     amplitude : A, the coefficient of cos(omega t) in Q_seed, an exact number, not 0.
-    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1); None follows the family from
-        rest.
+    guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1); None follows the
+        family from rest.
 
     Harmonic balance with A among the equations: the gauge of Eq. qq0, A is not Q_seed(0).
     Raises InputError, and NoPeriodicOrbit with the best iterate.
@@ -316,13 +349,15 @@ def breather_at_amplitude(
     if A == 0:
         raise InputError("amplitude", amplitude, "a number that is not 0", "take a small one")
     if guess is None:
-        sigma = 2 * float(chain.frequencies()[seed - 1]) * frequency_shift(chain, {seed: A})[seed]
+        shift = frequency_shift(chain, {seed: A})[seed]
+        sigma = 2 * float(chain.frequencies()[seed - 1]) * shift
         return _walk(chain, seed, A, sigma, by_amplitude=True)
     cosines = _cosines(chain, seed, guess)
     cosines[1, seed - 1] = A
     balance = Balance(chain, seed, len(cosines) - 1)
     z = balance.vector(cosines, 0.0)
-    sigma = float(-balance.system(z)[0][balance.first] / A)  # balances cos(omega t) of the seed
+    equations, _ = balance.system(z)
+    sigma = float(-equations[balance.first] / A)  # balances cos(omega t) of the seed
     return orbit_near(chain, seed, cosines, sigma, held_amplitude)
 
 
@@ -335,19 +370,12 @@ def _cosines(chain: Chain, seed: int, guess: ArrayLike | QuasiPeriodic) -> Float
     except (TypeError, ValueError) as error:
         raise InputError("guess", guess, f"an array of shape {shape}", "pass numbers") from error
     if cosines.ndim != 2 or len(cosines) < 2 or cosines.shape[1] != chain.N - 1:
-        raise InputError(
-            "guess",
-            cosines.shape,
-            f"the shape {shape}, H from 1 up",
-            "put the harmonics first, the modes last",
-        )
-    if not np.isfinite(cosines).all() or cosines[1, seed - 1] == 0:
-        raise InputError(
-            "guess",
-            cosines[1, seed - 1],
-            f"finite numbers, A = guess[1, {seed - 1}] not 0",
-            "give the seed an amplitude",
-        )
+        advice = "put the harmonics first, the modes last"
+        raise InputError("guess", cosines.shape, f"the shape {shape}, H from 1 up", advice)
+    A = cosines[1, seed - 1]
+    if not np.isfinite(cosines).all() or A == 0:
+        allowed = f"finite numbers, A = guess[1, {seed - 1}] not 0"
+        raise InputError("guess", A, allowed, "give the seed an amplitude")
     return cosines
 
 
@@ -360,67 +388,55 @@ def orbit_near(
     given: Callable[[Balance], int | Condition],
     reach: float = GROWTH,
 ) -> PeriodicOrbit:
-    """The orbit near cosines and sigma, with as many harmonics as it needs, none of them changed by
-    more than reach.
+    """The orbit near cosines and sigma, with as many harmonics as it needs.
 
-    given : of a balance, the place of what keeps its value, or the condition to meet. reach :
-    relative to the largest coefficient. Raises NoPeriodicOrbit.
+    No coefficient is changed by more than reach.
+
+    given : of a balance, the place of what keeps its value, or the condition to meet.
+    reach : relative to the largest coefficient.
+
+    Raises NoPeriodicOrbit.
     """
     guess, harmonics, iterations = cosines, max(8, len(cosines) - 1), 0
     if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
-        raise InputError(
-            "N, harmonics",
-            (chain.N, harmonics),
-            f"at most {2 * LARGEST_SYSTEM} as their product",
-            "cut the guess",
-        )
+        allowed = f"at most {2 * LARGEST_SYSTEM} as their product"
+        raise InputError("N, harmonics", (chain.N, harmonics), allowed, "cut the guess")
     while True:
         balance = Balance(chain, seed, harmonics)
         z, steps = balance.newton(balance.vector(cosines, sigma), given(balance))
-        cosines, sigma, iterations = balance.cosines(z), float(z[-1]), iterations + steps
+        cosines, sigma = balance.cosines(z), float(z[-1])
+        iterations += steps
         if balance.frequency(z) <= 0:
-            raise NoPeriodicOrbit(
-                balance,
-                f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2",
-                z,
-            )
-        heights = np.max(np.abs(cosines), axis=1) / np.max(np.abs(cosines))
-        if np.max(heights[-max(2, harmonics // 8) :]) <= TAIL:
+            reason = f"the equations hold for omega^2 - Omega^2 = {sigma:.6g}, a negative omega^2"
+            raise NoPeriodicOrbit(balance, reason, z)
+        heights = relative_heights(cosines)
+        tail = max(2, harmonics // 8)
+        if np.max(heights[-tail:]) <= TAIL:
             break
         harmonics *= 2
         if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
-            raise NoPeriodicOrbit(
-                balance,
-                f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g} of the largest",
-                z,
-            )
-    change = float(np.max(np.abs(z - balance.vector(guess, sigma)))) / float(
-        np.max(np.abs(cosines))
-    )
-    if change > reach or abs(cosines[1, seed - 1]) < np.max(np.abs(cosines)) / GROWTH:
-        raise NoPeriodicOrbit(
-            balance,
-            f"the orbit found is another one: a change by {change:.3g} of the largest coefficient",
-            z,
-        )
-    cosines, omega = (
-        cosines[: int(np.flatnonzero(heights > TAIL / 100)[-1]) + 1],
-        balance.frequency(z),
-    )
-    return orbit_of(
-        chain, seed, exact(omega, "frequency"), cosines, iterations=iterations, sigma=sigma
-    )
+            still = f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g}"
+            raise NoPeriodicOrbit(balance, f"{still} of the largest", z)
+    largest = _largest(cosines)
+    change = _largest(z - balance.vector(guess, sigma)) / largest
+    if change > reach or abs(cosines[1, seed - 1]) < largest / GROWTH:
+        moved = f"a change by {change:.3g} of the largest coefficient"
+        raise NoPeriodicOrbit(balance, f"the orbit found is another one: {moved}", z)
+    last = int(np.flatnonzero(heights > TAIL / 100)[-1])
+    omega = exact(balance.frequency(z), "frequency")
+    return orbit_of(chain, seed, omega, cosines[: last + 1], iterations=iterations, sigma=sigma)
 
 
 def _walk(
     chain: Chain, seed: int, amplitude: float, sigma: float, *, by_amplitude: bool
 ) -> PeriodicOrbit:
-    """The member at the end of the way from rest, on which A grows about with the part gone and sigma with its square."""
+    """The member at the end of the way from rest.
+
+    On it A grows about with the part gone, and sigma with its square.
+    """
     gone, step, iterations = 0.0, 1.0, 0
-    scale, cosines = (
-        1.0,
-        np.zeros((2, chain.N - 1)),
-    )  # the guess is cosines, a member or the linear mode, scaled to the next part
+    # the guess is cosines, a member or the linear mode, scaled to the next part
+    scale, cosines = 1.0, np.zeros((2, chain.N - 1))
     cosines[1, seed - 1] = amplitude
     given = held_amplitude if by_amplitude else held_frequency
     while True:
@@ -436,6 +452,7 @@ def _walk(
                 raise
             continue
         gone = scale = part
-        cosines, sigma, iterations = orbit.cosines, orbit.sigma, iterations + orbit.iterations
+        cosines, sigma = orbit.cosines, orbit.sigma
+        iterations += orbit.iterations
         if gone == 1:
             return replace(orbit, iterations=iterations)

@@ -1,5 +1,6 @@
-"""Periodic orbits to any number of digits: harmonic balance in fixed point, corrected through a
-factored matrix of doubles.
+"""Periodic orbits to any number of digits: harmonic balance in fixed point.
+
+A factored matrix of doubles corrects them.
 
 One sweep takes the residual in fixed point, solves Newton's equations for it in doubles with the
 matrix at the orbit in doubles, and gains about as many digits as that orbit has. Harmonics beyond
@@ -25,6 +26,7 @@ from symfpu.breathers.balance import (
     as_periodic_orbit,
     breather_at_amplitude,
     periodic_orbit,
+    relative_heights,
     unknowns,
 )
 from symfpu.breathers.fixed_force import FixedForce, Integers
@@ -55,18 +57,18 @@ class PreciseOrbit(FourierTorus):
     Made by `periodic_orbit_digits`. Ours: the breathers of section 6.4 beyond doubles.
 
     chain, seeds : the model and its one seed. frequencies : omega, exact, shape (1,).
-    harmonics : 0 .. H, shape (H+1, 1). cosines : mpf, shape (H+1, N-1), harmonic 0 first. phases : 0 of the
-        seed, radians.
+    harmonics : 0 .. H, shape (H+1, 1). cosines : mpf, shape (H+1, N-1), harmonic 0 first.
+        phases : 0 of the seed, radians.
     digits : of the largest coefficient.
-    bound : above |Q'' - force| of every mode at every time, relative to the largest acceleration: the sum of
-        the sizes of all Fourier coefficients of the residual, up to harmonic 3H, taken with 64 bits more than
-        the orbit has.
+    bound : above |Q'' - force| of every mode at every time, relative to the largest acceleration:
+        the sum of the sizes of all Fourier coefficients of the residual, up to harmonic 3H, taken
+        with 64 bits more than the orbit has.
     sweeps : corrections made.
 
     >>> from symfpu import Chain, periodic_orbit, periodic_orbit_digits
     >>> periodic_orbit_digits(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"), 30)
-    PreciseOrbit(N=8, alpha=0.3, seed 1, omega=0.3905.., A=0.405158623041734.., 30 digits, 46 harmonics,
-    residual below ...)
+    PreciseOrbit(N=8, alpha=0.3, seed 1, omega=0.3905.., A=0.405158623041734.., 30 digits,
+    46 harmonics, residual below ...)
     """
 
     bound: Any = field(default=mpmath.inf)
@@ -80,8 +82,9 @@ class PreciseOrbit(FourierTorus):
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
         exact_omega = mpmath.mpf(self.frequency.numerator) / self.frequency.denominator
         omega, A = mpmath.nstr(exact_omega, 15), mpmath.nstr(self.amplitude, 15)
+        which = f"seed {self.seed}, omega={omega}.., A={A}.., {self.digits} digits"
         quality = f"{len(self.cosines) - 1} harmonics, residual below {mpmath.nstr(self.bound, 2)}"
-        return f"PreciseOrbit({chain}, seed {self.seed}, omega={omega}.., A={A}.., {self.digits} digits, {quality})"
+        return f"PreciseOrbit({chain}, {which}, {quality})"
 
 
 def periodic_orbit_digits(
@@ -95,11 +98,11 @@ def periodic_orbit_digits(
 
     orbit : a solution of one angle, whose phase (radians) is kept; all else is dimensionless.
     digits : 1 .. 1000.
-    frequency, amplitude : exact numbers, at most one of them; the member with that omega or that A near the
-        orbit. Neither: the frequency of the orbit.
+    frequency, amplitude : exact numbers, at most one of them; the member with that omega or that
+        A near the orbit. Neither: the frequency of the orbit.
 
-    Newton-like sweeps on harmonic balance, Eq. eqmo; ours. Raises InputError, and NoPeriodicOrbit if the
-    sweeps gain no digits.
+    Newton-like sweeps on harmonic balance, Eq. eqmo; ours. Raises InputError, and NoPeriodicOrbit
+    if the sweeps gain no digits.
 
     >>> from symfpu.chain.chain import Chain
     >>> orbit = periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
@@ -111,9 +114,8 @@ def periodic_orbit_digits(
     if integer(digits, "digits", 1) > MOST_DIGITS:
         raise InputError("digits", digits, f"1..{MOST_DIGITS}", "take fewer")
     if frequency is not None and amplitude is not None:
-        raise InputError(
-            "frequency, amplitude", (frequency, amplitude), "one of them", "leave the other out"
-        )
+        both = (frequency, amplitude)
+        raise InputError("frequency, amplitude", both, "one of them", "leave the other out")
     held = None
     if amplitude is not None:
         held = exact(amplitude, "amplitude")
@@ -126,21 +128,19 @@ def periodic_orbit_digits(
 
 def _refine(orbit: PeriodicOrbit, digits: int, amplitude: Fraction | None) -> PreciseOrbit:
     """With as many harmonics as the digits need; at the working precision of mpmath."""
-    heights = np.max(np.abs(orbit.cosines), axis=1) / np.max(np.abs(orbit.cosines))
+    heights = relative_heights(orbit.cosines)
     last = int(np.flatnonzero(heights)[-1])
     decades = max(-math.log10(heights[last]), 1.0) / max(last, 1)
     harmonics = max(8, last, math.ceil(1.1 * (digits + GUARD_DIGITS) / decades) + 2)
     while True:
         if harmonics > MOST_HARMONICS:
-            raise InputError(
-                "digits",
-                digits,
-                f"what {MOST_HARMONICS} harmonics can give",
-                "take fewer digits or a smaller amplitude",
-            )
+            allowed = f"what {MOST_HARMONICS} harmonics can give"
+            advice = "take fewer digits or a smaller amplitude"
+            raise InputError("digits", digits, allowed, advice)
         sweeps = Sweeps(orbit, harmonics, amplitude)
         number = sweeps.converge()
-        if sweeps.tail() <= sweeps.size >> math.floor((digits + GUARD_DIGITS / 2) * math.log2(10)):
+        bits = math.floor((digits + GUARD_DIGITS / 2) * math.log2(10))
+        if sweeps.tail() <= sweeps.size >> bits:
             return sweeps.result(digits, number)
         harmonics += max(8, harmonics // 3)
 
@@ -152,53 +152,55 @@ class Sweeps:
     """
 
     def __init__(self, orbit: PeriodicOrbit, harmonics: int, amplitude: Fraction | None) -> None:
-        self.orbit, self.chain, self.by_amplitude = orbit, orbit.chain, amplitude is not None
+        self.orbit, self.chain = orbit, orbit.chain
+        self.by_amplitude = amplitude is not None
         largest = float(np.max(np.abs(orbit.cosines)))
-        self.force = FixedForce(self.chain, int(mpmath.mp.prec) - math.frexp(largest)[1])
-        self.size = self.force.fixed(mpmath.mpf(largest))
-        self.c: Integers = np.zeros((harmonics + 1, self.chain.N - 1), dtype=object)
-        self.n, self.q = unknowns(self.chain, orbit.seed, harmonics)
-        known = self.n < len(
-            orbit.cosines
-        )  # what the symmetry forbids, rounding if any, stays zero
+        _, exponent = math.frexp(largest)
+        self.force = FixedForce(self.chain, int(mpmath.mp.prec) - exponent)
+        fixed, seed = self.force.fixed, orbit.seed
+        self.size = fixed(mpmath.mpf(largest))
+        self.n, self.q = unknowns(self.chain, seed, harmonics)
+        # what the symmetry forbids, rounding if any, stays zero
+        known = self.n < len(orbit.cosines)
         n, q = self.n[known], self.q[known]
-        fixed = np.frompyfunc(lambda x: self.force.fixed(mpmath.mpf(x)), 1, 1)
-        self.c[n, q] = fixed(orbit.cosines[n, q])
+        each_fixed = np.frompyfunc(lambda x: fixed(mpmath.mpf(x)), 1, 1)
+        self.c: Integers = np.zeros((harmonics + 1, self.chain.N - 1), dtype=object)
+        self.c[n, q] = each_fixed(orbit.cosines[n, q])
         if amplitude is None:
-            self.squared = self.force.fixed(orbit.frequency**2)
+            self.squared = fixed(orbit.frequency**2)
         else:
-            self.squared = int(self.force.squares[orbit.seed - 1]) + self.force.fixed(
-                mpmath.mpf(orbit.sigma)
-            )
-            self.c[1, orbit.seed - 1] = self.force.fixed(amplitude)
+            linear = int(self.force.squares[seed - 1])
+            self.squared = linear + fixed(mpmath.mpf(orbit.sigma))
+            self.c[1, seed - 1] = fixed(amplitude)
         self._factor()
 
     def _factor(self) -> None:
-        """The matrix of the low harmonics at the orbit in doubles, and the diagonal of the high
-        ones.
+        """The matrix of the low harmonics, and the diagonal of the high ones.
+
+        Both at the orbit in doubles.
         """
         from scipy.linalg import lu_factor
 
         orbit, harmonics = self.orbit, len(self.c) - 1
-        block = min(
-            harmonics, max(len(orbit.cosines) - 1, LARGEST_BLOCK * harmonics // len(self.n))
-        )
+        affordable = LARGEST_BLOCK * harmonics // len(self.n)
+        block = min(harmonics, max(len(orbit.cosines) - 1, affordable))
         self.balance = Balance(self.chain, orbit.seed, block)
         self.z = self.balance.vector(orbit.cosines, orbit.sigma)
-        self.free = np.delete(
-            np.arange(len(self.z)), self.balance.first if self.by_amplitude else len(self.z) - 1
-        )
-        self.matrix = lu_factor(self.balance.system(self.z)[1][:, self.free])
-        diagonal = self.n**2 * float(orbit.frequency) ** 2 - self.chain.frequencies()[self.q] ** 2
-        self.diagonal = diagonal[
-            len(self.balance.n) :
-        ]  # unknowns go by harmonic: those of the block come first
+        held = self.balance.first if self.by_amplitude else len(self.z) - 1
+        self.free = np.delete(np.arange(len(self.z)), held)
+        _, jacobian = self.balance.system(self.z)
+        self.matrix = lu_factor(jacobian[:, self.free])
+        linear = self.chain.frequencies()[self.q]
+        diagonal = self.n**2 * float(orbit.frequency) ** 2 - linear**2
+        # unknowns go by harmonic: those of the block come first
+        self.diagonal = diagonal[len(self.balance.n) :]
 
     def converge(self) -> int:
         """Sweep until the residual is rounding; the number of sweeps. Raises NoPeriodicOrbit."""
         least, stalled = math.inf, 0
         for sweep in range(1, SWEEPS + 1):
-            values = self.force.equations(self.c, self.squared, len(self.c) - 1)[self.n, self.q]
+            equations = self.force.equations(self.c, self.squared, len(self.c) - 1)
+            values = equations[self.n, self.q]
             bits = max(abs(x) for x in values).bit_length()
             self._correct(values, bits)
             if bits <= ROUNDING_BITS:
@@ -207,31 +209,27 @@ class Sweeps:
             if stalled >= STALL_SWEEPS:
                 break
         digits = (self.size.bit_length() - least) * math.log10(2)
-        raise NoPeriodicOrbit(
-            self.balance, f"the sweeps in fixed point stop at a residual of 1e-{digits:.0f}", self.z
-        )
+        reason = f"the sweeps in fixed point stop at a residual of 1e-{digits:.0f}"
+        raise NoPeriodicOrbit(self.balance, reason, self.z)
 
     def _correct(self, values: Integers, bits: int) -> None:
         from scipy.linalg import lu_solve
 
-        exponent = max(bits - DOUBLE_BITS, 0)
-        scaled = np.array(
-            [math.ldexp(float(x >> exponent), -min(bits, DOUBLE_BITS)) for x in values]
-        )
-        low, changes = (
-            lu_solve(self.matrix, scaled[: len(self.balance.n)]),
-            np.zeros(len(scaled) + 1),
-        )
-        high = scaled[len(self.balance.n) :] / self.diagonal
-        changes[self.free] = low  # the place of sigma is the end of the block for now
-        sigma = changes[len(self.balance.n)]
-        changes[len(self.balance.n) : -1] = high
+        dropped = max(bits - DOUBLE_BITS, 0)
+        kept = min(bits, DOUBLE_BITS)
+        scaled = np.array([math.ldexp(float(x >> dropped), -kept) for x in values])
+        block = len(self.balance.n)
+        changes = np.zeros(len(scaled) + 1)
+        changes[self.free] = lu_solve(self.matrix, scaled[:block])
+        sigma = changes[block : block + 1].copy()  # its place is the end of the block for now
+        changes[block:-1] = scaled[block:] / self.diagonal
         self.c[self.n, self.q] -= _integers(changes[:-1], bits)
-        self.squared -= int(_integers(np.array([sigma]), bits)[0])
+        self.squared -= int(_integers(sigma, bits)[0])
 
     def tail(self) -> int:
         """Largest coefficient of the last harmonics."""
-        return max(abs(int(x)) for x in self.c[-max(2, len(self.c) // 16) :].flat)
+        length = max(2, len(self.c) // 16)
+        return max(abs(int(x)) for x in self.c[-length:].flat)
 
     def result(self, digits: int, sweeps: int) -> PreciseOrbit:
         """The orbit with its bound, without harmonics that are zero in fixed point."""
@@ -239,31 +237,29 @@ class Sweeps:
         omega = self.orbit.frequency
         if self.by_amplitude:
             omega = _fraction(mpmath.sqrt(mpmath.ldexp(self.squared, -bits)))
-        c = self.c[: max(n for n, row in enumerate(self.c) if any(row)) + 1]
-        cosines, harmonics = (
-            from_integers(c, np.full(c.shape[1], -bits)),
-            np.arange(len(c))[:, None],
-        )
+        last = max(n for n, row in enumerate(self.c) if any(row))
+        c = self.c[: last + 1]
         return PreciseOrbit(
-            self.chain,
-            (seed,),
-            (omega,),
-            harmonics,
-            cosines,
-            {seed: 0},
-            digits,
+            chain=self.chain,
+            seeds=(seed,),
+            frequencies=(omega,),
+            harmonics=np.arange(len(c))[:, None],
+            cosines=from_integers(c, np.full(c.shape[1], -bits)),
+            phases={seed: 0},
+            digits=digits,
             bound=self._bound(c, omega),
             sweeps=sweeps,
         )
 
     def _bound(self, c: Integers, omega: Fraction) -> Any:
         finer = FixedForce(self.chain, self.force.bits + CHECK_BITS)
-        equations = finer.equations(c << CHECK_BITS, finer.fixed(omega**2), 3 * len(c))
-        total = max(np.abs(equations).sum(axis=0)) + (
-            1 << CHECK_BITS
-        )  # one last place of the orbit for all roundings
+        squared = finer.fixed(omega**2)
+        equations = finer.equations(c << CHECK_BITS, squared, 3 * len(c))
+        rounding = 1 << CHECK_BITS  # one last place of the orbit
+        total = max(np.abs(equations).sum(axis=0)) + rounding
         t = np.linspace(0, np.pi / float(omega), 4 * len(self.orbit.cosines))
-        largest = float(np.max(np.abs(self.chain.accelerations(self.orbit.positions(t)))))
+        forces = self.chain.accelerations(self.orbit.positions(t))
+        largest = float(np.max(np.abs(forces)))
         return mpmath.ldexp(total, -finer.bits) / largest
 
 
@@ -272,9 +268,9 @@ def _integers(values: Floats, exponent: int) -> Integers:
     mantissas, exponents = np.frexp(values)
     shifts = exponents.astype(object) + (exponent - 53)
     whole = np.ldexp(mantissas, 53).astype(np.int64).astype(object)
-    return np.array(
-        [m << s if s >= 0 else m >> -s for m, s in zip(whole, shifts, strict=True)], dtype=object
-    )
+    pairs = zip(whole, shifts, strict=True)
+    shifted = [m << s if s >= 0 else m >> -s for m, s in pairs]
+    return np.array(shifted, dtype=object)
 
 
 def _fraction(value: Any) -> Fraction:

@@ -28,34 +28,36 @@ class FixedForce:
 
     def __init__(self, chain: Chain, bits: int) -> None:
         self.chain, self.bits = chain, bits
+        N = chain.N
         with mpmath.workprec(bits + SPARE_BITS):
-            N, root = chain.N, mpmath.sqrt(mpmath.mpf(2) / chain.N)
+            root = mpmath.sqrt(mpmath.mpf(2) / N)
             linear = [chain.linear_frequency(q) for q in range(1, N)]
             cosines = [root * mpmath.cospi(mpmath.mpf(k) / (2 * N)) for k in range(4 * N)]
-            rows = [
-                [self.fixed(Omega * cosines[q * (2 * j + 1) % (4 * N)]) for j in range(N)]
-                for q, Omega in enumerate(linear, 1)
-            ]
-            self.squares: Integers = np.array(
-                [self.fixed(Omega**2) for Omega in linear], dtype=object
-            )
+            rows = []
+            for q, Omega in enumerate(linear, 1):
+                places = [q * (2 * j + 1) % (4 * N) for j in range(N)]
+                rows.append([self.fixed(Omega * cosines[k]) for k in places])
+            squares = [self.fixed(Omega**2) for Omega in linear]
+        self.squares: Integers = np.array(squares, dtype=object)
         self.stretch = flint.fmpz_mat(rows)  # of every bond by a unit of each mode
         self.modes = self.stretch.transpose()
 
     def fixed(self, value: Any) -> int:
         """A number of mpmath or a fraction as an integer, rounded to nearest."""
         if isinstance(value, Fraction):
-            return int((2 * value.numerator << self.bits) // value.denominator + 1) // 2
+            doubled = (2 * value.numerator << self.bits) // value.denominator
+            return int(doubled + 1) // 2
         return int(mpmath.nint(mpmath.ldexp(value, self.bits)))
 
     def equations(self, c: Integers, squared: int, harmonics: int) -> Integers:
         """n^2 omega^2 c + force for all modes, shape (H+1, N-1) to (harmonics+1, N-1).
 
-        Squared is omega^2.
+        squared : omega^2.
         """
         total = self._nonlinear(c, harmonics)
         n = np.arange(len(c)).astype(object)[:, None]
-        total[: len(c)] += ((n**2 * squared - self.squares) * c) >> self.bits
+        diagonal = n**2 * squared - self.squares
+        total[: len(c)] += (diagonal * c) >> self.bits
         return total
 
     def _nonlinear(self, c: Integers, harmonics: int) -> Integers:
@@ -67,20 +69,21 @@ class FixedForce:
         return np.negative(self._product(tension, self.modes))
 
     def _tension(self, r: Sequence[int], harmonics: int) -> list[int]:
-        """Cosine coefficients of c_3 r^2 + c_4 r^3 + ...
+        """Cosine coefficients of the anharmonic tension of one bond, c_3 r^2 and so on.
 
-        Of one bond: d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0.
+        They are those of d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0.
         """
-        degree, total = len(r) - 1, np.zeros(harmonics + 1, dtype=object)
+        degree = len(r) - 1
+        total = np.zeros(harmonics + 1, dtype=object)
         twice = flint.fmpz_poly([*r[:0:-1], 2 * r[0], *r[1:]])
         power = twice
         for k, coupling in enumerate(self.chain.couplings, 2):
             power = self._lowered(power * twice)
             if coupling:
-                part = power.coeffs()[k * degree : k * degree + harmonics + 1]
-                total[: len(part)] += [
-                    int(x) * 2 * coupling.numerator // (2**k * coupling.denominator) for x in part
-                ]
+                middle = k * degree
+                part = power.coeffs()[middle : middle + harmonics + 1]
+                above, below = 2 * coupling.numerator, 2**k * coupling.denominator
+                total[: len(part)] += [int(x) * above // below for x in part]
         total[0] //= 2
         return list(total)
 

@@ -1,9 +1,11 @@
-"""Floquet multipliers of a q-breather: its tangent map over a period, and the stability that they decide.
+"""Floquet multipliers of a q-breather: its tangent map over a period, and its stability.
 
-The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives M = R H^-1 R H with the symplectic
-inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with a = 1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in
-pairs with lambda + 1/lambda = 2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M, is a simple kappa = 0 whose
-left eigenvector is the acceleration at t = 0, B f = 0. So every pair is exactly reciprocal, and the double 1 costs no digits.
+The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives
+M = R H^-1 R H with the symplectic inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with
+a = 1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in pairs with
+lambda + 1/lambda = 2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M,
+is a simple kappa = 0 whose left eigenvector is the acceleration at t = 0, B f = 0. So every pair
+is exactly reciprocal, and the double 1 costs no digits.
 """
 
 from __future__ import annotations
@@ -24,11 +26,12 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Floats = NDArray[np.float64]
 MORE_ANGLES = (
-    "normal frequencies of tori of more angles are not available; take a breather of one seed, or let "
-    "alignment_indices tell whether the orbit is regular"
+    "normal frequencies of tori of more angles are not available; take a breather of one seed, "
+    "or let alignment_indices tell whether the orbit is regular"
 )
 ACCURACY = 1e-12  # of the tangent map, relative to its largest entry
-FIRST_STEP = 0.1  # over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
+# over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
+FIRST_STEP = 0.1
 DOUBLINGS = 5
 SAFETY = 8  # times the error that a kappa may have: what it may be off the circle
 TRIVIAL, ELLIPTIC = "trivial", "on the circle"
@@ -42,19 +45,22 @@ class Floquet:
     Made by `floquet`. Ours.
 
     orbit : the orbit.
-    pairs : (lambda, 1/lambda), |lambda| >= 1, shape (N-1, 2), the trivial pair (1, 1) first, then by falling
-        size and growing angle.
-    kinds : of every pair: "trivial", "on the circle", "real > 0" (tangent bifurcation at +1), "real < 0"
-        (period doubling at -1), "complex quadruple" (Krein collision; two pairs make one quadruple).
-    kappa : (lambda + 1/lambda - 2)/4; tolerance : how far each may be off because of the errors of map and
-        orbit; both (N-1,).
+    pairs : (lambda, 1/lambda), |lambda| >= 1, shape (N-1, 2), the trivial pair (1, 1) first, then
+        by falling size and growing angle.
+    kinds : of every pair: "trivial", "on the circle", "real > 0" (tangent bifurcation at +1),
+        "real < 0" (period doubling at -1), "complex quadruple" (Krein collision; two pairs make
+        one quadruple).
+    kappa : (lambda + 1/lambda - 2)/4; tolerance : how far each may be off because of the errors
+        of map and orbit; both (N-1,).
     monodromy : M in modes, rows and columns Q_1 .., P_1 ..; shape (2(N-1), 2(N-1)).
-    symplecticity : largest entry of M^T J M - J. map_error : estimated error of the half-period map.
+    symplecticity : largest entry of M^T J M - J. map_error : estimated error of the half-period
+        map.
     trivial_error : by how much the trivial pair of the computed map misses kappa = 0.
 
     >>> from symfpu import Chain, periodic_orbit
     >>> floquet(periodic_orbit(Chain(N=4, beta=1), 2, "1.4168"))
-    Floquet(N=4, beta=1, seed 2, omega=1.4168, stable, largest |multiplier| 1, symplecticity error ...)
+    Floquet(N=4, beta=1, seed 2, omega=1.4168, stable, largest |multiplier| 1,
+    symplecticity error ...)
     """
 
     orbit: QuasiPeriodic
@@ -68,15 +74,13 @@ class Floquet:
     trivial_error: float
 
     def __repr__(self) -> str:
-        verdict = (
-            "stable"
-            if self.stable
-            else "unstable: " + ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
-        )
-        return (
-            f"Floquet({repr(self.orbit.chain)[6:-1]}, seed {self.orbit.seed}, omega={decimal(self.orbit.frequency)}, {verdict}, "
-            f"largest |multiplier| {self.largest:.12g}, symplecticity error {self.symplecticity:.1g})"
-        )
+        chain = repr(self.orbit.chain).removeprefix("Chain(").removesuffix(")")
+        which = f"seed {self.orbit.seed}, omega={decimal(self.orbit.frequency)}"
+        unstable = ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
+        verdict = "stable" if self.stable else f"unstable: {unstable}"
+        largest = f"largest |multiplier| {self.largest:.12g}"
+        quality = f"symplecticity error {self.symplecticity:.1g}"
+        return f"Floquet({chain}, {which}, {verdict}, {largest}, {quality})"
 
     @property
     def multipliers(self) -> NDArray[np.complex128]:
@@ -92,7 +96,9 @@ class Floquet:
     def instabilities(self) -> dict[str, int]:
         """Number of unstable pairs, or of quadruples, by kind; empty if stable."""
         counts = Counter(kind for kind in self.kinds if kind not in (TRIVIAL, ELLIPTIC))
-        return {kind: count // 2 if kind == QUADRUPLE else count for kind, count in counts.items()}
+        if QUADRUPLE in counts:
+            counts[QUADRUPLE] //= 2
+        return dict(counts)
 
     @property
     def largest(self) -> float:
@@ -106,20 +112,21 @@ def monodromy(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floats:
     scheme : of the integrator, on T + V. Returns shape (2(N-1), 2(N-1)). Raises InputError.
     """
     periodic = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
-    return _whole(_half(periodic, particle_scheme(scheme))[0])
+    half, _ = _half(periodic, particle_scheme(scheme))
+    return _whole(half)
 
 
 def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
-    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others; dimensionless. Of a truncated
-        series, multipliers are as good as the orbit is.
+    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others; dimensionless. Of
+        a truncated series, multipliers are as good as the orbit is.
     scheme : of the integrator, on T + V; with one of lower order errors and tolerances are larger.
 
-    The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time; ours. A
-    kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is SAFETY times its
-    error to first order: the error of B^T C over the cosine between its left and right eigenvector. Raises
-    InputError.
+    The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time;
+    ours. A kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is
+    SAFETY times its error to first order: the error of B^T C over the cosine between its left and
+    right eigenvector. Raises InputError.
 
     >>> from symfpu.chain.chain import Chain
     >>> from symfpu.breathers.balance import breather_at_amplitude
@@ -133,46 +140,54 @@ def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]
     force = periodic.chain.accelerations(periodic.positions(0.0))
-    basis = np.linalg.svd(force[None, :])[
-        2
-    ].T  # the acceleration, then an orthonormal basis of what is perpendicular to it
-    flow, rest = basis[:, 0], basis[:, 1:]
+    # the acceleration, then an orthonormal basis of what is perpendicular to it
+    _, _, basis = np.linalg.svd(force[None, :])
+    flow, rest = basis.T[:, 0], basis.T[:, 1:]
     trivial = float(np.linalg.norm(C.T @ (B @ flow)))
-    error = map_error * float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2)) + trivial
+    sizes = float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2))
+    error = map_error * sizes + trivial
     kappa, left, right = eig(rest.T @ B.T @ C @ rest, left=True)
-    tolerance = (
-        SAFETY
-        * error
-        / np.maximum(np.abs(np.einsum("ij,ij->j", left.conj(), right)), np.finfo(float).tiny)
-    )
+    cosines = np.abs(np.einsum("ij,ij->j", left.conj(), right))
+    tolerance = SAFETY * error / np.maximum(cosines, np.finfo(float).tiny)
     kinds = [_kind(k, t) for k, t in zip(kappa, tolerance, strict=True)]
     pairs = np.array([_pair(k, kind) for k, kind in zip(kappa, kinds, strict=True)]).reshape(-1, 2)
-    order = np.lexsort((np.angle(pairs[:, 0]), -np.abs(pairs[:, 0]).round(12)))
-    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    larger = pairs[:, 0]
+    order = np.lexsort((np.angle(larger), -np.abs(larger).round(12)))
     return Floquet(
-        orbit,
-        np.vstack([[[1.0, 1.0]], pairs[order]]),
-        (TRIVIAL, *(kinds[i] for i in order)),
-        np.append(0.0, kappa[order]),
-        np.append(SAFETY * error, tolerance[order]),
-        whole,
-        float(np.max(np.abs(whole.T @ J @ whole - J))),
-        map_error,
-        trivial,
+        orbit=orbit,
+        pairs=np.vstack([[[1.0, 1.0]], pairs[order]]),
+        kinds=(TRIVIAL, *(kinds[i] for i in order)),
+        kappa=np.append(0.0, kappa[order]),
+        tolerance=np.append(SAFETY * error, tolerance[order]),
+        monodromy=whole,
+        symplecticity=_symplecticity_error(whole),
+        map_error=map_error,
+        trivial_error=trivial,
     )
+
+
+def _symplecticity_error(M: Floats) -> float:
+    """Largest entry of M^T J M - J."""
+    n = len(M) // 2
+    zero, one = np.zeros((n, n)), np.eye(n)
+    J = np.block([[zero, one], [-one, zero]])
+    return float(np.max(np.abs(M.T @ J @ M - J)))
 
 
 def _half(orbit: PeriodicOrbit, scheme: Scheme) -> tuple[Floats, float]:
     """The tangent map over half a period and its estimated error, in the spectral norm."""
-    chain, duration = orbit.chain, np.pi / float(orbit.frequency)
-    r = chain.stretches(orbit.positions(np.linspace(0, duration, 2 * len(orbit.cosines))))
+    chain, omega = orbit.chain, float(orbit.frequency)
+    duration = np.pi / omega
+    times = np.linspace(0, duration, 2 * len(orbit.cosines))
+    r = chain.stretches(orbit.positions(times))
     stiffest = float(np.max(np.abs(bonds.stiffness(chain.law(), r))))
     steps = int(np.ceil(duration * np.sqrt(stiffest) / FIRST_STEP))
     coefficients = chain.stretches(orbit.cosines)
-    rates = np.arange(len(coefficients)) * float(orbit.frequency)
+    rates = np.arange(len(coefficients)) * omega
 
     def stretches(t: Floats) -> Floats:
-        return np.asarray(np.cos(np.multiply.outer(t, rates)) @ coefficients)
+        angles = np.multiply.outer(t, rates)
+        return np.asarray(np.cos(angles) @ coefficients)
 
     coarse = tangent_map_along(chain, stretches, duration, steps, scheme=scheme)
     for _ in range(DOUBLINGS):
@@ -182,14 +197,18 @@ def _half(orbit: PeriodicOrbit, scheme: Scheme) -> tuple[Floats, float]:
         if error <= ACCURACY * max(1.0, float(np.max(np.abs(fine)))):
             break
         coarse = fine
-    return fine, error + np.sqrt(steps) * float(np.finfo(float).eps * np.linalg.norm(fine, 2))
+    rounding = float(np.finfo(float).eps * np.linalg.norm(fine, 2))
+    return fine, error + np.sqrt(steps) * rounding
 
 
 def _whole(half: Floats) -> Floats:
     """R H^-1 R H with the symplectic inverse."""
     n = len(half) // 2
-    A, B, C, D = half[:n, :n], half[:n, n:], half[n:, :n], half[n:, n:]
-    return np.block([[D.T, B.T], [C.T, A.T]]) @ half
+    upper, lower = half[:n], half[n:]
+    A, B = upper[:, :n], upper[:, n:]
+    C, D = lower[:, :n], lower[:, n:]
+    reversed_half = np.block([[D.T, B.T], [C.T, A.T]])  # R H^-1 R
+    return reversed_half @ half
 
 
 def _kind(kappa: complex, tolerance: float) -> str:
@@ -201,10 +220,14 @@ def _kind(kappa: complex, tolerance: float) -> str:
 
 
 def _pair(kappa: complex, kind: str) -> tuple[complex, complex]:
-    """(lambda, 1/lambda) with |lambda| >= 1 of lambda + 1/lambda = 2 + 4 kappa; on the circle exp(+-i angle)."""
+    """(lambda, 1/lambda) of lambda + 1/lambda = 2 + 4 kappa, with |lambda| >= 1.
+
+    On the circle they are exp(+-i angle).
+    """
     if kind == ELLIPTIC:
         angle = 2 * np.arcsin(np.sqrt(np.clip(-kappa.real, 0.0, 1.0)))
-        return complex(np.cos(angle), np.sin(angle)), complex(np.cos(angle), -np.sin(angle))
+        x, y = np.cos(angle), np.sin(angle)
+        return complex(x, y), complex(x, -y)
     if kind != QUADRUPLE:
         kappa = complex(kappa.real, 0.0)
     root = np.sqrt(kappa + 1 + 0j) + np.sqrt(kappa + 0j)

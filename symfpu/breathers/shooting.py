@@ -1,9 +1,10 @@
-"""Exact q-breathers by shooting: Newton's method on the motion over half a period, with its tangent map.
+"""Exact q-breathers by shooting: Newton's method on the motion over half a period.
 
-Root finding as in section 6.4. A state at rest, P(0) = 0, that is at rest again at T/2 returns at T, since
-the motion is reversible. The unknowns are the Q_q(0) that the symmetry of the family allows: even q for an
-even seed, q of the seed's parity if alpha = 0, else all. The tangent map is the exact derivative of the
-integrator's map, so that Newton's method converges quadratically down to rounding.
+Root finding as in section 6.4. A state at rest, P(0) = 0, that is at rest again at T/2 returns at
+T, since the motion is reversible. The unknowns are the Q_q(0) that the symmetry of the family
+allows: even q for an even seed, q of the seed's parity if alpha = 0, else all. The tangent map is
+the exact derivative of the integrator's map, so that Newton's method converges quadratically down
+to rounding.
 """
 
 from __future__ import annotations
@@ -37,14 +38,11 @@ from symfpu.numbers.typed import Number, decimal, seed_modes
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 
 Floats = NDArray[np.float64]
-ACCURACY = 1e-15  # of the half period, relative to its largest number: a small omega - Omega magnifies errors
+# of the half period, relative to its largest number: a small omega - Omega magnifies errors
+ACCURACY = 1e-15
 FIRST_STEP = 0.1  # time of the coarser of the first two integrations
 DOUBLINGS = 5
-HALF_PERIOD_SAMPLES = (
-    256,
-    1024,
-    4096,
-)  # at which an orbit is analysed, until its harmonics fall off
+HALF_PERIOD_SAMPLES = (256, 1024, 4096)  # for the harmonics of an orbit, until they fall off
 NOISE = 4e-15  # of the largest coefficient: those below are rounding of the integration
 
 
@@ -52,15 +50,18 @@ class ShootingFailed(SymfpuError):
     """Newton's method on the half period found no orbit: raised by `shoot`.
 
     seed : the mode. reason : why it ended. iterate : Q(0) with the smallest residual, shape (N-1,).
-    residuals : of every step; residual : the smallest, relative to omega max|Q|, dimensionless. Ours.
+    residuals : of every step; residual : the smallest, relative to omega max|Q|, dimensionless.
+        Ours.
     """
 
     def __init__(self, seed: int, reason: str, start: Floats, residuals: tuple[float, ...]) -> None:
         self.seed, self.reason, self.iterate, self.residuals = seed, reason, start, residuals
         self.residual = min(residuals, default=float("inf"))
+        best = f"Q_{seed}(0) = {start[seed - 1]:.6g}"
         super().__init__(
-            f"shooting at the breather of seed {seed} failed: {reason}; the best start, Q_{seed}(0) = {start[seed - 1]:.6g}, is at rest "
-            f"at T/2 up to {self.residual:.2g} of omega max|Q|; pass as guess the start of a series or of an orbit nearby"
+            f"shooting at the breather of seed {seed} failed: {reason}; "
+            f"the best start, {best}, is at rest at T/2 up to {self.residual:.2g} of omega max|Q|; "
+            f"pass as guess the start of a series or of an orbit nearby"
         )
 
 
@@ -72,18 +73,18 @@ class ShotOrbit(QuasiPeriodic):
 
     chain, seeds : the model and its one seed. frequencies : omega, exact, shape (1,).
     start : Q(0), shape (N-1,); P(0) = 0.
-    closure : the distance of (omega Q, P) after a whole period from the start, over omega max|Q|, with steps
-        half as long as those of the search.
+    closure : the distance of (omega Q, P) after a whole period from the start, over omega max|Q|,
+        with steps half as long as those of the search.
     history : max|P(T/2)| / (omega max|Q|) of the guess and after every Newton step.
     steps : of the composition in half a period.
 
-    harmonics, 0 .. H, shape (H+1, 1), and cosines follow from integrating over half a period, when they are
-    first asked for. phases : 0 of the seed, radians. digits : None, of doubles.
+    harmonics, 0 .. H, shape (H+1, 1), and cosines follow from integrating over half a period,
+    when they are first asked for. phases : 0 of the seed, radians. digits : None, of doubles.
 
     >>> from symfpu import Chain, shoot
     >>> shoot(Chain(N=8, alpha="0.3"), 1, "0.3905")
-    ShotOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, Q_1(0)=0.4052474469027, H=0.012798422083, 5 Newton
-    steps, closure ...)
+    ShotOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, Q_1(0)=0.4052474469027, H=0.012798422083,
+    5 Newton steps, closure ...)
     """
 
     chain: Chain
@@ -97,7 +98,8 @@ class ShotOrbit(QuasiPeriodic):
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
         energy = self.chain.energy(self.start, np.zeros_like(self.start))
-        which = f"seed {self.seed}, omega={decimal(self.frequency)}, Q_{self.seed}(0)={self.start[self.seed - 1]:.13g}"
+        coordinate = f"Q_{self.seed}(0)={self.start[self.seed - 1]:.13g}"
+        which = f"seed {self.seed}, omega={decimal(self.frequency)}, {coordinate}"
         quality = f"{self.iterations} Newton steps, closure {self.closure:.2g}"
         return f"ShotOrbit({chain}, {which}, H={energy:.11g}, {quality})"
 
@@ -123,7 +125,10 @@ class ShotOrbit(QuasiPeriodic):
 
     @cached_property
     def cosines(self) -> Floats:
-        """The coefficients of cos(n omega t) in Q_q, shape (H+1, N-1); ShootingFailed if they do not fall off."""
+        """The coefficients of cos(n omega t) in Q_q, harmonic 0 first, shape (H+1, N-1).
+
+        Raises ShootingFailed if they do not fall off.
+        """
         return _analysed(self)
 
     @property
@@ -145,9 +150,8 @@ def _analysed(orbit: ShotOrbit) -> Floats:
         if np.max(relative[-samples // 8 :]) <= TAIL:
             last = int(np.flatnonzero(relative > NOISE)[-1])
             return np.asarray(cosines[: max(last, 1) + 1])
-    reason = (
-        f"the last of {samples} harmonics of the orbit is still {relative[-1]:.1g} of the largest"
-    )
+    last_one = f"the last of {samples} harmonics of the orbit"
+    reason = f"{last_one} is still {relative[-1]:.1g} of the largest"
     raise ShootingFailed(orbit.seed, reason, orbit.start, orbit.history)
 
 
@@ -181,13 +185,13 @@ def shoot(
 
     chain, seed : the model and the mode; all quantities are dimensionless.
     frequency : omega, an exact number.
-    guess : Q(0), shape (N-1,), of which the modes that the symmetry forbids are dropped; None for the seed
-        alone with the amplitude of the lowest order, good for small ones.
+    guess : Q(0), shape (N-1,), of which the modes that the symmetry forbids are dropped; None for
+        the seed alone with the amplitude of the lowest order, good for small ones.
     scheme : of the integrator, on T + V; with one of lower order the residual is larger.
 
-    Integrates Eq. eqmo from rest over half a period, at whose end an orbit is at rest again. Ours: an
-    independent check of `periodic_orbit`. Raises InputError; without a guess NoRealAmplitude or
-    UndeterminedAmplitudes; ShootingFailed with the best start.
+    Integrates Eq. eqmo from rest over half a period, at whose end an orbit is at rest again.
+    Ours: an independent check of `periodic_orbit`. Raises InputError; without a guess
+    NoRealAmplitude or UndeterminedAmplitudes; ShootingFailed with the best start.
 
     >>> shot = shoot(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
     >>> round(float(shot.energy()), 12), shot.closure < 1e-13
@@ -197,25 +201,30 @@ def shoot(
     integrator = particle_scheme(scheme)
     if guess is None:
         start = np.zeros(chain.N - 1)
-        start[seed - 1] = lowest_amplitude(chain, seed, detuning(chain, seed, omega)[0])
+        shift, _ = detuning(chain, seed, omega)
+        start[seed - 1] = lowest_amplitude(chain, seed, shift)
     else:
         start = _start(chain, seed, guess)
-    modes = np.arange(1, chain.N)
-    allowed = (
-        (modes - seed) % 2 == 0 if chain.alpha == 0 or seed % 2 == 0 else np.full(len(modes), True)
-    )
+    allowed = np.full(chain.N - 1, True)
+    if chain.alpha == 0 or seed % 2 == 0:
+        allowed = (np.arange(1, chain.N) - seed) % 2 == 0
     start = np.where(allowed, start, 0.0)
     half, rate = np.pi / float(omega), float(omega)
     steps = _steps(chain, integrator, seed, start, half)
     start, history = _newton(chain, integrator, seed, start, np.flatnonzero(allowed), half, steps)
-    none = np.zeros((0, chain.N - 1))
-    step = half / (2 * steps)
-    Q, P, *_ = tangent_steps(
-        chain, start, 0 * start, none, none, step, 4 * steps, scheme=integrator
-    )
+    Q, P = _moved(chain, integrator, start, half / (2 * steps), 4 * steps)
     distance = max(np.max(np.abs(Q - start)), np.max(np.abs(P)) / rate)
     closure = float(distance / np.max(np.abs(start)))
     return ShotOrbit(chain, (seed,), (omega,), start, closure, history, steps)
+
+
+def _moved(
+    chain: Chain, scheme: Scheme, start: Floats, step: float, count: int
+) -> tuple[Floats, Floats]:
+    """Q and P after so many steps from the start at rest."""
+    none = np.zeros((0, chain.N - 1))
+    Q, P, *_ = tangent_steps(chain, start, 0 * start, none, none, step, count, scheme=scheme)
+    return Q, P
 
 
 def _newton(
@@ -227,74 +236,66 @@ def _newton(
     half: float,
     steps: int,
 ) -> tuple[Floats, tuple[float, ...]]:
-    """The start at rest that is at rest after half a period, and the residuals on the way; raises ShootingFailed."""
+    """The start at rest that is at rest after half a period, and the residuals on the way.
+
+    Raises ShootingFailed.
+    """
     directions = np.eye(chain.N - 1)[free]
     still = 0 * directions
-    size, before, history, best = float(np.max(np.abs(start))), np.inf, [], start
+    history: list[float] = []
+    size, before, best = float(np.max(np.abs(start))), np.inf, start
+
+    def failed(reason: str) -> ShootingFailed:
+        return ShootingFailed(seed, reason, best, tuple(history))
+
     for _ in range(ITERATIONS + 1):
         state = start, 0 * start
         moved = tangent_steps(chain, *state, directions, still, half / steps, steps, scheme=scheme)
         _, P, _, slopes = moved
-        history.append(float(np.max(np.abs(P)) * half / (np.pi * np.max(np.abs(start)))))
-        if not np.isfinite(history[-1]):
-            raise ShootingFailed(
-                seed, "the motion runs away to infinity", best, tuple(history[:-1])
-            )
-        best = start if history[-1] == min(history) else best
-        if before <= STEP or (
-            before < ROUNDING_STEP and len(history) > 2 and history[-1] > history[-2] / 2
-        ):
+        velocity = np.pi * np.max(np.abs(start))  # omega max|Q| times half a period
+        residual = float(np.max(np.abs(P)) * half / velocity)
+        if not np.isfinite(residual):
+            raise failed("the motion runs away to infinity")
+        history.append(residual)
+        best = start if residual == min(history) else best
+        stalled = len(history) > 2 and residual > history[-2] / 2
+        if before <= STEP or (before < ROUNDING_STEP and stalled):
             return best, tuple(history)
         try:
             step = np.linalg.solve(slopes[:, free].T, P[free])
         except np.linalg.LinAlgError:
-            raise ShootingFailed(
-                seed, "the matrix of Newton's method is singular", best, tuple(history)
-            ) from None
+            raise failed("the matrix of Newton's method is singular") from None
         start = start.copy()
         start[free] -= step
         reached = float(np.max(np.abs(start)))
         if not size / GROWTH < reached < size * GROWTH:
-            raise ShootingFailed(
-                seed,
-                f"the largest coordinate goes from {size:.3g} to {reached:.3g}",
-                best,
-                tuple(history),
-            )
+            raise failed(f"the largest coordinate goes from {size:.3g} to {reached:.3g}")
         before = float(np.max(np.abs(step))) / reached
-    raise ShootingFailed(seed, f"no convergence in {ITERATIONS} steps", best, tuple(history))
+    raise failed(f"no convergence in {ITERATIONS} steps")
 
 
 def _start(chain: Chain, seed: int, guess: ArrayLike) -> Floats:
+    shape = f"shape ({chain.N - 1},)"
     try:
         start = np.array(guess, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError(
-            "guess", guess, f"an array of shape ({chain.N - 1},)", "pass numbers"
-        ) from error
+        raise InputError("guess", guess, f"an array of {shape}", "pass numbers") from error
     if start.shape != (chain.N - 1,):
-        raise InputError(
-            "guess", start.shape, f"the shape ({chain.N - 1},)", "pass the mode coordinates Q(0)"
-        )
-    if not np.isfinite(start).all() or start[seed - 1] == 0:
-        raise InputError(
-            "guess",
-            start[seed - 1],
-            f"finite numbers, Q_{seed}(0) not 0",
-            "give the seed an amplitude",
-        )
+        advice = "pass the mode coordinates Q(0)"
+        raise InputError("guess", start.shape, f"the {shape}", advice)
+    given = start[seed - 1]
+    if not np.isfinite(start).all() or given == 0:
+        allowed = f"finite numbers, Q_{seed}(0) not 0"
+        raise InputError("guess", given, allowed, "give the seed an amplitude")
     return start
 
 
 def _steps(chain: Chain, scheme: Scheme, seed: int, start: Floats, half: float) -> int:
     """Steps with which half a period from the guess is integrated to ACCURACY."""
-    steps, none = int(np.ceil(half / FIRST_STEP)), np.zeros((0, chain.N - 1))
+    steps = int(np.ceil(half / FIRST_STEP))
 
     def end(steps: int) -> Floats:
-        Q, P, *_ = tangent_steps(
-            chain, start, 0 * start, none, none, half / steps, steps, scheme=scheme
-        )
-        return np.concatenate([Q, P])
+        return np.concatenate(_moved(chain, scheme, start, half / steps, steps))
 
     coarse = end(steps)
     for _ in range(DOUBLINGS):
@@ -302,7 +303,8 @@ def _steps(chain: Chain, scheme: Scheme, seed: int, start: Floats, half: float) 
         fine = end(steps)
         if not np.isfinite(fine).all():
             raise ShootingFailed(seed, "the motion from the guess runs away to infinity", start, ())
-        if np.max(np.abs(fine - coarse)) <= (2**scheme.order - 1) * ACCURACY * np.max(np.abs(fine)):
+        wanted = (2**scheme.order - 1) * ACCURACY * np.max(np.abs(fine))
+        if np.max(np.abs(fine - coarse)) <= wanted:
             break
         coarse = fine
     return steps

@@ -1,4 +1,6 @@
-"""A series and its torus, or any other solution, in one file: a ZIP archive of bundle.json and of arrays that numpy.load reads.
+"""A series and its torus, or any other solution, in one file.
+
+The file is a ZIP archive of bundle.json and of arrays that numpy.load reads.
 
 Everything but the tables is in bundle.json: numbers that must come back exactly are strings, and
 a digest covers the whole. The tables are flat arrays, order after order and row after row:
@@ -16,6 +18,7 @@ import platform
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
+from fractions import Fraction
 from math import comb, pi, prod
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -71,8 +74,9 @@ LONG_RUN = 100  # periods of the slowest seed at which the last test vector is t
 
 
 class OrbitPoint(NamedTuple):
-    """A point of the torus for tests of other programs: t, and Q_1 .. Q_(N-1) and P_1 .. P_(N-1)
-    at t, as decimals.
+    """A point of the torus for tests of other programs, as decimals.
+
+    t : the time. Q, P : Q_1 .. Q_(N-1) and P_1 .. P_(N-1) at t.
     """
 
     t: str
@@ -86,10 +90,12 @@ class Bundle:
 
     All is dimensionless; the format is ours.
 
-    series : None for a solution without one. torus : any solution, of the class that was saved, or None.
+    series : None for a solution without one. torus : any solution, of the class that was saved,
+        or None.
     verdict : None if none was saved.
     provenance : created (UTC), command, versions by package.
-    test_vectors : a few points of the torus as it was when it was saved: t, Q and P, (N-1,), as decimals.
+    test_vectors : a few points of the torus as it was when it was saved: t, Q and P, (N-1,), as
+        decimals.
 
     >>> import tempfile
     >>> from symfpu import lindstedt
@@ -107,11 +113,11 @@ class Bundle:
     def __repr__(self) -> str:
         torus = "no torus"
         if isinstance(self.torus, QTorus):
-            torus = (
-                f"QTorus of frequency order {self.torus.frequency_order}, order {self.torus.order}"
-            )
+            orders = f"frequency order {self.torus.frequency_order}, order {self.torus.order}"
+            torus = f"QTorus of {orders}"
         verdict = "a verdict" if self.verdict is not None else "no verdict"
-        saved = f"saved {self.provenance['created']} by symfpu {self.provenance['versions'].get('symfpu', 'of unknown version')}"
+        version = self.provenance["versions"].get("symfpu", "of unknown version")
+        saved = f"saved {self.provenance['created']} by symfpu {version}"
         held = f"{self.series!r}, {torus}" if self.series else repr(self.torus)
         return f"Bundle({held}, {verdict}, {saved})"
 
@@ -128,17 +134,18 @@ def save(
 
     path : of the file, which is written whole or not at all.
     result : what to keep, with all its digits; dimensionless.
-    verdict : any dictionary that JSON gives back unchanged. command : what made the result. created : default
-        now.
+    verdict : any dictionary that JSON gives back unchanged. command : what made the result.
+        created : default now.
 
     A torus is evaluated at a few times, which go into the file as test vectors. The format is ours.
-    Raises InputError for other arguments and for a file that cannot be written; an existing file stays as it
-    was then.
+    Raises InputError for other arguments and for a file that cannot be written; an existing file
+    stays as it was then.
 
     >>> import tempfile
     >>> from symfpu.series.lindstedt import lindstedt
+    >>> series = lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2)
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     load(save(f"{folder}/a", lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2))).series.seeds
+    ...     load(save(f"{folder}/a", series)).series.seeds
     (3,)
     """
     path = _path(path)
@@ -146,6 +153,7 @@ def save(
     parts, members = _parts(result)
     moment = (created or datetime.now(UTC)).astimezone(UTC)
     points = [] if isinstance(result, LindstedtSeries) else _test_vectors(result)
+    digests = {name: member_digest(values) for name, values in members.items()}
     body: Json = {
         "format": FORMAT,
         "schema": _schema(result),
@@ -155,7 +163,7 @@ def save(
         **parts,
         "verdict": verdict,
         "test_vectors": [point._asdict() for point in points],
-        "arrays": {name: member_digest(values) for name, values in members.items()},
+        "arrays": digests,
     }
     write_archive(path, body | {"digest": digest_of(body)}, members)
     return path
@@ -181,12 +189,14 @@ def _schema(result: LindstedtSeries | QuasiPeriodic) -> int:
 
 
 def load(path: Path | str) -> Bundle:
-    """The series and the torus that `save` wrote, exactly as they were; nothing in the file is executed.
+    """The series and the torus that `save` wrote, exactly as they were.
+
+    Nothing in the file is executed.
 
     path : of the file. Everything in it is dimensionless but for the date. The format is ours.
 
-    Raises BundleError for a file that is damaged, foreign, newer than this symfpu or too large for the free
-    memory; OSError for one that is missing or not to be read.
+    Raises BundleError for a file that is damaged, foreign, newer than this symfpu or too large
+    for the free memory; OSError for one that is missing or not to be read.
 
     >>> import tempfile
     >>> from symfpu.series.lindstedt import lindstedt
@@ -207,9 +217,8 @@ def load(path: Path | str) -> Bundle:
         # whatever zipfile, zlib, json, numpy and our own checks say to a damaged or hostile file
         except Exception as error:
             reason = " ".join(f"{type(error).__name__} {error}".split())[:LONGEST_REASON]
-            raise BundleError(
-                path, f"is damaged ({reason})", "restore it from a copy or compute it again"
-            ) from None
+            advice = "restore it from a copy or compute it again"
+            raise BundleError(path, f"is damaged ({reason})", advice) from None
 
 
 def _path(path: object) -> Path:
@@ -226,12 +235,8 @@ def _require_arguments(result: object, verdict: object, command: object, created
     if created is not None and not isinstance(created, datetime):
         raise InputError("created", created, "a datetime or None", "leave it out")
     if verdict is not None and not (isinstance(verdict, dict) and _json_keeps(verdict)):
-        raise InputError(
-            "verdict",
-            verdict,
-            "None or a dictionary that JSON gives back unchanged",
-            "use strings as keys, and lists",
-        )
+        allowed = "None or a dictionary that JSON gives back unchanged"
+        raise InputError("verdict", verdict, allowed, "use strings as keys, and lists")
 
 
 def _json_keeps(value: Json) -> bool:
@@ -263,10 +268,8 @@ def _by_seed(entries: Mapping[str, Any], seeds: Sequence[int]) -> dict[int, Any]
 
 def _tables(series: LindstedtSeries) -> tuple[dict[str, Array], Json]:
     """The flat arrays by name, and what else is needed to cut them into tables again."""
-    parts = {
-        "coordinates": series.coordinates,
-        "corrections": series.corrections[1:],
-    }  # order 0 has no corrections
+    corrections = series.corrections[1:]  # order 0 has none
+    parts = {"coordinates": series.coordinates, "corrections": corrections}
     arrays, layout = series.tables.pack(parts)
     members = {name: _flat(tables, series.tables.dtype) for name, tables in arrays.items()}
     if series.radii:
@@ -278,31 +281,35 @@ def _tables(series: LindstedtSeries) -> tuple[dict[str, Array], Json]:
 
 def _flat(parts: Iterable[Array], dtype: str) -> Array:
     """Row after row, order after order."""
-    return np.concatenate([np.empty(0, dtype), *map(np.ravel, parts)]).astype(dtype, copy=False)
+    rows = [np.empty(0, dtype), *map(np.ravel, parts)]
+    return np.concatenate(rows).astype(dtype, copy=False)
 
 
 def _series_entries(series: LindstedtSeries) -> Json:
-    point = series.point
+    frequencies = None
+    if series.frequencies is not None:
+        frequencies = [fraction_text(w) for w in series.frequencies]
+    divisors = [asdict(d) | {"size": repr(d.size)} for d in series.smallest_divisors]
     return {
         **chain_entries(series.chain),
         "seeds": list(series.seeds),
-        "frequencies": None
-        if series.frequencies is None
-        else [fraction_text(w) for w in series.frequencies],
+        "frequencies": frequencies,
         "order": series.order,
         "ring": series.ring,
         "digits": series.digits,
         "bits": series.bits,
         "unit": fraction_text(series.unit),
         "multiply_adds": str(series.multiply_adds),
-        "smallest_divisors": [asdict(d) | {"size": repr(d.size)} for d in series.smallest_divisors],
-        "point": point
-        and {
-            "prime": str(point.prime),
-            "root": str(point.root),
-            "frequencies": list(map(str, point.frequencies)),
-        },
+        "smallest_divisors": divisors,
+        "point": _point_entries(series.point),
     }
+
+
+def _point_entries(point: ResiduePoint | None) -> Json | None:
+    if point is None:
+        return None
+    frequencies = list(map(str, point.frequencies))
+    return {"prime": str(point.prime), "root": str(point.root), "frequencies": frequencies}
 
 
 def _shapes(chain: Chain, seeds: int, order: int, most: int) -> tuple[Shapes, Shapes]:
@@ -358,7 +365,8 @@ class _Reader:
         }
 
     def _read(self, name: str, shapes: Shapes) -> list[Array]:
-        return self._arrays(name, self.tables.dtype, self.tables.shapes(name, shapes, self.body))
+        stored = self.tables.shapes(name, shapes, self.body)
+        return self._arrays(name, self.tables.dtype, stored)
 
     def _arrays(self, name: str, dtype: str, shapes: Shapes) -> list[Array]:
         size = sum(map(prod, shapes))
@@ -380,88 +388,103 @@ def _kind(body: Json) -> RingKind:
 
 def _series(archive: Archive, body: Json) -> LindstedtSeries:
     chain = chain_from(body)
-    seeds, order = seed_modes(body["seeds"], chain.N), integer(body["order"], "order", 0)
-    chosen, point, digits = body["frequencies"], body["point"], body["digits"]
-    frequencies = None if chosen is None else tuple(fraction(w) for w in chosen)
-    if list(seeds) != sorted(seeds) or (
-        frequencies is not None and (len(frequencies) != len(seeds) or min(frequencies) <= 0)
-    ):
-        raise ValueError(f"seeds {seeds} and frequencies {chosen} do not go together")
+    seeds = seed_modes(body["seeds"], chain.N)
+    order = integer(body["order"], "order", 0)
+    frequencies = _chosen_frequencies(body, seeds)
+    point, digits = body["point"], body["digits"]
     kind = _kind(body)
     expected = (kind.numeric, kind.name == FIXED_POINT.name, kind.exact_point)
-    if (frequencies is not None, digits is not None, point is not None) != expected:
+    given = (frequencies is not None, digits is not None, point is not None)
+    if given != expected:
         raise ValueError(f"frequencies, digits and point do not fit the ring {body['ring']!r:.40}")
+    parts = _Reader(archive, body, chain, len(seeds), order).parts()
     return LindstedtSeries(
         chain=chain,
         seeds=seeds,
         frequencies=frequencies,
         order=order,
         ring=body["ring"],
-        **_Reader(archive, body, chain, len(seeds), order).parts(),
+        **parts,
         grading=shared_grading(len(seeds), 1 + chain.degree_step * order),
         unit=fraction(body["unit"]),
-        smallest_divisors=tuple(
-            SmallDivisor(
-                float(d["size"]),
-                integer(d["mode"], "mode", 1),
-                tuple(map(int, d["harmonic"])),
-                integer(d["order"], "order", 0),
-            )
-            for d in body["smallest_divisors"]
-        ),
+        smallest_divisors=tuple(map(_divisor, body["smallest_divisors"])),
         multiply_adds=int(body["multiply_adds"]),
         digits=None if digits is None else integer(digits, "digits", 1),
         bits=integer(body["bits"], "bits", 0),
-        point=point
-        and ResiduePoint(
-            int(point["prime"]), int(point["root"]), tuple(int(w) for w in point["frequencies"])
-        ),
+        point=point and _point(point),
     )
+
+
+def _chosen_frequencies(body: Json, seeds: tuple[int, ...]) -> tuple[Fraction, ...] | None:
+    """None if none are chosen; ValueError where seeds and frequencies do not go together."""
+    chosen = body["frequencies"]
+    frequencies = None if chosen is None else tuple(fraction(w) for w in chosen)
+    fit = list(seeds) == sorted(seeds)
+    if frequencies is not None:
+        fit = fit and len(frequencies) == len(seeds) and min(frequencies) > 0
+    if not fit:
+        raise ValueError(f"seeds {seeds} and frequencies {chosen} do not go together")
+    return frequencies
+
+
+def _divisor(entry: Json) -> SmallDivisor:
+    size, mode = float(entry["size"]), integer(entry["mode"], "mode", 1)
+    harmonic = tuple(map(int, entry["harmonic"]))
+    return SmallDivisor(size, mode, harmonic, integer(entry["order"], "order", 0))
+
+
+def _point(entry: Json) -> ResiduePoint:
+    prime, root = int(entry["prime"]), int(entry["root"])
+    return ResiduePoint(prime, root, tuple(map(int, entry["frequencies"])))
 
 
 # the torus
 
 
 def _torus_entries(torus: QTorus) -> Json:
+    history = {str(K): [number_entry(a) for a in row] for K, row in torus.history.items()}
     proof = torus.certificate
+    certificate = proof and asdict(proof) | {"radius": _entries_by_seed(proof.radius)}
     return {
-        "amplitudes": {str(q): number_entry(a) for q, a in torus.amplitudes.items()},
-        "phases": {str(q): number_entry(a) for q, a in torus.phases.items()},
+        "amplitudes": _entries_by_seed(torus.amplitudes),
+        "phases": _entries_by_seed(torus.phases),
         "frequency_order": torus.frequency_order,
         "order": torus.order,
-        "history": {str(K): [number_entry(a) for a in row] for K, row in torus.history.items()},
+        "history": history,
         "root_residual": repr(float(torus.root_residual)),
-        "certificate": proof
-        and asdict(proof) | {"radius": {str(q): number_entry(r) for q, r in proof.radius.items()}},
+        "certificate": certificate,
         "warnings": list(torus.warnings),
     }
 
 
+def _entries_by_seed(values: Mapping[int, Any]) -> Json:
+    return {str(q): number_entry(value) for q, value in values.items()}
+
+
 def _torus(body: Json, series: LindstedtSeries) -> QTorus:
-    proof, order, frequency_order = (
-        body["certificate"],
-        *(integer(body[name], name, 0) for name in ("order", "frequency_order")),
-    )
+    order = integer(body["order"], "order", 0)
+    frequency_order = integer(body["frequency_order"], "frequency_order", 0)
     if max(order, frequency_order) > series.order or series.frequencies is None:
-        raise ValueError(
-            f"no torus of order {order} and frequency order {frequency_order} can come from this series"
-        )
+        orders = f"order {order} and frequency order {frequency_order}"
+        raise ValueError(f"no torus of {orders} can come from this series")
+    seeds, proof = series.seeds, body["certificate"]
+    history = {int(K): tuple(map(number, row)) for K, row in body["history"].items()}
     return QTorus(
         series=series,
-        amplitudes=_by_seed(body["amplitudes"], series.seeds),
-        phases=_by_seed(body["phases"], series.seeds),
+        amplitudes=_by_seed(body["amplitudes"], seeds),
+        phases=_by_seed(body["phases"], seeds),
         frequency_order=frequency_order,
         order=order,
-        history={int(K): tuple(map(number, row)) for K, row in body["history"].items()},
+        history=history,
         root_residual=float(body["root_residual"]),
-        certificate=proof
-        and RootCertificate(
-            proof["certified"] is True,
-            _by_seed(proof["radius"], series.seeds),
-            str(proof["reason"]),
-        ),
+        certificate=proof and _certificate(proof, seeds),
         warnings=tuple(map(str, body["warnings"])),
     )
+
+
+def _certificate(proof: Json, seeds: tuple[int, ...]) -> RootCertificate:
+    radius = _by_seed(proof["radius"], seeds)
+    return RootCertificate(proof["certified"] is True, radius, str(proof["reason"]))
 
 
 def _test_vectors(torus: QuasiPeriodic) -> list[OrbitPoint]:
@@ -470,36 +493,33 @@ def _test_vectors(torus: QuasiPeriodic) -> list[OrbitPoint]:
     times = [0.0, float(f"{period:.4g}"), float(f"{LONG_RUN * period:.4g}")]
 
     def written(values: Array) -> tuple[str, ...]:
-        return tuple(
-            repr(float(x)) if torus.digits is None else text(x, torus.digits) for x in values
-        )
+        if torus.digits is None:
+            return tuple(repr(float(x)) for x in values)
+        return tuple(text(x, torus.digits) for x in values)
 
-    return [
-        OrbitPoint(repr(t), written(Q), written(P))
-        for t, Q, P in zip(times, torus.positions(times), torus.momenta(times), strict=True)
-    ]
+    states = zip(times, torus.positions(times), torus.momenta(times), strict=True)
+    return [OrbitPoint(repr(t), written(Q), written(P)) for t, Q, P in states]
 
 
 def _bundle(path: Path, archive: Archive) -> Bundle:
     body = archive.body
     if body.get("kind") in KINDS:
         kind = KINDS[body["kind"]]
-        raise BundleError(
-            path,
-            f"is a checkpoint of {kind.of}, which holds no torus",
-            f"go on from it with {kind.resume}",
-        )
+        problem = f"is a checkpoint of {kind.of}, which holds no torus"
+        raise BundleError(path, problem, f"go on from it with {kind.resume}")
     series = None if body["series"] is None else _series(archive, body["series"])
     return Bundle(
         series=series,
         torus=_solution(archive, body["torus"], series),
         verdict=None if body["verdict"] is None else dict(body["verdict"]),
         provenance={name: body[name] for name in ("created", "command", "versions")},
-        test_vectors=tuple(
-            OrbitPoint(str(v["t"]), tuple(map(str, v["Q"])), tuple(map(str, v["P"])))
-            for v in body["test_vectors"]
-        ),
+        test_vectors=tuple(map(_orbit_point, body["test_vectors"])),
     )
+
+
+def _orbit_point(entry: Json) -> OrbitPoint:
+    Q, P = tuple(map(str, entry["Q"])), tuple(map(str, entry["P"]))
+    return OrbitPoint(str(entry["t"]), Q, P)
 
 
 def _solution(

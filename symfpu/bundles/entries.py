@@ -16,7 +16,9 @@ from symfpu.numbers.typed import fraction, fraction_text, integer
 
 
 def number_entry(value: Any) -> str | dict[str, str]:
-    """A double as its shortest decimal.
+    """A double as its shortest decimal, or an mpf by its bits.
+
+    Of an mpf, the hexadecimal mantissa and the binary exponent, with a decimal to read.
 
     An mpf as hexadecimal mantissa and binary exponent, with a decimal to read.
     """

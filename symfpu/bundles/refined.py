@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,15 @@ from symfpu.refinement.newton import NewtonStep
 from symfpu.refinement.tori import NearResonance, RefinedTorus
 
 Array = NDArray[Any]
+FLOATS, INTEGERS = "<f8", "<i8"
 
 
 def refined_entries(torus: RefinedTorus) -> tuple[Json, dict[str, Array]]:
-    """The entries of a document and the arrays `harmonics` and `cosines`, from which the same
-    torus is made again.
+    """The entries of a document and the arrays from which the same torus is made again.
+
+    The arrays are `harmonics` and `cosines`.
     """
+    near = [_near_resonance_entry(resonance) for resonance in torus.near_resonances]
     entries: Json = {
         **chain_entries(torus.chain),
         "seeds": list(torus.seeds),
@@ -27,60 +31,70 @@ def refined_entries(torus: RefinedTorus) -> tuple[Json, dict[str, Array]]:
         "amplitudes": [repr(a) for a in torus.amplitudes.values()],
         "phases": [repr(phi) for phi in torus.phases.values()],
         "harmonics": len(torus.harmonics),
-        "steps": [
-            [repr(step.residual), repr(step.change), repr(step.conditions), step.krylov]
-            for step in torus.steps
-        ],
-        "near_resonances": [
-            [r.mode, list(r.harmonic), repr(r.divisor), repr(r.coefficient)]
-            for r in torus.near_resonances
-        ],
+        "steps": [_step_entry(step) for step in torus.steps],
+        "near_resonances": near,
         "warnings": list(torus.warnings),
     }
-    return entries, {
-        "harmonics": torus.harmonics.ravel().astype("<i8"),
-        "cosines": torus.cosines.ravel().astype("<f8"),
-    }
+    harmonics = torus.harmonics.ravel().astype(INTEGERS)
+    cosines = torus.cosines.ravel().astype(FLOATS)
+    return entries, {"harmonics": harmonics, "cosines": cosines}
 
 
 def refined_from(archive: Archive, body: Json) -> RefinedTorus:
     """The torus of such entries; ValueError where they do not fit together."""
     chain = chain_from(body)
-    seeds, count = seed_modes(body["seeds"], chain.N), integer(body["harmonics"], "harmonics", 1)
+    seeds = seed_modes(body["seeds"], chain.N)
+    count = integer(body["harmonics"], "harmonics", 1)
     s = len(seeds)
     lengths = {name: len(body[name]) for name in ("frequencies", "amplitudes", "phases")}
     if set(lengths.values()) != {s}:
         raise ValueError(f"{lengths} numbers where {s} are due")
     frequencies = tuple(fraction(w) for w in body["frequencies"])
-    harmonics = (
-        np.asarray(archive.array("harmonics", "<i8", count * s)).reshape(count, s).astype(np.int64)
-    )
-    cosines = np.asarray(archive.array("cosines", "<f8", count * (chain.N - 1))).reshape(
-        count, chain.N - 1
-    )
+    flat = np.asarray(archive.array("harmonics", INTEGERS, count * s))
+    harmonics = flat.reshape(count, s).astype(np.int64)
+    flat = np.asarray(archive.array("cosines", FLOATS, count * (chain.N - 1)))
+    cosines = flat.reshape(count, chain.N - 1)
     if min(frequencies) <= 0 or not np.isfinite(cosines).all():
-        raise ValueError(
-            "a frequency that is not positive, or a coefficient that is no finite number"
-        )
-    if any(
-        np.count_nonzero((harmonics == unit).all(axis=1)) != 1 for unit in np.eye(s, dtype=np.int64)
-    ):
-        raise ValueError("a seed whose own harmonic is not there, or is there twice")
+        wrong = "a frequency that is not positive, or a coefficient that is no finite number"
+        raise ValueError(wrong)
+    for unit in np.eye(s, dtype=np.int64):
+        if np.count_nonzero((harmonics == unit).all(axis=1)) != 1:
+            raise ValueError("a seed whose own harmonic is not there, or is there twice")
     return RefinedTorus(
         chain=chain,
         seeds=seeds,
         frequencies=frequencies,
-        amplitudes={q: float(a) for q, a in zip(seeds, body["amplitudes"], strict=True)},
-        phases={q: float(a) for q, a in zip(seeds, body["phases"], strict=True)},
+        amplitudes=_by_seed(seeds, body["amplitudes"]),
+        phases=_by_seed(seeds, body["phases"]),
         harmonics=harmonics,
         cosines=cosines,
-        steps=tuple(
-            NewtonStep(float(r), float(d), float(g), integer(k, "krylov", 0))
-            for r, d, g, k in body["steps"]
-        ),
-        near_resonances=tuple(
-            NearResonance(int(q), tuple(map(int, nu)), float(d), float(c))
-            for q, nu, d, c in body["near_resonances"]
-        ),
+        steps=tuple(_step(*entry) for entry in body["steps"]),
+        near_resonances=tuple(_near_resonance(*entry) for entry in body["near_resonances"]),
         warnings=tuple(map(str, body["warnings"])),
     )
+
+
+def _by_seed(seeds: Sequence[int], entries: Sequence[str]) -> dict[int, float]:
+    return {q: float(entry) for q, entry in zip(seeds, entries, strict=True)}
+
+
+def _step_entry(step: NewtonStep) -> list[Any]:
+    numbers = (step.residual, step.change, step.conditions)
+    return [*map(repr, numbers), step.krylov]
+
+
+def _step(residual: str, change: str, conditions: str, krylov: int) -> NewtonStep:
+    count = integer(krylov, "krylov", 0)
+    return NewtonStep(float(residual), float(change), float(conditions), count)
+
+
+def _near_resonance_entry(resonance: NearResonance) -> list[Any]:
+    numbers = (resonance.divisor, resonance.coefficient)
+    return [resonance.mode, list(resonance.harmonic), *map(repr, numbers)]
+
+
+def _near_resonance(
+    mode: int, harmonic: Sequence[int], divisor: str, coefficient: str
+) -> NearResonance:
+    nu = tuple(map(int, harmonic))
+    return NearResonance(int(mode), nu, float(divisor), float(coefficient))

@@ -49,18 +49,18 @@ def solution_entries(solution: QuasiPeriodic) -> tuple[Json, Arrays]:
     """
     name = type(solution).__name__
     if name not in KINDS:
-        raise InputError(
-            "result", name, f"one of {', '.join(KINDS)}", "save its coefficients: in_doubles()"
-        )
+        kinds = f"one of {', '.join(KINDS)}"
+        raise InputError("result", name, kinds, "save its coefficients: in_doubles()")
     made, arrays = KINDS[name].written(solution)
     cosines, layout = _packed(solution.cosines, solution.digits)
+    phases = [number_entry(solution.phases[q]) for q in solution.seeds]
     entries: Json = {
         "kind": FOURIER,
         "class": name,
         **chain_entries(solution.chain),
         "seeds": list(solution.seeds),
         "frequencies": [fraction_text(w) for w in solution.frequencies],
-        "phases": [number_entry(solution.phases[q]) for q in solution.seeds],
+        "phases": phases,
         "digits": solution.digits,
         "harmonics": len(solution.harmonics),
         **layout,
@@ -81,13 +81,12 @@ def solution_from(archive: Archive, body: Json) -> QuasiPeriodic:
     if {len(frequencies), len(phases)} != {len(seeds)} or min(frequencies) <= 0:
         raise ValueError(f"frequencies and phases do not fit the seeds {seeds}")
     count = integer(body["harmonics"], "harmonics", 1)
-    harmonics = archive.array("harmonics", INTEGERS, count * len(seeds)).reshape(count, len(seeds))
+    flat = archive.array("harmonics", INTEGERS, count * len(seeds))
+    harmonics = flat.reshape(count, len(seeds)).astype(np.int64)
     digits = None if body["digits"] is None else integer(body["digits"], "digits", 1)
     cosines = _unpacked(archive, body, (count, chain.N - 1), digits)
     by_seed = dict(zip(seeds, phases, strict=True))
-    parts = FourierTorus(
-        chain, seeds, frequencies, harmonics.astype(np.int64), cosines, by_seed, digits
-    )
+    parts = FourierTorus(chain, seeds, frequencies, harmonics, cosines, by_seed, digits)
     return KINDS[body["class"]].read(parts, archive, body["made"])
 
 
@@ -99,9 +98,8 @@ def _packed(cosines: Numbers, digits: int | None) -> tuple[Arrays, Json]:
     if digits is None:
         return {"cosines": _floats(cosines)}, {}
     if not all(mpmath.isfinite(c) for c in cosines.flat):
-        raise InputError(
-            "result", "a coefficient that is not finite", "finite numbers", "compute it again"
-        )
+        problem = "a coefficient that is not finite"
+        raise InputError("result", problem, "finite numbers", "compute it again")
     parts = [c._mpf_ for c in cosines.flat]
     mantissas = np.empty((len(parts), 1), dtype=object)
     mantissas[:, 0] = [-int(mantissa) if sign else int(mantissa) for sign, mantissa, _, _ in parts]
@@ -130,9 +128,8 @@ def _unpacked(archive: Archive, body: Json, shape: tuple[int, int], digits: int 
 def _floats(values: Array) -> Array:
     flat: Array = np.asarray(values).ravel().astype(FLOATS)
     if not np.isfinite(flat).all():
-        raise InputError(
-            "result", "a number that is not finite", "finite numbers", "compute it again"
-        )
+        problem = "a number that is not finite"
+        raise InputError("result", problem, "finite numbers", "compute it again")
     return flat
 
 
@@ -183,9 +180,8 @@ def _made_by_balance(orbit: PeriodicOrbit) -> tuple[Json, Arrays]:
 
 def _read_balance(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
     iterations = integer(made["iterations"], "iterations", 0)
-    return PeriodicOrbit(
-        **_fields(_periodic(parts)), iterations=iterations, sigma=float(made["sigma"])
-    )
+    sigma = float(made["sigma"])
+    return PeriodicOrbit(**_fields(_periodic(parts)), iterations=iterations, sigma=sigma)
 
 
 def _made_by_sweeps(orbit: PreciseOrbit) -> tuple[Json, Arrays]:

@@ -128,7 +128,7 @@ def _print_estimate(seconds: float, as_json: bool) -> None:
 
 
 def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
-    """The result for JSON; `dimension` is null for a chaotic orbit, and where nothing is decided."""
+    """The result for JSON; `dimension` is null where nothing is decided, and in chaos."""
     chain = found.chain
     dimension = found.dimension()
     decided = dimension.value is not None

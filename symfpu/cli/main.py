@@ -1,8 +1,8 @@
 """Command line: parses, calls one public function, prints or writes.
 
-Exit code 0 for success, 1 for an honest failure (no root, no convergence), 2 for bad input, 130 for the
-interrupt key; errors are one line on standard error, progress goes there too, and --json leaves standard
-output machine-readable.
+Exit code 0 for success, 1 for an honest failure (no root, no convergence), 2 for bad input, 130
+for the interrupt key; errors are one line on standard error, progress goes there too, and --json
+leaves standard output machine-readable.
 """
 
 from __future__ import annotations

@@ -115,7 +115,8 @@ def kept_run(checkpoint: Path | None) -> str:
     """What stands of a run that was interrupted."""
     if checkpoint is None or not checkpoint.exists():
         return NOTHING_KEPT
-    return f"the run up to its last checkpoint is kept in {checkpoint}; the same command goes on from it"
+    kept = f"the run up to its last checkpoint is kept in {checkpoint}"
+    return f"{kept}; the same command goes on from it"
 
 
 def held(found: Found | None, file: str) -> Found:
@@ -180,9 +181,12 @@ def console() -> Console:
 
 @contextmanager
 def progress_bar(label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Progress]:
-    """A function that shows on standard error what is being done: a bar on a terminal, lines elsewhere.
+    """A function that shows on standard error what is being done.
 
-    label : what is done first. kept : what stands when the interrupt key is pressed, and how to go on.
+    It shows a bar on a terminal, and lines elsewhere.
+
+    label : what is done first. kept : what stands when the interrupt key is pressed, and how to
+        go on.
     Raises Interrupted in place of KeyboardInterrupt.
     """
     terminal = console()
@@ -240,9 +244,10 @@ class Bar:
 
 
 class Lines:
-    """A line for each step that is seen: the first after some seconds, then with pauses that grow with time.
+    """A line for each step that is seen.
 
-    A thread looks on, so that a step which began during a pause has its line, too, however silent it is.
+    The first comes after some seconds, then others with pauses that grow with time. A thread
+    looks on, so that a step which began during a pause has its line, too, however silent it is.
     """
 
     def __init__(self, label: str) -> None:

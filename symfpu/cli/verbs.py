@@ -33,7 +33,9 @@ VERBS = {
 
 
 class Verbs(TyperGroup):
-    """A group that knows its verbs by the table above, and each of them from when it is first asked for.
+    """A group that knows its verbs by the table above.
+
+    It knows each of them from when it is first asked for.
 
     Contexts and commands are click's, which typer may carry inside itself.
     """

@@ -1,4 +1,4 @@
-"""Numbers that a file holds besides the coefficients of a solution, correctly rounded to doubles."""
+"""Numbers that a file holds besides coefficients, correctly rounded to doubles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A torus as fast functions at once, without files: compiled C where there is a compiler, else NumPy."""
+"""A torus as fast functions at once: compiled C where there is a compiler, else NumPy."""
 
 from __future__ import annotations
 
@@ -48,13 +48,14 @@ class Backend(Protocol):
 class Evaluator:
     """A torus to be evaluated in doubles at many times.
 
-    Made by `compile_evaluator`; gives Q_q(t), P_q(t), E_q(t) and H of Eqs. qser, harmonicene, fpuham2.
+    Made by `compile_evaluator`; gives Q_q(t), P_q(t), E_q(t) and H of Eqs. qser, harmonicene,
+    fpuham2.
 
     torus : what it was made of. backend : 'c' or 'numpy'. functions : of the backend.
 
-    In its methods t is a number or an array (T,), dimensionless; phases is an angle in radians for each seed,
-    a mapping by seed or an array (s,) in the order of torus.seeds; seeds left out of a mapping, and None,
-    keep the phases of the torus. They raise InputError for others.
+    In its methods t is a number or an array (T,), dimensionless; phases is an angle in radians
+    for each seed, a mapping by seed or an array (s,) in the order of torus.seeds; seeds left out
+    of a mapping, and None, keep the phases of the torus. They raise InputError for others.
 
     >>> from symfpu import Chain, lindstedt, solve_amplitudes
     >>> torus = solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 4))
@@ -81,7 +82,10 @@ class Evaluator:
         return self._at(t, phases, self.functions.momenta)
 
     def harmonic_energies(self, t: ArrayLike = 0.0, phases: Phases = None) -> Floats:
-        """Harmonic energies E_q(t) (Eq. harmonicene); (N-1,) for a number, (T, N-1) for an array."""
+        """Harmonic energies E_q(t) (Eq. harmonicene).
+
+        Shape (N-1,) for a number, (T, N-1) for an array.
+        """
         return self._at(t, phases, self.functions.harmonic_energies)
 
     def energy(self, t: ArrayLike = 0.0, phases: Phases = None) -> Any:
@@ -133,21 +137,23 @@ def _finite(argument: str, values: Any, allowed: str) -> Floats:
 def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Evaluator:
     """The torus as fast functions of time and phases, in doubles.
 
-    torus : any quasi-periodic solution with numbers for amplitudes (Eqs. qser, serabs1); dimensionless,
-        phases in radians.
-    backend : 'c' writes C99, compiles it by $CC or the first of cc, gcc, clang in PATH, and loads it; 'numpy'
-        needs no compiler; None takes 'c' if there is a compiler. The C functions keep the digits of omega t
-        at any t; NumPy rounds omega t.
+    torus : any quasi-periodic solution with numbers for amplitudes (Eqs. qser, serabs1);
+        dimensionless, phases in radians.
+    backend : 'c' writes C99, compiles it by $CC or the first of cc, gcc, clang in PATH, and loads
+        it; 'numpy' needs no compiler; None takes 'c' if there is a compiler. The C functions keep
+        the digits of omega t at any t; NumPy rounds omega t.
 
-    Raises InputError for an unknown backend and for a series without amplitudes; SymfpuError if 'c' finds no
-    compiler, or with the compiler's first line if it fails.
+    Raises InputError for an unknown backend and for a series without amplitudes; SymfpuError if
+    'c' finds no compiler, or with the compiler's first line if it fails.
 
     >>> from symfpu.chain.chain import Chain
     >>> from symfpu.tori.quasiperiodic import FourierTorus
     >>> from fractions import Fraction
     >>> cosines = np.array([[1.0, 0.0, 0.0]])
-    >>> mode = FourierTorus(Chain(4, alpha=1), (1,), (Fraction(1, 2),), np.array([[1]]), cosines, {1: 0.0})
-    >>> compile_evaluator(mode, backend="numpy").momenta(0.0, phases={1: 1.5707963267948966}).tolist()
+    >>> chain, omega, harmonics = Chain(4, alpha=1), Fraction(1, 2), np.array([[1]])
+    >>> mode = FourierTorus(chain, (1,), (omega,), harmonics, cosines, {1: 0.0})
+    >>> functions = compile_evaluator(mode, backend="numpy")
+    >>> functions.momenta(0.0, phases={1: 1.5707963267948966}).tolist()
     [-0.5, 0.0, 0.0]
     """
     if isinstance(torus, LindstedtSeries):
@@ -220,7 +226,10 @@ def _run(command: list[str]) -> None:
 
 @dataclass(frozen=True, eq=False)
 class CompiledFunctions:
-    """The functions of an exported C file, loaded. source : the file, which is pickled. modes : N-1."""
+    """The functions of an exported C file, loaded.
+
+    source : the file, which is pickled. modes : N-1.
+    """
 
     source: str
     modes: int

@@ -49,22 +49,25 @@ def export(
     force: bool = False,
     command: str | None = None,
 ) -> Path:
-    """Write a torus or a series as a source file that needs nothing of this package; returns its path.
+    """Write a torus or a series as a source file that needs nothing of this package.
 
-    solution : a torus gives Q(t), P(t), E_q(t), H(t), with phases (radians) to choose; a series gives Q(t; A,
-        phi), P, omega(A) and its Jacobian, with amplitudes, phases and frequencies to choose (Eqs. qser,
-        omeser). In universal form the frequencies of the divisors are free too. All but phases is
-        dimensionless.
+    Returns its path.
+
+    solution : a torus gives Q(t), P(t), E_q(t), H(t), with phases (radians) to choose; a series
+        gives Q(t; A, phi), P, omega(A) and its Jacobian, with amplitudes, phases and frequencies
+        to choose (Eqs. qser, omeser). In universal form the frequencies of the divisors are free
+        too. All but phases is dimensionless.
     language : one of LANGUAGES.
-    path : the file; its name without the extension names the functions or the module, and the extension may
-        be left out.
+    path : the file; its name without the extension names the functions or the module, and the
+        extension may be left out.
     order, frequency_order : of a series only, where coordinates and frequencies are cut; default
         series.order.
     force : replace an existing file.
     command : what the header says made it.
 
-    Raises InputError for an unknown language, a name that is no identifier, an existing file, an order above
-    the series' order or given for a torus, and a universal series too large for straight-line code.
+    Raises InputError for an unknown language, a name that is no identifier, an existing file, an
+    order above the series' order or given for a torus, and a universal series too large for
+    straight-line code.
 
     >>> import tempfile
     >>> from symfpu.chain.chain import Chain

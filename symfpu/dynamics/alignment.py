@@ -1,5 +1,7 @@
-"""Alignment indices GALI_k of an orbit, all k at once and in logarithms, its maximal Lyapunov
-exponent, the dimension of its torus.
+"""Alignment indices GALI_k of an orbit, all k at once and in logarithms.
+
+With them its maximal Lyapunov exponent and the dimension of its torus: the paper's G_r of
+sections 3.2 and 4.
 
 The paper's G_r of sections 3.2 and 4.
 
@@ -70,8 +72,10 @@ class AlignmentIndices:
     Made by `alignment_indices`; times are dimensionless, in units of the chain.
 
     chain : the model. times : (S,), spaced evenly in log t.
-    log10_gali : (S, vectors-1), for k = 2 .. vectors. lyapunov : (S,), log |v_1| / t of the first vector.
-    step : of the integrator. energy_error : |H(T) - H(0)| / H(0) of the orbit. scheme : its coefficients.
+    log10_gali : (S, vectors-1), for k = 2 .. vectors. lyapunov : (S,), log |v_1| / t of the first
+        vector.
+    step : of the integrator. energy_error : |H(T) - H(0)| / H(0) of the orbit. scheme : its
+        coefficients.
 
     Its methods look at the last decades of time.
 
@@ -113,14 +117,13 @@ class AlignmentIndices:
         window: it sees waves longer than the samples are apart, and bends. decades : of time, cut
         to what the samples span and widened to LEAST_SAMPLES of them. Raises InputError.
         """
-        return tuple(
-            Slope(k, *found)
-            for k, found in enumerate(fits(self.times, self.log10_gali, decades), start=2)
-        )
+        found = fits(self.times, self.log10_gali, decades)
+        return tuple(Slope(k, *fit) for k, fit in enumerate(found, start=2))
 
     def dimension(self, decades: float = DECADES) -> TorusDimension:
-        """The dimension s of the torus by how each further vector changes the slope, chaos, or
-        neither yet (sections 3.2, 4).
+        """The dimension s of the torus by how each further vector changes the slope.
+
+        The answer may also be chaos, or neither yet (sections 3.2, 4).
 
         Chaotic is an orbit whose first vector has outgrown t^POWER by more than OUTGROWN
         e-foldings: that is never taken back. Otherwise log GALI_j - log GALI_(j-1) has the slope
@@ -165,33 +168,36 @@ def alignment_indices(
     Q, P : the state, mode coordinates and momenta, (N-1,).
     T : the last time.
     vectors : 2 to 2(N-1), default VECTORS or as many as there are, orthonormal at random at t = 0.
-    step : of the integrator. Its orbit lies on tori of the integrator, off those of the chain by a part
-        step^6, or step^order of another scheme: near a torus of low dimension it shows this dimension up to
-        some time only, a longer one with a shorter step; the energy error is in the result.
+    step : of the integrator. Its orbit lies on tori of the integrator, off those of the chain by
+        a part step^6, or step^order of another scheme: near a torus of low dimension it shows
+        this dimension up to some time only, a longer one with a shorter step; the energy error is
+        in the result.
     scheme : of the integrator, on T + V: those of symfpu.dynamics.schemes but for aba864_modes.
     samples : times, even in log t from 1 to T; each is a whole number of steps.
     seed : of numpy's default generator, for the vectors.
     block : the most steps between two orthonormalisations, halved where the frame is squeezed.
-    file : written every so many seconds, at the end, and when the interrupt key is pressed, whole or not at
-        all; with the same arguments an interrupted or killed run goes on from it and ends in the same bits.
-        With a larger T it goes on too: the samples there are stay, later ones are chosen for the new T, so
-        that bits are not those of a run to this T from the start.
+    file : written every so many seconds, at the end, and when the interrupt key is pressed, whole
+        or not at all; with the same arguments an interrupted or killed run goes on from it and
+        ends in the same bits. With a larger T it goes on too: the samples there are stay, later
+        ones are chosen for the new T, so that bits are not those of a run to this T from the
+        start.
     every : those seconds.
     progress : called as (label, fraction done).
 
-    Raises InputError, also for a file of other parameters or of a longer run; BundleError for one that is no
-    checkpoint; OrbitLost; RunInterrupted, a KeyboardInterrupt, where there is a file.
+    Raises InputError, also for a file of other parameters or of a longer run; BundleError for one
+    that is no checkpoint; OrbitLost; RunInterrupted, a KeyboardInterrupt, where there is a file.
 
-    Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they are, vectors
-    give GALI down to about 1e-16 for a direction, and an upper bound after that. So a frame is evolved
-    instead: M_i B_(i-1) = B_i R_i, a QR factorisation after each block, and the vectors are V = B R with R =
-    R_i ... R_1. R is upper triangular, so the first k columns of V span the volume R_11 ... R_kk, and with
-    unit columns
+    Where vectors have aligned, doubles keep nothing of the volume between them: evolved as they
+    are, vectors give GALI down to about 1e-16 for a direction, and an upper bound after that. So
+    a frame is evolved instead: M_i B_(i-1) = B_i R_i, a QR factorisation after each block, and
+    the vectors are V = B R with R = R_i ... R_1. R is upper triangular, so the first k columns of
+    V span the volume R_11 ... R_kk, and with unit columns
         log GALI_k = sum_{j<=k} (log R_jj - log |R e_j|),    log |v_1| = log R_11.
-    The diagonal of the product is the product of the diagonals: sums of logarithms, which neither underflow
-    nor cancel. The columns R e_j are propagated as unit vectors with their lengths in logarithms; a column
-    loses entries below 1e-300 of its length, which do not count for its length. Each block's R_jj is right to
-    EPS times the squeeze of the frame in one block, kept above 1e-5.
+    The diagonal of the product is the product of the diagonals: sums of logarithms, which neither
+    underflow nor cancel. The columns R e_j are propagated as unit vectors with their lengths in
+    logarithms; a column loses entries below 1e-300 of its length, which do not count for its
+    length. Each block's R_jj is right to EPS times the squeeze of the frame in one block, kept
+    above 1e-5.
 
     >>> from symfpu import Chain
     >>> found = alignment_indices(Chain(N=4, alpha=1), [0.1, 0, 0], [0, 0, 0], 1e3, vectors=2)
@@ -233,8 +239,8 @@ def seconds_needed(
     chain : the model. T : the last time, step : of the integrator, both dimensionless.
     vectors : 2 to 2(N-1), default as there. scheme : as there.
 
-    From a trial of a fraction of a second, a small oscillation: an orbit so chaotic that it squeezes the
-    frame within BLOCK steps takes longer. Ours.
+    From a trial of a fraction of a second, a small oscillation: an orbit so chaotic that it
+    squeezes the frame within BLOCK steps takes longer. Ours.
     Raises InputError.
 
     >>> from symfpu import Chain
@@ -252,45 +258,31 @@ def seconds_needed(
 def _samples(samples: int) -> int:
     count = integer(samples, "samples", FEWEST_SAMPLES)
     if count > MOST_SAMPLES:
-        raise InputError(
-            "samples",
-            count,
-            f"{FEWEST_SAMPLES} to {MOST_SAMPLES}",
-            "a few hundred show all there is",
-        )
+        allowed = f"{FEWEST_SAMPLES} to {MOST_SAMPLES}"
+        raise InputError("samples", count, allowed, "a few hundred show all there is")
     return count
 
 
 def _vectors(n: int, vectors: int | None) -> int:
     count = min(VECTORS, 2 * n) if vectors is None else integer(vectors, "vectors", 2)
-    if count > min(2 * n, MOST_VECTORS):
-        raise InputError(
-            "vectors", count, f"2 to {min(2 * n, MOST_VECTORS)}", "the phase space holds no more"
-        )
+    most = min(2 * n, MOST_VECTORS)
+    if count > most:
+        raise InputError("vectors", count, f"2 to {most}", "the phase space holds no more")
     return count
 
 
 def _steps(T: float, h: float) -> int:
     """Steps to T, the last one perhaps beyond it."""
-    if (
-        isinstance(T, bool)
-        or not isinstance(T, Real)
-        or not SHORTEST_RUN * max(1.0, h) <= float(T) < math.inf
-    ):
-        raise InputError(
-            "T",
-            T,
-            f"a finite time from {SHORTEST_RUN * max(1.0, h):g} up",
-            "slopes need two decades of time",
-        )
-    if not float(T) / h <= MOST_STEPS:
-        raise InputError(
-            "T",
-            T,
-            f"at most 2^52 steps, {h * MOST_STEPS:.3g}",
-            "take a shorter time, or a longer step",
-        )
-    return math.ceil(float(T) / h - 1e-9)
+    shortest = SHORTEST_RUN * max(1.0, h)
+    is_number = isinstance(T, Real) and not isinstance(T, bool)
+    if not is_number or not shortest <= float(T) < math.inf:
+        allowed = f"a finite time from {shortest:g} up"
+        raise InputError("T", T, allowed, "slopes need two decades of time")
+    steps = float(T) / h
+    if not steps <= MOST_STEPS:
+        allowed = f"at most 2^52 steps, {h * MOST_STEPS:.3g}"
+        raise InputError("T", T, allowed, "take a shorter time, or a longer step")
+    return math.ceil(steps - 1e-9)
 
 
 def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:

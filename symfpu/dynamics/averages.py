@@ -1,5 +1,6 @@
-"""Running time averages of the harmonic energies along orbits, by the trapezoid rule over looks
-at equal times.
+"""Running time averages of the harmonic energies along orbits.
+
+They follow the trapezoid rule over looks at equal times.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ def steps_between_looks(step: float) -> int:
 class RunningAverages:
     """Sums over the looks so far.
 
-    Total (M, N-1) : of E_q of M orbits, E_q(0) among them. start (M, N-1) : E_q(0).
+    total (M, N-1) : of E_q of M orbits, E_q(0) among them. start (M, N-1) : E_q(0).
     """
 
     def __init__(self, chain: Chain, Q: Floats, P: Floats) -> None:

@@ -1,5 +1,6 @@
-"""The Runge-Kutta-Nystrom scheme of order 6 and fourteen kicks on T + V: it uses that T is quadratic
-in the momenta.
+"""The Runge-Kutta-Nystrom scheme of order 6 and fourteen kicks on T + V.
+
+It uses that T is quadratic in the momenta.
 
 S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, Table 3, SRKN_14^a. With all modes
 alive it needs 56 force evaluations a unit of time for an energy error of 1e-10, half of those of

@@ -1,4 +1,4 @@
-"""What alignment indices say of an orbit: on a torus, of which dimension; chaotic; or not yet to be told.
+"""What alignment indices say of an orbit: the dimension of its torus, chaos, or nothing yet.
 
 Two things are looked at. The first deviation vector grows as t on every torus, in the end, and
 exponentially on a chaotic orbit. The volumes GALI_k fall as powers of t that depend on the
@@ -25,7 +25,8 @@ Ints = NDArray[np.int64]
 DECADES = 1.5  # of time, the last ones, in which slopes are fitted
 PARTS = 8  # of that range, left out one at a time for the uncertainty of a slope
 LEAST_SAMPLES = 4 * PARTS  # samples in it
-FLOOR = 0.1  # least uncertainty of a slope in the choice of a dimension: for what one window cannot show
+# least uncertainty of a slope in the choice of a dimension: for what one window cannot show
+FLOOR = 0.1
 ODDNESS = 1 / 3  # a slope so far from every integer it should be decides nothing
 CERTAINTY = 0.95  # weight of a dimension that is called decided
 POWER = 3  # of t: no regular orbit has a |v| that outgrows it
@@ -56,7 +57,9 @@ class TorusDimension:
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Indices as they are judged. times (S,). growth (S,) : log |v_1|, natural. log10_gali (S, vectors-1).
+    """Indices as they are judged.
+
+    times : (S,). growth : log |v_1|, natural, (S,). log10_gali : (S, vectors-1).
 
     freedom : degrees of freedom n of the chain. decades : in which slopes are fitted.
     """
@@ -84,7 +87,8 @@ def torus_dimension(seen: Evidence) -> TorusDimension:
     """The verdict on an orbit that has kept its energy."""
     outgrown = outgrown_powers(seen.times, seen.growth)
     if outgrown > CHAOS_GROWTH:
-        reason = f"|v| has grown by e^{seen.growth[-1]:.3g}, by e^{outgrown:.3g} more than t^{POWER} does"
+        grown = f"|v| has grown by e^{seen.growth[-1]:.3g}"
+        reason = f"{grown}, by e^{outgrown:.3g} more than t^{POWER} does"
         return TorusDimension("chaotic", None, 0.0, {}, reason)
     steps = seen.steps(seen.decades)
     weights, best = _weights(steps, seen)
@@ -113,9 +117,8 @@ def expected_steps(s: int, n: int, vectors: int) -> Ints:
 def outgrown_powers(times: Floats, growth: Floats) -> float:
     """The most e-foldings by which |v| came to exceed t^POWER times the largest |v| before.
 
-    From EARLY_TIME on; 0 or more.
-
-    Never less after a longer time: what has once been called chaotic stays so.
+    It counts from EARLY_TIME on and is 0 or more. It is never less after a longer time: what has
+    once been called chaotic stays so.
     """
     late = times >= EARLY_TIME
     power = POWER * np.log(times[late])
@@ -126,16 +129,16 @@ def outgrown_powers(times: Floats, growth: Floats) -> float:
 def linear_decades(times: Floats, growth: Floats) -> float:
     """For how many decades |v| has grown as t, counted back from the end, at most to EARLY_TIME.
 
-    In every PIECE of them, to ODDNESS in the exponent.
+    It has done so in every PIECE of them, to ODDNESS in the exponent.
     """
-    x, y, length = np.log10(times), growth / math.log(10), 0.0
-    end = float(x[-1])
+    x, y = np.log10(times), growth / math.log(10)
+    length, end = 0.0, float(x[-1])
     while end - PIECE >= math.log10(EARLY_TIME) - 1e-2:
         inside = (x >= end - PIECE - 1e-9) & (x <= end + 1e-9)
-        if (
-            np.count_nonzero(inside) < 3
-            or abs(np.polyfit(x[inside], y[inside], 1)[0] - 1) > ODDNESS
-        ):
+        if np.count_nonzero(inside) < 3:
+            break
+        slope, _ = np.polyfit(x[inside], y[inside], 1)
+        if abs(slope - 1) > ODDNESS:
             break
         length = float(x[-1]) - end + PIECE
         end -= STRIDE
@@ -172,26 +175,32 @@ def _weights(steps: Floats, seen: Evidence) -> tuple[dict[int, float], int]:
 
     Errors are enlarged where no s fits.
     """
-    n, errors = seen.freedom, np.maximum(steps[:, 1], FLOOR)
+    n, most = seen.freedom, min(seen.vectors, seen.freedom)
+    slopes, errors = steps[:, 0], np.maximum(steps[:, 1], FLOOR)
     squares = {}
-    for s in range(1, min(seen.vectors, n) + 1):
-        off = (steps[:, 0] - expected_steps(s, n, seen.vectors)) / errors
+    for s in range(1, most + 1):
+        off = (slopes - expected_steps(s, n, seen.vectors)) / errors
         squares[s] = float(np.sum(off**2))
     best = min(squares, key=lambda s: squares[s])
-    scale = max(1.0, squares[best] / len(errors))
-    weights = {s: math.exp((squares[best] - square) / (2 * scale)) for s, square in squares.items()}
+    least = squares[best]
+    scale = max(1.0, least / len(errors))
+    weights = {s: math.exp((least - square) / (2 * scale)) for s, square in squares.items()}
     total = sum(weights.values())
     return {s: w / total for s, w in weights.items()}, best
 
 
 def _growth_doubt(seen: Evidence, outgrown: float) -> tuple[str, str]:
-    """How |v| grows, and why this is not, or not yet, as on a torus; the second is empty if it is."""
+    """How |v| grows, and why this is not, or not yet, as on a torus.
+
+    The second is empty if it is.
+    """
     exponent, error = seen.exponent()
     reason = f"|v| grows as t^{exponent:.2f} +- {error:.2f}"
     if exponent > 1 + ODDNESS:
         return reason, (
             f", faster than on a torus, but not by so much that it must be chaos: "
-            f"by e^{outgrown:.2g} more than t^{POWER}, where e^{CHAOS_GROWTH:g} would do; take a longer time"
+            f"by e^{outgrown:.2g} more than t^{POWER}, where e^{CHAOS_GROWTH:g} would do; "
+            f"take a longer time"
         )
     if exponent < 1 - ODDNESS:
         return reason, ", on a torus as t^1 in the end: take a longer time"
@@ -199,31 +208,37 @@ def _growth_doubt(seen: Evidence, outgrown: float) -> tuple[str, str]:
 
 
 def _slope_doubt(seen: Evidence, steps: Floats, best: int, weight: float) -> tuple[str, str]:
-    """The slope farthest from its integer, and whether slopes decide nothing or have not settled."""
+    """The slope farthest from its integer, and why slopes decide nothing or have not settled.
+
+    The second is empty if they decide.
+    """
     expected = expected_steps(best, seen.freedom, seen.vectors)
-    j = int(np.argmax(np.abs(steps[:, 0] - expected)))
+    off = np.abs(steps[:, 0] - expected)
+    j = int(np.argmax(off))
     slope, error = steps[j]
     reason = (
-        f"; log GALI_{j + 2} - log GALI_{j + 1}, the farthest from its integer, has the slope "
+        f"; {_difference(j)}, the farthest from its integer, has the slope "
         f"{slope:.2f} +- {error:.2f}, on a torus of dimension {best} it is {expected[j]}"
     )
-    if abs(slope - expected[j]) > ODDNESS or weight < CERTAINTY:
+    if off[j] > ODDNESS or weight < CERTAINTY:
         return reason, ": take a longer time"
     late = seen.steps(seen.decades / 2)[:, 0]
-    j = int(np.argmax(np.abs(late - expected)))
-    if abs(late[j] - expected[j]) > ODDNESS:
-        return (
-            reason,
-            f", and log GALI_{j + 2} - log GALI_{j + 1} ends with {late[j]:.2f}: take a longer time",
-        )
+    off = np.abs(late - expected)
+    j = int(np.argmax(off))
+    if off[j] > ODDNESS:
+        ending = f"{_difference(j)} ends with {late[j]:.2f}"
+        return reason, f", and {ending}: take a longer time"
     return reason, ""
 
 
+def _difference(j: int) -> str:
+    return f"log GALI_{j + 2} - log GALI_{j + 1}"
+
+
 def _length_doubt(seen: Evidence, s: int) -> str:
-    """Whether |v| has grown as t for too short a time to believe in a torus of dimension s; empty if not."""
-    special = (
-        s < seen.vectors and 2 * s <= seen.freedom
-    )  # an index falls, and more will not come to join s soon
+    """Whether |v| has grown as t for too short a time to believe in dimension s; empty if not."""
+    # an index falls, and more will not come to join s soon
+    special = s < seen.vectors and 2 * s <= seen.freedom
     regular = seen.freedom == 1  # knows no chaos
     needed = LOW_DECADES if special or regular else FULL_DECADES
     length = linear_decades(seen.times, seen.growth)

@@ -1,5 +1,6 @@
-"""The run behind the alignment indices: a frame from mark to mark, kept on disk and taken up
-again bitwise, and the time it will take.
+"""The run behind the alignment indices: a frame moved from mark to mark.
+
+It is kept on disk and taken up again bitwise; the time that it will take is estimated here too.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ TRIAL = 0.2  # seconds of a measurement
 
 
 class OrbitLost(SymfpuError):
-    """An orbit that went to infinity, as orbits of the alpha model over its barrier do, or a step too long.
+    """An orbit that went to infinity.
+
+    Orbits of the alpha model over its barrier do so, and any orbit with too long a step.
 
     Raised by `alignment_indices`. Ours.
 
@@ -51,25 +54,28 @@ class OrbitLost(SymfpuError):
 class FrameRun:
     """A frame after so many steps, the product of its triangular factors, and the samples so far.
 
-    marks : numbers of steps at which there are samples, (S,). longest : block, in steps. volumes
-    : log(R_jj / |R e_j|) at every mark, (S, vectors), and growth : log R_11, (S,), natural
-    logarithms. every : seconds between two checkpoints.
+    marks : numbers of steps at which there are samples, (S,). longest : block, in steps.
+    volumes : log(R_jj / |R e_j|) at every mark, (S, vectors), and growth : log R_11, (S,),
+        natural logarithms.
+    every : seconds between two checkpoints.
     """
 
     def __init__(
         self, frame: MovingFrame, marks: Ints, step: float, longest: int, every: float
     ) -> None:
         self.frame, self.step, self.longest, self.every = frame, step, longest, every
-        m = frame.vectors
-        self.portion = max(longest, PORTION // (frame.chain.N * len(frame.dx)))
+        m, work = frame.vectors, frame.chain.N * len(frame.dx)
+        self.portion = max(longest, PORTION // work)
         self.done, self.block = 0, longest
-        self.columns, self.diagonal, self.norms = np.eye(m), np.zeros(m), np.zeros(m)
+        self.columns = np.eye(m)
+        self.diagonal, self.norms = np.zeros(m), np.zeros(m)
         self.path: Path | None = None
         self._sample_at(marks)
 
     def _sample_at(self, marks: Ints) -> None:
         self.marks = marks
-        self.volumes, self.growth = np.zeros((len(marks), self.frame.vectors)), np.zeros(len(marks))
+        self.volumes = np.zeros((len(marks), self.frame.vectors))
+        self.growth = np.zeros(len(marks))
 
     def keep_in(self, path: Path, start: Json) -> None:
         """Goes on from the file, if there is one, which may hold a shorter run.
@@ -78,10 +84,11 @@ class FrameRun:
         know it by all its digits instead, the last of which are the machine's.
         """
         self.path, frame = path, self.frame
+        chain = frame.chain
         known = {
-            "N": frame.chain.N,
-            "alpha": decimal(frame.chain.alpha),
-            "beta": decimal(frame.chain.beta),
+            "N": chain.N,
+            "alpha": decimal(chain.alpha),
+            "beta": decimal(chain.beta),
             "vectors": frame.vectors,
             "scheme": frame.scheme.name,
             "step": repr(self.step),
@@ -90,10 +97,9 @@ class FrameRun:
             "block": self.longest,
             "portion": self.portion,
         }
-        made = known | {
-            "start": digest(np.stack([frame.x, frame.p])),
-            "first vectors": digest(np.stack([frame.dx, frame.dp])),
-        }
+        state = digest(np.stack([frame.x, frame.p]))
+        vectors = digest(np.stack([frame.dx, frame.dp]))
+        made = known | {"start": state, "first vectors": vectors}
         self.parameters = known | start
         kept = read_checkpoint(path, self.parameters, ALIGNMENT, made)
         if kept is None:
@@ -137,13 +143,14 @@ class FrameRun:
         }
 
     def _ends(self) -> Iterator[int]:
-        """Where loops end: at marks, and between them after portions that depend on the arguments
-        alone, since each end is also the end of a block: so an interrupted run rounds like one
-        that was not.
+        """Where loops end: at marks, and after portions that depend on the arguments alone.
+
+        Each end is also the end of a block: so an interrupted run rounds like one that was not.
         """
         while self.done < self.marks[-1]:
-            following = int(self.marks[np.searchsorted(self.marks, self.done, side="right")])
-            yield min(following, (self.done // self.portion + 1) * self.portion)
+            place = np.searchsorted(self.marks, self.done, side="right")
+            portions = self.done // self.portion + 1
+            yield min(int(self.marks[place]), portions * self.portion)
 
     def go(self, tell: Progress) -> None:
         """To the last mark. Raises OrbitLost; RunInterrupted where the run is kept in a file."""
@@ -155,32 +162,22 @@ class FrameRun:
                 look(place, end == last, partial(tell, f"t = {end * self.step:.3g}", end / last))
 
     def _move_to(self, end: int) -> None:
-        self.block = carried(
-            self.frame,
-            end - self.done,
-            self.block,
-            self.longest,
-            self.columns,
-            self.diagonal,
-            self.norms,
-        )
+        steps = end - self.done
+        product = (self.columns, self.diagonal, self.norms)
+        self.block = carried(self.frame, steps, self.block, self.longest, *product)
         if not np.isfinite(self.norms).all():
             raise OrbitLost(float(end * self.step), self.step)
         self.done = end
         place = int(np.searchsorted(self.marks, end))
         if self.marks[place] == end:
-            self.volumes[place], self.growth[place] = self.diagonal - self.norms, self.diagonal[0]
+            self.volumes[place] = self.diagonal - self.norms
+            self.growth[place] = self.diagonal[0]
 
     def _write(self) -> None:
         assert self.path is not None
         block = np.array([float(self.block)])
-        write_checkpoint(
-            self.path,
-            self.parameters,
-            self.done,
-            self._arrays(self.done) | {"block": block},
-            ALIGNMENT,
-        )
+        arrays = self._arrays(self.done) | {"block": block}
+        write_checkpoint(self.path, self.parameters, self.done, arrays, ALIGNMENT)
 
 
 def carried(

@@ -1,5 +1,6 @@
-"""Many orbits as one array that a compiled loop moves: in the coordinates of the splitting of a
-scheme.
+"""Many orbits as one array that a compiled loop moves.
+
+The array holds the coordinates of the splitting of a scheme.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ Floats = NDArray[np.float64]
 class Motion:
     """Coordinates of M orbits, shape (M, 2, length), and how they move.
 
-    Bounds : of the bond stretches, for each orbit.
+    bounds : of the bond stretches, for each orbit.
     """
 
     def __init__(self, chain: Chain, scheme: Scheme, step: float, bounds: Floats) -> None:
@@ -56,7 +57,11 @@ class Motion:
 
         each : a map, perhaps of several threads.
         """
-        return list(each(lambda row, bounds: self.move(row, bounds, steps), state, self.bounds))
+
+        def moved(row: Floats, bounds: Floats) -> int:
+            return self.move(row, bounds, steps)
+
+        return list(each(moved, state, self.bounds))
 
     def move(self, row: Floats, bounds: Floats, steps: int) -> int:
         """Moves one orbit."""
@@ -69,26 +74,26 @@ class Motion:
     def look(
         self, state: Floats, looks: int, stride: int, each: Callable[..., Any]
     ) -> tuple[list[int], Floats, Floats]:
-        """Moves all orbits and looks at them every `stride` steps: steps done, and the Q and P
-        seen, shapes (M, looks, N-1).
+        """Moves all orbits and looks at them every `stride` steps.
+
+        Returns the steps done, and the Q and P seen, shapes (M, looks, N-1).
         """
         from symfpu.dynamics.orbit_loops import look_at_modes, look_at_particles
 
         loop: Any = look_at_modes if self.scheme.in_modes else look_at_particles
-        seen = np.zeros((len(state), looks, *state.shape[1:]))
-        done = list(
-            each(
-                lambda row, bounds, rows: int(loop(*self._arguments(row, bounds, stride), rows)),
-                state,
-                self.bounds,
-                seen,
-            )
-        )
-        Q, P = self.modes(seen.reshape(-1, *state.shape[1:]))
-        return done, Q.reshape(len(state), looks, -1), P.reshape(len(state), looks, -1)
+        orbits, *one = state.shape
+        seen = np.zeros((orbits, looks, *one))
+
+        def looked(row: Floats, bounds: Floats, rows: Floats) -> int:
+            return int(loop(*self._arguments(row, bounds, stride), rows))
+
+        done = list(each(looked, state, self.bounds, seen))
+        Q, P = self.modes(seen.reshape(-1, *one))
+        return done, Q.reshape(orbits, looks, -1), P.reshape(orbits, looks, -1)
 
     def _arguments(self, row: Floats, bounds: Floats, steps: int) -> tuple[Any, ...]:
         rates = (row[0], row[1], self.law, steps, self.entry, self.kicks, self.drifts)
         if self.scheme.in_modes:
-            return (*rates, self.Omega, 0.5 * float(np.max(np.abs(bounds))) ** 2)
+            widest = float(np.max(np.abs(bounds)))
+            return (*rates, self.Omega, 0.5 * widest**2)
         return (*rates, bounds[0], bounds[1])

@@ -1,4 +1,6 @@
-"""The compiled loops of orbits: plain arrays in, moved in place. Importing this module imports numba.
+"""The compiled loops of orbits: plain arrays in, moved in place.
+
+Importing this module imports numba.
 
 No fast-math: what comes out does not depend on how loops are cut into vectors. Indices are
 unsigned, since an index that may be negative costs a comparison. Every step ends with a look at
@@ -32,8 +34,9 @@ def move_particles(
     least: float,
     most: float,
 ) -> int:
-    """Displacements and momenta between walls, shape (N+1,), rows of the walls zero, under the
-    forces of all springs.
+    """Particles of a chain between walls, moved by kicks of all springs.
+
+    Displacements and momenta have shape (N+1,), zero at the walls.
 
     Kick and drift are one pass: the tension of a bond needs both its ends before they move, and
     is carried to the next particle.
@@ -79,8 +82,9 @@ def look_at_particles(
     most: float,
     seen: Any,
 ) -> int:
-    """Moves as many times as `seen`, shape (looks, 2, N+1), has rows, by `stride` steps, and
-    copies the state there each time.
+    """Moves by `stride` steps as often as `seen` has rows, and copies the state there.
+
+    seen : shape (looks, 2, N+1).
     """
     for i in range(seen.shape[0]):
         done = move_particles(x, p, law, stride, entry, kicks, drifts, least, most)
@@ -93,9 +97,10 @@ def look_at_particles(
 
 @_compiled
 def _product(first: Any, wide: Any, out: Any) -> None:
-    """Coefficients of the product of two cosine polynomials sum_k a_k e^(ik theta), a_-k = a_k, at
-    the N bonds, where e^(2iN theta) = -1: first[k], k = 0 .. N-1, a_0 = 0, and the other one
-    extended, wide[k + N] = b_k for k = -N .. 2N.
+    """Coefficients of the product of two cosine polynomials at the N bonds.
+
+    They are sums of a_k e^(ik theta) with a_-k = a_k, and e^(2iN theta) = -1 at the bonds: first[k]
+    is a_k for k = 0 .. N-1, a_0 = 0; the other one is extended, wide[k + N] = b_k, k = -N .. 2N.
 
     Two terms at a time; a polynomial of few modes has few terms.
     """
@@ -128,9 +133,10 @@ def _extend(b: Any, wide: Any) -> None:
 
 @_compiled
 def _rotate(v: Any, w: Any, halves: Any, sines: Any) -> None:
-    """Rotation by angles phi as three shears, tan(phi/2), sin(phi), tan(phi/2): each keeps areas
-    exactly, whatever the rounding of its coefficient, where cosines and sines that do not quite
-    have squares of sum 1 would add up to a growth of 1e-16 a drift.
+    """Rotation by angles phi as three shears, tan(phi/2), sin(phi), tan(phi/2).
+
+    Each keeps areas exactly, whatever the rounding of its coefficient, where cosines and sines that
+    do not quite have squares of sum 1 would add up to a growth of 1e-16 a drift.
     """
     for q in range(v.shape[0]):
         a = v[q] + halves[q] * w[q]
@@ -151,9 +157,11 @@ def move_modes(
     Omega: Any,
     most: float,
 ) -> int:
-    """v_q = Omega_q Q_q / sqrt(2N) and w_q = P_q / sqrt(2N), shape (N,) with entries 0 for q = 0:
-    the coefficients of the bond stretches are v, those of tensions beyond the harmonic ones g =
-    c_3 v v + c_4 v v v + ..., and dw_q/dt = -Omega_q (v_q + g_q).
+    """Modes moved by rotations and by kicks of the forces beyond the harmonic ones.
+
+    v_q = Omega_q Q_q / sqrt(2N) and w_q = P_q / sqrt(2N), shape (N,) with entries 0 for q = 0: the
+    coefficients of the bond stretches are v, those of the tensions g = c_3 v v + c_4 v v v + ...,
+    and dw_q/dt = -Omega_q (v_q + g_q).
     """
     N, stages = v.shape[0], kicks.shape[0]
     halves, sines = np.empty((stages + 1, N)), np.empty((stages + 1, N))

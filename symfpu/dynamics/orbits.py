@@ -1,5 +1,6 @@
-"""Orbits of the chain for long times: many at once, sampled at log-spaced times, with checkpoints
-from which they go on bitwise.
+"""Orbits of the chain for long times: many at once, sampled at log-spaced times.
+
+Checkpoints let them go on bitwise.
 """
 
 from __future__ import annotations
@@ -59,16 +60,17 @@ class Orbit:
     """An orbit, or several, at sampled times. Made by `integrate`; dimensionless.
 
     chain : the model. scheme : of the integrator, its coefficients. step : signed, as taken.
-    times : (S,), multiples of the step, from 0. Q, P : mode coordinates and momenta (Eq. lintra), shape
-        (S, ..., N-1).
+    times : (S,), multiples of the step, from 0. Q, P : mode coordinates and momenta (Eq. lintra),
+        shape (S, ..., N-1).
     energies : total energy H (Eq. fpuham2), shape (S, ...).
-    averages : time averages of the E_q (Eq. harmonicene) from 0 to each sample, shape (S, ..., N-1), if asked
-        for.
+    averages : time averages of the E_q (Eq. harmonicene) from 0 to each sample, shape
+        (S, ..., N-1), if asked for.
     seconds : of this run, without what a checkpoint brought.
 
     >>> from symfpu import Chain, integrate
     >>> integrate(Chain(N=4, beta=1), [0.1, 0, 0], [0, 0, 0], 100, step=0.125)
-    Orbit(N=4, beta=1, T=100, kahan_li8, step 0.125, 129 samples, H=0.00293214917955, energy error ...)
+    Orbit(N=4, beta=1, T=100, kahan_li8, step 0.125, 129 samples, H=0.00293214917955,
+    energy error ...)
     """
 
     chain: Chain
@@ -123,31 +125,35 @@ def integrate(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> Orbit:
-    """The orbit from mode coordinates Q and momenta P at time 0 to T, sampled at multiples of the step.
+    """The orbit from mode coordinates Q and momenta P at time 0 to time T.
+
+    It is sampled at multiples of the step.
 
     chain : the model; Q, P, T and step are dimensionless.
     Q, P : shapes (..., N-1), many orbits at once.
     T : a time, negative for the past.
     step : its length is cut to a whole number of steps.
     scheme : of symfpu.dynamics.schemes; aba864_modes splits harmonic + anharmonic, others T + V.
-    samples : about how many, log-spaced from one step to T and 0; or times between 0 and T, shape (S,), each
-        moved to the nearest step.
-    averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if longer;
-        samples are then moved to looks.
-    file : written every so many seconds, at the end, and when the interrupt key is pressed, whole or not at
-        all; with the same arguments an interrupted or killed run goes on from it and ends in the same bits.
-        With a larger T, a multiple of the same step, it goes on too. Samples there are stay. A number of
-        samples is laid out for the new T, and those beyond the old are taken; times are taken as they are,
-        and where they have the old end among them the bits are those of a run to this T from the start.
+    samples : about how many, log-spaced from one step to T and 0; or times between 0 and T, shape
+        (S,), each moved to the nearest step.
+    averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if
+        longer; samples are then moved to looks.
+    file : written every so many seconds, at the end, and when the interrupt key is pressed, whole
+        or not at all; with the same arguments an interrupted or killed run goes on from it and
+        ends in the same bits. With a larger T, a multiple of the same step, it goes on too.
+        Samples there are stay. A number of samples is laid out for the new T, and those beyond
+        the old are taken; times are taken as they are, and where they have the old end among them
+        the bits are those of a run to this T from the start.
     every : those seconds.
     workers : threads, among which orbits are shared out.
     progress : called as (label, fraction done).
 
-    Solves Eq. eqmo, in particles or in modes. Section 3.2 averages P^2 + Omega^2 Q^2 without the factor 1/2;
-    the averages here are of Eq. harmonicene, with it.
-    Raises InputError, also for a file of other parameters or of a longer run, and for times before its end
-    that it has not; BundleError for one that is no checkpoint; UnstableStep and EscapedOrbit with time, mode
-    and energy; RunInterrupted, a KeyboardInterrupt, where there is a file.
+    Solves Eq. eqmo, in particles or in modes. Section 3.2 averages P^2 + Omega^2 Q^2 without the
+    factor 1/2; the averages here are of Eq. harmonicene, with it.
+    Raises InputError, also for a file of other parameters or of a longer run, and for times
+    before its end that it has not; BundleError for one that is no checkpoint; UnstableStep and
+    EscapedOrbit with time, mode and energy; RunInterrupted, a KeyboardInterrupt, where there is a
+    file.
 
     >>> integrate(Chain(N=2, beta=1), [0.0], [1.0], 100, step=0.125, samples=4).times
     array([  0.   ,   0.125,   1.125,  10.75 , 100.   ])
@@ -185,19 +191,20 @@ class _Run:
         Q: Floats,
         P: Floats,
     ) -> None:
-        self.chain, self.scheme, self.T, self.steps, self.shape = chain, scheme, T, steps, Q.shape
-        self.step = T / steps
+        self.chain, self.scheme = chain, scheme
+        self.T, self.steps, self.step = T, steps, T / steps
+        self.shape = Q.shape
         Q, P = Q.reshape(-1, chain.N - 1), P.reshape(-1, chain.N - 1)
-        self.orbits, self.done, self.begun = len(Q), 0, time.perf_counter()
+        self.orbits, self.done = len(Q), 0
+        self.begun = time.perf_counter()
         self.path: Path | None = None
         self.every, self.stride = math.inf, 0
         energies = np.asarray(chain.energy(Q, P))
         for energy in energies:
             require_stable(chain, scheme, self.step, float(energy))
         limits = [stretch_bounds(chain, float(energy)) for energy in energies]
-        self.escapes = [
-            limit[2] or energy < 0 for limit, energy in zip(limits, energies, strict=True)
-        ]
+        can_escape = [escapes for _, _, escapes in limits]
+        self.escapes = [can or energy < 0 for can, energy in zip(can_escape, energies, strict=True)]
         self.start = chain.harmonic_energies(Q, P)
         bounds = np.array([limit[:2] for limit in limits]).reshape(-1, 2)
         self.motion = Motion(chain, scheme, self.step, bounds)
@@ -205,15 +212,15 @@ class _Run:
         self.Q[0], self.P[0] = Q, P
         self.state = self.motion.coordinates(Q, P)
         stretches = np.asarray(chain.stretches(Q))
-        outside = ((stretches < bounds[:, :1]) | (stretches > bounds[:, 1:])).any(axis=1)
+        below, above = stretches < bounds[:, :1], stretches > bounds[:, 1:]
+        outside = (below | above).any(axis=1)
         if outside.any():
             self._stop(int(np.argmax(outside)), 0, escaped=True)
 
     def _sample_at(self, sampled: Ints) -> None:
         self.sampled = sampled
-        self.Q, self.P, self.averages = (
-            np.zeros((len(sampled), self.orbits, self.chain.N - 1)) for _ in range(3)
-        )
+        shape = (len(sampled), self.orbits, self.chain.N - 1)
+        self.Q, self.P, self.averages = (np.zeros(shape) for _ in range(3))
 
     def take_averages(self, stride: int) -> None:
         """Looks at the orbits every so many steps."""
@@ -272,20 +279,21 @@ class _Run:
         return kept
 
     def _ends(self) -> Iterator[int]:
-        """Where loops end: at samples and after blocks of steps that depend on the chain and the
-        scheme alone, so that an interrupted run rounds like one that was not.
+        """Where loops end: at samples, and after blocks of steps.
+
+        Blocks depend on the chain and the scheme alone, so that an interrupted run rounds like
+        one that was not.
         """
-        size = (
-            self.chain.N
-            if not self.scheme.in_modes
-            else self.chain.N**2 * (2 if self.chain.beta else 1)
-        )
+        size = self.chain.N
+        if self.scheme.in_modes:
+            size = self.chain.N**2 * (2 if self.chain.beta else 1)
         block = max(1, BLOCK // (size * self.scheme.stages))
         if self.stride:
             block = self.stride * min(LOOKS, max(1, block // self.stride))
         while self.done < self.steps:
-            following = int(self.sampled[np.searchsorted(self.sampled, self.done, side="right")])
-            yield min(following, (self.done // block + 1) * block)
+            place = np.searchsorted(self.sampled, self.done, side="right")
+            blocks = self.done // block + 1
+            yield min(int(self.sampled[place]), blocks * block)
 
     def go(self, each: Callable[..., Any], progress: Progress) -> None:
         """To the last step. Raises OrbitStopped.
@@ -300,10 +308,13 @@ class _Run:
 
     def _move_to(self, end: int, each: Callable[..., Any]) -> None:
         before = self.state.copy()
-        done = self._moved(end - self.done, each)
-        inside = np.isfinite(self.state).all(axis=(1, 2)) & (np.array(done) == end - self.done)
-        if not inside.all():
-            self._stopped_in_block(before, int(np.argmin(np.where(inside, self.steps, done))), done)
+        steps = end - self.done
+        done = self._moved(steps, each)
+        finite = np.isfinite(self.state).all(axis=(1, 2))
+        well = finite & (np.array(done) == steps)
+        if not well.all():
+            first = int(np.argmin(np.where(well, self.steps, done)))
+            self._stopped_in_block(before, first, done)
         self.done = end
         place = int(np.searchsorted(self.sampled, end))
         if self.sampled[place] == end:
@@ -333,7 +344,8 @@ class _Run:
 
     def _stop(self, row: int, steps: int, *, escaped: bool) -> None:
         Q, P = (part[0] for part in self.motion.modes(self.state[row : row + 1]))
-        growth = np.abs(self.chain.harmonic_energies(Q, P) - (self.start[row] if steps else 0.0))
+        begun_with = self.start[row] if steps else 0.0
+        growth = np.abs(self.chain.harmonic_energies(Q, P) - begun_with)
         place: tuple[int, ...] = ()
         if len(self.shape) > 1:
             place = tuple(int(i) for i in np.unravel_index(row, self.shape[:-1]))
@@ -360,17 +372,8 @@ class _Run:
         energies = np.asarray(self.chain.energy(Q, P))
         times = np.asarray(self.T * (self.sampled / self.steps), dtype=np.float64)
         averages = self.averages.reshape(Q.shape) if self.stride else None
-        return Orbit(
-            self.chain,
-            self.scheme,
-            self.step,
-            times,
-            Q,
-            P,
-            energies,
-            averages,
-            time.perf_counter() - self.begun,
-        )
+        seconds = time.perf_counter() - self.begun
+        return Orbit(self.chain, self.scheme, self.step, times, Q, P, energies, averages, seconds)
 
 
 def _start(
@@ -381,24 +384,15 @@ def _start(
     chain.positions(Q), chain.positions(P)  # refuses other shapes
     Q, P = np.array(Q, dtype=np.float64), np.array(P, dtype=np.float64)
     if Q.shape != P.shape:
-        raise InputError(
-            "P", P.shape, f"the shape of Q, {Q.shape}", "pass one momentum for each coordinate"
-        )
+        advice = "pass one momentum for each coordinate"
+        raise InputError("P", P.shape, f"the shape of Q, {Q.shape}", advice)
     with np.errstate(over="ignore", invalid="ignore"):
         if not Q.size or not np.isfinite(chain.energy(Q, P)).all():
-            raise InputError(
-                "Q, P",
-                "a state whose energy is not finite" if Q.size else (),
-                "finite numbers",
-                "start from a finite state",
-            )
+            given = "a state whose energy is not finite" if Q.size else ()
+            raise InputError("Q, P", given, "finite numbers", "start from a finite state")
     for name, value in (("T", T), ("step", step)):
-        if (
-            isinstance(value, bool)
-            or not isinstance(value, Real)
-            or not math.isfinite(float(value))
-            or value == 0
-        ):
+        is_number = isinstance(value, Real) and not isinstance(value, bool)
+        if not is_number or not math.isfinite(float(value)) or value == 0:
             raise InputError(name, value, "a finite number other than 0", "pass a time")
     if step < 0:
         raise InputError("step", step, "a positive number", "for the past take a negative T")
@@ -406,19 +400,13 @@ def _start(
 
 
 def _whole_steps(T: float, step: float) -> int:
-    if not abs(T) / step <= MOST_STEPS:
-        raise InputError(
-            "T",
-            T,
-            f"at most 2^52 steps, {step * MOST_STEPS:.3g}",
-            "take a shorter time, or a longer step",
-        )
     ratio = abs(T) / step
-    whole = (
-        round(ratio)
-        if abs(ratio - round(ratio)) <= max(STEP_ROUNDING, 4 * np.finfo(float).eps * ratio)
-        else math.ceil(ratio)
-    )
+    if not ratio <= MOST_STEPS:
+        allowed = f"at most 2^52 steps, {step * MOST_STEPS:.3g}"
+        raise InputError("T", T, allowed, "take a shorter time, or a longer step")
+    nearest = round(ratio)
+    rounding = max(STEP_ROUNDING, 4 * np.finfo(float).eps * ratio)
+    whole = nearest if abs(ratio - nearest) <= rounding else math.ceil(ratio)
     return max(1, whole)
 
 
@@ -429,6 +417,7 @@ def _is_count(samples: object) -> TypeGuard[int]:
 
 def _sample_steps(T: float, steps: int, samples: object) -> Ints:
     """Steps after which samples are taken, 0 and the last among them."""
+    allowed = "a whole number, or times between 0 and T"
     if _is_count(samples):
         count = min(integer(samples, "samples", 1), steps)
         inner = np.rint(np.geomspace(1, steps, count)) if count > 1 else np.array([steps])
@@ -436,14 +425,8 @@ def _sample_steps(T: float, steps: int, samples: object) -> Ints:
         try:
             inner = np.rint(np.asarray(samples, dtype=np.float64) / T * steps)
         except (TypeError, ValueError) as error:
-            raise InputError(
-                "samples", samples, "a whole number, or times between 0 and T", "pass one of them"
-            ) from error
+            raise InputError("samples", samples, allowed, "pass one of them") from error
         if inner.ndim != 1 or not ((inner >= 0) & (inner <= steps)).all():
-            raise InputError(
-                "samples",
-                samples,
-                f"a whole number, or times between 0 and T = {T:.10g}",
-                "leave out the others",
-            )
-    return np.unique(np.concatenate([[0], inner, [steps]]).astype(np.int64))
+            raise InputError("samples", samples, f"{allowed} = {T:.10g}", "leave out the others")
+    marks = np.concatenate([[0], inner, [steps]])
+    return np.unique(marks.astype(np.int64))

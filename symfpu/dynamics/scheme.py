@@ -1,6 +1,4 @@
-"""What an integrator is: drifts and kicks by turns, symmetric, of one splitting of the
-Hamiltonian.
-"""
+"""What an integrator is: drifts and kicks by turns, symmetric, of one splitting of H."""
 
 from __future__ import annotations
 
@@ -48,8 +46,9 @@ class Scheme:
         return self.splitting != "T + V"
 
     def merged(self, step: float) -> tuple[float, Floats, Floats]:
-        """First drift, kicks, and the drift after each kick in a row of steps of this length: the
-        last one leads into the next step.
+        """First drift, kicks, and the drift after each kick in a row of steps of this length.
+
+        The last drift leads into the next step.
         """
         first, *between, last = self.drifts
         kicks = step * np.array(self.kicks)
@@ -58,8 +57,9 @@ class Scheme:
 
     @cached_property
     def stable_phase(self) -> float:
-        """The largest z to which a mode with step * Omega below z stays bounded, by the trace of the
-        step of the harmonic chain.
+        """The largest z such that modes with step * Omega below z stay bounded.
+
+        It follows from the trace of the step of the harmonic chain.
 
         Exact rotations are stable at any step; we stop where one of them passes a right angle,
         since steps of half a period resonate with the kicks.
@@ -72,20 +72,25 @@ class Scheme:
 
 
 def half_trace(scheme: Scheme, z: Floats) -> Floats:
-    """Half the trace of the step matrix of an oscillator of frequency z, T + V.
+    """Half the trace of the step matrix of an oscillator of frequency z, on T + V.
 
-    Beyond -1..1 it is unstable.
+    Outside of -1 .. 1 the step is unstable.
     """
     # rows (a b), (c d)
-    a, b, c, d = np.ones_like(z), np.zeros_like(z), np.zeros_like(z), np.ones_like(z)
+    a, b = np.ones_like(z), np.zeros_like(z)
+    c, d = np.zeros_like(z), np.ones_like(z)
     for drift, kick in itertools.zip_longest(scheme.drifts, scheme.kicks, fillvalue=0.0):
-        a, b = a + drift * z * c, b + drift * z * d
-        c, d = c - kick * z * a, d - kick * z * b
+        drifted, kicked = drift * z, kick * z
+        a = a + drifted * c
+        b = b + drifted * d
+        c = c - kicked * a
+        d = d - kicked * b
     return 0.5 * (a + d)
 
 
 def palindrome(half: Sequence[float], *, middle: bool) -> tuple[float, ...]:
-    """A symmetric row of coefficients from its first half, whose last entry is the middle one or
-    occurs twice.
+    """A symmetric row of coefficients from its first half.
+
+    The last entry of the half is the middle one, or occurs twice.
     """
     return (*half, *reversed(half[:-1] if middle else half))

@@ -1,5 +1,7 @@
-"""When an orbit is stopped: a step beyond stability, an escape over a barrier of the potential of
-the bonds, numbers that overflow.
+"""When an orbit is stopped.
+
+The reasons are a step beyond stability, an escape over a barrier of the potential of the bonds,
+and numbers that overflow.
 """
 
 from __future__ import annotations
@@ -30,7 +32,8 @@ class OrbitStopped(SymfpuError):
 
     Raised by `integrate` and its users. Ours.
 
-    time : of the stop; mode : of the largest (growth of) harmonic energy; energy : total; dimensionless.
+    time : of the stop; mode : of the largest (growth of) harmonic energy; energy : total;
+        dimensionless.
     orbit : its place among several, () for one.
     """
 
@@ -61,7 +64,7 @@ class EscapedOrbit(OrbitStopped):
 
 
 class UnstableStep(OrbitStopped):
-    """The step is beyond the stability of the scheme, or so coarse that energy is no longer conserved.
+    """The step is beyond the stability of the scheme, or too coarse to conserve the energy.
 
     Raised by `integrate`. Ours.
 
@@ -72,8 +75,9 @@ class UnstableStep(OrbitStopped):
 def require_stable(chain: Chain, scheme: Scheme, step: float, energy: float) -> None:
     """Raises UnstableStep for a step that lets a harmonic mode grow."""
     Omega = chain.frequencies()
-    if abs(step) * Omega[-1] > scheme.stable_phase:
-        mode = int(np.argmax(abs(step) * Omega > scheme.stable_phase)) + 1
+    unstable = abs(step) * Omega > scheme.stable_phase
+    if unstable[-1]:
+        mode = int(np.argmax(unstable)) + 1
         largest = scheme.stable_phase / Omega[-1]
         raise UnstableStep(
             f"a step of {abs(step):.6g} of {scheme.name} is unstable",
@@ -90,8 +94,9 @@ def potential(chain: Chain, r: float) -> float:
 
 
 def stretch_bounds(chain: Chain, energy: float) -> tuple[float, float, bool]:
-    """Stretches that no bond of an orbit of this energy leaves unless it escapes or the step is too
-    coarse; whether it can escape.
+    """Stretches that no bond of an orbit of this energy leaves, and whether it can escape.
+
+    A bond leaves them only if the orbit escapes or the step is too coarse.
 
     While all bonds are inside their wells each holds no more than the whole energy: it stays
     where V <= energy. Where that is beyond a barrier, the bond may pass, and has passed for good
@@ -110,21 +115,23 @@ def _bound(chain: Chain, energy: float, side: float) -> tuple[float, bool]:
     slopes = [-alpha + sign * math.sqrt(square) for sign in (1, -1)] if square >= 0 else []
     turns = [2 / slope for slope in slopes if slope > 0]
     if beta > 0:
-        most = FACTOR * (energy + chain.N * max([0.0, *(-V(turn) for turn in turns)]))
-        return _first(lambda r: V(r) >= most, max(turns, default=0.0), LARGEST_STRETCH), False
+        depth = max([0.0, *(-V(turn) for turn in turns)])
+        most = FACTOR * (energy + chain.N * depth)
+        outermost = max(turns, default=0.0)
+        return _first(lambda r: V(r) >= most, outermost, LARGEST_STRETCH), False
     top = min([*turns, LARGEST_STRETCH])
-    if V(top) >= FACTOR * energy:
-        return _first(lambda r: V(r) >= FACTOR * energy, 0.0, top), False
-    return (
-        (top, False)
-        if V(top) > energy
-        else (_first(lambda r: V(r) < 0, top, LARGEST_STRETCH), True)
-    )
+    height, enough = V(top), FACTOR * energy
+    if height >= enough:
+        return _first(lambda r: V(r) >= enough, 0.0, top), False
+    if height > energy:
+        return top, False
+    return _first(lambda r: V(r) < 0, top, LARGEST_STRETCH), True
 
 
 def _first(reached: Callable[[float], bool], low: float, high: float) -> float:
-    """Where a condition begins to hold between low and high, by bisection in the logarithm while
-    the numbers are far apart.
+    """Where a condition begins to hold between low and high, by bisection.
+
+    It goes by the logarithm while the numbers are far apart.
     """
     for _ in range(2 * BISECTIONS):
         middle = math.sqrt(max(low, 1e-200) * high) if high > 2 * low else 0.5 * (low + high)

@@ -108,8 +108,10 @@ def tangent_map_along(
 
     stretches : bond stretches r_j of the orbit at times (T,), shape (T, N), as often as wanted.
     scheme : on T + V; time runs with its drifts, so that forces given as functions of time keep
-    the order. Returns shape (2(N-1), 2(N-1)): rows and columns are Q_1 .. Q_(N-1), P_1 ..
-    P_(N-1). Raises InputError.
+        the order.
+
+    Returns shape (2(N-1), 2(N-1)); rows and columns are Q_1 .. Q_(N-1), P_1 .. P_(N-1).
+    Raises InputError.
     """
     from symfpu.dynamics.tangent_loops import carry_along
 
@@ -152,6 +154,8 @@ def moving_frame(
     dx = _particles(chain, "dQ", dQ, (vectors, n))
     dp = _particles(chain, "dP", dP, (vectors, n))
     h = step_length(step)
+    kicks = h * np.array(scheme.kicks, dtype=float)
+    drifts = h * np.array(scheme.drifts, dtype=float)
     return MovingFrame(
         chain=chain,
         scheme=scheme,
@@ -160,8 +164,8 @@ def moving_frame(
         p=np.pad(p, 1),
         dx=_in_lanes(chain, dx),
         dp=_in_lanes(chain, dp),
-        kicks=h * np.array(scheme.kicks, dtype=float),
-        drifts=h * np.array(scheme.drifts, dtype=float),
+        kicks=kicks,
+        drifts=drifts,
     )
 
 

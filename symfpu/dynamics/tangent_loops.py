@@ -115,8 +115,9 @@ def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any) -> None:
 
 @_compiled
 def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any) -> float:
-    """Replace the first m vectors by their orthonormal basis, V = basis R; returns the least R_jj /
-    |column j of R|.
+    """Replace the first m vectors by their orthonormal basis, V = basis R.
+
+    Returns the least R_jj / |column j of R|.
 
     rows : room for the vectors, (m, 2(N-1)). R : upper triangular, positive diagonal, (m, m).
     Gram-Schmidt with a second pass, after which the basis is orthonormal to rounding.
@@ -147,8 +148,9 @@ def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any) -> float:
 
 @_compiled
 def accumulate(R: Any, columns: Any, diagonal: Any, norms: Any) -> None:
-    """Multiply the product of triangular factors by R from the left: columns are unit vectors, norms
-    the logarithms of their lengths.
+    """Multiply the product of triangular factors by R from the left.
+
+    Columns are unit vectors, norms the logarithms of their lengths.
 
     diagonal : logarithms of the diagonal of the product.
     """
@@ -181,8 +183,9 @@ def carry_frame(
     diagonal: Any,
     norms: Any,
 ) -> int:
-    """Steps with a frame made orthonormal again after every block; the block is halved where the
-    frame is squeezed too much.
+    """Steps with a frame made orthonormal again after every block.
+
+    The block is halved where the frame is squeezed too much.
 
     Returns the block to go on with.
     """

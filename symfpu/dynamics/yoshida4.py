@@ -1,4 +1,6 @@
-"""Yoshida's scheme of order 4, the one of the paper: three leapfrog steps, the middle one backwards.
+"""Yoshida's scheme of order 4, the one of the paper: three leapfrog steps.
+
+The middle one goes backwards.
 
 H. Yoshida, Phys. Lett. A 150 (1990) 262, Eq. 4.5 with weights of Eq. 2.11: x_1 = 1/(2 - 2^(1/3)),
 x_0 = 1 - 2 x_1.

@@ -1,4 +1,6 @@
-"""Families of q-tori of growing energy by Appendix A: steps in frequency from a Jacobian of differences.
+"""Families of q-tori of growing energy by Appendix A.
+
+Steps in frequency are taken by a Jacobian of differences.
 
 Every member is a root of Eq. omeser at chosen frequencies. A step asks for equal increments of the
 linear mode energies Omega_q^2 A_q^2 / 2 of all seeds. Where we differ from the printed algorithm:
@@ -48,15 +50,12 @@ INCREMENT = 0.1  # of the linear specific energy of the trial amplitudes, in one
 LOWERING = 0.5  # factor of trial amplitudes without a solution
 ATTEMPTS = 20
 HALVINGS = 12  # of Delta omega
-INCREMENT_CHANGE = 0.5  # change of the increment from the one asked for, relative, beyond which the root is another one
+# relative change of the increment from the one asked for, beyond which the root is another one
+INCREMENT_CHANGE = 0.5
 PLACE = 1e-15  # of an energy between two tori, in their distance or in ln A
 OVERSHOOT = 1.2  # what a step that is to pass an energy is longer than the estimate
-NO_ROOT = (
-    NoRealAmplitude,
-    DidNotConverge,
-    InputError,
-    UndeterminedAmplitudes,
-)  # InputError: resonant or negative frequencies
+# InputError: resonant or negative frequencies
+NO_ROOT = (NoRealAmplitude, DidNotConverge, InputError, UndeterminedAmplitudes)
 
 
 class NoFurtherMember(SymfpuError):
@@ -241,7 +240,9 @@ def members_between(
     goal: Level,
     after: tuple[AppendixAMember, AppendixAMember] | None = None,
 ) -> Iterator[AppendixAMember]:
-    """The tori of Appendix A from one energy to another, which the first and the last have to rounding.
+    """The tori of Appendix A from one energy to another.
+
+    The first and the last have these energies to rounding.
 
     start_amplitudes : of which a multiple has the first energy. The others as for
     `appendix_a_members`. Raises NoFurtherMember.
@@ -350,7 +351,7 @@ class _Family:
         yield from self.continued(first, second)
 
     def begun(self, trial: Floats, increment: float) -> Iterator[AppendixAMember]:
-        """The same from trial amplitudes that are not halved; the first of them is known to have a torus."""
+        """The same from trial amplitudes that are not halved; the first of them has a torus."""
         first = AppendixAMember(self._torus(self.trial_shifts(trial), trial**2), increment)
         yield first
         raised = np.sqrt(trial**2 + self._growth(increment))
@@ -363,7 +364,10 @@ class _Family:
         yield from self.continued(first, second)
 
     def trial_at(self, trial: Floats, level: Level) -> Floats:
-        """The multiple of trial amplitudes, shape (s,), whose torus has an energy; raises NoFurtherMember."""
+        """The multiple of trial amplitudes (s,) whose torus has an energy.
+
+        Raises NoFurtherMember.
+        """
 
         def torus(x: float) -> QTorus:
             amplitudes = math.exp(x) * trial
@@ -375,7 +379,10 @@ class _Family:
     def between(
         self, before: AppendixAMember, last: AppendixAMember, level: Level
     ) -> AppendixAMember:
-        """The torus of an energy on the line between the frequencies of two; raises NoFurtherMember."""
+        """The torus of an energy on the line between the frequencies of two.
+
+        Raises NoFurtherMember.
+        """
         start, end = (shifts(m.torus.series) for m in (before, last))
         near, far = (
             np.array([float(a) ** 2 for a in m.amplitudes.values()]) for m in (before, last)

@@ -22,7 +22,7 @@ from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import Amplitude, Condition, Energy, Plane, ratio_conditions
-from symfpu.refinement.invariance import DIGITS, Floats
+from symfpu.refinement.invariance import DIGITS, Floats, Ints
 from symfpu.refinement.tori import (
     TOLERANCE,
     NoTorus,
@@ -37,24 +37,23 @@ from symfpu.tori.torus import QTorus
 
 GUESS_ORDER = 2  # of the series that begins a family
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
-DOUBTFUL_STEP = (
-    0.05  # the smallest from a doubtful member: near a saddle such ones crawl on without end
-)
-EASY_STEPS, FACTOR = (
-    4,
-    1.3,
-)  # Newton steps up to which the next step along the way is longer, and by how much
+# the smallest from a doubtful member: near a saddle such ones crawl on without end
+DOUBTFUL_STEP = 0.05
+EASY_STEPS = 4  # Newton steps up to which the next step along the way is longer
+FACTOR = 1.3  # by how much
 KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
-DISTANCE_LIMIT = 0.5  # distance from the predicted point, in steps, beyond which a member belongs to another family
+# distance from the predicted point, in steps, beyond which a member belongs to another family
+DISTANCE_LIMIT = 0.5
 RESIDUAL_LIMIT = 1e-6  # residual beyond which a torus is no member
 ENERGY_TOLERANCE = 1e-12  # relative: what an energy asked for and that of a member may differ by
 OVERHANG = 1e-6  # of the distance of two tori, by which one between them may seem to lie outside
-GUESS_CHANGE = 0.3  # relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
+# relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
+GUESS_CHANGE = 0.3
 
 
 @dataclass(frozen=True)
 class Level:
-    """An energy asked for: H, or with `harmonic` the harmonic energy sum E_q, at the angles zero."""
+    """An energy asked for, H or with `harmonic` sum E_q, at the angles zero."""
 
     energy: float
     harmonic: bool
@@ -90,12 +89,12 @@ class Level:
 class Member:
     """One torus of a family; dimensionless.
 
-    torus : the solution. amplitudes : by seed. energy : H, harmonic_energy : sum E_q, both at the angles
-        zero.
-    residual : of the equations of motion, relative to the largest acceleration. warnings : reasons to doubt
-        it.
-    multipliers : of a breather, if asked for. Ours; Appendix A has the linear specific energy of Eq. linespe
-        instead.
+    torus : the solution. amplitudes : by seed. energy : H, harmonic_energy : sum E_q, both at the
+        angles zero.
+    residual : of the equations of motion, relative to the largest acceleration.
+        warnings : reasons to doubt it.
+    multipliers : of a breather, if asked for. Ours; Appendix A has the linear specific energy of
+        Eq. linespe instead.
 
     >>> from symfpu import Chain, family
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").members[0]
@@ -116,18 +115,12 @@ class Member:
         return "doubtful" if self.warnings else "torus"
 
     def __repr__(self) -> str:
-        rates = ", ".join(
-            f"omega_{q}={float(w):.12g}"
-            for q, w in zip(self.torus.seeds, self.torus.frequencies, strict=True)
-        )
+        by_seed = zip(self.torus.seeds, self.torus.frequencies, strict=True)
+        rates = ", ".join(f"omega_{q}={float(w):.12g}" for q, w in by_seed)
         amplitudes = ", ".join(f"A_{q}={a:.8g}" for q, a in self.amplitudes.items())
-        stability = (
-            ""
-            if self.multipliers is None
-            else ", stable"
-            if self.multipliers.stable
-            else ", unstable"
-        )
+        stability = ""
+        if self.multipliers is not None:
+            stability = ", stable" if self.multipliers.stable else ", unstable"
         doubts = "".join(f"; {w}" for w in self.warnings)
         where = f"H={self.energy:.10g}, {rates}, {amplitudes}, residual {self.residual:.2g}"
         return f"Member({self.verdict}, {where}{stability}{doubts})"
@@ -135,13 +128,15 @@ class Member:
 
 @dataclass(frozen=True)
 class Event:
-    """Something on the way between the members `after` and `after` + 1 of a family; dimensionless. Ours.
+    """Something on the way between two members of a family; dimensionless. Ours.
 
-    kind : 'fold' (what : the quantity that turns), 'resonance' (a divisor changes its sign; mode, harmonic)
-        or 'stability' (what : the instability that begins or ends).
+    after : the number of the first of the two.
+    kind : 'fold' (what : the quantity that turns), 'resonance' (a divisor changes its sign; mode,
+        harmonic) or 'stability' (what : the instability that begins or ends).
     energy : H there. value : of the quantity that turns, or of the divisor's coefficient.
     mode, harmonic : q and nu, integers, shape (s,), of a resonance; else 0 and ().
-    interpolated : between the members, not found by Newton's method: good to some per cent of their distance.
+    interpolated : between the members, not found by Newton's method: good to some per cent of
+        their distance.
 
     >>> Event("resonance", "", 3, 0.0125, 1e-9, mode=5, harmonic=(3,))
     resonance of mode 5 with harmonic (3) at H = 0.0125, coefficient 1e-09
@@ -157,18 +152,15 @@ class Event:
     interpolated: bool = False
 
     def __repr__(self) -> str:
-        where = (
-            f"H = {self.energy:.3g} (interpolated)"
-            if self.interpolated
-            else f"H = {self.energy:.10g}"
-        )
+        where = f"H = {self.energy:.10g}"
+        if self.interpolated:
+            where = f"H = {self.energy:.3g} (interpolated)"
         if self.kind == "resonance":
             harmonic = ",".join(map(str, self.harmonic))
             what = f"mode {self.mode} with harmonic ({harmonic})"
             return f"resonance of {what} at {where}, coefficient {self.value:.2g}"
-        return f"{self.kind}: {self.what} at {where}" + (
-            f", {self.value:.10g}" if self.kind == "fold" else ""
-        )
+        value = f", {self.value:.10g}" if self.kind == "fold" else ""
+        return f"{self.kind}: {self.what} at {where}{value}"
 
 
 def first_torus(
@@ -206,12 +198,9 @@ def first_at(
     ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found
     are far from those of the series: a torus of another family may have the energy.
     """
-    found = refined_torus(
-        _short_series(chain, amplitudes),
-        [level.condition, *ratio],
-        tolerance=tolerance,
-        progress=progress,
-    )
+    guess = _short_series(chain, amplitudes)
+    conditions = [level.condition, *ratio]
+    found = refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
     astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
     if astray > GUESS_CHANGE:
         raise NoTorus(f"an amplitude is {astray:.0%} off the one expected", found, found.residual())
@@ -222,12 +211,11 @@ def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
     """The series of lowest orders about the frequencies that these amplitudes shift."""
     shifts = frequency_shift(chain, amplitudes)
     with mpmath.workdps(DIGITS):
-        omega = [
-            Fraction(text(chain.linear_frequency(q) + mpmath.mpf(shifts[q]), 25))
-            for q in amplitudes
-        ]
+        shifted = [chain.linear_frequency(q) + mpmath.mpf(shifts[q]) for q in amplitudes]
+        omega = [Fraction(text(w, 25)) for w in shifted]
     series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
-    return QTorus(series, dict(amplitudes), dict.fromkeys(amplitudes, 0.0), 0, GUESS_ORDER)
+    phases = dict.fromkeys(amplitudes, 0.0)
+    return QTorus(series, dict(amplitudes), phases, 0, GUESS_ORDER)
 
 
 def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
@@ -246,7 +234,8 @@ def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
 def series_member(torus: QTorus) -> Member:
     """A torus of a series with its energies and its residual."""
     amplitudes = {q: float(a) for q, a in torus.amplitudes.items()}
-    energy, harmonic = float(torus.energy()), float(torus.harmonic_energies().sum())
+    energy = float(torus.energy())
+    harmonic = float(torus.harmonic_energies().sum())
     return Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings)
 
 
@@ -258,8 +247,10 @@ def returned(members: Sequence[Member], *, tolerance: float) -> bool:
     Two tori of the same amplitudes nearer to each other than the root of the tolerance are one:
     Newton's method leads from one to the other.
     """
-    first, last = members[0], members[-1]
-    if len(members) < 3 or not last.energy < min(first.energy, members[-2].energy):
+    if len(members) < 3:
+        return False
+    first, (before, last) = members[0], members[-2:]
+    if not last.energy < min(first.energy, before.energy):
         return False
     if any(abs(last.amplitudes[q]) >= abs(a) for q, a in first.amplitudes.items()):
         return False
@@ -267,17 +258,9 @@ def returned(members: Sequence[Member], *, tolerance: float) -> bool:
         other = first_torus(first.torus.chain, last.amplitudes, tolerance=tolerance)
     except SymfpuError:
         return False
-    rows = {tuple(nu): i for i, nu in enumerate(other.harmonics.tolist())}
-    zero = 0 * other.cosines[0]
-    same = np.array(
-        [
-            other.cosines[rows[nu]] if nu in rows else zero
-            for nu in map(tuple, last.torus.harmonics.tolist())
-        ]
-    )
-    return bool(
-        np.abs(last.torus.cosines - same).max() < np.sqrt(tolerance) * np.abs(other.cosines).max()
-    )
+    same = _cosines_at(last.torus.harmonics, other, 0 * other.cosines[0])
+    difference = np.abs(last.torus.cosines - same).max()
+    return bool(difference < np.sqrt(tolerance) * np.abs(other.cosines).max())
 
 
 class Way:
@@ -316,79 +299,71 @@ class Way:
 
         The largest relative one, not far below any before.
         """
-        linear = self.tori[0].chain.frequencies()[np.array(self.tori[0].seeds) - 1]
-        relative = [
-            float(np.max(np.abs(shifts_of(torus)).astype(float) / linear))
-            for torus in self.tori[-2:]
-        ]
+        torus = self.tori[0]
+        linear = torus.chain.frequencies()[np.array(torus.seeds) - 1]
+        shifts = [np.abs(shifts_of(torus)).astype(float) for torus in self.tori[-2:]]
+        relative = [float(np.max(shift / linear)) for shift in shifts]
         self.largest = max(self.largest, *relative)
-        return np.asarray(max(relative[-1], KEPT_SCALE * self.largest) * linear)
+        size = max(relative[-1], KEPT_SCALE * self.largest)
+        return np.asarray(size * linear)
 
-    def _conditions(self, plane: Plane) -> list[Condition]:
-        return [plane, *ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)]
+    def _conditions(self, first: Condition) -> list[Condition]:
+        """A condition, and the ratio that the family keeps."""
+        ratio = ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)
+        return [first, *ratio]
 
     def variables(self, torus: RefinedTorus, scales: Floats) -> Floats:
         """Where a torus is, (ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
         A = np.array([np.longdouble(abs(a)) for a in torus.amplitudes.values()])
-        return np.concatenate([np.log(A), shifts_of(torus) / scales])
+        shifts = shifts_of(torus) / scales
+        return np.concatenate([np.log(A), shifts])
 
     def at(self, distance: float) -> RefinedTorus:
-        """The torus whose way from the last one, along the secant, has this length; raises NoTorus."""
-        last, before = self.tori[-1], self.tori[-2]
+        """The torus at this length of way from the last one, along the secant; raises NoTorus."""
+        before, last = self.tori[-2:]
         scales = self.scales()
-        x, difference = (
-            self.variables(last, scales),
-            self.variables(last, scales) - self.variables(before, scales),
-        )
+        x = self.variables(last, scales)
+        difference = x - self.variables(before, scales)
         length = float(np.linalg.norm(difference.astype(float)))
         tangent = (difference / length).astype(float)
         plane = Plane(tuple(x), tuple(tangent.tolist()), tuple(scales.tolist()), distance)
-        found = refined_torus(
-            extrapolated(before, last, distance / length),
-            self._conditions(plane),
-            tolerance=self.tolerance,
-            progress=self.progress,
-        )
+        guess = extrapolated(before, last, distance / length)
+        conditions = self._conditions(plane)
+        found = refined_torus(guess, conditions, tolerance=self.tolerance, progress=self.progress)
         _require_resolved(found)
-        off = float(
-            np.linalg.norm((self.variables(found, scales) - x).astype(float) - distance * tangent)
-        )
+        gone = (self.variables(found, scales) - x).astype(float)
+        off = float(np.linalg.norm(gone - distance * tangent))
         if off > DISTANCE_LIMIT * max(abs(distance), SMALLEST_STEP):
-            raise NoTorus(
-                f"the torus found is {off / abs(distance):.2g} steps off the way",
-                found,
-                found.residual(),
-            )
+            reason = f"the torus found is {off / abs(distance):.2g} steps off the way"
+            raise NoTorus(reason, found, found.residual())
         return found
 
     def between(self, level: Level) -> RefinedTorus:
-        """The torus of an energy between the last two, one below and one beyond it; raises NoTorus."""
+        """The torus of an energy between those of the last two; raises NoTorus."""
         before, last = self.tori[-2:]
         low, high = level.of(before), level.of(last)
         part = (level.energy - low) / (high - low)
-        ratio = ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)
-        conditions = [level.condition, *ratio]
+        conditions = self._conditions(level.condition)
         guess = extrapolated(before, last, part - 1)
         found = refined_torus(guess, conditions, tolerance=self.tolerance, progress=self.progress)
         _require_resolved(found)
         along, astray = self.place(found)
         if astray > DISTANCE_LIMIT or not -OVERHANG <= along <= 1 + OVERHANG:
-            raise NoTorus(
-                f"the torus of {level.name} = {level.energy:.6g} is not between two neighbours",
-                found,
-                found.residual(),
-            )
+            torus = f"the torus of {level.name} = {level.energy:.6g}"
+            raise NoTorus(f"{torus} is not between two neighbours", found, found.residual())
         return found
 
     def place(self, torus: RefinedTorus) -> tuple[float, float]:
-        """How far along the way between the last two tori another one is, and off it, in their distance."""
+        """How far along the way between the last two tori another one is, and how far off it.
+
+        Both in the distance of the two.
+        """
         scales = self.scales()
-        start, end, here = (
-            self.variables(x, scales).astype(float) for x in (*self.tori[-2:], torus)
-        )
-        secant = end - start
-        along = float((here - start) @ secant) / float(secant @ secant)
-        off = float(np.linalg.norm(here - start - along * secant))
+        three = (*self.tori[-2:], torus)
+        start, end, here = (self.variables(x, scales).astype(float) for x in three)
+        secant, gone = end - start, here - start
+        along = float(gone @ secant) / float(secant @ secant)
+        off = float(np.linalg.norm(gone - along * secant))
         return along, off / float(np.linalg.norm(secant))
 
     def advance(self, goal: Level) -> RefinedTorus:
@@ -403,7 +378,8 @@ class Way:
                     found = self.local(self.tori[-1], found).between(goal)
                 break
             except NoTorus:
-                if self.step < (DOUBTFUL_STEP if self.tori[-1].warnings else SMALLEST_STEP):
+                smallest = DOUBTFUL_STEP if self.tori[-1].warnings else SMALLEST_STEP
+                if self.step < smallest:
                     raise
                 self.step /= 2
         if len(found.steps) <= EASY_STEPS:
@@ -422,18 +398,17 @@ def _require_resolved(found: RefinedTorus) -> None:
 
 def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> FourierTorus:
     """The guess on the line through two tori, `ratio` of their distance beyond the second."""
-    rows = {tuple(nu): i for i, nu in enumerate(before.harmonics.tolist())}
-    earlier = np.array(
-        [
-            before.cosines[rows[nu]] if nu in rows else 0 * last.cosines[0]
-            for nu in map(tuple, last.harmonics.tolist())
-        ]
-    )
+    earlier = _cosines_at(last.harmonics, before, 0 * last.cosines[0])
     cosines = last.cosines + ratio * (last.cosines - earlier)
-    frequencies = tuple(
-        b + Fraction(ratio) * (b - a)
-        for a, b in zip(before.frequencies, last.frequencies, strict=True)
-    )
-    return FourierTorus(
-        last.chain, last.seeds, frequencies, last.harmonics, cosines, dict(last.phases)
-    )
+    omega = zip(before.frequencies, last.frequencies, strict=True)
+    frequencies = tuple(b + Fraction(ratio) * (b - a) for a, b in omega)
+    phases = dict(last.phases)
+    return FourierTorus(last.chain, last.seeds, frequencies, last.harmonics, cosines, phases)
+
+
+def _cosines_at(harmonics: Ints, torus: QuasiPeriodic, missing: Floats) -> Floats:
+    """The cosines of a torus at these harmonics, (H, s); a row `missing` where it has none."""
+    rows = {tuple(nu): i for i, nu in enumerate(torus.harmonics.tolist())}
+    wanted = map(tuple, harmonics.tolist())
+    found = [torus.cosines[rows[nu]] if nu in rows else missing for nu in wanted]
+    return np.array(found)

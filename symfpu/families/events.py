@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import mpmath
 import numpy as np
+from numpy.typing import NDArray
 
 from symfpu.breathers.floquet import floquet
 from symfpu.families.continuation import (
@@ -23,26 +24,23 @@ from symfpu.families.continuation import (
     member,
 )
 from symfpu.refinement.conditions import Crossing, ratio_conditions
-from symfpu.refinement.invariance import DIGITS, long
+from symfpu.refinement.invariance import DIGITS, Floats, Ints, long
 from symfpu.refinement.tori import NoTorus, RefinedTorus, refined_torus, shifts_of
 
-LEAST_COEFFICIENT = (
-    1e-11  # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
-)
-LOCATION_TOLERANCE, LOCATIONS = (
-    1e-7,
-    8,
-)  # relative change of the place of an event that is enough, and the most members spent on it
-MOST_CROSSINGS = (
-    8  # crossings of resonances of one step, by their coefficients, that Newton's method locates
-)
+# of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
+LEAST_COEFFICIENT = 1e-11
+LOCATION_TOLERANCE = 1e-7  # relative change of the place of an event that is enough
+LOCATIONS = 8  # the most members spent on it
+# crossings of resonances of one step, by their coefficients, that Newton's method locates
+MOST_CROSSINGS = 8
 
 
 def quantities(torus: RefinedTorus) -> dict[str, float]:
     """What may turn along a family: energy, shifts of the frequencies, amplitudes."""
-    shifts = shifts_of(torus)
-    named = {f"omega_{q}": float(x) for q, x in zip(torus.seeds, shifts, strict=True)}
-    return {"H": float(torus.energy())} | named | {f"A_{q}": a for q, a in torus.amplitudes.items()}
+    by_seed = zip(torus.seeds, shifts_of(torus), strict=True)
+    shifts = {f"omega_{q}": float(shift) for q, shift in by_seed}
+    amplitudes = {f"A_{q}": a for q, a in torus.amplitudes.items()}
+    return {"H": float(torus.energy())} | shifts | amplitudes
 
 
 class _Sign(NamedTuple):
@@ -58,40 +56,49 @@ class _Sign(NamedTuple):
 
 
 def _signs(first: RefinedTorus, second: RefinedTorus) -> list[_Sign]:
-    """The divisors of significant coefficients that change their sign between two tori, as they come."""
-    rows = {tuple(nu): i for i, nu in enumerate(first.harmonics.tolist())}
-    pairs = [
-        (rows[nu], j) for j, nu in enumerate(map(tuple, second.harmonics.tolist())) if nu in rows
-    ]
-    i, j = (np.array(x) for x in zip(*pairs, strict=True))
-    linear = first.chain.frequencies()
-    known = []
-    for torus, at in ((first, i), (second, j)):
-        rates = np.abs(torus.harmonics[at] @ np.array([float(w) for w in torus.frequencies]))
-        known.append(rates[:, None] - linear)
-    size = (
-        np.maximum(np.abs(first.cosines[i]), np.abs(second.cosines[j]))
-        / np.abs(second.cosines).max()
-    )
-    seeds = np.zeros(size.shape, dtype=bool)
-    for k, q in enumerate(first.seeds):
-        seeds[:, q - 1] = (np.abs(first.harmonics[i]).sum(axis=1) == 1) & (
-            first.harmonics[i][:, k] == 1
-        )
+    """The divisors of significant coefficients that change their sign between two tori.
+
+    They are in the order in which they do so.
+    """
+    i, j = _common_rows(first, second)
+    harmonics = first.harmonics[i]
+    earlier, later = _divisors(first, i), _divisors(second, j)
+    size = np.maximum(np.abs(first.cosines[i]), np.abs(second.cosines[j]))
+    significant = size / np.abs(second.cosines).max() > LEAST_COEFFICIENT
+    changed = (earlier * later < 0) & significant & ~_own_harmonics(first, harmonics)
     found = []
-    for h, q in zip(
-        *np.nonzero((known[0] * known[1] < 0) & (size > LEAST_COEFFICIENT) & ~seeds), strict=True
-    ):
-        part = float(known[0][h, q] / (known[0][h, q] - known[1][h, q]))
-        found.append(
-            _Sign(
-                int(q) + 1,
-                tuple(first.harmonics[i[h]].tolist()),
-                part,
-                float(second.cosines[j[h], q]),
-            )
-        )
+    for h, place in zip(*np.nonzero(changed), strict=True):
+        before, after = earlier[h, place], later[h, place]
+        part = float(before / (before - after))
+        harmonic = tuple(harmonics[h].tolist())
+        coefficient = float(second.cosines[j[h], place])
+        found.append(_Sign(int(place) + 1, harmonic, part, coefficient))
     return sorted(found, key=lambda sign: sign.part)
+
+
+def _common_rows(first: RefinedTorus, second: RefinedTorus) -> tuple[Ints, Ints]:
+    """Rows of the harmonics that two tori share, in the one and in the other."""
+    rows = {tuple(nu): i for i, nu in enumerate(first.harmonics.tolist())}
+    of_second = enumerate(map(tuple, second.harmonics.tolist()))
+    pairs = [(rows[nu], j) for j, nu in of_second if nu in rows]
+    i, j = zip(*pairs, strict=True)
+    return np.array(i), np.array(j)
+
+
+def _divisors(torus: RefinedTorus, rows: Ints) -> Floats:
+    """|nu.omega| - Omega_q of these rows; shape (rows, N-1)."""
+    omega = np.array([float(w) for w in torus.frequencies])
+    rates = np.abs(torus.harmonics[rows] @ omega)
+    return np.asarray(rates[:, None] - torus.chain.frequencies())
+
+
+def _own_harmonics(torus: RefinedTorus, harmonics: Ints) -> NDArray[np.bool_]:
+    """Where a seed has its own harmonic; shape (rows, N-1)."""
+    single = np.abs(harmonics).sum(axis=1) == 1
+    own = np.zeros((len(harmonics), torus.chain.N - 1), dtype=bool)
+    for k, q in enumerate(torus.seeds):
+        own[:, q - 1] = single & (harmonics[:, k] == 1)
+    return own
 
 
 def resonances(way: Way, after: int) -> Iterator[Event]:
@@ -102,28 +109,27 @@ def resonances(way: Way, after: int) -> Iterator[Event]:
     """
     first, second = way.tori[-2:]
     signs = _signs(first, second)
-    strongest = sorted(signs, key=lambda sign: -abs(sign.coefficient))[
-        : 0 if first.warnings or second.warnings else MOST_CROSSINGS
-    ]
+    located = 0 if first.warnings or second.warnings else MOST_CROSSINGS
+    strongest = sorted(signs, key=lambda sign: -abs(sign.coefficient))[:located]
     for sign in signs:
         torus = _resonant(way, sign) if sign in strongest else None
         if torus is None:
-            energy, coefficient = (
-                float(first.energy()) + sign.part * float(second.energy() - first.energy()),
-                sign.coefficient,
-            )
+            rise = float(second.energy() - first.energy())
+            energy = float(first.energy()) + sign.part * rise
+            coefficient = sign.coefficient
         else:
             row = torus.harmonics.tolist().index(list(sign.harmonic))
-            energy, coefficient = float(torus.energy()), float(torus.cosines[row, sign.mode - 1])
+            energy = float(torus.energy())
+            coefficient = float(torus.cosines[row, sign.mode - 1])
         yield Event(
-            "resonance",
-            "divisor",
-            after,
-            energy,
-            coefficient,
-            sign.mode,
-            sign.harmonic,
-            torus is None,
+            kind="resonance",
+            what="divisor",
+            after=after,
+            energy=energy,
+            value=coefficient,
+            mode=sign.mode,
+            harmonic=sign.harmonic,
+            interpolated=torus is None,
         )
 
 
@@ -133,40 +139,34 @@ def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
     None where Newton's method does not lead to it.
     """
     first, second = way.tori[-2:]
-    chain = first.chain
-    rate = sum(
-        n * (a + b)
-        for n, a, b in zip(sign.harmonic, first.frequencies, second.frequencies, strict=True)
-    )
+    chain, harmonic = first.chain, sign.harmonic
+    rates = zip(harmonic, first.frequencies, second.frequencies, strict=True)
+    twice = sum(n * (a + b) for n, a, b in rates)  # nu.omega in the middle
     with mpmath.workdps(2 * DIGITS):
-        linear = sum(
-            n * chain.linear_frequency(q) for n, q in zip(sign.harmonic, first.seeds, strict=True)
-        )
-        wanted = chain.linear_frequency(sign.mode)
-        crossing = Crossing(
-            sign.harmonic, long((wanted if rate > 0 else -wanted) - linear), float(wanted)
-        )
-    conditions = [crossing, *ratio_conditions(tuple(way.ratio), way.ratio, energies=way.energies)]
+        by_seed = zip(harmonic, first.seeds, strict=True)
+        linear = sum(n * chain.linear_frequency(q) for n, q in by_seed)
+        Omega = chain.linear_frequency(sign.mode)
+        wanted = Omega if twice > 0 else -Omega
+        crossing = Crossing(harmonic, long(wanted - linear), float(Omega))
+    ratio = ratio_conditions(tuple(way.ratio), way.ratio, energies=way.energies)
+    guess = extrapolated(first, second, sign.part - 1)
     try:
         found = refined_torus(
-            extrapolated(first, second, sign.part - 1),
-            conditions,
-            tolerance=way.tolerance,
-            progress=way.progress,
+            guess, [crossing, *ratio], tolerance=way.tolerance, progress=way.progress
         )
     except NoTorus:
         return None
     along, astray = way.local(first, second).place(found)
-    known = list(sign.harmonic) in found.harmonics.tolist()
-    return (
-        None
-        if found.warnings or astray > DISTANCE_LIMIT or not known or not 0 <= along <= 1
-        else found
-    )
+    between = astray <= DISTANCE_LIMIT and 0 <= along <= 1
+    known = list(harmonic) in found.harmonics.tolist()
+    return found if between and known and not found.warnings else None
 
 
 def folds(way: Way, after: int) -> Iterator[Event]:
-    """The quantities that turn about the middle of the last three tori, by parabolas through nearer ones."""
+    """The quantities that turn about the middle of the last three tori.
+
+    They are found by parabolas through nearer ones.
+    """
     three = way.tori[-3:]
     if len(three) < 3:
         return
@@ -182,8 +182,9 @@ def _fold(way: Way, name: str, after: int) -> Event:
     """The fold of a quantity near the middle of the last three tori."""
     torus, place = _turn(way, lambda t: quantities(t)[name])
     value = quantities(torus)[name]
-    if name.startswith("omega"):
-        value = float(torus.frequencies[torus.seeds.index(int(name.split("_")[1]))])
+    if name.startswith("omega_"):
+        seed = int(name.removeprefix("omega_"))
+        value = float(torus.frequencies[torus.seeds.index(seed)])
     return Event("fold", name, after + (place > 0), float(torus.energy()), value)
 
 
@@ -192,15 +193,15 @@ def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTo
 
     Newton tori between these, at the vertex of the parabola through the best three of all.
     """
-    first, middle, last = way.tori[-3:]
+    three = way.tori[-3:]
+    first, middle, _ = three
     local = way.local(first, middle)
     scales = local.scales()
-    x = [local.variables(torus, scales).astype(float) for torus in (first, middle, last)]
-    direction = (x[1] - x[0]) / np.linalg.norm(x[1] - x[0])
-    known = {
-        float((y - x[1]) @ direction): torus
-        for y, torus in zip(x, (first, middle, last), strict=True)
-    }
+    x = [local.variables(torus, scales).astype(float) for torus in three]
+    secant = x[1] - x[0]
+    direction = secant / np.linalg.norm(secant)
+    places = [float((y - x[1]) @ direction) for y in x]
+    known = dict(zip(places, three, strict=True))
     torus, place = middle, 0.0
     for _ in range(LOCATIONS):
         near = sorted(known, key=lambda s: abs(s - place))[:3]
@@ -216,7 +217,9 @@ def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTo
 
 
 def crossing(way: Way, goal: Level) -> tuple[int, RefinedTorus] | None:
-    """The torus of the goal where the energy passes it and turns between the last three tori, all below.
+    """The torus of the goal where the energy turns between the last three tori.
+
+    All of them are below the goal, which the energy passes.
 
     With the number of these three that come before it. None where the energy does not turn, or
     below the goal. Raises NoTorus.
@@ -235,26 +238,28 @@ def crossing(way: Way, goal: Level) -> tuple[int, RefinedTorus] | None:
 
 
 def _vertex(s: Sequence[float], y: Sequence[float]) -> float:
-    second, first, _ = np.polyfit(np.array(s) - s[0], np.array(y) - y[0], 2)
-    return float(s[0] - first / (2 * second)) if second else float(s[0])
+    x, z = np.array(s) - s[0], np.array(y) - y[0]
+    second, first, _ = np.polyfit(x, z, 2)
+    if not second:
+        return float(s[0])
+    return float(s[0] - first / (2 * second))
 
 
 def stability_change(way: Way, first: Member, second: Member, after: int) -> Event | None:
-    """The place between two breathers where one becomes unstable or stable, halved down from the step."""
-    if (
-        first.multipliers is None
-        or second.multipliers is None
-        or first.multipliers.stable == second.multipliers.stable
-    ):
+    """The place between two breathers where one becomes unstable or stable.
+
+    The step is halved down to it.
+    """
+    if first.multipliers is None or second.multipliers is None:
         return None
-    before, last = way.tori[-2], way.tori[-1]
+    stable_before = first.multipliers.stable
+    if stable_before == second.multipliers.stable:
+        return None
+    before, last = way.tori[-2:]
     local = way.local(last, before)
     scales = local.scales()
-    length = float(
-        np.linalg.norm(
-            (local.variables(last, scales) - local.variables(before, scales)).astype(float)
-        )
-    )
+    difference = local.variables(last, scales) - local.variables(before, scales)
+    length = float(np.linalg.norm(difference.astype(float)))
     low, high, energy = 0.0, -length, first.energy
     for _ in range(LOCATIONS):
         middle = (low + high) / 2
@@ -264,22 +269,18 @@ def stability_change(way: Way, first: Member, second: Member, after: int) -> Eve
             break
         stable = floquet(torus).stable
         energy = float(torus.energy())
-        low, high = (middle, high) if stable == first.multipliers.stable else (low, middle)
-    unstable = second.multipliers if first.multipliers.stable else first.multipliers
-    change = "begins" if first.multipliers.stable else "ends"
-    return Event(
-        "stability",
-        f"instability ({', '.join(unstable.instabilities)}) {change}",
-        after,
-        energy,
-        unstable.largest,
-    )
+        low, high = (middle, high) if stable == stable_before else (low, middle)
+    unstable = second.multipliers if stable_before else first.multipliers
+    change = "begins" if stable_before else "ends"
+    what = f"instability ({', '.join(unstable.instabilities)}) {change}"
+    return Event("stability", what, after, energy, unstable.largest)
 
 
 def events_between(way: Way, first: Member, second: Member, after: int) -> list[Event]:
-    """What happens between two neighbours, the last of the way, and the folds at the first of them."""
+    """What happens between the last two members of the way, and the folds at the first of them."""
     change = stability_change(way, first, second, after)
-    return [*folds(way, after - 1), *resonances(way, after), *([change] if change else [])]
+    changes = [change] if change else []
+    return [*folds(way, after - 1), *resonances(way, after), *changes]
 
 
 class Found(NamedTuple):
@@ -300,7 +301,8 @@ def continued(
 
     Ends with NoTorus where the family cannot be followed.
 
-    members : so far, the last of the way; it grows with what is found. The member at the goal has its energy.
+    members : so far, the last of the way; it grows with what is found. The member at the goal has
+        its energy.
     """
     while True:
         way.advance(goal)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -43,17 +44,17 @@ MEMBERS = 200
 APPENDIX_A = "appendix-a"
 METHODS = ("arclength", APPENDIX_A)
 ENDED_AT_GOAL = "reached the energy asked for"
-LOWERING, LOWEST_SHARE = (
-    0.25,
-    1e-12,
-)  # factor of a first energy that no torus of the series has, and the part of it that is given up
+LOWERING = 0.25  # factor of a first energy that no torus of the series has
+LOWEST_SHARE = 1e-12  # the part of it that is given up
 APPENDIX_MEMBERS = (
     20  # about how many steps lead with Appendix A from the beginning to the energy asked for
 )
 
 
 class NotInFamily(SymfpuError):
-    """No member of a family has this energy or frequency: raised by `family`, `member_at_energy` and others.
+    """No member of a family has this energy or frequency.
+
+    Raised by `family`, `member_at_energy` and others.
 
     quantity : its name; value : asked for; reached : the range of the members, (least, largest);
         dimensionless.
@@ -63,23 +64,25 @@ class NotInFamily(SymfpuError):
     def __init__(
         self, quantity: str, value: float, reached: tuple[float, float], ending: str
     ) -> None:
-        self.quantity, self.value, self.reached, self.ending = quantity, value, reached, ending
+        self.quantity, self.value = quantity, value
+        self.reached, self.ending = reached, ending
+        least, largest = reached
         super().__init__(
             f"no member has {quantity} = {value:.10g}: "
-            f"the family goes from {reached[0]:.10g} to {reached[1]:.10g} and {ending}; "
+            f"the family goes from {least:.10g} to {largest:.10g} and {ending}; "
             f"take a value in this range, or follow the family further"
         )
 
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Tori of growing energy with one ratio of amplitudes or mode energies, and what happens on the way.
+    """Tori of growing energy with one ratio of amplitudes or mode energies.
 
-    Made by `family`; dimensionless. Ours, or Appendix A.
+    Events tell what happens on the way. Made by `family`; dimensionless. Ours, or Appendix A.
 
     chain, seeds : the model and the s modes. members : in order of the way.
-    events : folds, resonances and changes of stability, between members. ending : why it was not followed
-        further.
+    events : folds, resonances and changes of stability, between members. ending : why it was not
+        followed further.
     harmonic : whether its goal was a harmonic energy.
     energy_ratio : of the averaged mode energies by seed, where it is these that keep their ratio.
 
@@ -98,19 +101,17 @@ class Family:
     energy_ratio: Mapping[int, float] | None = field(repr=False, default=None)
 
     def __repr__(self) -> str:
-        energies = [m.energy for m in self.members]
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        seeds = ",".join(map(str, self.seeds))
         doubtful = sum(m.verdict != "torus" for m in self.members)
         doubts = f", {doubtful} of them doubtful" if doubtful else ""
-        kinds = {
-            kind: sum(e.kind == kind for e in self.events)
-            for kind in ("fold", "resonance", "stability")
-        }
-        events = ", ".join(_counted(n, kind) for kind, n in kinds.items() if n)
-        return (
-            f"Family({repr(self.chain)[6:-1]}, seeds={','.join(map(str, self.seeds))}, "
-            f"{len(self.members)} members{doubts}, "
-            f"H = {min(energies):.6g} .. {max(energies):.6g}, {events or 'no events'}; it {self.ending})"
-        )
+        members = f"{len(self.members)} members{doubts}"
+        energies = [m.energy for m in self.members]
+        H = f"H = {min(energies):.6g} .. {max(energies):.6g}"
+        counts = Counter(event.kind for event in self.events)
+        kinds = [kind for kind in ("fold", "resonance", "stability") if counts[kind]]
+        events = ", ".join(_counted(counts[kind], kind) for kind in kinds) or "no events"
+        return f"Family({chain}, seeds={seeds}, {members}, {H}, {events}; it {self.ending})"
 
 
 def _counted(n: int, kind: str) -> str:
@@ -122,12 +123,13 @@ def _counted(n: int, kind: str) -> str:
 def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> RefinedTorus:
     """The torus of a family that has this energy, by Newton's method from the nearest member.
 
-    found : the family. energy : an exact number, dimensionless; H, or with `harmonic` sum E_q, both at the
-        angles zero.
+    found : the family. energy : an exact number, dimensionless; H, or with `harmonic` sum E_q,
+        both at the angles zero.
 
-    It keeps the ratio that the family keeps. A family by Appendix A keeps none: there the amplitudes have the
-    ratio of the nearest member. Eq. eqmo; ours.
-    Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine_at_energy` does.
+    It keeps the ratio that the family keeps. A family by Appendix A keeps none: there the
+    amplitudes have the ratio of the nearest member. Eq. eqmo; ours.
+    Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine_at_energy`
+    does.
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> round(float(member_at_energy(tori, "0.0007", harmonic=False).energy()), 12)
@@ -151,13 +153,15 @@ def member_at_frequency(found: Family, seed: int, frequency: Number) -> tuple[Re
 
     One for every pair of neighbouring members with the frequency between them.
 
-    found : the family. seed : one of its seeds. frequency : omega_seed, an exact number, dimensionless.
+    found : the family. seed : one of its seeds. frequency : omega_seed, an exact number,
+        dimensionless.
 
     They keep the ratio that the family keeps. Eq. eqmo; ours.
     Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine` does.
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
-    >>> [round(A, 9) for torus in member_at_frequency(tori, 1, "0.3902") for A in torus.amplitudes.values()]
+    >>> [torus] = member_at_frequency(tori, 1, "0.3902")
+    >>> [round(A, 9) for A in torus.amplitudes.values()]
     [0.099777085]
     """
     _require_family(found)
@@ -183,7 +187,7 @@ def _require_family(found: object) -> None:
 
 
 def _between(found: Family, k: int, place: int, omega: Fraction, part: float) -> RefinedTorus:
-    """The torus with this frequency, about as far on the way from member k to the next as `part` says."""
+    """The torus with this frequency, between member k and the next, near the given part."""
     seed = found.seeds[place]
     with mpmath.workdps(2 * DIGITS):
         exact_omega = mpmath.mpf(omega.numerator) / omega.denominator
@@ -217,23 +221,24 @@ def family(
 ) -> Family:
     """The family of tori of these seeds from small energy to `to_energy`.
 
-    chain, seeds : the model and distinct modes; energies, amplitudes and frequencies are dimensionless.
+    chain, seeds : the model and distinct modes; energies, amplitudes and frequencies are
+        dimensionless.
     to_energy : the goal, an exact number.
     harmonic : whether energies are sum E_q at the angles zero instead of H.
-    amplitude_ratio, energy_ratio : by seed, at most one; energy_ratio is of mode energies averaged over the
-        torus. Default equal mode energies.
-    from_energy : of the first member; default a thousandth of the goal, a tenth with 'appendix-a', or where
-        the family in the folder began; where the series there lead to no torus it is reached by a family from
-        below.
+    amplitude_ratio, energy_ratio : by seed, at most one; energy_ratio is of mode energies
+        averaged over the torus. Default equal mode energies.
+    from_energy : of the first member; default a thousandth of the goal, a tenth with
+        'appendix-a', or where the family in the folder began; where the series there lead to no
+        torus it is reached by a family from below.
     members : the most.
-    multipliers : of breathers, with changes of stability. tolerance : as for `refine`. Both only with
-        'arclength'.
-    method : 'arclength', Newton's method and pseudo-arclength continuation; or 'appendix-a', the algorithm of
-        the paper's Appendix A, corrected, whose members are truncated series of `order` and whose mode
-        energies grow alike (no ratio is kept).
+    multipliers : of breathers, with changes of stability. tolerance : as for `refine`. Both only
+        with 'arclength'.
+    method : 'arclength', Newton's method and pseudo-arclength continuation; or 'appendix-a', the
+        algorithm of the paper's Appendix A, corrected, whose members are truncated series of
+        `order` and whose mode energies grow alike (no ratio is kept).
     order : of those series.
-    folder : every member is kept there as a file at once; an interrupted family goes on from it, with other
-        goals too.
+    folder : every member is kept there as a file at once; an interrupted family goes on from it,
+        with other goals too.
     progress : called as (label, fraction done).
 
     The last member of a family that reaches its goal has this energy, to 1e-12. Of a folder with
@@ -241,9 +246,9 @@ def family(
     folder that version 0.1 wrote stay as they are: the first one has about from_energy. A family
     that cannot be followed to its goal is returned as far as it went; `ending` says where and why
     it ended. One that comes back to the linear limit ends there.
-    Raises InputError for arguments out of range and for a folder that holds another family; where there is no
-    first member, NoTorus, or NotInFamily if the family turns or ends below `from_energy`; RunInterrupted, a
-    KeyboardInterrupt, where there is a folder.
+    Raises InputError for arguments out of range and for a folder that holds another family; where
+    there is no first member, NoTorus, or NotInFamily if the family turns or ends below
+    `from_energy`; RunInterrupted, a KeyboardInterrupt, where there is a folder.
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> [round(member.energy, 6) for member in tori.members]
@@ -347,11 +352,9 @@ def _ending(plan: Plan, kept: Kept) -> str:
         return ENDED_AT_GOAL
     if returned(kept.members, tolerance=plan.tolerance):
         return f"{_turned(kept)}returned to the linear limit"
-    return (
-        f"was left after {len(kept.members)} members, the most asked for"
-        if len(kept.members) >= plan.most
-        else ""
-    )
+    if len(kept.members) < plan.most:
+        return ""
+    return f"was left after {len(kept.members)} members, the most asked for"
 
 
 def _turned(kept: Kept) -> str:
@@ -371,13 +374,16 @@ def _ended(kept: Kept, end: NoTorus, step: float) -> str:
 
 
 def _up_to_goal(plan: Plan, kept: Kept, at_goal: Callable[[int], Member]) -> Family:
-    """The part up to the goal of a family that was followed beyond it. Raises InputError if it begins beyond.
+    """The part up to the goal of a family that was followed beyond it.
+
+    Raises InputError if it begins beyond.
 
     at_goal : gives the member at the goal between a member, by its place, and the one before.
     """
     energies = [plan.level.of_member(m) for m in kept.members]
     beyond = next(k for k, energy in enumerate(energies) if plan.level.passed(energy))
-    members, events = kept.members[: beyond + 1], [e for e in kept.events if e.after < beyond]
+    members = kept.members[: beyond + 1]
+    events = [e for e in kept.events if e.after < beyond]
     if not plan.level.met(energies[beyond]):
         if beyond == 0:
             allowed = f"more than {energies[0]:.10g}, where the family in the folder begins"
@@ -393,9 +399,11 @@ def _refined(members: Sequence[Member]) -> list[RefinedTorus]:
 
 
 def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
-    """The first two members: from short series, or, where these fail, from a family that begins lower.
+    """The first two members: from short series, or from a family that begins lower.
 
-    lower : whether such a family is looked for. Returns why there is no second member; empty if there is.
+    lower : whether such a family is looked for, where short series fail.
+
+    Returns why there is no second member; empty if there is.
     """
     if len(kept.members) >= min(2, plan.most):
         return ""
@@ -414,29 +422,30 @@ def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
 
 
 def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedTorus]:
-    """The torus of the first energy, or the one member there is, and one a little above, up to the goal."""
+    """The torus of the first energy, or the one member there is, and one a little above.
+
+    Both are below the goal, or at it.
+    """
     ratio = ratio_conditions(plan.seeds, plan.ratio, energies=plan.energies)
     begin = Level(plan.first, plan.harmonic)
     known = _refined(kept.members)
-    first = (
-        known[0]
-        if known
-        else first_at(
-            begin, plan.chain, plan.start, ratio, tolerance=plan.tolerance, progress=progress
+
+    def near_rest(level: Level, amplitudes: Mapping[int, float]) -> RefinedTorus:
+        tolerance = plan.tolerance
+        return first_at(
+            level, plan.chain, amplitudes, ratio, tolerance=tolerance, progress=progress
         )
-    )
+
+    first = known[0] if known else near_rest(begin, plan.start)
     energy = begin.of(first)
     above = Level(min(SECOND_RATIO**2 * energy, plan.goal), plan.harmonic)
     scale = math.sqrt(above.energy / energy)
     raised = {q: scale * a for q, a in first.amplitudes.items()}
-    return [
-        first,
-        first_at(above, plan.chain, raised, ratio, tolerance=plan.tolerance, progress=progress),
-    ]
+    return [first, near_rest(above, raised)]
 
 
 def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[RefinedTorus], str]:
-    """The torus of the first energy, at the end of a family from a small part of it, and the next one.
+    """The torus of the first energy, and the next one, by a family from a small part of it.
 
     With why there is no next one. Raises NotInFamily where that family does not reach the energy.
     """
@@ -462,13 +471,15 @@ def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[RefinedTor
 def _by_appendix_a(plan: Plan, order: int, kept: Kept, tell: Progress) -> Family:
     """The same by the algorithm of Appendix A, gone on with from the members there are."""
     increment = (plan.goal - plan.first) / plan.chain.N / APPENDIX_MEMBERS
-    known = [
-        AppendixAMember(m.torus, increment) for m in kept.members if isinstance(m.torus, QTorus)
-    ]
+    tori = [m.torus for m in kept.members if isinstance(m.torus, QTorus)]
+    known = [AppendixAMember(torus, increment) for torus in tori]
+
+    def at_goal(k: int) -> Member:
+        between = member_at(plan.level, known[k - 1], known[k])
+        return series_member(between.torus)
+
     if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
-        return _up_to_goal(
-            plan, kept, lambda k: series_member(member_at(plan.level, known[k - 1], known[k]).torus)
-        )
+        return _up_to_goal(plan, kept, at_goal)
     why = f"was left after {len(kept.members)} members, the most asked for"
     if len(kept.members) >= plan.most:
         return _family(plan, kept.members, (), why)

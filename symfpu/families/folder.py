@@ -1,4 +1,7 @@
-"""The checked arguments of a family; its members and events as they are kept, in memory and in a folder."""
+"""The checked arguments of a family, and its members and events as they are kept.
+
+They are kept in memory, and in a folder if there is one.
+"""
 
 from __future__ import annotations
 
@@ -21,10 +24,8 @@ from symfpu.tori.torus import QTorus
 
 Json = dict[str, Any]
 BEGINNING = "1/1000"  # of the energy asked for, where a family begins by default
-SMALLEST_ENERGY, LARGEST_ENERGY = (
-    Fraction(1, 10**300),
-    10**300,
-)  # energies whose doubles are neither 0 nor infinite
+# energies whose doubles are neither 0 nor infinite
+SMALLEST, LARGEST = Fraction(1, 10**300), 10**300
 RECORD = "family.json"
 APPENDIX_BEGINNING = "1/10"  # the same with Appendix A
 
@@ -68,22 +69,23 @@ class Plan:
         energy, first = self.level.of_member(members[-1]), self.first
         if self.level.passed(energy):
             return 1.0
-        return (
-            max(math.log(energy / first) / math.log(self.goal / first), 0.0)
-            if 0 < first < self.goal and energy > 0
-            else 0.0
-        )
+        if not 0 < first < self.goal or not energy > 0:
+            return 0.0
+        return max(math.log(energy / first) / math.log(self.goal / first), 0.0)
 
     def described(self) -> Json:
         """What two runs of one family have in common."""
+        chain = self.chain
+        ratio = {str(q): repr(x) for q, x in self.ratio.items()}
+        start = {str(q): repr(a) for q, a in self.start.items()}
         return {
-            "N": self.chain.N,
-            "alpha": decimal(self.chain.alpha),
-            "beta": decimal(self.chain.beta),
+            "N": chain.N,
+            "alpha": decimal(chain.alpha),
+            "beta": decimal(chain.beta),
             "seeds": list(self.seeds),
-            "ratio": {str(q): repr(x) for q, x in self.ratio.items()},
+            "ratio": ratio,
             "ratio_of": "mode energies" if self.energies else "amplitudes",
-            "start": {str(q): repr(a) for q, a in self.start.items()},
+            "start": start,
             "order": self.order,
             "multipliers": self.multipliers,
             "tolerance": repr(self.tolerance),
@@ -105,57 +107,24 @@ def checked_family(
 ) -> Plan:
     """The arguments of `family`, checked."""
     chosen = tuple(sorted(seed_modes(seeds, chain.N)))
-    goal = exact(to_energy, "to_energy")
-    first = (
-        goal * exact(BEGINNING if order is None else APPENDIX_BEGINNING, "")
-        if from_energy is None
-        else exact(from_energy, "from_energy")
-    )
-    if not 0 < goal < LARGEST_ENERGY or not SMALLEST_ENERGY < first < goal:
-        argument, value = (
-            ("from_energy", from_energy)
-            if from_energy is not None and 0 < goal < LARGEST_ENERGY
-            else ("to_energy", to_energy)
-        )
-        advice = (
-            "choose energies in this order; a family followed upwards has the tori of the way down"
-        )
-        raise InputError(
-            argument, value, "0 < from_energy < to_energy, in the range of doubles", advice
-        )
+    first, goal = _checked_energies(from_energy, to_energy, order)
     if amplitude_ratio is not None and energy_ratio is not None:
-        raise InputError(
-            "energy_ratio",
-            dict(energy_ratio),
-            "only one of amplitude_ratio and energy_ratio",
-            "leave one out",
-        )
+        allowed = "only one of amplitude_ratio and energy_ratio"
+        raise InputError("energy_ratio", dict(energy_ratio), allowed, "leave one out")
     if multipliers and len(chosen) > 1:
-        raise InputError(
-            "multipliers",
-            multipliers,
-            "False for more than one seed",
-            "only periodic orbits have multipliers",
-        )
-    name = "energy_ratio" if amplitude_ratio is None else "amplitude_ratio"
-    given = next(
-        (x for x in (amplitude_ratio, energy_ratio) if x is not None), dict.fromkeys(chosen, 1)
-    )
-    if (
-        not hasattr(given, "values")
-        or set(given) != set(chosen)
-        or not all(exact(x, name) > 0 for x in given.values())
-    ):
-        raise InputError(
-            name, given, f"a positive number for each of the seeds {chosen}", "complete it"
-        )
-    ratio, linear = {q: float(exact(given[q], name)) for q in chosen}, chain.frequencies()
-    weights = {
-        q: x if amplitude_ratio is not None else math.sqrt(x) / float(linear[q - 1])
-        for q, x in ratio.items()
-    }
-    energy = sum((float(linear[q - 1]) * w) ** 2 / 2 for q, w in weights.items())
-    start = {q: w * math.sqrt(float(first) / energy) for q, w in weights.items()}
+        advice = "only periodic orbits have multipliers"
+        raise InputError("multipliers", multipliers, "False for more than one seed", advice)
+    if amplitude_ratio is not None:
+        ratio = _checked_ratio("amplitude_ratio", amplitude_ratio, chosen)
+    else:
+        ratio = _checked_ratio("energy_ratio", energy_ratio, chosen)
+    linear = {q: float(chain.frequencies()[q - 1]) for q in chosen}
+    weights = ratio
+    if amplitude_ratio is None:
+        weights = {q: math.sqrt(x) / linear[q] for q, x in ratio.items()}
+    energy = sum((linear[q] * w) ** 2 / 2 for q, w in weights.items())
+    scale = math.sqrt(float(first) / energy)
+    start = {q: w * scale for q, w in weights.items()}
     return Plan(
         chain=chain,
         seeds=chosen,
@@ -172,12 +141,46 @@ def checked_family(
     )
 
 
+def _checked_energies(
+    from_energy: Number | None, to_energy: Number, order: int | None
+) -> tuple[Fraction, Fraction]:
+    """The first energy and the last, exact; order : None unless by Appendix A."""
+    goal = exact(to_energy, "to_energy")
+    if from_energy is None:
+        first = goal * exact(BEGINNING if order is None else APPENDIX_BEGINNING, "")
+    else:
+        first = exact(from_energy, "from_energy")
+    if 0 < goal < LARGEST and SMALLEST < first < goal:
+        return first, goal
+    argument, value = "to_energy", to_energy
+    if from_energy is not None and 0 < goal < LARGEST:
+        argument, value = "from_energy", from_energy
+    allowed = "0 < from_energy < to_energy, in the range of doubles"
+    advice = "choose energies in this order; a family followed upwards has the tori of the way down"
+    raise InputError(argument, value, allowed, advice)
+
+
+def _checked_ratio(
+    name: str, given: Mapping[int, Number] | None, seeds: tuple[int, ...]
+) -> dict[int, float]:
+    """A positive number for every seed; all are one where none is given."""
+    ratio = dict.fromkeys(seeds, 1) if given is None else given
+    complete = hasattr(ratio, "values") and set(ratio) == set(seeds)
+    if not complete or not all(exact(x, name) > 0 for x in ratio.values()):
+        allowed = f"a positive number for each of the seeds {seeds}"
+        raise InputError(name, ratio, allowed, "complete it")
+    return {q: float(exact(ratio[q], name)) for q in seeds}
+
+
 def _seeds(described: Json) -> tuple[int, ...]:
     return tuple(int(q) for q in described["seeds"])
 
 
 class Kept:
-    """Members and events so far, in memory and, if there is a folder, on disk after every member."""
+    """Members and events so far, in memory and after every member on disk.
+
+    They are on disk only if there is a folder.
+    """
 
     def __init__(self, plan: Plan, folder: Path | None) -> None:
         self.plan, self.folder = plan, folder

@@ -56,14 +56,16 @@ def spectrum_floor(solution: QuasiPeriodic) -> NDArray[np.float64]:
 
     solution : a torus or periodic orbit of any kind.
 
-    Dimensionless, as `average_spectrum()`: the average energy of the errors of all coefficients of a mode.
-    Above it sqrt(E_q) is within sqrt(floor_q) of the truth, so that at 100 times the floor E_q is off by a
-    fifth at most. For tori and orbits by Newton's method the truth is the solution with these frequencies;
-    for a series its exact sum at its orders: what truncation leaves out is not rounding (see `residual`).
+    Dimensionless, as `average_spectrum()`: the average energy of the errors of all coefficients
+    of a mode. Above it sqrt(E_q) is within sqrt(floor_q) of the truth, so that at 100 times the
+    floor E_q is off by a fifth at most. For tori and orbits by Newton's method the truth is the
+    solution with these frequencies; for a series its exact sum at its orders: what truncation
+    leaves out is not rounding (see `residual`).
 
     An estimate of first order, above the true error wherever it was compared with many digits
-    (docs/precision.md). With digits it counts on those asked for, not on those carried beyond. Next to a
-    divisor that is zero it is as large as the inverse says, or infinite. Raises InputError. Ours.
+    (docs/precision.md). With digits it counts on those asked for, not on those carried beyond.
+    Next to a divisor that is zero it is as large as the inverse says, or infinite. Raises
+    InputError. Ours.
 
     >>> from symfpu import Chain, breather_at_energy
     >>> breather = breather_at_energy(Chain(N=32, alpha="0.33"), 1, "5e-5")
@@ -75,7 +77,7 @@ def spectrum_floor(solution: QuasiPeriodic) -> NDArray[np.float64]:
 
 
 def coefficient_errors(solution: QuasiPeriodic) -> NDArray[np.float64]:
-    """How far off the Fourier coefficients of a torus or breather are; shape (H, N-1), as its `cosines`.
+    """How far off the Fourier coefficients of a torus or breather are; shape (H, N-1).
 
     solution : a torus or periodic orbit of any kind. Dimensionless; what they count on is said in
         `spectrum_floor`. Raises InputError. Ours.
@@ -182,9 +184,7 @@ def _harmonics(torus: QuasiPeriodic) -> Ints:
 def _left_out(
     equation: InvarianceEquation, shifts: Floats, cosines: Floats, rounding: Floats
 ) -> tuple[Ints, Floats, Floats]:
-    """Harmonics next to those of the equation, their frequencies, and the coefficients by their
-    forces.
-    """
+    """Harmonics next to those of the equation, their frequencies, and coefficients by forces."""
     known = set(map(tuple, equation.harmonics.tolist()))
     around = np.unique(_canonical_signs(dilated(equation.harmonics, OVERSAMPLING / 2)), axis=0)
     harmonics = around[[nu not in known for nu in map(tuple, around.tolist())]]

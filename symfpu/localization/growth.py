@@ -30,8 +30,8 @@ LEAST_SAMPLES = 4  # of a window: two in each half
 class GroupGrowth:
     """Growth of the averaged energies of the modes of one D_k (section 4.1).
 
-    order : k. modes : of D_k. mean : of their exponents c_q, spread : largest |c_q - mean|; dimensionless,
-        nan if none.
+    order : k. modes : of D_k. mean : of their exponents c_q, spread : largest |c_q - mean|;
+        dimensionless, nan if none.
     saturation : first and last time of the group, in units of the chain; nan if none.
 
     >>> GroupGrowth(1, (2, 3), 2.02, 0.05, (110.0, 150.0))
@@ -64,13 +64,17 @@ class GroupGrowth:
 
 @dataclass(frozen=True, eq=False)
 class GrowthExponents:
-    """Exponents of Ebar_q(t) ~ t^(c_q), by mode (section 4.1). Made by `growth_exponents`; dimensionless.
+    """Exponents of Ebar_q(t) ~ t^(c_q), by mode (section 4.1); dimensionless.
+
+    Made by `growth_exponents`.
 
     modes, orders : q and the k of its D_k, integers, (M,). exponents : c_q, (M,).
-    errors : of the regression, residuals taken as independent, (M,). windows : from and to, times, (M, 2).
-    halves : exponents in the first and the second half (in log t) of the window, (M, 2); where they differ
-        the average is no power law.
-    saturation : when Ebar_q first reaches 0.9 of its last value, (M,); nan where it grows to the end.
+    errors : of the regression, residuals taken as independent, (M,). windows : from and to,
+        times, (M, 2).
+    halves : exponents in the first and the second half (in log t) of the window, (M, 2); where
+        they differ the average is no power law.
+    saturation : when Ebar_q first reaches 0.9 of its last value, (M,); nan where it grows to the
+        end.
 
     nan: no window of a factor 2 in time with 4 samples.
 
@@ -125,21 +129,25 @@ def growth_exponents(
 
     chain : the model; times are in its units, dimensionless.
     times, averages : (S,) and (S, N-1), of an Orbit with averages=True, log-spaced.
-    groups : D_0, D_1, ... as `excitation_sequence` gives them; the modes of D_1, D_2, ... are looked at.
-    window : from and to; default for each mode from pi / Omega of the slowest seed to the time at which
-        Ebar_q reaches a quarter of its last value. Regression of log Ebar_q on log t, all samples alike.
+    groups : D_0, D_1, ... as `excitation_sequence` gives them; the modes of D_1, D_2, ... are
+        looked at.
+    window : from and to; default for each mode from pi / Omega of the slowest seed to the time at
+        which Ebar_q reaches a quarter of its last value. Regression of log Ebar_q on log t, all
+        samples alike.
 
-    Perturbation theory: while t < 1/Omega_q a mode of D_k is pushed by forces that keep their sign, and
-    Ebar_q ~ t^(4k-2) (phases 0). From pi / Omega of the slowest seed on the sum harmonics outrun the others,
-    Q_q ~ t^k and Ebar_q ~ t^(2k), until t is about one over the detuning |Omega_q - nu.Omega|, of order N^3;
-    then the average saturates. So 2k needs a long chain: at N = 256 it is met to a percent, at N = 32 by D_1
-    alone. The paper's (3/2) k is what a line through t = 1 .. 100, over both stages, gives there for k = 1,
-    2, 3. Tails below 1e-26 of the whole want the scheme aba864_modes. Raises InputError.
+    Perturbation theory: while t < 1/Omega_q a mode of D_k is pushed by forces that keep their
+    sign, and Ebar_q ~ t^(4k-2) (phases 0). From pi / Omega of the slowest seed on the sum
+    harmonics outrun the others, Q_q ~ t^k and Ebar_q ~ t^(2k), until t is about one over the
+    detuning |Omega_q - nu.Omega|, of order N^3; then the average saturates. So 2k needs a long
+    chain: at N = 256 it is met to a percent, at N = 32 by D_1 alone. The paper's (3/2) k is what
+    a line through t = 1 .. 100, over both stages, gives there for k = 1, 2, 3. Tails below 1e-26
+    of the whole want the scheme aba864_modes. Raises InputError.
 
     >>> from symfpu.chain.chain import Chain
     >>> t = np.geomspace(1, 1e3, 61)
     >>> averages = np.stack([1 + 0 * t, 1e-9 * t**2, 1e-20 + 0 * t], axis=-1)
-    >>> growth_exponents(Chain(N=4, alpha=1), t, averages, [(1,), (2,)], window=(2, 100)).exponents.round(9)
+    >>> found = growth_exponents(Chain(N=4, alpha=1), t, averages, [(1,), (2,)], window=(2, 100))
+    >>> found.exponents.round(9)
     array([2.])
     """
     if averages is None:

@@ -38,8 +38,9 @@ class ProfileLine:
 
     Call it with kappa, a number or an array, for log10 e_kappa in its shape.
 
-    slope : in decades for a unit of kappa. intercept : log10 e_kappa at kappa = 0. power : 2 in Eq. eksa2, 0
-        in Eq. eksp2. kappa and e_kappa, a share of the whole energy, are dimensionless.
+    slope : in decades for a unit of kappa. intercept : log10 e_kappa at kappa = 0. power : 2 in
+        Eq. eksa2, 0 in Eq. eksp2. kappa and e_kappa, a share of the whole energy, are
+        dimensionless.
 
     >>> line = ProfileLine(-78.6, -1.2)
     >>> line, line([0.25, 0.5]).round(6)
@@ -68,7 +69,9 @@ def _signed(value: float) -> str:
 
 
 def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
-    """lambda of seeds 1 .. s: alpha^2 eps / (pi M)^4 or beta eps / (pi M)^2, below Eqs. eksa2 and eksp2.
+    """lambda of seeds 1 .. s: alpha^2 eps / (pi M)^4 or beta eps / (pi M)^2.
+
+    It stands below Eqs. eksa2 and eksp2.
 
     chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N; M = s/N. All
         dimensionless.
@@ -86,10 +89,12 @@ def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
 
 
 def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> Floats:
-    """E^(k), the energy of the middle mode of D_k for seeds 1 .. s; Eqs. eksa (alpha) and eksp (beta).
+    """E^(k), the energy of the middle mode of D_k for seeds 1 .. s.
 
-    chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N. k : 0, 1, ..., a number
-        or an array (n,). All dimensionless; returns energies of the shape of k.
+    Eqs. eksa (alpha) and eksp (beta).
+
+    chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N. k : 0, 1,
+        ..., a number or an array (n,). All dimensionless; returns energies of the shape of k.
 
     Estimates of magnitude. At k = 0 a seed has eps/M, which Eq. eksa gives a quarter of.
     Raises InputError, also for a chain with both couplings.
@@ -111,12 +116,13 @@ def profile_law(
 ) -> ProfileLine:
     """log10 e_kappa of seeds 1 .. s, Eqs. eksa2 (alpha) and eksp2 (beta) as a ProfileLine.
 
-    chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N; all dimensionless.
+    chain : one coupling. s : how many seeds, 1 .. N-1. specific_energy : eps = E/N; all
+        dimensionless.
     denominator : of kappa = q/denominator, default N; the line of Fig. 4(a) has N-1.
 
-    It is `group_energy` over E = N eps, at k + 1/2, or 2k, = kappa/M. The slope depends on M and eps alone,
-    the intercept on N too: e_kappa is a share of the whole energy, and falls as 1/N. Raises InputError, also
-    for a chain with both couplings.
+    It is `group_energy` over E = N eps, at k + 1/2, or 2k, = kappa/M. The slope depends on M and
+    eps alone, the intercept on N too: e_kappa is a share of the whole energy, and falls as 1/N.
+    Raises InputError, also for a chain with both couplings.
 
     >>> profile_law(Chain(N=256, beta="0.3"), 16, 1.5625e-6)  # Fig. 4(b)
     log10 e = -78.6419 kappa - 1.20412
@@ -169,7 +175,9 @@ def least_packet(chain: Chain, specific_energy: float) -> float:
 
 
 def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") -> float:
-    """Width of the natural packet of the alpha model in section 6.4.3: (alpha^2 eps)^(1/4) N, or with 1/5.
+    """Width of the natural packet of the alpha model: (alpha^2 eps)^(1/4) N, or with 1/5.
+
+    It is that of section 6.4.3.
 
     chain : the alpha model. specific_energy : eps = E/N. Both and the width, a number of modes, are
         dimensionless.
@@ -196,11 +204,11 @@ def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") 
 def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
     """D_0, D_1, ... of seeds 1 .. s: {ks+1 .. (k+1)s} (alpha), {(2k-1)s+1 .. (2k+1)s} (beta).
 
-    chain : alpha, beta or both, which counts as alpha. s : how many seeds, 1 .. N-1. All are dimensionless
-        integers.
+    chain : alpha, beta or both, which counts as alpha. s : how many seeds, 1 .. N-1. All are
+        dimensionless integers.
 
-    Eq. dk for the packets of section 6.1, as ranges of modes, the last one cut at N-1. Raises InputError for
-    s outside 1 .. N-1.
+    Eq. dk for the packets of section 6.1, as ranges of modes, the last one cut at N-1. Raises
+    InputError for s outside 1 .. N-1.
 
     >>> packet_groups(Chain(N=8, alpha=1), 2)
     (range(1, 3), range(3, 5), range(5, 7), range(7, 8))
@@ -213,11 +221,11 @@ def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
 def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
     """The middle modes of D_1, D_2, ... of seeds 1 .. s: ks + [s/2] (alpha), 2ks (beta), below N.
 
-    chain : alpha, beta or both, which counts as alpha. s : how many seeds, 1 .. N-1. All are dimensionless
-        integers.
+    chain : alpha, beta or both, which counts as alpha. s : how many seeds, 1 .. N-1. All are
+        dimensionless integers.
 
-    Differs from section 6.1.1 for s = 1: k + 1, where the paper's formula leaves D_k. Raises InputError for s
-    outside 1 .. N-1.
+    Differs from section 6.1.1 for s = 1: k + 1, where the paper's formula leaves D_k. Raises
+    InputError for s outside 1 .. N-1.
 
     >>> middle_modes(Chain(N=12, alpha=1), 3)
     (4, 7, 10)
@@ -230,16 +238,16 @@ def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
 def rounding_floor(
     chain: Chain, spectrum: ArrayLike, T: float, *, step: float, scheme: str = "kahan_li8"
 ) -> Floats:
-    """Energy that rounding is expected to put into the running average of every mode until T; shape (N-1,).
+    """Energy that rounding is expected to put into the average of every mode until T; (N-1,).
 
-    chain : the model. spectrum : mean E_q of the orbit, (N-1,). T : the time, step : of the integrator; all
-        dimensionless.
+    chain : the model. spectrum : mean E_q of the orbit, (N-1,). T : the time, step : of the
+        integrator; all dimensionless.
     scheme : of SCHEMES, as for `integrate`.
 
-    On T + V every drift and kick rounds each x_j and p_j once, at random, with the mean square EPS^2/12 over
-    the square of the mantissa: white in modes, so that E_q grows by (EPS^2/12) <1/m^2> (Omega_q^2 <x^2> +
-    <p^2>)/2 a stage. The average has half of the last. Zero for aba864_modes, whose modes do not share their
-    rounding. Ours. Raises InputError.
+    On T + V every drift and kick rounds each x_j and p_j once, at random, with the mean square
+    EPS^2/12 over the square of the mantissa: white in modes, so that E_q grows by (EPS^2/12)
+    <1/m^2> (Omega_q^2 <x^2> + <p^2>)/2 a stage. The average has half of the last. Zero for
+    aba864_modes, whose modes do not share their rounding. Ours. Raises InputError.
 
     >>> float(rounding_floor(Chain(N=4, alpha=1), [1.0, 0, 0], 1e6, step=0.1).max()) < 1e-20
     True
@@ -263,13 +271,15 @@ def rounding_floor(
 class ProfileFit:
     """A line through a profile. Made by `fit_profile`; kappa and e_kappa are dimensionless.
 
-    line : a ProfileLine, the form of Eqs. eksa2 and eksp2. errors : standard errors of slope, intercept and
-        power (0 if fixed). scatter : rms residual, in decades, over the degrees of freedom.
+    line : a ProfileLine, the form of Eqs. eksa2 and eksp2. errors : standard errors of slope,
+        intercept and power (0 if fixed). scatter : rms residual, in decades, over the degrees of
+        freedom.
     modes, residuals : those used, and log10 e_kappa minus the line, in decades; (n,).
 
     >>> q = np.arange(1, 32)
     >>> fit_profile(Chain(N=32, beta=1), 10.0 ** (-20 * q / 32 + 0.1 * np.sin(q)), 2, floor=0)
-    ProfileFit(log10 e = (-20.005 +- 0.067) kappa + (0.42305 +- 0.047), 29 modes 3..31, scatter 0.072)
+    ProfileFit(log10 e = (-20.005 +- 0.067) kappa + (0.42305 +- 0.047), 29 modes 3..31,
+    scatter 0.072)
     """
 
     line: ProfileLine
@@ -300,18 +310,21 @@ def fit_profile(
     power: float | None = 0.0,
     floor: float | ArrayLike = FLOOR,
 ) -> ProfileFit:
-    """Regression of log10 e_kappa on kappa beyond the seeds 1 .. s; e_kappa is the spectrum over its sum.
+    """Regression of log10 e_kappa on kappa beyond the seeds 1 .. s.
+
+    e_kappa is the spectrum over its sum.
 
     chain : the model. spectrum : E_q in any unit, (N-1,). s : how many seeds, 1 .. N-1.
     modes : tail, all q > s; middle, those of `middle_modes`; or a list.
-    power : of kappa, a dimensionless number, or None for a fitted one: 2 in Eq. eksa2, 0 in Eq. eksp2.
-    floor : modes at or below it are left out; a number, relative to the largest E_q, or energies (N-1,) in
-        the unit of the spectrum: `rounding_floor` of an orbit, `spectrum_floor` of a torus or breather. 0
-        fits rounding too.
+    power : of kappa, a dimensionless number, or None for a fitted one: 2 in Eq. eksa2, 0 in
+        Eq. eksp2.
+    floor : modes at or below it are left out; a number, relative to the largest E_q, or energies
+        (N-1,) in the unit of the spectrum: `rounding_floor` of an orbit, `spectrum_floor` of a
+        torus or breather. 0 fits rounding too.
 
-    All modes count alike. Errors: jackknife over the groups D_k, since within a group the residuals are a
-    common staircase; they know of no systematic bend. A part of a group at the end of the tail counts as one.
-    Ours.
+    All modes count alike. Errors: jackknife over the groups D_k, since within a group the
+    residuals are a common staircase; they know of no systematic bend. A part of a group at the
+    end of the tail counts as one. Ours.
     Raises InputError, also if modes in other groups do not fix the line.
 
     >>> spectrum = 10.0 ** (-20 * np.arange(1, 32) / 32)

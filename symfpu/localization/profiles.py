@@ -1,4 +1,6 @@
-"""Energy profiles of orbits: FPU-trajectories, packets, normalised spectra, distances (sections 3.2, 4.1).
+"""Energy profiles of orbits (sections 3.2, 4.1).
+
+They are of FPU-trajectories and packets: normalised spectra, and distances between them.
 
 An `Orbit` integrated with averages=True is a running spectrum: its `averages` are Ebar_q(t), its
 `harmonic_energies()` E_q(t). The closed form of a torus is `torus.average_spectrum(T)`; PLn is
@@ -26,12 +28,15 @@ SHARES = ("energy", "amplitude")
 def fpu_trajectory(
     chain: Chain, amplitudes: Mapping[int, Number], phases: Mapping[int, Number] | None = None
 ) -> tuple[Floats, Floats]:
-    """Initial conditions (Q, P) of the FPU-trajectory with these seeds, each of shape (N-1,) (Definition 4).
+    """Initial conditions (Q, P), each (N-1,), of the FPU-trajectory with these seeds.
 
-    chain : the model. amplitudes, phases : by seed, dimensionless and in radians; phases left out are 0.
+    They are those of Definition 4 of the paper.
 
-    Q_q = A_q cos phi_q, P_q = -A_q Omega_q sin phi_q for the seeds, exactly 0 for other modes. Raises
-    InputError.
+    chain : the model. amplitudes, phases : by seed, dimensionless and in radians; phases left out
+        are 0.
+
+    Q_q = A_q cos phi_q, P_q = -A_q Omega_q sin phi_q for the seeds, exactly 0 for other modes.
+    Raises InputError.
 
     >>> fpu_trajectory(Chain(N=4, alpha=1), {1: 0.5, 3: "0.25"})
     (array([0.5 , 0.  , 0.25]), array([0., 0., 0.]))
@@ -61,13 +66,15 @@ def fpu_trajectory(
 def packet_amplitudes(
     chain: Chain, seeds: Sequence[int], energy: Number, *, share: str = "energy"
 ) -> dict[int, float]:
-    """Amplitudes by seed of a given harmonic energy, the sum of A_q^2 Omega_q^2 / 2; for `fpu_trajectory`.
+    """Amplitudes by seed of a given harmonic energy, for `fpu_trajectory`.
+
+    That energy is the sum of A_q^2 Omega_q^2 / 2.
 
     chain, seeds : the model and distinct modes. energy : positive, dimensionless.
     share : energy, the same E_q (Eq. harmonicene) for all seeds; or amplitude, the same A_q.
 
-    Holds for any phases. This is not H, which adds the anharmonic energy of the phases chosen. Ours. Raises
-    InputError.
+    Holds for any phases. This is not H, which adds the anharmonic energy of the phases chosen.
+    Ours. Raises InputError.
 
     >>> packet_amplitudes(Chain(N=3, alpha=1), (1, 2), 2, share="amplitude")  # Omega^2 = 1, 3
     {1: 1.0, 2: 1.0}
@@ -93,16 +100,19 @@ def packet_amplitudes(
 
 
 def normalised_averages(orbit: Orbit) -> Floats:
-    """Running averages of the harmonic energies over the total energy, Ebar_q(t)/H; shape (S, ..., N-1).
+    """Running averages of the harmonic energies over the total energy; shape (S, ..., N-1).
 
-    orbit : integrated with averages=True; its last row is the paper's normalised averaged spectrum (section
-        4), dimensionless.
+    They are Ebar_q(t)/H.
 
-    Harmonic energies are those of Eq. harmonicene, with the 1/2 that the paper's average leaves out. Raises
-    InputError.
+    orbit : integrated with averages=True; its last row is the paper's normalised averaged
+        spectrum (section 4), dimensionless.
+
+    Harmonic energies are those of Eq. harmonicene, with the 1/2 that the paper's average leaves
+    out. Raises InputError.
 
     >>> from symfpu.dynamics.orbits import integrate
-    >>> orbit = integrate(Chain(N=4, beta=1), [0.1, 0, 0], [0, 0, 0], 100, step=0.125, averages=True)
+    >>> chain = Chain(N=4, beta=1)
+    >>> orbit = integrate(chain, [0.1, 0, 0], [0, 0, 0], 100, step=0.125, averages=True)
     >>> normalised_averages(orbit)[-1].round(3)
     array([1., 0., 0.])
     """
@@ -124,8 +134,8 @@ def normalised_averages(orbit: Orbit) -> Floats:
 class ProfileDistance:
     """How far two spectra differ. Made by `profile_distance`. Ours.
 
-    distance : largest |log10(a_q/b_q)|, in decades. mode : where it is reached. modes : how many of either
-        lie above the floor.
+    distance : largest |log10(a_q/b_q)|, in decades. mode : where it is reached. modes : how many
+        of either lie above the floor.
 
     >>> ProfileDistance(1.0, 2, 2)
     ProfileDistance(1 decades at mode 2, 2 modes above the floor)
@@ -144,8 +154,8 @@ def profile_distance(a: ArrayLike, b: ArrayLike, floor: float) -> ProfileDistanc
     """How far two spectra differ: the largest |log10(a_q/b_q)|, in decades, as a ProfileDistance.
 
     a, b : energies by mode, shape (N-1,), not negative.
-    floor : positive, in their units; values below it, rounding, count as the floor, and two modes there
-        do not differ.
+    floor : positive, in their units; values below it, rounding, count as the floor, and two modes
+        there do not differ.
 
     Ours. Raises InputError.
 

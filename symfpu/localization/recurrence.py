@@ -19,8 +19,8 @@ FAR_SHARE = 2 / 3
 class NoRecurrence(SymfpuError):
     """The mode energies did not come back within the record: raised by `recurrence`.
 
-    T : the end of the record, dimensionless. excursion : the largest fraction of the energy that was
-        elsewhere. Ours.
+    T : the end of the record, dimensionless. excursion : the largest fraction of the energy that
+        was elsewhere. Ours.
     """
 
     def __init__(self, T: float, excursion: float) -> None:
@@ -42,8 +42,8 @@ class Recurrence:
     excursion : the farthest, the largest fraction that was elsewhere.
 
     >>> Recurrence(np.array([157.0, 315.0]), np.array([0.97, 0.99]), 0.8)
-    Recurrence(2 returns, first at t=157 of 97.0000%, best at t=315 of 99.0000%, up to 0.8 of the energy
-    away)
+    Recurrence(2 returns, first at t=157 of 97.0000%, best at t=315 of 99.0000%,
+    up to 0.8 of the energy away)
     """
 
     times: Floats = field(repr=False)
@@ -74,11 +74,13 @@ def recurrence(times: ArrayLike, energies: ArrayLike) -> Recurrence:
     """When the mode energies come back, by the fraction of the energy that is elsewhere, d(t).
 
     times, energies : (S,) and (S, N-1), E_q(t) sampled densely (`orbit.harmonic_energies()` with
-        samples=np.arange(...)); E_q(0) is the first row. Times in units of the chain, energies in any unit.
+        samples=np.arange(...)); E_q(0) is the first row. Times in units of the chain, energies in
+        any unit.
 
-    d(t) = sum |E_q(t) - E_q(0)| / (2 sum E_q(0)), dimensionless. A return is the deepest minimum of d,
-    refined by a parabola, of a visit: a time below a third of the largest d, after and before one above two
-    thirds. The last visit may lack its end, but not its minimum. Ours, for the recurrences of section 6.4.3.
+    d(t) = sum |E_q(t) - E_q(0)| / (2 sum E_q(0)), dimensionless. A return is the deepest minimum
+    of d, refined by a parabola, of a visit: a time below a third of the largest d, after and
+    before one above two thirds. The last visit may lack its end, but not its minimum. Ours, for
+    the recurrences of section 6.4.3.
     Raises InputError, NoRecurrence.
 
     >>> t = np.linspace(0, 15, 151)

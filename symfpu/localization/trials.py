@@ -41,8 +41,8 @@ class Trend:
 
     Made by `slope_by_energy` and others. Ours.
 
-    x, y : the points, (n,). rate : dy/dx, in units of y over x (dimensionless for the logarithms here).
-        error : of it.
+    x, y : the points, (n,). rate : dy/dx, in units of y over x (dimensionless for the logarithms
+        here). error : of it.
 
     >>> Trend(np.array([0.0, 1, 2]), np.array([0.0, 2.1, 3.9]), 1.95, 0.087)
     Trend(1.95 +- 0.087, 3 points)
@@ -127,18 +127,20 @@ def _power_of_the_law(chain: Chain) -> float:
 
 @dataclass(frozen=True, eq=False)
 class ProfileInvariance:
-    """Profiles of packets of the same M and eps in chains of several lengths (section 6.1); dimensionless.
+    """Profiles of packets of the same M and eps in chains of several lengths.
 
-    Made by `profile_invariance`. fraction : M = s/N. specific_energy : eps. T : the time averaged over.
+    They are those of section 6.1; dimensionless. Made by `profile_invariance`.
+    fraction : M = s/N. specific_energy : eps. T : the time averaged over.
     phases : equal or random. chains : by size.
-    spectra : by size, e_kappa of every realisation, (R, N-1). fits : of their mean, with the power of the
-        law.
+    spectra : by size, e_kappa of every realisation, (R, N-1). fits : of their mean, with the
+        power of the law.
     floors : by size, (N-1,).
 
     >>> from symfpu import profile_invariance
     >>> profile_invariance(Chain(N=16, beta=1), "1/8", 1e-2, (16, 32, 48), 1e4)
-    ProfileInvariance(N=16, 32, 48, M=1/8, eps=0.01, T=10000, equal phases, 1 realisations: E_q/eps ~ N^c,
-    c = D_1 1.73 +- 0.17, ...; d slope/d log10 N = Trend(... 3 points))
+    ProfileInvariance(N=16, 32, 48, M=1/8, eps=0.01, T=10000, equal phases,
+    1 realisations: E_q/eps ~ N^c, c = D_1 1.73 +- 0.17,
+    ...; d slope/d log10 N = Trend(... 3 points))
     """
 
     fraction: Fraction
@@ -295,12 +297,13 @@ def profile_invariance(
     sizes : the N, three or more. Seeds 1 .. M N of equal harmonic energies, eps N together.
     T : the time averaged over.
     phases : equal, all 0; or random, uniform in 0 .. 2 pi radians.
-    realisations : orbits of random phases, from numpy's default generator at (seed, N). seed : of it.
+    realisations : orbits of random phases, from numpy's default generator at (seed, N). seed : of
+        it.
     scheme, step, workers : of `integrate`.
 
-    Spectra are averaged over 0 .. T. Section 6.1 says of the normalised profiles that they stay as they are;
-    e_kappa falls as 1/N. Modes within ROUNDING_MARGIN of `rounding_floor` count as below the floor. Raises
-    InputError, OrbitStopped.
+    Spectra are averaged over 0 .. T. Section 6.1 says of the normalised profiles that they stay
+    as they are; e_kappa falls as 1/N. Modes within ROUNDING_MARGIN of `rounding_floor` count as
+    below the floor. Raises InputError, OrbitStopped.
 
     >>> found = profile_invariance(Chain(N=16, beta=1), "1/8", 1e-2, (16, 32, 48), 1e4)
     >>> [spectra.shape for spectra in found.spectra]
@@ -372,7 +375,10 @@ def _averaged(
     generator: np.random.Generator | None,
     **how: Any,
 ) -> Floats:
-    """Mean E_q until T of so many trajectories, integrated with the keywords `how`; (count, N-1)."""
+    """Mean E_q until T of so many trajectories; (count, N-1).
+
+    how : keywords of `integrate`.
+    """
     seeds = range(1, s + 1)
     amplitudes = packet_amplitudes(chain, seeds, epsilon * chain.N)
     states = []

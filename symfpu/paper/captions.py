@@ -1,4 +1,4 @@
-"""The lines printed in captions: Figs. 2(a), 4(a), 4(b), and the reading of the laws behind them."""
+"""The lines printed in captions of Figs. 2(a), 4(a), 4(b), and how the laws are read."""
 
 from __future__ import annotations
 

@@ -67,12 +67,13 @@ class Figure1:
         best, late = self.best_order, FIG1_AMPLITUDE_ORDER
         total, harmonic = self._largest_errors(best)
         late_total, late_harmonic = self._largest_errors(late)
+        at_best, at_late = f"at order {best}", f"at order {late}"
         return {
             "best_difference": self._best_difference(),
             "cancellation": self._cancellation(),
             "term_size": self._term_size(),
-            "harmonic_error": f"{harmonic:.1e} at order {best}, {late_harmonic:.1e} at order {late}",
-            "energy_error": f"{total:.1e} at order {best}, {late_total:.1e} at order {late}",
+            "harmonic_error": f"{harmonic:.1e} {at_best}, {late_harmonic:.1e} {at_late}",
+            "energy_error": f"{total:.1e} {at_best}, {late_total:.1e} {at_late}",
         }
 
     def _best_difference(self) -> str:

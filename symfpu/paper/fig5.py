@@ -1,4 +1,7 @@
-"""Fig. 5: average spectra of tori with seeds anywhere in the spectrum, by series and integration."""
+"""Fig. 5: average spectra of tori with seeds anywhere in the spectrum.
+
+They are computed by series and by integration.
+"""
 
 from __future__ import annotations
 

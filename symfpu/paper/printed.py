@@ -1,9 +1,10 @@
-"""Examples and printed numbers of Christodoulidi & Efthymiopoulos, "Low-dimensional q-tori in FPU
-lattices", Physica D (2013).
+"""Examples and printed numbers of the paper.
 
-Data only. Frequencies, amplitudes and energies are the digits printed in Appendix F (Eq. Table1) and in the
-text. `label` names the figure that shows the example; Appendix F's own labels, `printed_label`, are off by
-one from Fig. 2 on.
+Christodoulidi & Efthymiopoulos, "Low-dimensional q-tori in FPU lattices", Physica D (2013).
+
+Data only. Frequencies, amplitudes and energies are the digits printed in Appendix F (Eq. Table1)
+and in the text. `label` names the figure that shows the example; Appendix F's own labels,
+`printed_label`, are off by one from Fig. 2 on.
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ from symfpu.chain.chain import Chain
 
 @dataclass(frozen=True)
 class PrintedTorus:
-    """One example: its chain, seeds, chosen frequencies and coordinate order, with the printed
-    amplitudes and energy.
+    """One example: chain, seeds, chosen frequencies and coordinate order.
+
+    The amplitudes and the energy are as printed.
     """
 
     label: str
@@ -199,7 +201,10 @@ FIG1_CLAIMS = {
 
 @dataclass(frozen=True)
 class PrintedExcitation:
-    """A sequence of mode excitations D_1, D_2, ... printed in sections 6.2 and 6.4.2, alpha model."""
+    """A sequence of mode excitations D_1, D_2, ... of the alpha model.
+
+    It is printed in sections 6.2 and 6.4.2.
+    """
 
     label: str
     N: int
@@ -258,7 +263,9 @@ FIG6_CHAIN, FIG6_WIDTH = 256, 4
 
 @dataclass(frozen=True)
 class PrintedLine:
-    """log10 e_kappa = slope * kappa + intercept + power * log10 kappa, printed in a caption for seeds 1 .. s.
+    """log10 e_kappa = slope * kappa + intercept + power * log10 kappa, as a caption has it.
+
+    The seeds are 1 .. s.
 
     chains : those of the panel. specific_energy : E/N with the caption's E.
     """

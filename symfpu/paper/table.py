@@ -1,4 +1,7 @@
-"""The paper's numbers (Eq. Table1) computed anew from the printed frequencies, beside the printed ones."""
+"""The paper's numbers (Eq. Table1) computed anew, beside the printed ones.
+
+They follow from the printed frequencies.
+"""
 
 from __future__ import annotations
 

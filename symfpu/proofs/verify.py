@@ -537,8 +537,9 @@ def report(data: Json, case: Case, verdict: str, zeros: int, steps: int) -> list
     unsure = sorted({e["mode"] for e in data["undecided"]})
     primes = [e["prime"] for e in data["points"]]
     chain = f"{data['model']} chain, N = {case.N}, seeds {case.seeds}, orders to {case.order}"
+    excited = f"{len(data['excited'])} modes excited"
     return [
         f"{chain}: rule, orders and exceptions follow; {verdict}",
-        f"{len(data['excited'])} modes excited: residues computed again, modulo {primes}, in {steps} steps",
+        f"{excited}: residues computed again, modulo {primes}, in {steps} steps",
         f"{zeros} zeros before: by couplings or identity; undecided, not checked: modes {unsure}",
     ]

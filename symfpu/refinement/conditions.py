@@ -132,7 +132,7 @@ class EnergyRatio:
     def _averages(
         self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats, Floats]:
-        """The averages by seed, what multiplies c^2 in them, and the derivative of that by rates."""
+        """The averages by seed, what multiplies c^2 in them, and its derivative by rates."""
         moving = (equation.harmonics != 0).any(axis=1)
         weights = np.where(moving, 0.25, 0.5)[:, None]
         rates, columns = equation.rates(shifts)[:, None], equation.seed_columns
@@ -227,7 +227,7 @@ def plane_variables(
 def ratio_conditions(
     seeds: Sequence[int], ratio: Mapping[int, Any], *, energies: bool
 ) -> list[Condition]:
-    """The s - 1 conditions of a ratio of amplitudes, or of averaged mode energies, given by seed."""
+    """The s - 1 conditions of a ratio, by seed, of amplitudes or of averaged mode energies."""
     kind = EnergyRatio if energies else AmplitudeRatio
     first, *others = [float(ratio[q]) for q in seeds]
     return [kind(i, other / first) for i, other in enumerate(others, 1)]

@@ -106,7 +106,7 @@ class Lattice:
         return np.asarray(chosen.T / self._weight[:, None])
 
     def coefficients_at(self, values: Floats, harmonics: Ints) -> Floats:
-        """The same at other harmonics (M, s), up to OVERSAMPLING / 2 times as large as the chosen ones."""
+        """The same at other harmonics (M, s), up to OVERSAMPLING / 2 times as large as these."""
         found = self.spectrum(values)[:, self.entries(harmonics)]
         return np.asarray(found.T / _halves_of_pairs(harmonics)[:, None])
 

@@ -244,7 +244,7 @@ def newton(
 
 
 def _sizes(equation: InvarianceEquation, cosines: Floats) -> list[float]:
-    """What must not run away or vanish: the largest coefficient, and the amplitude of every seed."""
+    """What must not run away or vanish: the largest coefficient, and every seed's amplitude."""
     amplitudes = cosines[equation.seed_rows, equation.seed_columns]
     largest = float(np.abs(cosines).max())
     return [largest, *(float(abs(a)) for a in amplitudes)]

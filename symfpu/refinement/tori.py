@@ -1,5 +1,6 @@
-"""q-tori by Newton's method: tori that solve the equations of motion to rounding, where their
-series only approximate them.
+"""q-tori by Newton's method, which solve the equations of motion to rounding.
+
+Their series only approximate them.
 """
 
 from __future__ import annotations
@@ -53,8 +54,9 @@ LEAST_SIZE = Fraction(1, 10**40)  # of amplitudes and coefficients
 
 @dataclass(frozen=True)
 class NearResonance:
-    """A small divisor (nu.omega)^2 - Omega_q^2 of a torus, and the coefficient c_q[nu] it stands
-    under.
+    """A small divisor (nu.omega)^2 - Omega_q^2 of a torus, and the coefficient under it.
+
+    The coefficient is c_q[nu].
     """
 
     mode: int
@@ -72,19 +74,21 @@ class NearResonance:
 class RefinedTorus(QuasiPeriodic):
     """A torus found by Newton's method, Q_q(t) = sum c_q[nu] cos(nu.(omega t + phi)).
 
-    Made by `refine` and its sisters; dimensionless, phases in radians. Ours: the paper has series alone.
+    Made by `refine` and its sisters; dimensionless, phases in radians. Ours: the paper has series
+    alone.
 
     chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
     amplitudes : by seed, of cos(theta_q) in Q_q. phases : by seed.
     harmonics : the nu, shape (H, s). cosines : c_q[nu] in doubles, shape (H, N-1).
     steps : of Newton's method with the final harmonics.
-    near_resonances : the smallest divisors (nu.omega)^2 - Omega_q^2, with the coefficients under them.
+    near_resonances : the smallest divisors (nu.omega)^2 - Omega_q^2, with the coefficients under
+        them.
     warnings : reasons to doubt it. digits : None, of doubles.
 
     >>> from symfpu import Chain, lindstedt, refine, solve_amplitudes
     >>> refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
-    RefinedTorus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4051586230417, H=0.0127984220834, 20 harmonics,
-    residual ..., smallest divisor 0.024 at mode 2, harmonic (2), coefficient 0.031)
+    RefinedTorus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4051586230417, H=0.0127984220834,
+    20 harmonics, residual ..., smallest divisor 0.024 at mode 2, harmonic (2), coefficient 0.031)
     """
 
     chain: Chain
@@ -117,8 +121,8 @@ class RefinedTorus(QuasiPeriodic):
 class NoTorus(SymfpuError):
     """Newton's method found no torus: raised by `refine`, its sisters and `family`.
 
-    iterate : the best one, a RefinedTorus; residual : what it leaves of the equations of motion, relative to
-        the largest acceleration, dimensionless; reason : why it ended. Ours.
+    iterate : the best one, a RefinedTorus; residual : what it leaves of the equations of motion,
+        relative to the largest acceleration, dimensionless; reason : why it ended. Ours.
     """
 
     def __init__(self, reason: str, iterate: RefinedTorus, residual: float) -> None:
@@ -131,19 +135,22 @@ class NoTorus(SymfpuError):
 def refine(
     torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, progress: Progress | None = None
 ) -> RefinedTorus:
-    """The torus with the same frequencies that solves the equations of motion, with a given one as the guess.
+    """The torus with the same frequencies that solves the equations of motion.
+
+    A given torus is the guess.
 
     torus : of a series, resummed, or any other; its phases (radians) are kept.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration,
         dimensionless; harmonics are added until it is reached.
     progress : called as (label, NO_FRACTION) on every step.
 
-    Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a torus, which the
-    paper solves by series. Raises InputError, and NoTorus with the best iterate.
+    Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a
+    torus, which the paper solves by series. Raises InputError, and NoTorus with the best iterate.
 
     >>> from symfpu.tori.amplitudes import solve_amplitudes
     >>> from symfpu.series.lindstedt import lindstedt
-    >>> breather = refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
+    >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)
+    >>> breather = refine(solve_amplitudes(series))
     >>> breather.residual() < 1e-13
     True
     """
@@ -167,8 +174,8 @@ def refine_at_amplitudes(
     tolerance : of the residual of the equations of motion, relative to the largest acceleration.
     progress : called as (label, NO_FRACTION) on every step.
 
-    As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, also for a seed left
-    out, and NoTorus with the best iterate.
+    As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, also for a
+    seed left out, and NoTorus with the best iterate.
 
     >>> from symfpu import Chain, torus_at_amplitudes
     >>> guess = torus_at_amplitudes(Chain(N=8, alpha="0.3"), {1: "0.4"}, order=4)
@@ -195,18 +202,22 @@ def refine_at_energy(
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
 ) -> RefinedTorus:
-    """The torus with the given energy and ratio of amplitudes or mode energies; its frequencies are found.
+    """The torus with the given energy and ratio of amplitudes or mode energies.
+
+    Its frequencies are found.
 
     torus : the guess, of the same seeds; its phases (radians) are kept.
     energy : an exact number, dimensionless.
-    harmonic : False for the total energy H, True for the harmonic energy sum E_q, both at the angles zero.
-    amplitude_ratio, energy_ratio : by seed, at most one of them; energy_ratio is of E_q of the seeds averaged
-        over the torus. Left out, the amplitudes keep the ratio they have in `torus`.
+    harmonic : False for the total energy H, True for the harmonic energy sum E_q, both at the
+        angles zero.
+    amplitude_ratio, energy_ratio : by seed, at most one of them; energy_ratio is of E_q of the
+        seeds averaged over the torus. Left out, the amplitudes keep the ratio they have in
+        `torus`.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration.
     progress : called as (label, NO_FRACTION) on every step.
 
-    As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, and NoTorus with the
-    best iterate.
+    As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, and
+    NoTorus with the best iterate.
 
     >>> from symfpu import Chain, torus_at_amplitudes
     >>> guess = torus_at_amplitudes(Chain(N=8, alpha="0.3"), {1: "0.4"}, order=4)
@@ -350,7 +361,9 @@ def _rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats]:
 def chosen_harmonics(
     known: Mapping[tuple[int, ...], Floats], chain: Chain, s: int, tolerance: float
 ) -> tuple[Ints, bool]:
-    """Harmonics whose coefficients are expected above the tolerance; and whether more would not fit.
+    """Harmonics whose coefficients are expected above the tolerance.
+
+    The second result says whether more would not fit.
 
     ln |c[nu]| is fitted by a - sum w_i |nu_i|; all harmonics within the reach of the fit are
     taken, one of each pair +-nu.

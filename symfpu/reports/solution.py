@@ -82,6 +82,5 @@ def _stability_lines(record: dict[str, Any]) -> list[str]:
         return []
     kinds = ", ".join(f"{count} {kind}" for kind, count in record["instabilities"].items())
     verdict = "stable" if record["stable"] else f"unstable: {kinds}"
-    return [
-        f"multipliers        {verdict}, the largest |multiplier| {record['largest_multiplier']:.12g}"
-    ]
+    largest = f"the largest |multiplier| {record['largest_multiplier']:.12g}"
+    return [f"multipliers        {verdict}, {largest}"]

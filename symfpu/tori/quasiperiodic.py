@@ -1,4 +1,7 @@
-"""Quasi-periodic solutions by their cosine coefficients: orbit, energies, averages and residuals."""
+"""Quasi-periodic solutions by their cosine coefficients.
+
+They give the orbit, its energies, their averages, and residuals.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +59,9 @@ else:
 
 
 class QuasiPeriodic(Parts):
-    """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)): what every torus and breather can do.
+    """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
+
+    This is what every torus and breather can do.
 
     chain : the model. seeds, frequencies, phases : the s angles.
     harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : c_q[nu]; shape (H, N-1).
@@ -109,7 +114,8 @@ class QuasiPeriodic(Parts):
     def by_harmonic(self) -> Numbers:
         """Coefficients of a solution of one angle by the number n of the harmonic, 0 .. H.
 
-        Row n belongs to cos(n (omega t + phi)); shape (H+1, N-1). Raises InputError for more angles.
+        Row n belongs to cos(n (omega t + phi)); shape (H+1, N-1). Raises InputError for more
+        angles.
         """
         self._only("harmonics", self.seeds)
         n = np.abs(self.harmonics[:, 0])
@@ -162,7 +168,7 @@ class QuasiPeriodic(Parts):
     def momenta(self, t: ArrayLike) -> Numbers:
         """Mode momenta P_q(t) = dQ_q/dt.
 
-        T a number or an array (T,), result (N-1,) or (T, N-1).
+        t : a number or an array (T,), result (N-1,) or (T, N-1).
         """
         return with_digits(self._momenta(t), self.digits)
 
@@ -174,7 +180,7 @@ class QuasiPeriodic(Parts):
         return self._along(t, derivative)
 
     def _cosine_sums(self, coefficients: Numbers) -> Callable[[Numbers], Numbers]:
-        """Of the angles of all harmonics, (P, H), the sums of cosines with these coefficients, (P, N-1)."""
+        """Sums of cosines of the angles of all harmonics, (P, H); shape (P, N-1)."""
 
         def sums(angles: Numbers) -> Numbers:
             return self.numbers.dot(self.numbers.cos(angles), coefficients)
@@ -291,7 +297,7 @@ class QuasiPeriodic(Parts):
         return with_digits(self._residuals(points)[0], self.digits)
 
     def residual(self, points: int | None = None) -> float:
-        """Largest residual of the equations of motion on a grid of angles, over the largest acceleration.
+        """Largest residual on a grid of angles, over the largest acceleration.
 
         points : grid points for each angle, as for `residuals`.
         """
@@ -358,7 +364,7 @@ def require_solution(solution: object, argument: str) -> None:
 
 
 def amplitudes_of(solution: Solution) -> dict[int, Any]:
-    """A_q by seed, read from the coefficients: that of cos(theta_q) in Q_q, zero where there is none."""
+    """A_q by seed, the coefficient of cos(theta_q) in Q_q, zero where there is none."""
     rows = {
         tuple(nu): row
         for nu, row in zip(solution.harmonics.tolist(), solution.cosines, strict=True)
@@ -376,23 +382,27 @@ def amplitudes_of(solution: Solution) -> dict[int, Any]:
 
 @dataclass(frozen=True, eq=False)
 class FourierTorus(QuasiPeriodic):
-    """A solution with given coefficients: Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
+    """A solution with given coefficients.
 
-    chain : the model; all quantities are dimensionless, phases in radians. seeds : the s modes that name the
-        angles.
-    frequencies : omega of every seed, exact, shape (s,). harmonics : the nu, integers, one of each pair +-nu,
-        shape (H, s).
+    Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
+
+    chain : the model; all quantities are dimensionless, phases in radians. seeds : the s modes
+        that name the angles.
+    frequencies : omega of every seed, exact, shape (s,). harmonics : the nu, integers, one of
+        each pair +-nu, shape (H, s).
     cosines : c_q[nu], shape (H, N-1). phases : phi by seed, 0 where left out.
     digits : of cosines in mpf; None for doubles.
 
-    Eqs. qser and serabs1 with the amplitudes put in. Nothing is checked: whether it solves the equations of
-    motion is what `residual` measures.
+    Eqs. qser and serabs1 with the amplitudes put in. Nothing is checked: whether it solves the
+    equations of motion is what `residual` measures.
 
     >>> from symfpu import Chain
     >>> half = (Fraction(1, 2),)
-    >>> mode = FourierTorus(Chain(4, alpha=1), (1,), half, np.array([[1]]), np.array([[1.0, 0, 0]]), {1: 0.0})
+    >>> harmonics, cosines = np.array([[1]]), np.array([[1.0, 0, 0]])
+    >>> mode = FourierTorus(Chain(4, alpha=1), (1,), half, harmonics, cosines, {1: 0.0})
     >>> mode
-    FourierTorus(chain=Chain(N=4, alpha=1), seeds=(1,), frequencies=(Fraction(1, 2),), phases={1: 0.0}, ...)
+    FourierTorus(chain=Chain(N=4, alpha=1), seeds=(1,), frequencies=(Fraction(1, 2),),
+    phases={1: 0.0}, ...)
     >>> mode.positions(0.0)
     array([1., 0., 0.])
     """

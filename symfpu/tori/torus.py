@@ -25,9 +25,9 @@ class RootCertificate:
     By interval Newton in ball arithmetic; ours: the paper proves no root.
 
     certified : whether it is.
-    radius : by seed, dimensionless; in the box of amplitudes within it there is exactly one root of Eq.
-        omeser truncated, wherever in its proved error bounds each coefficient of the series lies (A^2 of the
-        root is within 10^-digits, relative).
+    radius : by seed, dimensionless; in the box of amplitudes within it there is exactly one root
+        of Eq. omeser truncated, wherever in its proved error bounds each coefficient of the
+        series lies (A^2 of the root is within 10^-digits, relative).
     reason : if not certified, the inequality that failed.
 
     >>> from symfpu import Chain, lindstedt, solve_amplitudes
@@ -45,14 +45,17 @@ class RootCertificate:
 
 @dataclass(frozen=True, eq=False)
 class QTorus(QuasiPeriodic):
-    """The torus of a series, Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)), cut at `order`.
+    """The torus of a series at chosen amplitudes, cut at `order`.
+
+    Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
 
     Made by `solve_amplitudes` and others (Eqs. qser, serabs1); dimensionless, phases in radians.
 
     series : it was solved from. amplitudes, phases : by seed.
-    frequency_order : truncation of the frequency series that gave the amplitudes. order : truncation of the
-        coordinates.
-    history : K -> amplitudes, (s,), by frequency order. root_residual : largest |omega_q - truncated series|.
+    frequency_order : truncation of the frequency series that gave the amplitudes.
+        order : truncation of the coordinates.
+    history : K -> amplitudes, (s,), by frequency order. root_residual : largest
+        |omega_q - truncated series|.
     certificate : whether the root is proved to exist (series with digits only).
     warnings : reasons to doubt that this is a torus.
 
@@ -60,7 +63,8 @@ class QTorus(QuasiPeriodic):
 
     >>> from symfpu import Chain, lindstedt, solve_amplitudes
     >>> solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8))
-    QTorus(N=8, alpha=0.3, A_1=0.247740186794, frequency order 8, order 8, H=0.004714606926, residual ...)
+    QTorus(N=8, alpha=0.3, A_1=0.247740186794, frequency order 8, order 8, H=0.004714606926,
+    residual ...)
     """
 
     series: LindstedtSeries = field(repr=False)
@@ -149,7 +153,7 @@ class QTorus(QuasiPeriodic):
 
 
 def series_behind(result: object) -> LindstedtSeries:
-    """A series, or that of a torus that was solved from one; raises InputError for what has none."""
+    """A series, or that of a torus solved from one; raises InputError for what has none."""
     if isinstance(result, LindstedtSeries):
         return result
     return require_series_torus(result, "series").series
