@@ -15,7 +15,11 @@ from symfpu.chain.propagation import reachable_modes as reachable_modes
 
 # series
 from symfpu.series.lindstedt import lindstedt as lindstedt
+from symfpu.series.sample import FrequencyChanges as FrequencyChanges
+from symfpu.series.sample import SampledSeries as SampledSeries
+from symfpu.series.sample import sample_series as sample_series
 from symfpu.series.series import LindstedtSeries as LindstedtSeries
+from symfpu.series.series import NamedParts as NamedParts
 
 # tori from series
 from symfpu.tori.amplitudes import AmplitudeHistory as AmplitudeHistory

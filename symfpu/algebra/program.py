@@ -56,8 +56,9 @@ class Program:
         self._start = _Growing(np.zeros(2, dtype=np.int64))
         empty = np.zeros(0, dtype=np.int64)
         self._terms = tuple(_Growing(empty) for _ in Terms._fields)
-        self._residues = _Growing(np.ones((1, POINTS), dtype=np.uint64))
-        self._hashes = _Growing(np.zeros(1, dtype=np.uint64))
+        first = np.ones((1, POINTS), dtype=np.uint64)
+        none = np.zeros(1, dtype=np.uint64)
+        self._fingerprints: Fingerprints | None = Fingerprints(_Growing(first), _Growing(none))
 
     @classmethod
     def of_arrays(cls, symbols: Sequence[Hashable], start: Ints, terms: Terms) -> Program:
@@ -81,11 +82,17 @@ class Program:
         program._node_of = dict(zip(symbols, program.leaves, strict=True))
         program._start = _Growing(start)
         program._terms = tuple(map(_Growing, terms))
-        program._fingerprint(counts)
+        program._fingerprints = None
         return program
 
-    def _fingerprint(self, counts: Ints) -> None:
-        """Residues and hashes of all nodes, as they were when these were made."""
+    def _found_fingerprints(self) -> Fingerprints:
+        """Residues and hashes of all nodes; of a program out of arrays as they were made once."""
+        if self._fingerprints is None:
+            self._fingerprints = self._made_again()
+        return self._fingerprints
+
+    def _made_again(self) -> Fingerprints:
+        counts = np.diff(self.start)
         residues = np.ones((len(counts), POINTS), dtype=np.uint64)
         for leaf in self.leaves:
             residues[leaf] = self._draw()
@@ -94,7 +101,7 @@ class Program:
         sums = np.flatnonzero(counts)
         if len(sums):
             hashes[sums] = np.add.reduceat(_mixed(self.terms), self.start[sums])
-        self._residues, self._hashes = _Growing(residues), _Growing(hashes)
+        return Fingerprints(_Growing(residues), _Growing(hashes))
 
     def _draw(self) -> Residues:
         return self._random.integers(1, PRIME, size=POINTS, dtype=np.uint64)
@@ -102,7 +109,7 @@ class Program:
     @property
     def size(self) -> int:
         """Nodes."""
-        return self._residues.used
+        return self._start.used - 1
 
     @property
     def start(self) -> Ints:
@@ -117,11 +124,22 @@ class Program:
     @property
     def hashes(self) -> Residues:
         """A hash of the terms of each node; 0 for leaves."""
-        return self._hashes.values
+        return self._found_fingerprints().hashes.values
+
+    @property
+    def residues(self) -> Residues:
+        """Values of all nodes modulo PRIME at the random points; (size, POINTS)."""
+        return self._found_fingerprints().residues.values
+
+    def _extend(self, ends: Ints, residues: Residues, hashes: Residues) -> None:
+        found = self._found_fingerprints()
+        found.residues.extend(residues)
+        found.hashes.extend(hashes)
+        self._start.extend(ends)
 
     def vanishing(self, nodes: Ints) -> NDArray[np.bool_]:
         """Which nodes are zero at all random points; false for ZERO itself."""
-        zero = ~self._residues.values[nodes].any(axis=-1)
+        zero = ~self.residues[nodes].any(axis=-1)
         return np.asarray(zero & (nodes != ZERO))
 
     def leaf_number(self, node: int) -> int:
@@ -134,9 +152,8 @@ class Program:
             self._node_of[symbol] = self.size
             self.leaves.append(self.size)
             self.symbols.append(symbol)
-            self._residues.extend(self._draw()[None])
-            self._hashes.extend(np.zeros(1, dtype=np.uint64))
-            self._start.extend(self.start[-1:])
+            self._found_fingerprints()  # those of older leaves are drawn first
+            self._extend(self.start[-1:], self._draw()[None], np.zeros(1, dtype=np.uint64))
         return self._node_of[symbol]
 
     def sums(self, count: int, out: Ints, terms: Terms) -> Ints:
@@ -189,13 +206,11 @@ class Program:
         """New nodes of sums of so many terms each."""
         start = np.concatenate([[0], np.cumsum(counts)])
         residues = np.zeros((len(counts), POINTS), dtype=np.uint64)
-        _add_residues(self._residues.values, start, terms, residues)
+        _add_residues(self.residues, start, terms, residues)
         nodes = self.size + np.arange(len(counts))
-        self._start.extend(self.start[-1] + start[1:])
+        self._extend(self.start[-1] + start[1:], residues, hashes)
         for part, values in zip(self._terms, terms, strict=True):
             part.extend(values)
-        self._residues.extend(residues)
-        self._hashes.extend(hashes)
         return nodes
 
 
@@ -217,6 +232,13 @@ class _Growing:
             larger[:before] = self._room[:before]
             self._room = larger
         self._room[before : self.used] = rows
+
+
+class Fingerprints(NamedTuple):
+    """Residues (nodes, POINTS) and hashes (nodes,)."""
+
+    residues: _Growing
+    hashes: _Growing
 
 
 def collected(size: int, out: Ints, terms: Terms) -> tuple[Ints, Terms]:

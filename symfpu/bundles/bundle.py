@@ -271,7 +271,10 @@ def _tables(series: LindstedtSeries) -> tuple[dict[str, Array], Json]:
     corrections = series.corrections[1:]  # order 0 has none
     parts = {"coordinates": series.coordinates, "corrections": corrections}
     arrays, layout = series.tables.pack(parts)
-    members = {name: _flat(tables, series.tables.dtype) for name, tables in arrays.items()}
+    members = {}
+    for name, tables in arrays.items():
+        dtype = series.tables.dtype if name in parts else tables[0].dtype.str
+        members[name] = _flat(tables, dtype)
     if series.radii:
         largest = np.array([radius for radius, _ in series.radii])
         members["coordinate_radii"] = _flat([largest], RADII)
@@ -353,8 +356,8 @@ class _Reader:
         coordinates, corrections = self.shapes
         kept = self._read("coordinates", coordinates) + self._read("corrections", corrections)
         members = {}
-        for name, length in self.tables.members(self.body).items():
-            members[name] = self.archive.array(name, self.tables.dtype, length)
+        for name, member in self.tables.members(self.body).items():
+            members[name] = self.archive.array(name, *member)
         tables = self.tables.unpack(kept, self.body, members)
         count = len(coordinates)
         none = np.zeros((0, self.seeds))  # order 0 has no corrections

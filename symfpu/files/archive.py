@@ -149,13 +149,13 @@ class Archive:
         return self._zip.getinfo(f"{name}.npy").file_size // 8
 
     def array(self, name: str, dtype: str, count: int) -> Array:
-        """An array of so many numbers of eight bytes.
+        """An array of so many numbers of a type.
 
         ValueError where the file holds another, or its digest differs.
         """
         info = self._zip.getinfo(f"{name}.npy")
         header = _header(dtype, count)
-        nbytes = 8 * count
+        nbytes = np.dtype(dtype).itemsize * count
         due = len(header) + nbytes
         if info.file_size != due:
             raise ValueError(f"{info.filename} holds {info.file_size} bytes where {due} are due")

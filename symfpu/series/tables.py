@@ -24,7 +24,7 @@ from symfpu.errors import SymfpuError
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, from_integers
 from symfpu.numbers.typed import integer
 from symfpu.series.expressions import expressions_of
-from symfpu.series.programs import program_entries, program_from, program_lengths
+from symfpu.series.programs import Member, program_entries, program_from, program_members
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
@@ -95,8 +95,8 @@ class Tables(Protocol):
     def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
         """Shapes of the arrays of a file, from those of the tables."""
 
-    def members(self, body: Json) -> dict[str, int]:
-        """Further arrays of a file, by name, with their lengths. Raises ValueError."""
+    def members(self, body: Json) -> dict[str, Member]:
+        """Further arrays of a file, by name. Raises ValueError."""
 
     def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
         """Tables from the arrays of a file. Raises ValueError."""
@@ -179,7 +179,7 @@ class DoubleTables:
         """Those of the tables."""
         return shapes
 
-    def members(self, body: Json) -> dict[str, int]:
+    def members(self, body: Json) -> dict[str, Member]:
         """None."""
         return {}
 
@@ -255,7 +255,7 @@ class FixedPointTables:
         counts = [integer(n, "words", 1) for n in body["words"][name]]
         return [(*shape, n) for shape, n in zip(shapes, counts, strict=True)]
 
-    def members(self, body: Json) -> dict[str, int]:
+    def members(self, body: Json) -> dict[str, Member]:
         """None."""
         return {}
 
@@ -336,9 +336,9 @@ class ExpressionTables:
         """Those of the tables."""
         return shapes
 
-    def members(self, body: Json) -> dict[str, int]:
+    def members(self, body: Json) -> dict[str, Member]:
         """Those of the program."""
-        return {} if "expressions" in body else program_lengths(body)
+        return {} if "expressions" in body else program_members(body)
 
     def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
         """Tables of nodes; of files of version 0.1, of expressions out of a list."""

@@ -145,11 +145,11 @@ def test_all_arithmetics_give_the_same_values():
 def test_residues_are_the_values_at_the_random_points():
     program, nodes = a_program()
     for point in range(POINTS):
-        leaves = [int(program._residues.values[leaf, point]) for leaf in program.leaves]
+        leaves = [int(program.residues[leaf, point]) for leaf in program.leaves]
         values = values_in(program, leaves, nodes)
         for node, value in zip(nodes.ravel(), values.ravel(), strict=True):
             if node != ZERO:
-                assert value % PRIME == int(program._residues.values[node, point])
+                assert value % PRIME == int(program.residues[node, point])
 
 
 def test_derivatives_are_those_of_the_expanded_polynomials():
@@ -201,7 +201,7 @@ def test_arrays_come_back_and_go_on():
     assert one_sum(copy, (a, b, 3), (a, a, 1)) == one_sum(program, (a, b, 3), (a, a, 1))
     first = program.terms.at(slice(*program.start[a : a + 2]))
     assert one_sum(copy, *zip(*first, strict=True)) == a
-    assert (copy._residues.values == program._residues.values).all()
+    assert (copy.residues == program.residues).all()
 
 
 @settings(max_examples=60, deadline=None)
