@@ -183,6 +183,7 @@ RESULTS = {
     "GrowthExponents": (lambda _: growth(), lambda x: x.groups),
     **{f"LindstedtSeries, {kind}": (partial(series_of, kind), repr) for kind in SERIES},
     "LeadingTerm": (lambda _: leading_terms(PAIR, (1, 2), 3)[5], lambda x: x.expression()),
+    "SeriesForAllN": (lambda _: lindstedt(Chain("N", alpha=1), (1, "N-1"), order=2), lambda x: (repr(x), str(x.term(2, 1)))),
     "LindstedtSeries, asked": (lambda _: torus(30).series, terms),
     "Member": (lambda _: breathers().members[0], lambda x: (x.multipliers.stable, motion(x.torus))),
     "Orbit": (lambda _: trajectory(), energies),
