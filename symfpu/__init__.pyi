@@ -133,6 +133,7 @@ from symfpu.dynamics.stopping import EscapedOrbit as EscapedOrbit
 from symfpu.dynamics.stopping import OrbitStopped as OrbitStopped
 from symfpu.dynamics.stopping import UnstableStep as UnstableStep
 from symfpu.errors import DidNotConverge as DidNotConverge
+from symfpu.errors import ExpansionTooLarge as ExpansionTooLarge
 from symfpu.errors import InputError as InputError
 from symfpu.errors import NoRealAmplitude as NoRealAmplitude
 from symfpu.errors import ResonantDivisor as ResonantDivisor

@@ -31,6 +31,7 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep
 from symfpu.errors import (
     DidNotConverge,
+    ExpansionTooLarge,
     InputError,
     NoRealAmplitude,
     ResonantDivisor,
@@ -183,6 +184,7 @@ RESULTS = {
     "GrowthExponents": (lambda _: growth(), lambda x: x.groups),
     **{f"LindstedtSeries, {kind}": (partial(series_of, kind), repr) for kind in SERIES},
     "LeadingTerm": (lambda _: leading_terms(PAIR, (1, 2), 3)[5], lambda x: x.expression()),
+    "SeriesForAllN": (lambda _: lindstedt(Chain("N", alpha=1), (1, "N-1"), order=2), lambda x: (repr(x), str(x.term(2, 1)))),
     "LindstedtSeries, asked": (lambda _: torus(30).series, terms),
     "Member": (lambda _: breathers().members[0], lambda x: (x.multipliers.stable, motion(x.torus))),
     "Orbit": (lambda _: trajectory(), energies),
@@ -283,6 +285,7 @@ ERRORS = {
     SymfpuError: lambda: SymfpuError("something failed; do something else"),
     InputError: lambda: InputError("order", -1, "0 or more", "take 0"),
     TooLarge: lambda: TooLarge(9, 10**12, 10**9, 5),
+    ExpansionTooLarge: lambda: ExpansionTooLarge(1e9, 1e11, 10**9),
     ResonantDivisor: lambda: ResonantDivisor(7, (2, 1), (1, 3), 2, exact=True),
     NoRealAmplitude: lambda: NoRealAmplitude(1, -0.5, 4),
     DidNotConverge: lambda: DidNotConverge(4, {1: 0.1}, 0.3),

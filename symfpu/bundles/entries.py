@@ -45,7 +45,11 @@ def number(entry: Any) -> Any:
 
 def chain_entries(chain: Chain) -> Json:
     """A chain as exact text."""
-    return {"N": chain.N, "alpha": fraction_text(chain.alpha), "beta": fraction_text(chain.beta)}
+    return {
+        "N": int(chain.N),
+        "alpha": fraction_text(chain.alpha),
+        "beta": fraction_text(chain.beta),
+    }
 
 
 def chain_from(body: Json) -> Chain:

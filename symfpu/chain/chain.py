@@ -18,6 +18,7 @@ import symengine as se
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import bonds
+from symfpu.chain.length import LENGTH, SymbolicLength
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers, arithmetic_of, sine_matrix
 from symfpu.numbers.typed import Number, decimal, exact, integer, rational
@@ -31,7 +32,8 @@ LARGEST_EXPRESSION = 40  # bonds; the cubic coupling has about N^3 terms
 class Chain:
     """FPU chain of N bonds (N - 1 moving particles, fixed ends), Eq. fpuham; dimensionless.
 
-    N : number of bonds, at least 2; modes are q = 1 .. N-1.
+    N : number of bonds, at least 2; modes are q = 1 .. N-1. "N" leaves it a symbol: such a chain
+        has universal series (`lindstedt`), and no numbers until `at` puts one for N.
     alpha, beta : cubic and quartic coupling, exact numbers (see symfpu.numbers.typed); at least
         one is not zero. "0.33" and Fraction(33, 100) are what they say, a float is read by its
         shortest decimal.
@@ -43,14 +45,17 @@ class Chain:
     Chain(N=32, alpha=0.33)
     >>> Chain(N=2, beta=1).frequencies()
     array([1.41421356])
+    >>> Chain("N", beta=1), Chain("N", beta=1).at(N=32)
+    (Chain(N='N', beta=1), Chain(N=32, beta=1))
     """
 
     N: int
     alpha: Fraction
     beta: Fraction
 
-    def __init__(self, N: int, alpha: Number = 0, beta: Number = 0) -> None:
-        object.__setattr__(self, "N", integer(N, "N", 2))
+    def __init__(self, N: int | str, alpha: Number = 0, beta: Number = 0) -> None:
+        symbolic = N == "N" or isinstance(N, SymbolicLength)
+        object.__setattr__(self, "N", LENGTH if symbolic else integer(N, "N", 2))
         object.__setattr__(self, "alpha", exact(alpha, "alpha"))
         object.__setattr__(self, "beta", exact(beta, "beta"))
         largest = 1 / SMALLEST_COUPLING
@@ -68,7 +73,21 @@ class Chain:
             couplings.append(f"alpha={decimal(self.alpha)}")
         if self.beta:
             couplings.append(f"beta={decimal(self.beta)}")
-        return f"Chain(N={self.N}, {', '.join(couplings)})"
+        length = "'N'" if self.symbolic else self.N
+        return f"Chain(N={length}, {', '.join(couplings)})"
+
+    @property
+    def symbolic(self) -> bool:
+        """Whether N is a symbol."""
+        return isinstance(self.N, SymbolicLength)
+
+    def at(self, *, N: int) -> Chain:
+        """The same couplings on N bonds.
+
+        >>> Chain("N", alpha="1/4").at(N=8).frequencies()[:2].round(3)
+        array([0.39 , 0.765])
+        """
+        return Chain(N, self.alpha, self.beta)
 
     @property
     def model(self) -> str:

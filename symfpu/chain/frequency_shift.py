@@ -21,6 +21,8 @@ from typing import Any
 import symengine as se
 
 from symfpu.chain.chain import Chain
+from symfpu.chain.length import seed_labels
+from symfpu.chain.symbols import amplitude_symbol, linear_symbol
 from symfpu.errors import InputError
 from symfpu.numbers.typed import exact, rational, seed_modes
 
@@ -71,31 +73,37 @@ def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, 
     return shifts
 
 
-def frequency_shift_formula(chain: Chain, seeds: Sequence[int]) -> dict[int, Any]:
+def frequency_shift_formula(chain: Chain, seeds: Sequence[int | str]) -> dict[int, Any]:
     """omega_q - Omega_q of every seed to lowest order, as expressions in Omega_q, A{q}.
 
     chain : its exact couplings stand in the formulas.
-    seeds : distinct modes, whose amplitudes A{q} are symbols; all is dimensionless.
+    seeds : distinct modes, whose amplitudes A{q} are symbols; all is dimensionless. Where N is a
+        symbol also 'N-1', 'N-2', ...; the formulas then hold from some N on, where the modes are
+        none of the special ones but for q + n = N.
 
     Returns expressions by seed, the closed form (ours) of the lowest terms of Eq. omeser, whose
     numbers `frequency_shift` gives. Raises InputError for modes outside the chain or repeated.
 
     >>> frequency_shift_formula(Chain(N=12, alpha=1, beta="2/3"), (1, 5))
     {1: (1/24)*A1**2*Omega_1, 5: (1/24)*A5**2*Omega_5}
+    >>> frequency_shift_formula(Chain("N", beta=1), (1,))
+    {1: (9/16)*A1**2*Omega_1**3/N}
     """
-    modes = seed_modes(seeds, chain.N)
-    quadratic = rational(chain.alpha**2) / (2 * chain.N)
-    cubic = rational(chain.beta) / (2 * chain.N)
+    symbolic = chain.symbolic
+    modes = seed_labels(seeds) if symbolic else seed_modes(seeds, chain.N)
+    length = se.Symbol("N") if symbolic else chain.N
+    quadratic = rational(chain.alpha**2) / (2 * length)
+    cubic = rational(chain.beta) / (2 * length)
     formulas = {}
     for q in modes:
         terms = []
         for n in modes:
-            (a, b), c = shift_coefficients(chain.N, q, n)
-            square = se.Symbol(f"Omega_{n}") ** 2
+            # labels of modes count N as 0
+            (a, b), c = shift_coefficients(0 if symbolic else chain.N, q, n)
+            square = linear_symbol(n) ** 2
             by_alpha = quadratic * (rational(a) + rational(b) * square)
             by_beta = cubic * rational(c) * square
-            amplitude = se.Symbol(f"A{n}")
-            frequency = se.Symbol(f"Omega_{q}")
-            terms.append(se.expand((by_alpha + by_beta) * amplitude**2 * frequency))
+            shift = (by_alpha + by_beta) * amplitude_symbol(n) ** 2 * linear_symbol(q)
+            terms.append(se.expand(shift))
         formulas[q] = se.Add(*terms)
     return formulas

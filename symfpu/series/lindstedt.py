@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import Number, integer, seed_modes
+from symfpu.series.all_lengths import series_for_all_lengths
 from symfpu.series.arguments import digits_of, frequencies_of
 from symfpu.series.fixed_point import fixed_point_series
 from symfpu.series.memory import check_size
@@ -16,10 +17,13 @@ from symfpu.series.recursion import named_series
 from symfpu.series.rings import BY_NAME, RINGS, Frequencies
 from symfpu.series.series import LindstedtSeries
 
+UNIVERSAL = tuple(name for name in BY_NAME if not RINGS[name].numeric)
+ADVICE = "put a number for N: chain.at(N=32)"
+
 
 def lindstedt(
     chain: Chain,
-    seeds: Sequence[int],
+    seeds: Sequence[int | str],
     frequencies: Sequence[Number] | None = None,
     order: int = 0,
     *,
@@ -31,8 +35,10 @@ def lindstedt(
 
     The series are those of Eqs. qser and omeser.
 
-    chain : the model; frequencies, amplitudes and times are in its units, dimensionless.
-    seeds : distinct modes D_0.
+    chain : the model; frequencies, amplitudes and times are in its units, dimensionless. With
+        Chain("N", ...) the universal series of every N at once: valid_from is the N from which it
+        holds, at_length(N) that of one chain.
+    seeds : distinct modes D_0; where N is a symbol also 'N-1', 'N-2', ...
     frequencies : omega_q of each seed, exact numbers, shape (s,); a float is read by its shortest
         decimal, so 0.33 is exactly 33/100. None gives the universal form with symbols L_q(nu).
     order : K of the coordinates and of the frequency corrections, from 0 up; order k has degree
@@ -53,6 +59,11 @@ def lindstedt(
     >>> series.coordinates[1][-1, 1], series.coordinates[1][-1, 0]
     (-L_{2}(2), 0)
     """
+    require_chain(chain)
+    if chain.symbolic:
+        ring = ring or "symbolic"
+        _refuse_numbers(frequencies, digits, ring)
+        return series_for_all_lengths(chain, seeds, order, ring, progress)
     seeds = seed_modes(seeds, chain.N)
     order = integer(order, "order", 0)
     exact_frequencies = None if frequencies is None else frequencies_of(frequencies, seeds)
@@ -70,6 +81,16 @@ def lindstedt(
     check_size(chain, seeds, order, ring)
     space = monomial_space(chain, seeds, order)
     return named_series(RINGS[ring], chain, space, exact_frequencies, order, progress)
+
+
+def _refuse_numbers(frequencies: object, digits: int | None, ring: str) -> None:
+    """What has no meaning while N is a symbol."""
+    given = {"frequencies": frequencies, "digits": digits}
+    for name, value in given.items():
+        if value is not None:
+            raise InputError(name, value, "none while N is a symbol", ADVICE)
+    if ring not in UNIVERSAL:
+        raise InputError("ring", ring, f"one of {', '.join(UNIVERSAL)} while N is a symbol", ADVICE)
 
 
 def _require_no_ring(ring: str | None) -> None:
