@@ -57,6 +57,7 @@ from symfpu.proofs.sweeps import Sweep, SweepCase, SweepIncomplete
 from symfpu.proofs.verify import CertificateError
 from symfpu.refinement.tori import NoTorus, refine
 from symfpu.series.lindstedt import lindstedt
+from symfpu.series.sample import sample_series
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.at_energy import NoTorusAtEnergy, torus_at_energy
 from symfpu.tori.frequencies import NoSelfConsistentFrequencies, torus_at_amplitudes
@@ -184,6 +185,9 @@ RESULTS = {
     "GrowthExponents": (lambda _: growth(), lambda x: x.groups),
     **{f"LindstedtSeries, {kind}": (partial(series_of, kind), repr) for kind in SERIES},
     "LeadingTerm": (lambda _: leading_terms(PAIR, (1, 2), 3)[5], lambda x: x.expression()),
+    "SampledSeries": (lambda _: sampled(), lambda x: (x.coordinates, x.derivatives_by_frequency(1)[1])),
+    "FrequencyChanges": (lambda _: sampled().frequencies_at([0.1]), lambda x: x.by_frequencies),
+    "NamedParts": (lambda _: lindstedt(PAIR, (1,), order=4).term(5, 4, form="cse"), lambda x: str(x.whole())),
     "SeriesForAllN": (lambda _: lindstedt(Chain("N", alpha=1), (1, "N-1"), order=2), lambda x: (repr(x), str(x.term(2, 1)))),
     "LindstedtSeries, asked": (lambda _: torus(30).series, terms),
     "Member": (lambda _: breathers().members[0], lambda x: (x.multipliers.stable, motion(x.torus))),
@@ -279,6 +283,10 @@ def no_torus_at_energy():
 @cache
 def no_frequencies():
     return caught(NoSelfConsistentFrequencies, torus_at_amplitudes, Chain(8, beta=-1), {3: 10}, 1)
+
+
+def sampled():
+    return sample_series(lindstedt(PAIR, (1,), order=3), [[0.39], [0.4]])
 
 
 ERRORS = {

@@ -31,15 +31,25 @@ Tables = tuple[Floats, ...]
 class FrequencyChanges:
     """The frequencies that amplitudes give, and their derivatives, at each of P points.
 
-    Made by `SampledSeries.frequencies_at`; dimensionless.
+    Made by `SampledSeries`; dimensionless. Ours.
 
-    omega : Omega_q + sum mu^k omega_q^(k) of every seed, (P, s). by_amplitudes : d omega_i /
-    d A_j, (P, s, s). by_frequencies : d omega_i / d omega_j through the divisors, (P, s, s).
+    omega : Omega_q + sum mu^k omega_q^(k) of every seed (Eq. omeser), (P, s). by_amplitudes :
+        d omega_i / d A_j, (P, s, s). by_frequencies : d omega_i / d omega_j through the divisors,
+        (P, s, s).
+
+    >>> from symfpu import Chain, lindstedt, sample_series
+    >>> series = lindstedt(Chain(N=8, beta=1), (1,), order=1)
+    >>> sample_series(series, [[0.4], [0.41]]).frequencies_at([0.1])
+    FrequencyChanges(2 points, omega of the first 0.39022241...)
     """
 
     omega: Floats
     by_amplitudes: Floats
     by_frequencies: Floats
+
+    def __repr__(self) -> str:
+        first = ", ".join(f"{w:.12g}" for w in self.omega[0])
+        return f"FrequencyChanges({len(self.omega)} points, omega of the first {first})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +57,18 @@ class SampledSeries:
     """A universal series at P points: tables of numbers with the point as last axis.
 
     Made by `sample_series`; dimensionless. Variables and factors are those of `LindstedtSeries`
-    with unit 1: u_q = Omega_q Q_q in w_i = Omega_i z_i, without mu.
+    with unit 1: u_q = Omega_q Q_q in w_i = Omega_i z_i, without mu (Eqs. qser, omeser).
 
     series : the universal one. frequencies : (P, s). relative : the second coupling in units of
-    the first, (P,); ones where there is none.
+        the first, (P,); ones where there is none. values : of all nodes, (nodes, P).
+
+    >>> from symfpu import Chain, lindstedt, sample_series
+    >>> sampled = sample_series(lindstedt(Chain(N=8, alpha=1), (1,), order=2), [[0.4], [0.41]])
+    >>> sampled
+    SampledSeries(2 points of LindstedtSeries(N=8, alpha=1, seeds=1, order 2, ...))
+    >>> tables, _ = sampled.derivatives_by_frequency(1)
+    >>> tables[2].shape
+    (2, 7, 2)
     """
 
     series: LindstedtSeries
@@ -79,7 +97,10 @@ class SampledSeries:
         return tuple(found[:count]), tuple(found[count:])
 
     def derivatives_by_frequency(self, q: int) -> tuple[Tables, Tables]:
-        """Derivatives of `coordinates` and of `corrections` by omega_q of a seed."""
+        """Derivatives of `coordinates` and of `corrections` by omega_q.
+
+        q : a seed; InputError for other modes.
+        """
         return self._tables(self._by_frequency[self._place(q)])
 
     def derivatives_by_coupling(self) -> tuple[Tables, Tables]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -47,11 +47,18 @@ Floats = NDArray[np.float64]
 FORMS = ("expanded", "factored", "cse")
 
 
-class NamedParts(NamedTuple):
+@dataclass(frozen=True)
+class NamedParts:
     """An expression whose shared parts have names.
 
-    Made by `LindstedtSeries.term`. names : pairs (name, expression), each after its parts.
-    expression : in these names.
+    Made by `LindstedtSeries.term` with form="cse"; dimensionless. Ours.
+
+    names : pairs (name, expression), each after its parts. expression : in these names.
+
+    >>> from symfpu import Chain, lindstedt
+    >>> parts = lindstedt(Chain(N=8, alpha=1), (1,), order=4).term(5, 4, form="cse")
+    >>> parts
+    NamedParts(names=((x0, ...), (x1, ...), (x2, ...), (x3, ...)), expression=...)
     """
 
     names: tuple[tuple[Any, Any], ...]
