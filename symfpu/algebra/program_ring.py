@@ -16,11 +16,34 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.expansion import Expansion
 from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
+from symfpu.algebra.grading import monomial_count
 from symfpu.algebra.program import ONE, ZERO, Ints, Program, Terms
 from symfpu.algebra.selection import CosineModes
 from symfpu.errors import TooLarge
 
 TERM_BYTES = 400  # of a pair of cosines while its two terms are sorted and collected, at most
+
+
+STORED_BYTES, SORTED_BYTES = 20, 100  # of a pair of cosines, fitted to what programs take
+
+
+def predicted_bytes(N: int, seeds: int, top: int, step: int, *, cubic: bool) -> int:
+    """Memory of a program up to degree `top`, by the pairs of cosines that it multiplies.
+
+    step : from one degree of the series to the next. A monomial of degree d is taken to carry as
+    many modes as it has signed sums, at most half of all. Nothing is allocated but vectors of
+    degrees; between one and six times what was measured.
+    """
+    degrees = np.arange(top + 1)
+    monomials = np.array([float(monomial_count(seeds, d)) for d in degrees.tolist()])
+    carried = np.minimum(N // 2 + 1, (degrees / seeds + 1.0) ** seeds)
+    sizes = monomials * carried
+    series = np.where((degrees % step == 1 % step) & (degrees > 0), sizes, 0.0)
+    pairs = np.convolve(series, series)[: top + 1] / 4  # canonical products, each pair once
+    if cubic:
+        squares = np.where(pairs > 0, sizes, 0.0)
+        pairs = pairs + np.convolve(squares, series)[: top + 1] / 2
+    return int(STORED_BYTES * pairs.sum() + SORTED_BYTES * pairs.max())
 
 
 class _Cosines(NamedTuple):

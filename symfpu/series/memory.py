@@ -7,6 +7,7 @@ import math
 import psutil
 
 from symfpu.algebra.dense import predicted_bytes
+from symfpu.algebra.program_ring import predicted_bytes as program_bytes
 from symfpu.algebra.residue import PRIME_BITS
 from symfpu.chain.chain import Chain
 from symfpu.errors import TooLarge
@@ -17,6 +18,7 @@ EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60
 # series in doubles that the stages before and after a fixed-point series hold, with their radii
 OTHER_STAGES = 6
 CONSTANT_BYTES = 2**24
+PROGRAMS = ("symbolic", "nested")
 
 
 def check_size(
@@ -41,4 +43,7 @@ def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int
         bits_of_products = (digits + guard) / LOG10_2 * 2
         primes = math.ceil(bits_of_products / (PRIME_BITS - 2))
         return CONSTANT_BYTES + size * (primes + OTHER_STAGES)
+    if ring in PROGRAMS:
+        step, cubic = chain.degree_step, chain.beta != 0
+        return size + program_bytes(chain.N, seeds, degree, step, cubic=cubic)
     return size
