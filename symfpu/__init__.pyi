@@ -14,6 +14,11 @@ from symfpu.chain.propagation import excitation_sequence as excitation_sequence
 from symfpu.chain.propagation import reachable_modes as reachable_modes
 
 # series
+from symfpu.series.closed_forms import closed_form as closed_form
+from symfpu.series.closed_forms import collect_terms as collect_terms
+from symfpu.series.closed_forms import same_series as same_series
+from symfpu.series.closed_forms import substitute_multipliers as substitute_multipliers
+from symfpu.series.frequency_expansion import frequency_expansion as frequency_expansion
 from symfpu.series.lindstedt import lindstedt as lindstedt
 from symfpu.series.sample import FrequencyChanges as FrequencyChanges
 from symfpu.series.sample import SampledSeries as SampledSeries

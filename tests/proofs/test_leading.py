@@ -2,11 +2,13 @@
 
 from itertools import combinations, permutations, product
 
+import numpy as np
 import pytest
 import symengine as se
 
 import symfpu.proofs.leading
-from symfpu.algebra.formulas import multiplier_symbol
+from symfpu.algebra.formulas import expressions, multiplier_symbol
+from symfpu.algebra.program_values import terms_of
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import coupling_sequence, excitation_sequence
 from symfpu.errors import InputError
@@ -349,3 +351,33 @@ def test_bad_input(call, argument):
     with pytest.raises(InputError) as caught:
         call()
     assert caught.value.argument == argument
+
+
+@pytest.mark.parametrize(
+    ("couplings", "seeds", "order"), [({"alpha": 1}, (1,), 4), ({"alpha": 1}, (1, 2), 3), ({"beta": 1}, (1, 2), 2)], ids=str
+)
+def test_kernels_are_nodes_of_the_program(couplings, seeds, order):
+    """u_q^(k)[nu] is one product in the program, L_q(nu) times a node: that node is the sum of the K_q^(k) of Eqs. Kkga, Kk."""
+    chain = Chain(25, **couplings)
+    series = lindstedt(chain, seeds, order=order, ring="nested")
+    program, compared = series.coordinates[0].program, 0
+    for q, term in leading_terms(chain, seeds, order).items():
+        table = series.coordinates[term.order]
+        rows = series.grading.exponents(series.degree(term.order))[series.grading.canonical(series.degree(term.order))]
+        for row, node in zip(rows.tolist(), table.nodes[:, q - 1].tolist(), strict=True):
+            if node < 0:
+                assert tuple(row) not in term.kernels
+                continue
+            ((left, right, factor),) = terms_of(program, node)
+            (leaf,) = {left, right} & set(program.leaves)
+            bracket = left + right - leaf
+            nu = tuple(p - n for p, n in zip(row[::2], row[1::2], strict=True))
+            symbol = program.symbols[program.leaf_number(leaf)]
+            assert symbol.mode == q
+            assert symbol.harmonic in (nu, tuple(-n for n in nu))
+            blocks = set(permutations([(seeds[i // 2], 1 - 2 * (i % 2)) for i, e in enumerate(row) for _ in range(e)]))
+            kernels = sum(leading_kernel(chain, seeds, q, *zip(*block, strict=True)) for block in blocks)
+            (value,) = expressions(program, np.array([bracket]), expanded=True)
+            assert se.expand(factor * value - (-1) ** term.order * kernels) == 0
+            compared += 1
+    assert compared > order

@@ -1,0 +1,404 @@
+"""The frequencies as functions of the amplitudes alone, in closed form.
+
+The paper's omega_q^(k) have the chosen frequencies in their divisors. Put omega = Omega + ... into
+them again and again, and the divisors have linear frequencies: what is left is the expansion of
+classical perturbation theory, the derivatives of Birkhoff's normal form. With x_i = q_i pi / 2N
+and the mode m of a signed sum j.q of the seeds, Omega_m^2 = 2 - 2 cos(2 j.x) for every m, folded
+or not. So each coefficient is a rational function of Omega_1 = 2 sin x_1, Omega_2 = 2 sin x_2 and
+    rho = sin 2x_1 sin 2x_2,    rho^2 = W_1 W_2 (4 - W_1)(4 - W_2) / 16,    W_i = Omega_i^2,
+exactly. rho and odd powers of Omega_1 Omega_2 drop out for seeds in general position, because the modes of
+j and of j with one sign changed come with the same harmonics.
+
+Two seeds are special at order k where a signed sum j.q of as many seeds as the degree is, and no
+sum for all seeds, is a multiple of N, so that its mode is missing, or the seed of the secular
+harmonic: then the formula is written in Omega_q of all modes, as the chain's own recursion has
+them. Else the formula of seeds in general position is right, also where the modes of two
+different j coincide: with linear frequencies in all divisors each mode is driven linearly.
+Ours; at lowest order it is `frequency_shift_formula`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import pairwise, product
+from math import prod
+from typing import Any
+
+import numpy as np
+import symengine as se
+
+from symfpu.algebra.formulas import Multiplier, NodeTable
+from symfpu.algebra.program_values import ancestors, values_in
+from symfpu.algebra.selection import fold
+from symfpu.chain.chain import Chain
+from symfpu.chain.length import mode_label, mode_of
+from symfpu.chain.symbols import amplitude_symbol, linear_symbol
+from symfpu.errors import InputError
+from symfpu.numbers.typed import integer
+from symfpu.series.all_lengths import SeriesForAllN, reach
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.power_series import PowerSeries
+from symfpu.series.series import LindstedtSeries
+
+MOST_SEEDS = 2
+
+
+def frequency_expansion(chain: Chain, seeds: Sequence[int | str], q: int | str, order: int) -> Any:
+    """omega_q^(k) with linear frequencies in all divisors, as a closed formula, without mu^k.
+
+    omega_q = Omega_q + sum_k mu^k omega_q^(k)(A), dimensionless: the frequency as a function of
+    the amplitudes alone, as Eq. omeser gives it when its divisors are expanded too. For the alpha
+    model k = 2 and 4 are the first corrections, for beta k = 1 and 2.
+
+    chain : alpha, beta or both; any N, or "N" for all large ones. seeds : one or two modes D_0.
+    q : one of them. order : k, from 0 up.
+
+    Returns a SymEngine expression in A_q and Omega_q of the seeds, a polynomial in the squares of
+    the amplitudes with rational functions of Omega_q^2 in front; two seeds in special position,
+    at the lowest order those with the sum N, bring in Omega_m of further modes.
+    It has no value where linear frequencies of the chain resonate. Differs from the paper's
+    omega_q^(k), whose divisors hold the chosen frequencies: that is
+    `LindstedtSeries.frequency_correction`. Ours.
+    Raises InputError for more seeds, modes outside the chain, or an order below 0.
+
+    >>> frequency_expansion(Chain("N", alpha=1), (1,), 1, 2)
+    (1/4)*A1**2*(4*Omega_1 - 3*Omega_1**3)
+    >>> frequency_expansion(Chain(N=32, beta=1), (5,), 5, 1)
+    (9/8)*A5**2*Omega_5**3
+    """
+    order = integer(order, "order", 0)
+    start = lindstedt(chain, seeds, order=0, ring="nested")
+    if len(start.seeds) > MOST_SEEDS:
+        allowed = f"at most {MOST_SEEDS} for a closed form"
+        raise InputError("seeds", start.seeds, allowed, "see LindstedtSeries.frequency_correction")
+    place = start.seeds.index(_seed(start, q))
+    if order == 0:
+        return linear_symbol(start.seeds[place])
+    degree = chain.degree_step * order
+    N, modes = _representative(start, order)
+    if not _is_special(N, modes, degree):
+        apart = (1, 2 * degree + 1)[: len(modes)]
+        every = Chain("N", chain.alpha, chain.beta)
+        series = lindstedt(every, apart, order=order, ring="nested")
+        return _Closed(series, start.seeds).formula(place, order)
+    series = lindstedt(chain, start.seeds, order=order, ring="nested")
+    kind = _Closed if len(modes) == 1 else _InAllModes
+    return kind(series, start.seeds).formula(place, order)
+
+
+def _seed(series: LindstedtSeries, q: int | str) -> int:
+    """A seed as the series has it; InputError for what is none."""
+    label = mode_label(q, "q")
+    if label not in series.seeds:
+        allowed = f"a seed, one of {series.seeds}"
+        raise InputError("q", q, allowed, "only seeds have frequency corrections")
+    return label
+
+
+def _representative(series: LindstedtSeries, order: int) -> tuple[int, tuple[int, ...]]:
+    """N, or a large one, and the seeds as modes of that chain."""
+    chain = series.chain
+    N = chain.N
+    if chain.symbolic:
+        N = 1 + sum(reach(chain.degree_step, series.seeds, order))
+    return N, tuple(mode_of(q, N) for q in series.seeds)
+
+
+def _is_special(N: int, modes: Sequence[int], degree: int) -> bool:
+    """Whether a signed sum of the seeds, that is none for all seeds, is a mode that is none or a seed.
+
+    j.q = 0 modulo N with j other than 0; or j.q = +-q_i modulo 2N where j has the parities of e_i
+    and is not +-e_i, so that its mode can carry the secular harmonic of q_i.
+    """
+    units = np.eye(len(modes), dtype=np.int64)
+    for j in product(range(-degree, degree + 1), repeat=len(modes)):
+        if not 0 < sum(map(abs, j)) <= degree:
+            continue
+        total = sum(n * q for n, q in zip(j, modes, strict=True))
+        if total % N == 0:
+            return True
+        for unit, q in zip(units, modes, strict=True):
+            secular = fold(total, N) == q and not ((unit - j) % 2).any()
+            if secular and (np.abs(j) != unit).any():
+                return True
+    return False
+
+
+class _Element:
+    """a + b rho over a field of rational functions."""
+
+    __slots__ = ("a", "b", "square")
+
+    def __init__(self, a: Any, b: Any, square: Any) -> None:
+        self.a, self.b, self.square = a, b, square
+
+    def __bool__(self) -> bool:
+        return bool(self.a) or bool(self.b)
+
+    def _with(self, a: Any, b: Any) -> _Element:
+        return _Element(a, b, self.square)
+
+    def __add__(self, other: Any) -> _Element:
+        if isinstance(other, _Element):
+            return self._with(self.a + other.a, self.b + other.b)
+        return self._with(self.a + other, self.b)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> _Element:
+        return self._with(-self.a, -self.b)
+
+    def __sub__(self, other: Any) -> _Element:
+        return self.__add__(-other)
+
+    def __mul__(self, other: Any) -> _Element:
+        if not isinstance(other, _Element):
+            return self._with(self.a * other, self.b * other)
+        if not self.b and not other.b:
+            return self._with(self.a * other.a, self.b)
+        a = self.a * other.a + self.b * other.b * self.square
+        return self._with(a, self.a * other.b + self.b * other.a)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, number: int) -> _Element:
+        return self._with(self.a / number, self.b / number)
+
+    def __rtruediv__(self, number: int) -> _Element:
+        norm = self.a * self.a
+        if self.b:
+            norm = norm - self.b * self.b * self.square
+        return self._with(number * self.a / norm, -number * self.b / norm)
+
+
+class _Expanded:
+    """The recursion's nodes with divisors expanded in mu, over a field that subclasses choose.
+
+    series : universal. names : of its seeds in the formula. one : of the field. linear : Omega_q
+    of the seeds.
+    """
+
+    one: Any
+    linear: Sequence[Any]
+
+    def __init__(self, series: LindstedtSeries, names: Sequence[int]) -> None:
+        self.series, self.seeds, self.names = series, series.seeds, names
+
+    def linear_square(self, q: int) -> Any:
+        """Omega_q^2 of any mode."""
+        raise NotImplementedError
+
+    def expression(self, value: Any) -> Any:
+        """An element of the field as an expression."""
+        raise NotImplementedError
+
+    def _frequencies(self) -> dict[tuple[int, ...], list[PowerSeries]]:
+        """omega_i / Omega_i as series in mu, at A_1^2 = 1 and several A_2^2."""
+        order = self.series.order
+        points: list[tuple[int, ...]] = [(1,)]
+        if len(self.seeds) == MOST_SEEDS:
+            points = [(1, t) for t in range(order * self.series.chain.degree_step // 2 + 1)]
+        return {point: self._at(point) for point in points}
+
+    def _at(self, point: tuple[int, ...]) -> list[PowerSeries]:
+        """At these squared amplitudes."""
+        order, one = self.series.order, self.one
+        roots = [PowerSeries([one]) for _ in self.seeds]
+        for k in range(1, order + 1):
+            squares = self._squared(roots, point, k)
+            roots = [square.root() for square in squares]
+        return roots
+
+    def _squared(
+        self, roots: Sequence[PowerSeries], point: Sequence[int], order: int
+    ) -> list[PowerSeries]:
+        """(omega_i / Omega_i)^2 to an order, from frequencies to the order before."""
+        sums = [[self.one, *[self.one * 0] * order] for _ in self.seeds]
+        for k in range(1, order + 1):
+            table = self.series.corrections[k]
+            if not len(table):
+                continue
+            # W^(k) enters with mu^k, and needs its divisors to mu^(order - k)
+            cut = [root.cut(order - k + 1) for root in roots]
+            values = self._values(table, cut)
+            monomials = self._monomials(k, point)
+            for i, column in enumerate(values.T):
+                for value, monomial in zip(column, monomials, strict=True):
+                    for n, c in enumerate(_coefficients(value)):
+                        sums[i][k + n] = sums[i][k + n] + c * monomial
+        return list(map(PowerSeries, sums))
+
+    def _monomials(self, order: int, point: Sequence[int]) -> list[Any]:
+        """The products of |w_i|^2 = W_i A_i^2 / 4 of the rows of a table of corrections."""
+        diagonal = self.series.grading.diagonal(self.series.chain.degree_step * order)
+        found = []
+        for row in diagonal.tolist():
+            value = self.one
+            for e, linear, square in zip(row, self.linear, point, strict=True):
+                value = prod([linear * linear * square / 4] * e, start=value)
+            found.append(value)
+        return found
+
+    def _values(self, table: NodeTable, roots: Sequence[PowerSeries]) -> Any:
+        program = table.program
+        needed = set(ancestors(program, table.nodes.ravel()).tolist())
+        leaves: list[Any] = []
+        for leaf, symbol in zip(program.leaves, program.symbols, strict=True):
+            if leaf not in needed:
+                leaves.append(None)
+            elif isinstance(symbol, Multiplier):
+                leaves.append(self._multiplier(symbol, roots))
+            else:
+                assert isinstance(symbol, Fraction)
+                number = self.one * symbol.numerator / symbol.denominator
+                leaves.append(PowerSeries([number, *[0] * (len(roots[0]) - 1)]))
+        return values_in(program, leaves, table.nodes)
+
+    def _multiplier(self, symbol: Multiplier, roots: Sequence[PowerSeries]) -> PowerSeries:
+        """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2)."""
+        drive: Any = None
+        for n, linear, root in zip(symbol.harmonic, self.linear, roots, strict=True):
+            part = root * (n * linear)
+            drive = part if drive is None else drive + part
+        square = self.linear_square(symbol.mode)
+        base = PowerSeries([square, *[0] * (len(drive) - 1)])
+        if symbol.mode in self.seeds:
+            own = roots[self.seeds.index(symbol.mode)]
+            base = own * own * square
+        divisor: PowerSeries = base - drive * drive
+        multiplier: PowerSeries = divisor.inverse() * square
+        return multiplier
+
+    def formula(self, place: int, order: int) -> Any:
+        """omega^(k) of a seed as an expression."""
+        values = [roots[place].coefficients[order] for roots in self._frequencies().values()]
+        scaled = [value * self.linear[place] for value in values]
+        half = order * self.series.chain.degree_step
+        if half % 2:
+            return se.Integer(0)
+        A = [amplitude_symbol(q) ** 2 for q in self.names]
+        if len(A) == 1:
+            (value,) = scaled
+            return self.expression(value) * A[0] ** (half // 2)
+        terms = []
+        for e, value in enumerate(_interpolated(scaled)[: half // 2 + 1]):
+            terms.append(self.expression(value) * A[0] ** (half // 2 - e) * A[1] ** e)
+        return se.Add(*terms)
+
+
+class _InAllModes(_Expanded):
+    """In Omega_q of all modes, as they come."""
+
+    def __init__(self, series: LindstedtSeries, names: Sequence[int]) -> None:
+        super().__init__(series, names)
+        self.one, self.linear = se.Integer(1), list(map(linear_symbol, self.seeds))
+
+    def linear_square(self, q: int) -> Any:
+        """The square of its symbol."""
+        return linear_symbol(q) ** 2
+
+    def expression(self, value: Any) -> Any:
+        """It is one."""
+        return value
+
+
+class _Closed(_Expanded):
+    """Over the rational functions of Omega_1, Omega_2, and rho."""
+
+    def __init__(self, series: LindstedtSeries, names: Sequence[int]) -> None:
+        from sympy import QQ, symbols  # lazy: it takes long to import
+
+        super().__init__(series, names)
+        self.field = QQ.frac_field(*symbols([f"Omega_{i}" for i in range(len(names))]))
+        squares = [x * x for x in self.field.gens]
+        sines = [w * (4 - w) / 4 for w in squares]  # squared, of twice the angles
+        self._square_of_rho = prod(sines, start=self.field.one)
+        self._cosines = [_chebyshev(1 - w / 2, self.degree) for w in squares]
+        self.one = self._element(self.field.one, self.field.zero)
+        self.linear = [self.one * x for x in self.field.gens]
+        self._sums = self._signed_sums()
+
+    @property
+    def degree(self) -> int:
+        """Of the longest products of seeds."""
+        return self.series.degree(self.series.order)
+
+    def _element(self, a: Any, b: Any) -> _Element:
+        return _Element(a, b, self._square_of_rho)
+
+    def _signed_sums(self) -> dict[int, tuple[int, ...]]:
+        """For each mode j with j.q that mode: the shortest."""
+        series = self.series
+        N = series.valid_from if isinstance(series, SeriesForAllN) else series.chain.N
+        numbers = [mode_of(q, N) for q in self.seeds]
+        found: dict[int, tuple[int, ...]] = {}
+        span = range(-self.degree, self.degree + 1)
+        for j in sorted(product(span, repeat=len(numbers)), key=lambda j: sum(map(abs, j))):
+            if sum(map(abs, j)) <= self.degree:
+                total = sum(n * m for n, m in zip(j, numbers, strict=True))
+                found.setdefault(fold(total, N), j)
+        names = getattr(series, "modes", range(1, N))
+        return {q: found[mode_of(q, N)] for q in names if mode_of(q, N) in found}
+
+    def linear_square(self, q: int) -> _Element:
+        """Omega_q^2 = 2 - 2 cos(2 j.x)."""
+        j = self._sums[q]
+        cosine, second = self.field.one, []
+        for (first_kind, second_kind), n in zip(self._cosines, j, strict=True):
+            cosine = cosine * first_kind[abs(n)]
+            kind = second_kind[abs(n) - 1] if n else self.field.zero
+            second.append(kind if n >= 0 else -kind)
+        sines = prod(second) if len(second) == MOST_SEEDS else self.field.zero
+        return self._element(2 - 2 * cosine, 2 * sines)
+
+    def expression(self, value: _Element) -> Any:
+        """In the symbols Omega_q; rho is Omega_1 Omega_2 sqrt(4 - W_1) sqrt(4 - W_2) / 4."""
+        linear = [linear_symbol(q) for q in self.names]
+        first, second = (_rational(part, linear) for part in (value.a, value.b))
+        rho = se.Mul(*linear, *(se.sqrt(4 - x**2) for x in linear)) / 4
+        return first + second * rho
+
+
+def _coefficients(value: Any) -> list[Any]:
+    """Of a series; of a plain number, or of nothing, one."""
+    return value.coefficients if isinstance(value, PowerSeries) else [value]
+
+
+def _chebyshev(c: Any, degree: int) -> tuple[list[Any], list[Any]]:
+    """T_0 .. T_degree and U_0 .. U_degree at c."""
+    first, second = [c * 0 + 1, c], [c * 0 + 1, 2 * c]
+    for _ in range(degree):
+        first.append(2 * c * first[-1] - first[-2])
+        second.append(2 * c * second[-1] - second[-2])
+    return first, second
+
+
+def _interpolated(values: Sequence[Any]) -> list[Any]:
+    """Coefficients of the polynomial with these values at 0, 1, 2, ..., by Newton's differences."""
+    differences, rest = [], list(values)
+    for k in range(len(values)):
+        differences.append(rest[0])
+        rest = [(b - a) / (k + 1) for a, b in pairwise(rest)]
+    found: list[Any] = [differences.pop()]
+    for k in reversed(range(len(differences))):
+        # times (t - k), plus the next difference
+        lowered = [*(-k * c for c in found), 0]
+        raised = [differences[k], *found]
+        found = [a + b for a, b in zip(raised, lowered, strict=True)]
+    return found
+
+
+def _rational(value: Any, symbols: Sequence[Any]) -> Any:
+    """A rational function as an expression."""
+    top, bottom = (_polynomial(part, symbols) for part in (value.numer, value.denom))
+    return top / bottom
+
+
+def _polynomial(value: Any, symbols: Sequence[Any]) -> Any:
+    terms = []
+    for powers, number in value.terms():
+        ratio = se.Integer(int(number.numerator)) / se.Integer(int(number.denominator))
+        monomial = se.Mul(*(x**e for x, e in zip(symbols, powers, strict=True)))
+        terms.append(ratio * monomial)
+    return se.Add(*terms)
