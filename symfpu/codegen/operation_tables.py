@@ -26,7 +26,7 @@ from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 from symfpu.series.series import LindstedtSeries
 
-LARGEST_FILE = 50_000_000  # bytes of tables as text: half a minute of compiling
+LARGEST_FILE = 50_000_000  # bytes of tables as text: minutes of compiling
 
 NODE_OF_ZERO = 0
 NODE_OF_ONE = 1
@@ -46,7 +46,8 @@ class Operations:
     left, right, factor : of the terms, (T,). levels : sums levels[v] to levels[v+1] need sums of
     earlier levels only, (V+1,). signs, frequency_signs : of mu^k for every row of powers and of
     powers of the frequencies. order_starts : order k of the frequencies has the rows
-    order_starts[k-1] to order_starts[k], (K+1,). linear : Omega_q of every mode, (N-1,).
+    order_starts[k-1] to order_starts[k], (K+1,); one order without a row where there is none.
+    linear : Omega_q of every mode, (N-1,).
     weights : 1 / (kappa Omega_q), which take scaled coordinates to Q_q, (N-1,). kappa : the
     factor |mu|^(1/step) of amplitudes as an expression of mpmath.
     """
@@ -113,7 +114,7 @@ def operation_tables(
         levels=levels,
         signs=_signs(series.chain, orders[first]),
         frequency_signs=_signs(series.chain, frequency_orders),
-        order_starts=np.searchsorted(frequency_orders, np.arange(1, frequency_order + 2)),
+        order_starts=np.searchsorted(frequency_orders, np.arange(1, max(1, frequency_order) + 2)),
         linear=linear,
         weights=weights,
         kappa=_kappa_expression(series.chain),

@@ -115,7 +115,7 @@ def _refuse_residues(series: LindstedtSeries) -> None:
 def _refuse_derivatives(derivatives: bool) -> None:
     if derivatives:
         allowed = "a series in universal form, whose frequencies are parameters"
-        raise InputError("derivatives", "True", allowed, "make it by lindstedt without frequencies")
+        raise InputError("derivatives", True, allowed, "make it by lindstedt without frequencies")
 
 
 def series_facts(
