@@ -40,6 +40,13 @@ def export(
         str | None,
         typer.Option(help="With --series: order of omega(A).  Default: all.", metavar="K"),
     ] = None,
+    derivatives: Annotated[
+        bool,
+        typer.Option(
+            "--derivatives",
+            help="With --series, in universal form: derivatives by the frequencies too.",
+        ),
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
     """Source code of a torus, or of a series with free amplitudes.
@@ -62,6 +69,7 @@ def export(
             target,
             order=optional("order", order),
             frequency_order=optional("frequency-order", frequency_order),
+            derivatives=derivatives,
             force=force,
             command=shlex.join(["symfpu", *context.obj]),
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import keyword
 import re
+from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -46,6 +47,7 @@ def export(
     *,
     order: int | None = None,
     frequency_order: int | None = None,
+    derivatives: bool = False,
     force: bool = False,
     command: str | None = None,
 ) -> Path:
@@ -62,12 +64,14 @@ def export(
         extension may be left out.
     order, frequency_order : of a series only, where coordinates and frequencies are cut; default
         series.order.
+    derivatives : of a universal series only, by the frequencies, of Q, P and omega(A). It is then
+        written as tables of operations, as large ones are in any case.
     force : replace an existing file.
     command : what the header says made it.
 
     Raises InputError for an unknown language, a name that is no identifier, an existing file, an
-    order above the series' order or given for a torus, and a universal series too large for
-    straight-line code.
+    order above the series' order or given for a torus, derivatives of what is no universal series,
+    and a universal series whose operations do not fit into a file.
 
     >>> import tempfile
     >>> from symfpu.chain.chain import Chain
@@ -80,17 +84,18 @@ def export(
     file = _file(Path(path), chosen.extension, force)
     given = {"order": order, "frequency_order": frequency_order}
     orders = {key: value for key, value in given.items() if value is not None}
+    options: dict[str, Any] = {**orders, "derivatives": True} if derivatives else {**orders}
     facts = {
         "written by": f"symfpu {version('symfpu')}",
-        "made by": command or _call(solution, language, file, orders),
+        "made by": command or _call(solution, language, file, options),
     }
     if isinstance(solution, LindstedtSeries):
         facts |= series_facts(solution, **orders)
-        series = series_program(solution, file.stem, facts, **orders)
+        series = series_program(solution, file.stem, facts, **options)
         source = chosen.series(series)
     else:
         require_solution(solution, "solution")
-        _refuse_orders(orders)
+        _refuse_options(options)
         facts |= _orders(solution) | torus_facts(solution)
         torus = torus_program(solution, file.stem, facts)
         source = chosen.torus(torus)
@@ -122,17 +127,17 @@ def _file(path: Path, extension: str, force: bool) -> Path:
     return file
 
 
-def _call(solution: Any, language: str, file: Path, orders: dict[str, int]) -> str:
+def _call(solution: Any, language: str, file: Path, options: Mapping[str, Any]) -> str:
     """The call that makes this file, for its header."""
     kind = "series" if isinstance(solution, LindstedtSeries) else "torus"
-    keywords = [f"{key}={value}" for key, value in orders.items()]
+    keywords = [f"{key}={value}" for key, value in options.items()]
     words = [kind, repr(language), repr(file.name), *keywords]
     return f"symfpu.export({', '.join(words)})"
 
 
-def _refuse_orders(orders: dict[str, int]) -> None:
-    for key, value in orders.items():
-        allowed = "none for a torus, which has its orders"
+def _refuse_options(options: Mapping[str, Any]) -> None:
+    for key, value in options.items():
+        allowed = "none for a torus, which has its orders and frequencies"
         raise InputError(key, value, allowed, "export its series")
 
 

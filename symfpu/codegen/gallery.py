@@ -10,8 +10,9 @@ import hashlib
 import json
 import sys
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from symfpu.chain.chain import Chain
 from symfpu.codegen.export import LANGUAGES, export
@@ -117,7 +118,7 @@ def _written(
     name: str,
     solution: QTorus | LindstedtSeries,
     language: str,
-    orders: dict[str, int],
+    orders: Mapping[str, Any],
 ) -> Manifest:
     """Write one file; its entry of the manifest. orders : of a series."""
     file = f"{name}_mp" if language == "mpmath" else name  # NumPy has the same extension

@@ -10,16 +10,23 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 
 from symfpu.codegen.series_tables import (
     SeriesTables,
     series_frequencies,
     series_orbit,
+    series_tables,
 )
 from symfpu.codegen.torus_program import DOUBLE_DIGITS, EXTRA_DIGITS, texts
-from symfpu.numbers.arithmetic import MULTIPRECISION
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 from symfpu.numbers.typed import decimal
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.series import LindstedtSeries
+
+SLOPE_DIGITS = 70  # of the series at both ends of a difference
+STEP = Fraction(1, 2**80)  # of a frequency: differences are off by its square
 
 TIMES = ("0.0", "2.75", "-13.0625", "160.5")
 
@@ -70,6 +77,59 @@ def series_check(
         corrected=corrected[0],
         jacobian=jacobian,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class SlopeCheck:
+    """Derivatives by the frequencies at the vectors of a `SeriesCheck`, as decimal text.
+
+    positions, momenta : (s, T, N-1), by the frequency of every seed at fixed times and phases.
+    corrected : (s, s), d omega_i / d omega_j with the seed j of the frequency first.
+    """
+
+    positions: tuple[tuple[tuple[str, ...], ...], ...]
+    momenta: tuple[tuple[tuple[str, ...], ...], ...]
+    corrected: tuple[tuple[str, ...], ...]
+
+
+def slope_check(series: LindstedtSeries, cuts: tuple[int, int], check: SeriesCheck) -> SlopeCheck:
+    """Derivatives as central differences of the recursion at SLOPE_DIGITS digits.
+
+    Nothing of the program is used. series : with the frequencies of the check.
+    """
+    found = []
+    for j in range(len(series.seeds)):
+        ends = [_at_moved_frequency(series, cuts, check, j, sign * STEP) for sign in (1, -1)]
+        with MULTIPRECISION.context(SLOPE_DIGITS):
+            slopes = [(a - b) / (2 * exact(STEP)) for a, b in zip(*ends, strict=True)]
+            found.append([texts(slope, DOUBLE_DIGITS + 2) for slope in slopes])
+    positions, momenta, corrected = zip(*found, strict=True)
+    return SlopeCheck(positions, momenta, tuple(rows[0] for rows in corrected))
+
+
+def _at_moved_frequency(
+    series: LindstedtSeries, cuts: tuple[int, int], check: SeriesCheck, j: int, step: Fraction
+) -> tuple[Numbers, Numbers, Numbers]:
+    """Q, P (T, N-1) and omega(A) (1, s) with one frequency moved."""
+    frequencies = list(series.frequencies or ())
+    frequencies[j] += step
+    chain = series.chain
+    moved = lindstedt(chain, series.seeds, frequencies, max(cuts), digits=SLOPE_DIGITS)
+    with MULTIPRECISION.context(SLOPE_DIGITS):
+        tables = series_tables(moved, *cuts)
+        amplitudes, phases, rates, times = (
+            list(map(exact, values))
+            for values in (check.amplitudes, check.phases, frequencies, check.times)
+        )
+        Q, P = series_orbit(tables, chain.N, amplitudes, phases, rates, times)
+        omega, _ = series_frequencies(tables, amplitudes)
+        return Q, P, omega[None]
+
+
+def exact(value: str | Fraction) -> mpmath.mpf:
+    """A number as mpf at the working precision."""
+    fraction = Fraction(value)
+    return mpmath.mpf(fraction.numerator) / fraction.denominator
 
 
 def _decimals(values: Iterable[float]) -> tuple[str, ...]:

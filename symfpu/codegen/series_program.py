@@ -1,7 +1,8 @@
 """What every language is given of a series with free amplitudes.
 
 These are Q_q(t; A, phi), omega(A) and its Jacobian. Small series become straight-line code
-(symfpu.codegen.straight_line); large ones tables (symfpu.codegen.series_tables).
+(symfpu.codegen.straight_line); large ones tables (symfpu.codegen.series_tables), and those in
+universal form tables of operations (symfpu.codegen.operation_tables).
 """
 
 from __future__ import annotations
@@ -10,8 +11,15 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import NamedTuple
 
-from symfpu.codegen.series_check import SeriesCheck, series_check
+from symfpu.codegen.operation_tables import (
+    Operations,
+    described,
+    operation_tables,
+    operations_digest,
+)
+from symfpu.codegen.series_check import SeriesCheck, SlopeCheck, series_check, slope_check
 from symfpu.codegen.series_tables import (
     SeriesTables,
     frequency_polynomials,
@@ -29,11 +37,13 @@ from symfpu.codegen.torus_program import (
     hashed_numbers,
     precision_text,
 )
-from symfpu.errors import InputError
+from symfpu.errors import InputError, ResonantDivisor
 from symfpu.numbers.typed import decimal
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import order_argument
+
+NEARBY = 8  # choices of frequencies for test vectors, until one is not resonant
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +51,8 @@ class SeriesProgram:
     """A series as data for a language: either statements or tables, the other is None.
 
     facts : what the header says, in order. universal : whether the frequencies are a parameter
-    of the divisors too.
+    of the divisors too. operations : of a universal series in tables, whose coefficients are
+    then numbers of nodes; slopes : the test vectors of its derivatives by the frequencies.
     """
 
     name: str
@@ -53,6 +64,8 @@ class SeriesProgram:
     straight: StraightLine | None = field(repr=False)
     tables: SeriesTables | None = field(repr=False)
     check: SeriesCheck = field(repr=False)
+    operations: Operations | None = field(repr=False, default=None)
+    slopes: SlopeCheck | None = field(repr=False, default=None)
 
 
 def series_program(
@@ -62,29 +75,34 @@ def series_program(
     *,
     order: int | None = None,
     frequency_order: int | None = None,
+    derivatives: bool = False,
 ) -> SeriesProgram:
     """Order the numbers of a series for code; facts come first in the header.
 
     order : of the coordinates, frequency_order : of the frequencies; each at most series.order,
-    which is the default. Raises InputError for orders out of range, a series of residues, and a
-    universal series too large for straight-line code.
+    which is the default. derivatives : of a universal series, by the frequencies; it then becomes
+    tables however small it is. Raises InputError for orders out of range, a series of residues,
+    derivatives of a series with chosen frequencies, and tables too large for a file.
     """
     cuts = _cuts(series, order, frequency_order)
     _refuse_residues(series)
-    forms = _universal if series.symbolic else _numeric
-    straight, tables, rates = forms(series, cuts)
-    digest = straight.digest if straight else _hash(tables)
-    N, digits = series.chain.N, series.digits
+    if series.symbolic:
+        forms = _universal(series, cuts, derivatives=derivatives)
+    else:
+        _refuse_derivatives(derivatives)
+        forms = _numeric(series, cuts)
     return SeriesProgram(
         name=name,
-        facts={**facts, "hash of the series": digest},
-        N=N,
+        facts={**facts, **forms.facts},
+        N=series.chain.N,
         seeds=series.seeds,
-        digits=digits,
+        digits=series.digits,
         universal=series.symbolic,
-        straight=straight,
-        tables=None if straight else tables,
-        check=series_check(tables, N, rates, digits),
+        straight=forms.straight,
+        tables=forms.tables,
+        check=forms.check,
+        operations=forms.operations,
+        slopes=forms.slopes,
     )
 
 
@@ -92,6 +110,12 @@ def _refuse_residues(series: LindstedtSeries) -> None:
     if series.point is not None:
         allowed = "a series of numbers or in universal form"
         raise InputError("series", "residues", allowed, "compute it with lindstedt")
+
+
+def _refuse_derivatives(derivatives: bool) -> None:
+    if derivatives:
+        allowed = "a series in universal form, whose frequencies are parameters"
+        raise InputError("derivatives", True, allowed, "make it by lindstedt without frequencies")
 
 
 def series_facts(
@@ -115,7 +139,17 @@ def series_facts(
 
 
 Cuts = tuple[int, int]  # of the coordinates and of the frequencies
-Forms = tuple[StraightLine | None, SeriesTables, list[float]]  # and frequencies for test vectors
+
+
+class Forms(NamedTuple):
+    """What a series is written as, with its test vectors and its own lines of the header."""
+
+    facts: dict[str, str]
+    straight: StraightLine | None
+    tables: SeriesTables | None
+    check: SeriesCheck
+    operations: Operations | None = None
+    slopes: SlopeCheck | None = None
 
 
 def _cuts(series: LindstedtSeries, order: int | None, frequency_order: int | None) -> Cuts:
@@ -123,25 +157,34 @@ def _cuts(series: LindstedtSeries, order: int | None, frequency_order: int | Non
     return cut, order_argument("frequency_order", frequency_order, series)
 
 
-def _universal(series: LindstedtSeries, cuts: Cuts) -> Forms:
-    """Statements, and tables near the linear frequencies for the test vectors."""
-    straight = universal_statements(series, *cuts)
-    frequencies = _near_linear(series)
-    digits = DOUBLE_DIGITS + EXTRA_DIGITS
-    known = lindstedt(series.chain, series.seeds, frequencies, max(cuts), digits=digits)
-    rates = [float(w) for w in frequencies]
-    return straight, series_tables(known, *cuts), rates
+def _universal(series: LindstedtSeries, cuts: Cuts, *, derivatives: bool) -> Forms:
+    """Statements, or tables of operations; test vectors are those near the linear frequencies."""
+    straight = None if derivatives else universal_statements(series, *cuts)
+    if straight:
+        _, check = _near_linear(series, cuts)
+        return Forms(_hashed(straight.digest), straight, None, check)
+    tables, operations = operation_tables(series, *cuts)
+    known, check = _near_linear(series, cuts)
+    digest = operations_digest(tables, operations)
+    facts = {"program": described(tables, operations), **_hashed(digest)}
+    return Forms(facts, None, tables, check, operations, slope_check(known, cuts, check))
 
 
 def _numeric(series: LindstedtSeries, cuts: Cuts) -> Forms:
-    """Tables, and statements where these are short; angles turn with other frequencies."""
+    """Tables, or statements where these are short; angles turn with other frequencies."""
     tables = series_tables(series, *cuts)
     straight = _short_statements(series, tables, cuts[0])
     rates = []
     for i, w in enumerate(series.frequencies or ()):
         shift = (i + 1) / 1024
         rates.append(_rounded(float(w)) + shift)
-    return straight, tables, rates
+    check = series_check(tables, series.chain.N, rates, series.digits)
+    digest = straight.digest if straight else _hash(tables)
+    return Forms(_hashed(digest), straight, None if straight else tables, check)
+
+
+def _hashed(digest: str) -> dict[str, str]:
+    return {"hash of the series": digest}
 
 
 def _short_statements(
@@ -158,12 +201,32 @@ def _short_statements(
     return straight if straight.operations <= STRAIGHT_LINE else None
 
 
-def _near_linear(series: LindstedtSeries) -> list[Fraction]:
+def _near_linear(series: LindstedtSeries, cuts: Cuts) -> tuple[LindstedtSeries, SeriesCheck]:
+    """The series at frequencies near the linear ones, and test vectors there."""
+    known = _not_resonant(series, max(cuts))
+    rates = [float(w) for w in known.frequencies or ()]
+    tables = series_tables(known, *cuts)
+    return known, series_check(tables, series.chain.N, rates, series.digits)
+
+
+def _not_resonant(series: LindstedtSeries, order: int) -> LindstedtSeries:
+    """The series at the first of a few choices of frequencies that makes no divisor zero."""
+    digits = DOUBLE_DIGITS + EXTRA_DIGITS
+    for choice in range(NEARBY):
+        frequencies = _above_linear(series, choice)
+        try:
+            return lindstedt(series.chain, series.seeds, frequencies, order, digits=digits)
+        except ResonantDivisor as resonance:
+            refusal = resonance
+    raise refusal
+
+
+def _above_linear(series: LindstedtSeries, choice: int) -> list[Fraction]:
     """Frequencies a little above the linear ones, exact in doubles."""
     values = []
     for i, q in enumerate(series.seeds):
         linear = float(series.chain.linear_frequency(q))
-        above = 1 / (64 + 8 * i)
+        above = 1 / (64 + 8 * i + choice)
         shifted = _rounded(linear * (1 + above))
         values.append(Fraction(shifted))
     return values

@@ -71,7 +71,7 @@ def series_tables(series: LindstedtSeries, order: int, frequency_order: int) -> 
     terms = [series.amplitude_terms(k) for k in range(order + 1)]
     nu, e, values = map(np.concatenate, zip(*terms, strict=True))
     powers, which = np.unique(e, axis=0, return_inverse=True)
-    blocks = _blocks(series, nu, which.reshape(-1), values)
+    blocks = row_blocks(series, nu, which.reshape(-1), values)
     linear = _linear(series)
     frequencies = _frequencies(series, linear, frequency_order)
     with MULTIPRECISION.context(series.digits or DOUBLE_DIGITS):
@@ -80,7 +80,7 @@ def series_tables(series: LindstedtSeries, order: int, frequency_order: int) -> 
     return SeriesTables(scales, powers, blocks, linear, *frequencies)
 
 
-def _blocks(
+def row_blocks(
     series: LindstedtSeries,
     nu: Ints,
     which: Ints,

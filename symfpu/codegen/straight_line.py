@@ -20,7 +20,7 @@ from symfpu.algebra.polynomials import Polynomial
 from symfpu.chain.chain import Chain
 from symfpu.codegen.series_tables import monomial
 from symfpu.codegen.torus_program import DOUBLE_DIGITS
-from symfpu.errors import InputError
+from symfpu.errors import ExpansionTooLarge
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 from symfpu.series.series import LindstedtSeries
 
@@ -294,13 +294,14 @@ def universal_statements(
     series: LindstedtSeries,
     order: int,
     frequency_order: int,
-) -> StraightLine:
+) -> StraightLine | None:
     """Of a series in universal form, its multipliers L_q(nu) written out in the frequencies.
 
-    Raises InputError where the expressions are too large for straight-line code.
+    None where the expressions are too large for straight-line code.
     """
     N, seeds = series.chain.N, series.seeds
-    _refuse_large(_expressions(series, order, frequency_order))
+    if not _short(_expressions(series, order, frequency_order)):
+        return None
     known = _Multipliers(series.chain, seeds)
     rows: list[Row] = []
     for q in range(1, N):
@@ -308,38 +309,33 @@ def universal_statements(
             rows += _universal_rows(series, q, k, known)
     frequencies = [_universal_frequency(series, q, frequency_order, known) for q in seeds]
     straight = straight_line(N, seeds, rows, frequencies, known.constants)
-    if straight.operations > LARGEST_ELIMINATED:
-        raise _too_large(LARGEST_ELIMINATED)
-    return straight
+    return straight if straight.operations <= LARGEST_ELIMINATED else None
 
 
 def _expressions(series: LindstedtSeries, order: int, frequency_order: int) -> Iterator[Any]:
-    """All coefficients of coordinates and frequencies."""
-    for q in range(1, series.chain.N):
-        for k in range(order + 1):
-            _, values = series.coefficients(q, k)
-            yield from values
-    for q in series.seeds:
-        for k in range(frequency_order + 1):
-            _, values = series.frequency_coefficients(q, k)
-            yield from values
+    """All coefficients of coordinates and frequencies, low orders first."""
+    for k in range(max(order, frequency_order) + 1):
+        for q in range(1, series.chain.N):
+            if k <= order:
+                _, values = series.coefficients(q, k)
+                yield from values
+        for q in series.seeds:
+            if k <= frequency_order:
+                _, values = series.frequency_coefficients(q, k)
+                yield from values
 
 
-def _refuse_large(expressions: Iterable[Any]) -> None:
+def _short(expressions: Iterable[Any]) -> bool:
+    """Whether expressions have at most LARGEST_PROGRAM operations, and can be expanded at all."""
     size = 0
-    for value in expressions:
-        size += se.count_ops(value)
-        if size > LARGEST_PROGRAM:
-            raise _too_large(LARGEST_PROGRAM)
-
-
-def _too_large(largest: int) -> InputError:
-    return InputError(
-        "series",
-        "universal form",
-        f"expressions of at most {largest} operations, which compilers take",
-        "lower the orders, or give lindstedt frequencies: numbers become tables of any size",
-    )
+    try:
+        for value in expressions:
+            size += se.count_ops(value)
+            if size > LARGEST_PROGRAM:
+                return False
+    except ExpansionTooLarge:
+        return False
+    return True
 
 
 def _universal_rows(

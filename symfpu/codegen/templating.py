@@ -1,7 +1,7 @@
-"""A language as data: its two templates, their filters, and what they are given of a program.
+"""A language as data: its three templates, their filters, and what they are given of a program.
 
-Templates are Jinja2. Those of a language X, templates/torus.X.jinja and
-templates/series.X.jinja, hold its whole text, with places for numbers; a place that nothing
+Templates are Jinja2. Those of a language X, templates/torus.X.jinja, templates/series.X.jinja and
+templates/universal.X.jinja, hold its whole text, with places for numbers; a place that nothing
 fills is an error. The statements of straight-line code come from a printer of SymPy, which is
 a filter.
 """
@@ -27,8 +27,8 @@ Filter = Callable[..., Any]
 class Language:
     """A language that tori and series are written in.
 
-    extension : of its files. templates : X of torus.X.jinja and series.X.jinja. filters : of
-    both templates, by name. torus_words, series_words : what a template is given besides
+    extension : of its files. templates : X of torus.X.jinja and the others. filters : of
+    all templates, by name. torus_words, series_words : what a template is given besides
     `common_words`. reserved : names that no file may have. Sources are the same bytes for the
     same program.
     """
@@ -46,12 +46,15 @@ class Language:
         return self.filled("torus", words)
 
     def series(self, program: SeriesProgram) -> str:
-        """The source of a series: Q(t; A), P(t; A), omega(A) and its Jacobian."""
+        """The source of a series: Q(t; A), P(t; A), omega(A) and its Jacobian.
+
+        Of a universal series in tables also the derivatives by the frequencies.
+        """
         words = common_words(program) | self.series_words(program)
-        return self.filled("series", words)
+        return self.filled("universal" if program.operations else "series", words)
 
     def filled(self, kind: str, words: Words) -> str:
-        """The template of a torus or a series with its words."""
+        """The template of a torus, a series or a universal one with its words."""
         name = f"{kind}.{self.templates}.jinja"
         template = self._environment.get_template(name)
         return template.render(words)

@@ -80,8 +80,6 @@ def test_what_cannot_be_exported_says_so(series, torus, tmp_path):
         export(torus, "c", tmp_path / "x", order=2)
     with pytest.raises(InputError, match="residues"):
         export(residue_series(Chain(8, "0.3"), (1,), random_point(8, 1, 3, random.Random(1)), 2), "c", tmp_path / "x")
-    with pytest.raises(InputError, match="give lindstedt frequencies"):
-        export(lindstedt(Chain(8, "0.3"), (1, 2), order=5), "c", tmp_path / "x")
     with pytest.raises(InputError, match="file name"):
         export(torus, "fortran", tmp_path / "orbit")
     assert not list(tmp_path.iterdir())

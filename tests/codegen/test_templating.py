@@ -25,7 +25,7 @@ def program():
 
 
 def test_every_template_belongs_to_a_language():
-    expected = {f"{kind}.{language.templates}.jinja" for kind in ("torus", "series") for language in LANGUAGES.values()}
+    expected = {f"{kind}.{language.templates}.jinja" for kind in ("torus", "series", "universal") for language in LANGUAGES.values()}
     assert {path.name for path in FOLDER.iterdir()} == expected
 
 

@@ -36,6 +36,7 @@ TILE = 4  # modes of a register tile
 LARGEST_PRODUCT = 4  # highest power written as a product
 EXACT_INTEGERS = 2**53  # integers below are exact in doubles
 INT = 2**31
+INTEGERS = {"signed char": 7, "short": 15, "int": 31, "long long": 63}  # bits besides the sign
 REPLACEMENTS = {"*/": "* /", "/*": "/ *", "??": "? ?"}  # in comments
 
 
@@ -58,6 +59,14 @@ def vector(values: Iterable[Any], name: str, kind: str = "double") -> str:
     numbers = _literals(values, kind)
     size = f"[{len(numbers)}]"
     return _definition(f"{kind} {name}{size}", numbers)
+
+
+def fitting(values: Iterable[int], name: str) -> str:
+    """The definition of an array of the narrowest integers that hold all values."""
+    numbers = np.asarray(values)
+    low, high = int(numbers.min()), int(numbers.max())
+    kind = next(kind for kind, bits in INTEGERS.items() if max(-low - 1, high) < 2**bits)
+    return vector(numbers.tolist(), name, kind)
 
 
 def matrix(
@@ -151,6 +160,10 @@ def _series(program: SeriesProgram) -> Words:
         return {}
     words = _layout(program.N, tables.blocks, tables.highest)
     words |= _amplitude_powers(tables)
+    if program.operations:
+        words["frequency_signs"] = [*program.operations.frequency_signs, 1][
+            : len(words["frequency_powers"])
+        ]
     work = 0
     for block in words["blocks"]:
         block["start"] = work
@@ -238,6 +251,7 @@ C = Language(
     filters={
         "code": _Printer().doprint,
         "comment": comment,
+        "fitting": fitting,
         "line": line,
         "matrix": matrix,
         "vector": vector,

@@ -42,6 +42,7 @@ TERMS = 100  # of a sum in one statement
 TIMES = 64  # evaluated together
 TILE = 256  # harmonics of one matrix product: cosines and sines of 64 times are 256 kB
 WORD = 24  # bits of the leading parts of omega / 2 pi: times halves of a time they are exact
+INTEGERS = {"byte": 7, "short": 15, "long": 31}  # bits besides the sign
 EXACT_INTEGERS = 2**53  # integers below are doubles
 BREAKS = re.compile(r"(?<=[ (])|(?<=[^*]\*)(?!\*)|(?<=/)")  # after blank, bracket, star, slash
 PLACEHOLDER = "\N{WHITE SQUARE}"  # stands for the module's name, and occurs nowhere else
@@ -118,6 +119,18 @@ def _chunks(numbers: Iterable[str]) -> Iterator[list[str]]:
 def parity(modes: Sequence[int]) -> str:
     """The name of a block."""
     return "odd" if modes[0] % 2 else "even"
+
+
+def kind(values: Iterable[int]) -> str:
+    """The narrowest kind of integers that holds all values, as the module calls it."""
+    numbers = np.asarray(values)
+    largest = max(-int(numbers.min()) - 1, int(numbers.max()))
+    return next(kind for kind, bits in INTEGERS.items() if largest < 2**bits)
+
+
+def matching(pattern: str, names: Iterable[str]) -> str:
+    """A pattern filled in for every name, as often as it asks for one, with commas between."""
+    return ", ".join(pattern.replace("%s", name) for name in names)
 
 
 def declared(names: Iterable[str]) -> str:
@@ -254,6 +267,10 @@ def _series(program: SeriesProgram) -> Words:
     if program.tables:
         words |= _kernel(program.tables.highest)
         words |= _corrections(program.tables)
+    if program.operations:
+        count = len(words["even_powers"])
+        words["even_signs"] = [*program.operations.frequency_signs, 1][:count]
+        words["correction"] = np.asarray(words["correction"], dtype=np.int64)
     return words
 
 
@@ -295,8 +312,10 @@ FORTRAN = Modules(
         "comment": comment,
         "data": data,
         "declared": declared,
+        "kind": kind,
         "listed": listed,
         "literal": literal,
+        "matching": matching,
         "parity": parity,
         "rates": rates,
     },

@@ -21,8 +21,9 @@ from sympy.printing.octave import OctaveCodePrinter
 
 from symfpu.algebra.grading import Ints
 from symfpu.codegen.constants import inverse_turn, turns
+from symfpu.codegen.operation_tables import Operations
 from symfpu.codegen.series_program import SeriesProgram
-from symfpu.codegen.series_tables import SeriesBlock
+from symfpu.codegen.series_tables import SeriesBlock, SeriesTables
 from symfpu.codegen.templating import Language, Words, double
 from symfpu.codegen.torus_program import Block, TorusProgram
 
@@ -126,7 +127,34 @@ def _series(program: SeriesProgram) -> Words:
     if program.tables:
         words["times"] = BLOCK
         words["corrected"] = len(program.tables.frequency_powers) > 0
+    if program.tables and program.operations:
+        words["node_tables"] = _node_tables(program.tables, program.operations)
     return words
+
+
+def _node_tables(tables: SeriesTables, operations: Operations) -> dict[str, Ints]:
+    """Integers of a universal series by the functions that return them; places count from 1."""
+    found = {
+        "multiplierModes": operations.modes,
+        "multiplierHarmonics": operations.harmonics,
+        "startTable": operations.starts + 1,
+        "leftTable": operations.left + 1,
+        "rightTable": operations.right + 1,
+        "factorTable": operations.factor,
+        "levelTable": operations.levels + 1,
+        "exponentTable": tables.powers,
+        "signTable": operations.signs,
+    }
+    for k, block in enumerate(tables.blocks, 1):
+        found[f"harmonicTable{k}"] = block.harmonics
+        found[f"ownerTable{k}"] = owners(block.starts)
+        found[f"powerTable{k}"] = block.powers + 1
+        found[f"nodeTable{k}"] = block.coefficients + 1
+    if len(tables.frequency_powers):
+        found["frequencyExponentTable"] = tables.frequency_powers
+        found["frequencySigns"] = operations.frequency_signs
+        found["frequencyNodes"] = tables.frequency_coefficients + 1
+    return found
 
 
 RESERVED_WORDS = """
