@@ -6,8 +6,8 @@ classical perturbation theory, the derivatives of Birkhoff's normal form. With x
 and the mode m of a signed sum j.q of the seeds, Omega_m^2 = 2 - 2 cos(2 j.x) for every m, folded
 or not. So each coefficient is a rational function of Omega_1 = 2 sin x_1, Omega_2 = 2 sin x_2 and
     rho = sin 2x_1 sin 2x_2,    rho^2 = W_1 W_2 (4 - W_1)(4 - W_2) / 16,    W_i = Omega_i^2,
-exactly. rho and odd powers of Omega_1 Omega_2 drop out for seeds in general position, because the modes of
-j and of j with one sign changed come with the same harmonics.
+exactly. rho and odd powers of Omega_1 Omega_2 drop out for seeds in general position, because the
+modes of j and of j with one sign changed come with the same harmonics.
 
 Two seeds are special at order k where a signed sum j.q of as many seeds as the degree is, and no
 sum for all seeds, is a multiple of N, so that its mode is missing, or the seed of the secular
@@ -106,7 +106,7 @@ def _representative(series: LindstedtSeries, order: int) -> tuple[int, tuple[int
 
 
 def _is_special(N: int, modes: Sequence[int], degree: int) -> bool:
-    """Whether a signed sum of the seeds, that is none for all seeds, is a mode that is none or a seed.
+    """Whether a signed sum of special seeds is no mode, or a seed, where for others it is not.
 
     j.q = 0 modulo N with j other than 0; or j.q = +-q_i modulo 2N where j has the parities of e_i
     and is not +-e_i, so that its mode can carry the secular harmonic of q_i.
