@@ -25,10 +25,6 @@ CASES = [
 ]
 
 
-def numeric(chain, modes, frequencies, order):
-    return lindstedt(chain, modes, frequencies, order)
-
-
 @pytest.mark.parametrize(("couplings", "seeds"), CASES, ids=str)
 def test_terms_in_closed_form_are_those_of_the_recursion_in_doubles(couplings, seeds):
     """Universal for all N -> quotients of sines of N -> a number for N, against doubles at that N."""
@@ -83,7 +79,7 @@ def test_divisors_of_leading_terms_are_those_of_the_paper():
 
 def test_a_seed_has_its_chosen_frequency_in_its_divisor():
     formula = substitute_multipliers(se.Symbol("L_{1}(3)"), (1,))
-    assert str(formula) == "-1/8*Omega_1**2/omega_1**2" or se.expand(formula + se.sympify("Omega_1**2/(8*omega_1**2)")) == 0
+    assert se.expand(formula + se.sympify("Omega_1**2/(8*omega_1**2)")) == 0
 
 
 @pytest.mark.parametrize("seeds", [(1, 2), ("N",), ()], ids=str)
