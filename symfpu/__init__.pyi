@@ -14,6 +14,8 @@ from symfpu.chain.propagation import excitation_sequence as excitation_sequence
 from symfpu.chain.propagation import reachable_modes as reachable_modes
 
 # series
+from symfpu.series.expandable import ExpandableTerm as ExpandableTerm
+from symfpu.series.expandable import expandable_term as expandable_term
 from symfpu.series.lindstedt import lindstedt as lindstedt
 from symfpu.series.sample import FrequencyChanges as FrequencyChanges
 from symfpu.series.sample import SampledSeries as SampledSeries
