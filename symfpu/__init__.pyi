@@ -19,6 +19,8 @@ from symfpu.series.closed_forms import collect_terms as collect_terms
 from symfpu.series.closed_forms import same_series as same_series
 from symfpu.series.closed_forms import substitute_multipliers as substitute_multipliers
 from symfpu.series.frequency_expansion import frequency_expansion as frequency_expansion
+from symfpu.series.expandable import ExpandableTerm as ExpandableTerm
+from symfpu.series.expandable import expandable_term as expandable_term
 from symfpu.series.lindstedt import lindstedt as lindstedt
 from symfpu.series.sample import FrequencyChanges as FrequencyChanges
 from symfpu.series.sample import SampledSeries as SampledSeries

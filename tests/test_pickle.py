@@ -56,6 +56,7 @@ from symfpu.proofs.leading import leading_terms
 from symfpu.proofs.sweeps import Sweep, SweepCase, SweepIncomplete
 from symfpu.proofs.verify import CertificateError
 from symfpu.refinement.tori import NoTorus, refine
+from symfpu.series.expandable import expandable_term
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.sample import sample_series
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
@@ -188,6 +189,7 @@ RESULTS = {
     "SampledSeries": (lambda _: sampled(), lambda x: (x.coordinates, x.derivatives_by_frequency(1)[1])),
     "FrequencyChanges": (lambda _: sampled().frequencies_at([0.1]), lambda x: x.by_frequencies),
     "NamedParts": (lambda _: lindstedt(PAIR, (1,), order=4).term(5, 4, form="cse"), lambda x: str(x.whole())),
+    "ExpandableTerm": (lambda _: expandable_term(lindstedt(PAIR, (1,), order=2), 3, 2, ("0.39",)), lambda x: x.html()),
     "SeriesForAllN": (lambda _: lindstedt(Chain("N", alpha=1), (1, "N-1"), order=2), lambda x: (repr(x), str(x.term(2, 1)))),
     "LindstedtSeries, asked": (lambda _: torus(30).series, terms),
     "Member": (lambda _: breathers().members[0], lambda x: (x.multipliers.stable, motion(x.torus))),

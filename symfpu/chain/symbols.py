@@ -1,4 +1,4 @@
-"""The symbols of a mode: amplitude, phase, linear and chosen frequency."""
+"""The symbols of a mode: amplitude, phase, linear and chosen frequency, coordinate."""
 
 from __future__ import annotations
 
@@ -27,6 +27,11 @@ def linear_symbol(q: int) -> Any:
 def chosen_symbol(q: int) -> Any:
     """omega_q, written omega_1 or omega_{N-1}."""
     return se.Symbol(f"omega_{_after_line(q)}")
+
+
+def coordinate_symbol(q: int) -> Any:
+    """Q_q, written Q_1 or Q_{N-1}."""
+    return se.Symbol(f"Q_{_after_line(q)}")
 
 
 def _after_letter(q: int) -> str:
