@@ -2,7 +2,7 @@
 
 With linear frequencies everything depends on N through x = pi/2N alone, and L_q(nu) is a quotient
 of power series in y = x^2 with rational coefficients:
-    Omega_m^2 / 4y = (sin mx / x)^2 = m^2 - y m^4/3 + ...,   nu.Omega / 2x = sum_i nu_i sin(q_i x)/x.
+    Omega_m^2 / 4y = (sin mx / x)^2 = m^2 - y m^4/3 + ...,  nu.Omega / 2x = sum nu_i sin(q_i x)/x.
 Where m = nu.q the divisor begins with y: almost resonant, Appendix E. So the nodes of the
 universal series are Laurent series in y, exactly. At fixed seeds and modes this is the expansion
 in small kappa = q/N, too.
