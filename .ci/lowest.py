@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 PROJECT = Path(__file__).parents[1] / "pyproject.toml"
-REQUIREMENT = re.compile(r"([\w.-]+)>=([\w.]+)")  # a name and its lowest version, no other bound
+REQUIREMENT = re.compile(
+    r"([\w.-]+)>=([\w.]+)"
+)  # a name and its lowest version, no other bound
 
 
 def lowest(project: Path = PROJECT) -> Iterator[str]:

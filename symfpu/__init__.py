@@ -13,7 +13,9 @@ __version__ = "0.1.0"
 
 def _homes() -> dict[str, str]:
     """The module of every public name, as the stub beside this file imports it."""
-    stub = __spec__.loader.get_data(f"{__path__[0]}/__init__.pyi")  # wherever it is, an archive too
+    stub = __spec__.loader.get_data(
+        f"{__path__[0]}/__init__.pyi"
+    )  # wherever it is, an archive too
     imports = [line for line in ast.parse(stub).body if isinstance(line, ast.ImportFrom)]
     return {alias.name: str(line.module) for line in imports for alias in line.names}
 
@@ -33,7 +35,9 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
 
 
-if "IPython" in sys.modules:  # a notebook shows terms as formulas; elsewhere importing does nothing
+if (
+    "IPython" in sys.modules
+):  # a notebook shows terms as formulas; elsewhere importing does nothing
     from symfpu.notebook import init_printing
 
     init_printing()

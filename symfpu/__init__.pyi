@@ -156,7 +156,9 @@ from symfpu.files.archive import BundleError as BundleError
 from symfpu.localization.recurrence import NoRecurrence as NoRecurrence
 from symfpu.refinement.tori import NoTorus as NoTorus
 from symfpu.tori.at_energy import NoTorusAtEnergy as NoTorusAtEnergy
-from symfpu.tori.frequencies import NoSelfConsistentFrequencies as NoSelfConsistentFrequencies
+from symfpu.tori.frequencies import (
+    NoSelfConsistentFrequencies as NoSelfConsistentFrequencies,
+)
 
 __version__: str
 __all__: list[str]

@@ -43,7 +43,9 @@ class RunInterrupted(KeyboardInterrupt):
     def __init__(self, place: str, path: str) -> None:
         self.place = place
         self.path = path
-        super().__init__(f"{place}; kept in {path}: the same call, or command, goes on from there")
+        super().__init__(
+            f"{place}; kept in {path}: the same call, or command, goes on from there"
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.place, self.path)
@@ -79,7 +81,9 @@ class TooLarge(InputError):
         self.needed = needed
         self.free = free
         self.largest = largest
-        allowed = f"what fits into the {free:,} bytes of free memory ({needed:,} are needed)"
+        allowed = (
+            f"what fits into the {free:,} bytes of free memory ({needed:,} are needed)"
+        )
         advice = "take fewer seeds or a shorter chain"
         if largest >= 0:
             advice = f"take order {largest} or less, or fewer seeds"
@@ -99,7 +103,9 @@ class ExpansionTooLarge(InputError):
         self.needed = needed
         self.free = free
         size = f"{terms:.3g} terms, {needed:.3g} bytes"
-        allowed = f"what fits into the {free:.3g} bytes of free memory, and integers of 64 bits"
+        allowed = (
+            f"what fits into the {free:.3g} bytes of free memory, and integers of 64 bits"
+        )
         advice = 'ask for form="factored" or "cse", or for a lower order'
         InputError.__init__(self, "expansion", size, allowed, advice)
 
@@ -114,7 +120,13 @@ class ResonantDivisor(InputError):
     """
 
     def __init__(
-        self, mode: int, harmonic: Sequence[int], seeds: Sequence[int], order: int, *, exact: bool
+        self,
+        mode: int,
+        harmonic: Sequence[int],
+        seeds: Sequence[int],
+        order: int,
+        *,
+        exact: bool,
     ) -> None:
         self.mode = mode
         self.harmonic = tuple(harmonic)
@@ -151,7 +163,9 @@ class NoRealAmplitude(SymfpuError):
             need = f"= {squared:.6g} < 0"
             side = f"move omega_{seed} to the other side of its linear value"
             advice = "or choose frequencies nearer to the linear ones"
-        demand = f"at frequency order {frequency_order} the frequencies need A_{seed}^2 {need}"
+        demand = (
+            f"at frequency order {frequency_order} the frequencies need A_{seed}^2 {need}"
+        )
         super().__init__(f"no real amplitude: {demand}; {side}, {advice}")
 
 
@@ -164,7 +178,9 @@ class DidNotConverge(SymfpuError):
         residual : |omega - series| there; both dimensionless.
     """
 
-    def __init__(self, frequency_order: int, iterate: Mapping[int, float], residual: float) -> None:
+    def __init__(
+        self, frequency_order: int, iterate: Mapping[int, float], residual: float
+    ) -> None:
         self.frequency_order = frequency_order
         self.iterate = dict(iterate)
         self.residual = residual
@@ -189,7 +205,9 @@ class UndeterminedAmplitudes(SymfpuError):
         self.frequency_order = frequency_order
         corrections = f"the frequency corrections of order {frequency_order}"
         undetermined = f"do not determine the amplitudes of the seeds {self.seeds}"
-        matrix = "their matrix is singular, as for modes that stay harmonic at every amplitude"
+        matrix = (
+            "their matrix is singular, as for modes that stay harmonic at every amplitude"
+        )
         advice = "choose other seeds or add a coupling"
         super().__init__(f"{corrections} {undetermined}: {matrix}; {advice}")
 
@@ -200,4 +218,6 @@ class VanishingResidue(SymfpuError):
     def __init__(self, prime: int, order: int) -> None:
         self.prime = prime
         self.order = order
-        super().__init__(f"a divisor vanishes modulo {prime} at order {order}; take another point")
+        super().__init__(
+            f"a divisor vanishes modulo {prime} at order {order}; take another point"
+        )

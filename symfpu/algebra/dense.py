@@ -38,7 +38,9 @@ def lane_width(columns: int) -> int:
 def available_cores() -> int:
     """Processor cores that this process may use."""
     return len(
-        os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count() or 1)
+        os.sched_getaffinity(0)
+        if hasattr(os, "sched_getaffinity")
+        else range(os.cpu_count() or 1)
     )
 
 
@@ -78,7 +80,9 @@ class DenseRing(ABC, Generic[Bonds]):
         self, space: CosineModes, *, workers: int | None = None, points: int | None = None
     ) -> None:
         """points : values kept for each monomial; default those on half of the bonds."""
-        from symfpu.algebra import kernels  # lazy: numba takes longer to import than all the rest
+        from symfpu.algebra import (
+            kernels,
+        )  # lazy: numba takes longer to import than all the rest
 
         self._kernels = kernels
         self.space, self.grading = space, space.grading
@@ -91,7 +95,9 @@ class DenseRing(ABC, Generic[Bonds]):
         self._slices = -(-self._points // self._lanes)
         rows, seed_slices = int(self.grading.first_row[-1]), -(-len(space.seeds) // 8)
         self._bonds = np.zeros((self._slices, rows, self._lanes))
-        self._powers: dict[int, Floats] = {}  # of the bonds, as far as higher powers need them
+        self._powers: dict[
+            int, Floats
+        ] = {}  # of the bonds, as far as higher powers need them
         self._seed_modes = np.zeros((seed_slices, rows, 8))
         self._corrections = np.zeros((seed_slices, rows, 8))
         self._active = np.zeros(rows, dtype=np.bool_)
@@ -204,7 +210,10 @@ class DenseRing(ABC, Generic[Bonds]):
 
     def _store_seed_modes(self, degree: int, modes: Floats) -> None:
         base = int(self.grading.first_row[degree])
-        canonical, conjugate = self.grading.canonical(degree), self.grading.conjugate(degree)
+        canonical, conjugate = (
+            self.grading.canonical(degree),
+            self.grading.conjugate(degree),
+        )
         for i, q in enumerate(self.space.seeds):
             slice_, lane = divmod(i, 8)
             for rows in (canonical, conjugate):
@@ -336,7 +345,9 @@ class DenseRing(ABC, Generic[Bonds]):
         columns = [lanes[slice_, canonical, lane] for slice_, lane in places]
         return np.stack(columns, axis=1)
 
-    def solve(self, degree: int, corrected: Floats, force: Floats, multipliers: Floats) -> Floats:
+    def solve(
+        self, degree: int, corrected: Floats, force: Floats, multipliers: Floats
+    ) -> Floats:
         _, index = self.grading.harmonics(degree)
         bracket = np.negative(force, out=force)
         seeds = np.array(self.space.seeds) - 1

@@ -20,7 +20,9 @@ from symfpu.errors import ExpansionTooLarge
 
 Words = NDArray[np.uint64]
 LARGEST = 2.0**62  # of the sum of moduli of the integers of one polynomial
-TABLE_BYTES = 25  # of a place in the table of hashes with one word, four places a product at most
+TABLE_BYTES = (
+    25  # of a place in the table of hashes with one word, four places a product at most
+)
 
 
 class Polynomial(NamedTuple):
@@ -96,7 +98,9 @@ class Expansion:
         room = 1 << (2 * products - 1).bit_length()
         keys = np.zeros((room, self.width), dtype=np.uint64)
         values = np.zeros(room, dtype=np.int64)
-        from symfpu.algebra.program_loops import expand_sum  # lazy: numba takes long to import
+        from symfpu.algebra.program_loops import (
+            expand_sum,
+        )  # lazy: numba takes long to import
 
         count = expand_sum(
             left,

@@ -78,7 +78,9 @@ class _Image(ResidueRing):
     def canonical_power(self, power: int, degree: int) -> Floats:
         return self._canonical_points(degree, self.power(power, degree))
 
-    def add_projection(self, degree: int, total: Floats, values: Floats, back: Floats) -> None:
+    def add_projection(
+        self, degree: int, total: Floats, values: Floats, back: Floats
+    ) -> None:
         """Add the modes of values on bonds (canonical, points)."""
         for rows, columns in self._parts(degree):
             total[rows, columns] += self._matrix_product(values[rows], back[columns].T)
@@ -188,7 +190,9 @@ class FixedPointRing:
 
     def _put_part(self, degree: int, rows: Ints, columns: slice, residues: Floats) -> None:
         def to_bonds(i: int, image: _Image) -> Floats:
-            return image._matrix_product(residues[i][rows, columns], self._to_bonds[i][columns])
+            return image._matrix_product(
+                residues[i][rows, columns], self._to_bonds[i][columns]
+            )
 
         primes = len(self.basis)
         products = np.stack(self._each(to_bonds))
@@ -224,8 +228,12 @@ class FixedPointRing:
         self._each(lambda i, image: image.reduced(total[i]))
         return self._rounded_where(total, self.space.mask(degree))
 
-    def _add_projection(self, degree: int, total: Floats, values: Floats, back: Floats) -> None:
-        self._each(lambda i, image: image.add_projection(degree, total[i], values[i], back[i]))
+    def _add_projection(
+        self, degree: int, total: Floats, values: Floats, back: Floats
+    ) -> None:
+        self._each(
+            lambda i, image: image.add_projection(degree, total[i], values[i], back[i])
+        )
 
     def secular(self, degree: int, modes: Modes) -> Modes:
         residues = self._each(lambda i, image: image.secular(degree, modes.residues[i]))
@@ -262,7 +270,9 @@ class FixedPointRing:
         carried = multipliers != 0
         return self._rounded_where(products, carried[index])
 
-    def _check_range(self, corrected: Modes, force: Modes, factors: Floats, seeds: Ints) -> None:
+    def _check_range(
+        self, corrected: Modes, force: Modes, factors: Floats, seeds: Ints
+    ) -> None:
         """Refuse the last products beyond the range of the residues: they have no bound before."""
         below = -self.precision.bits
         sizes = np.abs(force.table.floats(below))

@@ -79,7 +79,9 @@ class NodeTable(NDArrayOperatorsMixin):
         return len(self.nodes)
 
     def __getitem__(self, places: Any) -> Any:
-        found = expressions(self.program, np.asarray(self.nodes[places]), expanded=self.expanded)
+        found = expressions(
+            self.program, np.asarray(self.nodes[places]), expanded=self.expanded
+        )
         return found[()]
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
@@ -108,7 +110,9 @@ def _gathered(nodes: Ints, made: Mapping[int, Any]) -> Objects:
     return found.reshape(nodes.shape)
 
 
-def named_expressions(program: Program, nodes: Ints) -> tuple[list[tuple[Any, Any]], Objects]:
+def named_expressions(
+    program: Program, nodes: Ints
+) -> tuple[list[tuple[Any, Any]], Objects]:
     """Names x0, x1, ... of the sums that occur more than once, and the nodes in these names.
 
     Returns (name, expression) in the order of their use, each after its parts; and expressions in

@@ -131,7 +131,9 @@ class ProductTables(NamedTuple):
     pair_right: NDArray[np.int32]
     block: Ints  # (degree + 1, X): first row of the block, over all degrees
     inner_count: Ints  # (degree + 1,)
-    inner_start: Ints  # (X,) 1 where X is its own conjugate: only canonical inner rows are wanted
+    inner_start: (
+        Ints  # (X,) 1 where X is its own conjugate: only canonical inner rows are wanted
+    )
     first_canonical: Ints  # (degree + 1,)
     inner_table: NDArray[np.int32]  # flat: rank of the product of inner monomials
     table_offset: Ints  # (degree + 1, degree + 1)

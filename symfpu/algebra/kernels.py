@@ -33,7 +33,8 @@ def _emit(builder: Any, name: str, *operands: Any) -> Any:
     signature = ir.FunctionType(kind, [kind] * len(operands))
     declared: Any = cgutils
     return builder.call(
-        declared.get_or_insert_function(builder.module, signature, f"{name}.{suffix}"), operands
+        declared.get_or_insert_function(builder.module, signature, f"{name}.{suffix}"),
+        operands,
     )
 
 
@@ -44,7 +45,9 @@ def _modular_product(builder: Any, a: Any, b: Any, modulus: Any, inverse: Any) -
     high = builder.fmul(a, b)
     low = _emit(builder, "llvm.fma", a, b, builder.fneg(high))
     quotient = _emit(builder, "llvm.rint", builder.fmul(high, inverse))
-    return builder.fadd(_emit(builder, "llvm.fma", builder.fneg(quotient), modulus, high), low)
+    return builder.fadd(
+        _emit(builder, "llvm.fma", builder.fneg(quotient), modulus, high), low
+    )
 
 
 @intrinsic
@@ -103,7 +106,9 @@ def _row_code(
         vector = ir.VectorType(ir.DoubleType(), width)
 
         def pointer(position: int) -> Any:
-            return context.make_array(sig.args[position])(context, builder, args[position]).data
+            return context.make_array(sig.args[position])(
+                context, builder, args[position]
+            ).data
 
         def row(base: Any, index: Any) -> Any:
             return builder.bitcast(
@@ -114,16 +119,26 @@ def _row_code(
             undefined = ir.Constant(vector, ir.Undefined)
             first = builder.insert_element(undefined, value, ir.IntType(32)(0))
             return builder.shuffle_vector(
-                first, undefined, ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width)
+                first,
+                undefined,
+                ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width),
             )
 
-        factor = builder.fmul(builder.load(row(pointer(1), args[2]), align=8), spread(args[3]))
+        factor = builder.fmul(
+            builder.load(row(pointer(1), args[2]), align=8), spread(args[3])
+        )
         right_rows, out_rows = row(pointer(4), args[5]), row(pointer(6), args[7])
         places = builder.gep(pointer(8), [args[9]])
         modular = sig.args[12] != types.none
         if modular:
-            prime, inverse = spread(args[12]), spread(builder.fdiv(ir.DoubleType()(1.0), args[12]))
-        with cgutils.for_range_slice(builder, args[10], args[11], INT64(1), inc=True) as (n, _):
+            prime, inverse = (
+                spread(args[12]),
+                spread(builder.fdiv(ir.DoubleType()(1.0), args[12])),
+            )
+        with cgutils.for_range_slice(builder, args[10], args[11], INT64(1), inc=True) as (
+            n,
+            _,
+        ):
             place = builder.sext(builder.load(builder.gep(places, [n])), INT64)
             target = builder.gep(out_rows, [place])
             other = builder.load(builder.gep(right_rows, [n]), align=8)
@@ -134,7 +149,9 @@ def _row_code(
                 )
             else:
                 product = builder.fmul(factor, other, flags=("contract",))
-                total = builder.fadd(builder.load(target, align=8), product, flags=("contract",))
+                total = builder.fadd(
+                    builder.load(target, align=8), product, flags=("contract",)
+                )
             builder.store(total, target, align=8)
         return context.get_dummy_value()
 

@@ -124,7 +124,10 @@ class MajorantRing(DoublesRing[Bounds]):
 
     def _store_seed_radii(self, degree: int, modes: Floats) -> None:
         base = int(self.grading.first_row[degree])
-        canonical, conjugate = self.grading.canonical(degree), self.grading.conjugate(degree)
+        canonical, conjugate = (
+            self.grading.canonical(degree),
+            self.grading.conjugate(degree),
+        )
         for i, q in enumerate(self.space.seeds):
             slice_, lane = divmod(i, 8)
             for rows in (canonical, conjugate):
@@ -198,7 +201,9 @@ class MajorantRing(DoublesRing[Bounds]):
         self._note(sizes)
         return (first + second) * SLACK + NEAREST_ROUNDING
 
-    def solve(self, degree: int, corrected: Floats, force: Floats, multipliers: Floats) -> Floats:
+    def solve(
+        self, degree: int, corrected: Floats, force: Floats, multipliers: Floats
+    ) -> Floats:
         index: Ints = self.grading.harmonics(degree)[1]
         radii, seeds = force, np.array(self.space.seeds) - 1
         radii[:, seeds] += corrected
@@ -206,5 +211,9 @@ class MajorantRing(DoublesRing[Bounds]):
         carried = factors != 0
         zeros = np.zeros_like(radii)
         bracket = np.divide(self._tables[degree], factors, out=zeros, where=carried)
-        radii = factors * radii + MULTIPLIER * (bracket + self._epsilon * radii) + NEAREST_ROUNDING
+        radii = (
+            factors * radii
+            + MULTIPLIER * (bracket + self._epsilon * radii)
+            + NEAREST_ROUNDING
+        )
         return np.asarray(np.where(carried, radii * SLACK, 0.0))

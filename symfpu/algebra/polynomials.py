@@ -29,7 +29,9 @@ def square_root(squares: Sequence[Polynomial], linear: Any) -> list[Polynomial]:
     return roots
 
 
-def evaluate(polynomial: Polynomial, powers: Sequence[Sequence[Any]]) -> tuple[Any, list[Any]]:
+def evaluate(
+    polynomial: Polynomial, powers: Sequence[Sequence[Any]]
+) -> tuple[Any, list[Any]]:
     """Value and gradient at a point whose powers are given: powers[i][n] = x_i^n."""
     value: Any = 0
     gradient: list[Any] = [0] * len(powers)

@@ -58,7 +58,9 @@ class Program:
         self._terms = tuple(_Growing(empty) for _ in Terms._fields)
         first = np.ones((1, POINTS), dtype=np.uint64)
         none = np.zeros(1, dtype=np.uint64)
-        self._fingerprints: Fingerprints | None = Fingerprints(_Growing(first), _Growing(none))
+        self._fingerprints: Fingerprints | None = Fingerprints(
+            _Growing(first), _Growing(none)
+        )
 
     @classmethod
     def of_arrays(cls, symbols: Sequence[Hashable], start: Ints, terms: Terms) -> Program:
@@ -186,7 +188,9 @@ class Program:
         nodes[fresh] = self._known(hashes[fresh], start, terms, fresh)
         fresh = fresh[nodes[fresh] == ZERO]
         if len(fresh):
-            nodes[fresh] = self._made(hashes[fresh], counts[fresh], terms.at(_ranges(start, fresh)))
+            nodes[fresh] = self._made(
+                hashes[fresh], counts[fresh], terms.at(_ranges(start, fresh))
+            )
         return np.asarray(nodes[original])
 
     def _known(self, hashes: Residues, start: Ints, terms: Terms, chosen: Ints) -> Ints:
@@ -228,7 +232,9 @@ class _Growing:
         """Appends."""
         before, self.used = self.used, self.used + len(rows)
         if self.used > len(self._room):
-            larger = np.empty((2 * self.used, *self._room.shape[1:]), dtype=self._room.dtype)
+            larger = np.empty(
+                (2 * self.used, *self._room.shape[1:]), dtype=self._room.dtype
+            )
             larger[:before] = self._room[:before]
             self._room = larger
         self._room[before : self.used] = rows
@@ -302,7 +308,9 @@ def _equal(a: tuple[Ints, Terms, Ints], b: tuple[Ints, Terms, Ints]) -> NDArray[
 
 def _add_residues(values: Residues, start: Ints, terms: Terms, sums: Residues) -> None:
     """Values of sums modulo PRIME, from those of all nodes before; sums without terms stay."""
-    from symfpu.algebra.program_loops import sum_residues  # lazy: numba takes long to import
+    from symfpu.algebra.program_loops import (
+        sum_residues,
+    )  # lazy: numba takes long to import
 
     factor = (terms.factor % PRIME).astype(np.uint64)
     sum_residues(start, terms.left, terms.right, factor, np.uint64(PRIME), values, sums)

@@ -21,7 +21,9 @@ from symfpu.algebra.program import ONE, ZERO, Ints, Program, Terms
 from symfpu.algebra.selection import CosineModes
 from symfpu.errors import TooLarge
 
-TERM_BYTES = 400  # of a pair of cosines while its two terms are sorted and collected, at most
+TERM_BYTES = (
+    400  # of a pair of cosines while its two terms are sorted and collected, at most
+)
 
 
 STORED_BYTES, SORTED_BYTES = 20, 100  # of a pair of cosines, fitted to what programs take
@@ -233,7 +235,9 @@ class ProgramRing:
         for i, q in enumerate(self.space.seeds):
             exponents = np.repeat(diagonal, 2, axis=1)
             exponents[:, 2 * i] += 1
-            at = np.searchsorted(self.grading.canonical(degree), self.grading.rows(exponents))
+            at = np.searchsorted(
+                self.grading.canonical(degree), self.grading.rows(exponents)
+            )
             columns.append(modes[at, q - 1])
         return np.stack(columns, axis=1)
 
@@ -263,11 +267,17 @@ class ProgramRing:
         diagonal = np.repeat(self.grading.diagonal(n), 2, axis=1)
         rows = self.grading.exponents(degree)[self.grading.canonical(degree)]
         products = (diagonal[:, None] + rows).reshape(-1, rows.shape[1])
-        at = np.searchsorted(self.grading.canonical(n + degree), self.grading.rows(products))
+        at = np.searchsorted(
+            self.grading.canonical(n + degree), self.grading.rows(products)
+        )
         return np.asarray(at.reshape(len(diagonal), len(rows)))
 
     def solve(
-        self, degree: int, corrected: tuple[Ints, Terms], force: Ints, multipliers: NDArray[Any]
+        self,
+        degree: int,
+        corrected: tuple[Ints, Terms],
+        force: Ints,
+        multipliers: NDArray[Any],
     ) -> Ints:
         symbols = self._multipliers(degree, multipliers)
         seeds = np.array(self.space.seeds) - 1
@@ -275,7 +285,9 @@ class ProgramRing:
         bracket[:, seeds] = self._brackets(corrected, force[:, seeds])
         sign[:, seeds] = 1
         places = np.flatnonzero((bracket != ZERO) & (symbols != ZERO))
-        terms = Terms(symbols.ravel()[places], bracket.ravel()[places], sign.ravel()[places])
+        terms = Terms(
+            symbols.ravel()[places], bracket.ravel()[places], sign.ravel()[places]
+        )
         return self._sums(force.size, places, terms).reshape(force.shape)
 
     def _brackets(self, corrected: tuple[Ints, Terms], force: Ints) -> Ints:

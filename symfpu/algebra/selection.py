@@ -105,7 +105,11 @@ class CosineModes:
     """
 
     def __init__(
-        self, N: int, seeds: Sequence[int], grading: Grading, product_degree: int | None = None
+        self,
+        N: int,
+        seeds: Sequence[int],
+        grading: Grading,
+        product_degree: int | None = None,
     ) -> None:
         """product_degree : a degree whose terms are plain products of the seeds.
 

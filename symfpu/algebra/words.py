@@ -92,7 +92,9 @@ class ResidueBasis:
     """
 
     def __init__(self, bits: int, largest: int) -> None:
-        from symfpu.algebra import kernels  # lazy: numba takes longer to import than all the rest
+        from symfpu.algebra import (
+            kernels,
+        )  # lazy: numba takes longer to import than all the rest
 
         self._kernels = kernels
         # an overflow of the promised bits by a factor of eight is still seen

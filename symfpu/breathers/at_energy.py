@@ -31,7 +31,9 @@ Floats = NDArray[np.float64]
 
 LARGEST_GROWTH = 4.0  # of the energy from one member to the next
 SMALLEST_GROWTH = 1e-2  # relative; below it the family counts as ended
-SMALLEST_START = 1e-12  # of the energy asked for: the least at which a first member is looked for
+SMALLEST_START = (
+    1e-12  # of the energy asked for: the least at which a first member is looked for
+)
 
 
 class NoBreatherAtEnergy(SymfpuError):
@@ -53,7 +55,12 @@ class NoBreatherAtEnergy(SymfpuError):
         member: PeriodicOrbit | None,
         failure: NoPeriodicOrbit,
     ) -> None:
-        self.seed, self.energy, self.harmonic, self.reason = seed, energy, harmonic, str(failure)
+        self.seed, self.energy, self.harmonic, self.reason = (
+            seed,
+            energy,
+            harmonic,
+            str(failure),
+        )
         self.reached = 0.0 if member is None else _energy(member, harmonic)
         self.frequency = None if member is None else float(member.frequency)
         self.amplitude = 0.0 if member is None else member.amplitude

@@ -89,19 +89,34 @@ class PeriodicOrbit(FourierTorus):
 
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        which = f"seed {self.seed}, omega={decimal(self.frequency)}, A={self.amplitude:.13g}"
+        which = (
+            f"seed {self.seed}, omega={decimal(self.frequency)}, A={self.amplitude:.13g}"
+        )
         quality = f"{len(self.cosines) - 1} harmonics, residual {self.residual():.2g}"
         return f"PeriodicOrbit({chain}, {which}, H={self.energy():.11g}, {quality})"
 
 
 def orbit_of(
-    chain: Chain, seed: int, omega: Fraction, cosines: Floats, *, iterations: int, sigma: float
+    chain: Chain,
+    seed: int,
+    omega: Fraction,
+    cosines: Floats,
+    *,
+    iterations: int,
+    sigma: float,
 ) -> PeriodicOrbit:
     """The orbit with these coefficients, harmonic 0 first, shape (H+1, N-1)."""
     harmonics = np.arange(len(cosines))[:, None]
     phases = {seed: 0.0}
     return PeriodicOrbit(
-        chain, (seed,), (omega,), harmonics, cosines, phases, iterations=iterations, sigma=sigma
+        chain,
+        (seed,),
+        (omega,),
+        harmonics,
+        cosines,
+        phases,
+        iterations=iterations,
+        sigma=sigma,
     )
 
 
@@ -114,7 +129,9 @@ def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicO
         advice = "take one from periodic_orbit, breather_at_amplitude or refine"
         raise InputError(argument, type(solution).__name__, ONE_ANGLE, advice)
     if len(solution.seeds) > 1:
-        raise InputError(argument, f"a torus of {len(solution.seeds)} angles", ONE_ANGLE, advice)
+        raise InputError(
+            argument, f"a torus of {len(solution.seeds)} angles", ONE_ANGLE, advice
+        )
     if isinstance(solution, PeriodicOrbit) and not solution.phases[solution.seed]:
         return solution
     chain, seed, omega = solution.chain, solution.seed, solution.frequency
@@ -123,7 +140,9 @@ def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicO
     return orbit_of(chain, seed, omega, cosines, iterations=0, sigma=sigma)
 
 
-def unknowns(chain: Chain, seed: int, harmonics: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def unknowns(
+    chain: Chain, seed: int, harmonics: int
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Harmonics n and places q - 1 of the coefficients that the symmetry allows.
 
     They stand in the order of the vectors z.
@@ -193,7 +212,9 @@ class Balance:
         slope : cosine coefficients of the anharmonic part of V'' of every bond, overwritten.
         """
         slope[1:] /= 2  # coefficients of exp(i k theta), k of both signs
-        stiffness = np.einsum("kj,pj,qj->kpq", slope, self.stretch, self.stretch, optimize=True)
+        stiffness = np.einsum(
+            "kj,pj,qj->kpq", slope, self.stretch, self.stretch, optimize=True
+        )
         n, q = self.n[:, None], self.q[:, None]
         difference = stiffness[abs(n - self.n), q, self.q]
         total = stiffness[n + self.n, q, self.q]
@@ -268,7 +289,10 @@ def residual(chain: Chain, omega: float, cosines: Floats) -> float:
 
 
 def periodic_orbit(
-    chain: Chain, seed: int, frequency: Number, guess: ArrayLike | QuasiPeriodic | None = None
+    chain: Chain,
+    seed: int,
+    frequency: Number,
+    guess: ArrayLike | QuasiPeriodic | None = None,
 ) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given frequency.
 
@@ -292,7 +316,9 @@ def periodic_orbit(
     if guess is not None:
         orbit = orbit_near(chain, seed, _cosines(chain, seed, guess), sigma, held_frequency)
     else:
-        orbit = _walk(chain, seed, lowest_amplitude(chain, seed, shift), sigma, by_amplitude=False)
+        orbit = _walk(
+            chain, seed, lowest_amplitude(chain, seed, shift), sigma, by_amplitude=False
+        )
     return replace(orbit, frequencies=(omega,))
 
 
@@ -330,7 +356,10 @@ def lowest_amplitude(chain: Chain, seed: int, shift: float) -> float:
 
 
 def breather_at_amplitude(
-    chain: Chain, seed: int, amplitude: Number, guess: ArrayLike | QuasiPeriodic | None = None
+    chain: Chain,
+    seed: int,
+    amplitude: Number,
+    guess: ArrayLike | QuasiPeriodic | None = None,
 ) -> PeriodicOrbit:
     """The q-breather of a seed mode with the given amplitude; its frequency is found.
 
@@ -347,7 +376,9 @@ def breather_at_amplitude(
     """
     (seed,), A = seed_modes((seed,), chain.N), float(exact(amplitude, "amplitude"))
     if A == 0:
-        raise InputError("amplitude", amplitude, "a number that is not 0", "take a small one")
+        raise InputError(
+            "amplitude", amplitude, "a number that is not 0", "take a small one"
+        )
     if guess is None:
         shift = frequency_shift(chain, {seed: A})[seed]
         sigma = 2 * float(chain.frequencies()[seed - 1]) * shift
@@ -368,7 +399,9 @@ def _cosines(chain: Chain, seed: int, guess: ArrayLike | QuasiPeriodic) -> Float
     try:
         cosines = np.array(guess, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError("guess", guess, f"an array of shape {shape}", "pass numbers") from error
+        raise InputError(
+            "guess", guess, f"an array of shape {shape}", "pass numbers"
+        ) from error
     if cosines.ndim != 2 or len(cosines) < 2 or cosines.shape[1] != chain.N - 1:
         advice = "put the harmonics first, the modes last"
         raise InputError("guess", cosines.shape, f"the shape {shape}, H from 1 up", advice)
@@ -379,7 +412,9 @@ def _cosines(chain: Chain, seed: int, guess: ArrayLike | QuasiPeriodic) -> Float
     return cosines
 
 
-@np.errstate(over="ignore", invalid="ignore")  # iterates that run away are refused by their size
+@np.errstate(
+    over="ignore", invalid="ignore"
+)  # iterates that run away are refused by their size
 def orbit_near(
     chain: Chain,
     seed: int,
@@ -415,7 +450,9 @@ def orbit_near(
             break
         harmonics *= 2
         if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
-            still = f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g}"
+            still = (
+                f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g}"
+            )
             raise NoPeriodicOrbit(balance, f"{still} of the largest", z)
     largest = _largest(cosines)
     change = _largest(z - balance.vector(guess, sigma)) / largest
@@ -424,7 +461,9 @@ def orbit_near(
         raise NoPeriodicOrbit(balance, f"the orbit found is another one: {moved}", z)
     last = int(np.flatnonzero(heights > TAIL / 100)[-1])
     omega = exact(balance.frequency(z), "frequency")
-    return orbit_of(chain, seed, omega, cosines[: last + 1], iterations=iterations, sigma=sigma)
+    return orbit_of(
+        chain, seed, omega, cosines[: last + 1], iterations=iterations, sigma=sigma
+    )
 
 
 def _walk(
@@ -445,7 +484,9 @@ def _walk(
         if by_amplitude:
             guess[1, seed - 1] = amplitude * part
         try:
-            orbit = orbit_near(chain, seed, guess, sigma * (part / scale) ** 2, given, REACH)
+            orbit = orbit_near(
+                chain, seed, guess, sigma * (part / scale) ** 2, given, REACH
+            )
         except NoPeriodicOrbit:
             step /= 2
             if step < SMALLEST_PART:

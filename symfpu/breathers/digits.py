@@ -37,15 +37,16 @@ from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, show
 
 Floats = NDArray[np.float64]
 
-MORE_ANGLES = "tori of more angles have many digits as series only: give digits= to lindstedt"
+MORE_ANGLES = (
+    "tori of more angles have many digits as series only: give digits= to lindstedt"
+)
 LARGEST_BLOCK = 2500  # unknowns in the matrix that is factored
 MOST_DIGITS = 1000
 MOST_HARMONICS = 4096
 SWEEPS = 400
 STALL_SWEEPS = 4  # sweeps without a smaller residual that end the search
-ROUNDING_BITS = (
-    24  # of a residual in units of the last place that is rounding, before the last correction
-)
+# of a residual in units of the last place that is rounding, before the last correction
+ROUNDING_BITS = 24
 CHECK_BITS = 64  # more than those of the orbit, in the check of its residual
 DOUBLE_BITS = 1000  # of an integer that goes into a double
 
@@ -151,7 +152,9 @@ class Sweeps:
     Made at the working precision of mpmath.
     """
 
-    def __init__(self, orbit: PeriodicOrbit, harmonics: int, amplitude: Fraction | None) -> None:
+    def __init__(
+        self, orbit: PeriodicOrbit, harmonics: int, amplitude: Fraction | None
+    ) -> None:
         self.orbit, self.chain = orbit, orbit.chain
         self.by_amplitude = amplitude is not None
         largest = float(np.max(np.abs(orbit.cosines)))
@@ -221,7 +224,9 @@ class Sweeps:
         block = len(self.balance.n)
         changes = np.zeros(len(scaled) + 1)
         changes[self.free] = lu_solve(self.matrix, scaled[:block])
-        sigma = changes[block : block + 1].copy()  # its place is the end of the block for now
+        sigma = changes[
+            block : block + 1
+        ].copy()  # its place is the end of the block for now
         changes[block:-1] = scaled[block:] / self.diagonal
         self.c[self.n, self.q] -= _integers(changes[:-1], bits)
         self.squared -= int(_integers(sigma, bits)[0])

@@ -150,7 +150,9 @@ def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
     cosines = np.abs(np.einsum("ij,ij->j", left.conj(), right))
     tolerance = SAFETY * error / np.maximum(cosines, np.finfo(float).tiny)
     kinds = [_kind(k, t) for k, t in zip(kappa, tolerance, strict=True)]
-    pairs = np.array([_pair(k, kind) for k, kind in zip(kappa, kinds, strict=True)]).reshape(-1, 2)
+    pairs = np.array(
+        [_pair(k, kind) for k, kind in zip(kappa, kinds, strict=True)]
+    ).reshape(-1, 2)
     larger = pairs[:, 0]
     order = np.lexsort((np.angle(larger), -np.abs(larger).round(12)))
     return Floquet(

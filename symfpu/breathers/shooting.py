@@ -42,7 +42,11 @@ Floats = NDArray[np.float64]
 ACCURACY = 1e-15
 FIRST_STEP = 0.1  # time of the coarser of the first two integrations
 DOUBLINGS = 5
-HALF_PERIOD_SAMPLES = (256, 1024, 4096)  # for the harmonics of an orbit, until they fall off
+HALF_PERIOD_SAMPLES = (
+    256,
+    1024,
+    4096,
+)  # for the harmonics of an orbit, until they fall off
 NOISE = 4e-15  # of the largest coefficient: those below are rounding of the integration
 
 
@@ -54,8 +58,15 @@ class ShootingFailed(SymfpuError):
         Ours.
     """
 
-    def __init__(self, seed: int, reason: str, start: Floats, residuals: tuple[float, ...]) -> None:
-        self.seed, self.reason, self.iterate, self.residuals = seed, reason, start, residuals
+    def __init__(
+        self, seed: int, reason: str, start: Floats, residuals: tuple[float, ...]
+    ) -> None:
+        self.seed, self.reason, self.iterate, self.residuals = (
+            seed,
+            reason,
+            start,
+            residuals,
+        )
         self.residual = min(residuals, default=float("inf"))
         best = f"Q_{seed}(0) = {start[seed - 1]:.6g}"
         super().__init__(
@@ -166,7 +177,9 @@ def _half_period(orbit: ShotOrbit, samples: int) -> Floats:
     Q, P = orbit.start, 0 * orbit.start
     path = [Q]
     for _ in range(samples):
-        moved = tangent_steps(orbit.chain, Q, P, none, none, pause / steps, steps, scheme=KAHAN_LI8)
+        moved = tangent_steps(
+            orbit.chain, Q, P, none, none, pause / steps, steps, scheme=KAHAN_LI8
+        )
         Q, P, *_ = moved
         path.append(Q)
     return np.array(path)
@@ -211,7 +224,9 @@ def shoot(
     start = np.where(allowed, start, 0.0)
     half, rate = np.pi / float(omega), float(omega)
     steps = _steps(chain, integrator, seed, start, half)
-    start, history = _newton(chain, integrator, seed, start, np.flatnonzero(allowed), half, steps)
+    start, history = _newton(
+        chain, integrator, seed, start, np.flatnonzero(allowed), half, steps
+    )
     Q, P = _moved(chain, integrator, start, half / (2 * steps), 4 * steps)
     distance = max(np.max(np.abs(Q - start)), np.max(np.abs(P)) / rate)
     closure = float(distance / np.max(np.abs(start)))
@@ -223,7 +238,9 @@ def _moved(
 ) -> tuple[Floats, Floats]:
     """Q and P after so many steps from the start at rest."""
     none = np.zeros((0, chain.N - 1))
-    Q, P, *_ = tangent_steps(chain, start, 0 * start, none, none, step, count, scheme=scheme)
+    Q, P, *_ = tangent_steps(
+        chain, start, 0 * start, none, none, step, count, scheme=scheme
+    )
     return Q, P
 
 
@@ -250,7 +267,9 @@ def _newton(
 
     for _ in range(ITERATIONS + 1):
         state = start, 0 * start
-        moved = tangent_steps(chain, *state, directions, still, half / steps, steps, scheme=scheme)
+        moved = tangent_steps(
+            chain, *state, directions, still, half / steps, steps, scheme=scheme
+        )
         _, P, _, slopes = moved
         velocity = np.pi * np.max(np.abs(start))  # omega max|Q| times half a period
         residual = float(np.max(np.abs(P)) * half / velocity)
@@ -302,7 +321,9 @@ def _steps(chain: Chain, scheme: Scheme, seed: int, start: Floats, half: float) 
         steps *= 2
         fine = end(steps)
         if not np.isfinite(fine).all():
-            raise ShootingFailed(seed, "the motion from the guess runs away to infinity", start, ())
+            raise ShootingFailed(
+                seed, "the motion from the guess runs away to infinity", start, ()
+            )
         wanted = (2**scheme.order - 1) * ACCURACY * np.max(np.abs(fine))
         if np.max(np.abs(fine - coarse)) <= wanted:
             break

@@ -113,7 +113,9 @@ class Bundle:
     def __repr__(self) -> str:
         torus = "no torus"
         if isinstance(self.torus, QTorus):
-            orders = f"frequency order {self.torus.frequency_order}, order {self.torus.order}"
+            orders = (
+                f"frequency order {self.torus.frequency_order}, order {self.torus.order}"
+            )
             torus = f"QTorus of {orders}"
         verdict = "a verdict" if self.verdict is not None else "no verdict"
         version = self.provenance["versions"].get("symfpu", "of unknown version")
@@ -209,7 +211,9 @@ def load(path: Path | str) -> Bundle:
     path = _path(path)
     with path.open("rb") as stream:
         if stream.read(4) != b"PK\x03\x04":
-            raise BundleError(path, "is not a symfpu bundle", "give a file that symfpu.save wrote")
+            raise BundleError(
+                path, "is not a symfpu bundle", "give a file that symfpu.save wrote"
+            )
         try:
             return _bundle(path, Archive(path, stream))
         except BundleError:
@@ -227,7 +231,9 @@ def _path(path: object) -> Path:
     return Path(os.fsdecode(path))
 
 
-def _require_arguments(result: object, verdict: object, command: object, created: object) -> None:
+def _require_arguments(
+    result: object, verdict: object, command: object, created: object
+) -> None:
     if not isinstance(result, LindstedtSeries):
         require_solution(result, "result")
     if command is not None and not isinstance(command, str):
@@ -259,7 +265,9 @@ def _versions() -> dict[str, str]:
 def _by_seed(entries: Mapping[str, Any], seeds: Sequence[int]) -> dict[int, Any]:
     values = {int(q): number(entry) for q, entry in entries.items()}
     if set(values) != set(seeds):
-        raise ValueError(f"numbers for the seeds {tuple(values)} where {tuple(seeds)} are due")
+        raise ValueError(
+            f"numbers for the seeds {tuple(values)} where {tuple(seeds)} are due"
+        )
     return values
 
 
@@ -327,7 +335,9 @@ def _shapes(chain: Chain, seeds: int, order: int, most: int) -> tuple[Shapes, Sh
         rows = canonical_count(seeds, degree + 1)
         most -= rows
         if most < 0:
-            raise ValueError(f"order {order} of {seeds} seeds needs more rows than the file holds")
+            raise ValueError(
+                f"order {order} of {seeds} seeds needs more rows than the file holds"
+            )
         coordinates.append((rows, chain.N - 1))
         if k:
             diagonal = 0 if degree % 2 else comb(degree // 2 + seeds - 1, seeds - 1)
@@ -346,7 +356,9 @@ def _split(flat: Array, shapes: Iterable[tuple[int, ...]]) -> list[Array]:
 class _Reader:
     """Tables of a series out of the flat arrays of a file."""
 
-    def __init__(self, archive: Archive, body: Json, chain: Chain, seeds: int, order: int) -> None:
+    def __init__(
+        self, archive: Archive, body: Json, chain: Chain, seeds: int, order: int
+    ) -> None:
         self.archive, self.body, self.seeds, self.order = archive, body, seeds, order
         self.shapes = _shapes(chain, seeds, order, archive.entries("coordinates"))
         self.tables = _kind(body).tables(None, 0)
@@ -354,7 +366,9 @@ class _Reader:
     def parts(self) -> Json:
         """Coordinates, corrections and radii as a series holds them."""
         coordinates, corrections = self.shapes
-        kept = self._read("coordinates", coordinates) + self._read("corrections", corrections)
+        kept = self._read("coordinates", coordinates) + self._read(
+            "corrections", corrections
+        )
         members = {}
         for name, member in self.tables.members(self.body).items():
             members[name] = self.archive.array(name, *member)
@@ -399,7 +413,9 @@ def _series(archive: Archive, body: Json) -> LindstedtSeries:
     expected = (kind.numeric, kind.name == FIXED_POINT.name, kind.exact_point)
     given = (frequencies is not None, digits is not None, point is not None)
     if given != expected:
-        raise ValueError(f"frequencies, digits and point do not fit the ring {body['ring']!r:.40}")
+        raise ValueError(
+            f"frequencies, digits and point do not fit the ring {body['ring']!r:.40}"
+        )
     parts = _Reader(archive, body, chain, len(seeds), order).parts()
     return LindstedtSeries(
         chain=chain,

@@ -24,10 +24,14 @@ def number_entry(value: Any) -> str | dict[str, str]:
     """
     if not isinstance(value, mpmath.mpf):
         if float(value) != value:
-            raise InputError("result", value, "doubles and mpf as its numbers", "convert them")
+            raise InputError(
+                "result", value, "doubles and mpf as its numbers", "convert them"
+            )
         return repr(float(value))
     if not mpmath.isfinite(value):
-        raise InputError("result", value, "finite numbers", "solve for the amplitudes again")
+        raise InputError(
+            "result", value, "finite numbers", "solve for the amplitudes again"
+        )
     sign, mantissa, exponent, bits = value._mpf_
     exact = f"{'-' if sign else ''}{int(mantissa):#x}p{exponent}"
     return {"exact": exact, "decimal": text(value, max(1, bits * 3 // 10))}

@@ -55,7 +55,9 @@ def refined_from(archive: Archive, body: Json) -> RefinedTorus:
     flat = np.asarray(archive.array("cosines", FLOATS, count * (chain.N - 1)))
     cosines = flat.reshape(count, chain.N - 1)
     if min(frequencies) <= 0 or not np.isfinite(cosines).all():
-        wrong = "a frequency that is not positive, or a coefficient that is no finite number"
+        wrong = (
+            "a frequency that is not positive, or a coefficient that is no finite number"
+        )
         raise ValueError(wrong)
     for unit in np.eye(s, dtype=np.int64):
         if np.count_nonzero((harmonics == unit).all(axis=1)) != 1:

@@ -102,14 +102,18 @@ def _packed(cosines: Numbers, digits: int | None) -> tuple[Arrays, Json]:
         raise InputError("result", problem, "finite numbers", "compute it again")
     parts = [c._mpf_ for c in cosines.flat]
     mantissas = np.empty((len(parts), 1), dtype=object)
-    mantissas[:, 0] = [-int(mantissa) if sign else int(mantissa) for sign, mantissa, _, _ in parts]
+    mantissas[:, 0] = [
+        -int(mantissa) if sign else int(mantissa) for sign, mantissa, _, _ in parts
+    ]
     words = IntegerTable.of(mantissas).words
     exponents = np.array([exponent for _, _, exponent, _ in parts], dtype=INTEGERS)
     arrays = {"cosines": words.ravel().astype(INTEGERS), "exponents": exponents}
     return arrays, {"words": words.shape[-1]}
 
 
-def _unpacked(archive: Archive, body: Json, shape: tuple[int, int], digits: int | None) -> Numbers:
+def _unpacked(
+    archive: Archive, body: Json, shape: tuple[int, int], digits: int | None
+) -> Numbers:
     rows, columns = shape
     count = rows * columns
     if digits is None:
@@ -151,7 +155,11 @@ def _fields(parts: FourierTorus) -> dict[str, Any]:
 def _periodic(parts: FourierTorus) -> FourierTorus:
     """The parts, if they are those of a periodic orbit; ValueError otherwise."""
     numbered = np.arange(len(parts.harmonics))[:, None]
-    if len(parts.seeds) > 1 or len(numbered) < 2 or not np.array_equal(parts.harmonics, numbered):
+    if (
+        len(parts.seeds) > 1
+        or len(numbered) < 2
+        or not np.array_equal(parts.harmonics, numbered)
+    ):
         raise ValueError("the harmonics are not those of a periodic orbit")
     return parts
 
@@ -190,12 +198,18 @@ def _made_by_sweeps(orbit: PreciseOrbit) -> tuple[Json, Arrays]:
 
 def _read_sweeps(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
     sweeps = integer(made["sweeps"], "sweeps", 0)
-    return PreciseOrbit(**_fields(_periodic(parts)), bound=number(made["bound"]), sweeps=sweeps)
+    return PreciseOrbit(
+        **_fields(_periodic(parts)), bound=number(made["bound"]), sweeps=sweeps
+    )
 
 
 def _made_by_shooting(orbit: ShotOrbit) -> tuple[Json, Arrays]:
     history = [number_entry(x) for x in orbit.history]
-    entries = {"closure": number_entry(orbit.closure), "history": history, "steps": orbit.steps}
+    entries = {
+        "closure": number_entry(orbit.closure),
+        "history": history,
+        "steps": orbit.steps,
+    }
     return entries, {"start": _floats(orbit.start)}
 
 

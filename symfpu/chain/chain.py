@@ -20,7 +20,13 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.chain import bonds
 from symfpu.chain.length import LENGTH, SymbolicLength
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers, arithmetic_of, sine_matrix
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    Arithmetic,
+    Numbers,
+    arithmetic_of,
+    sine_matrix,
+)
 from symfpu.numbers.typed import Number, decimal, exact, integer, rational
 
 Floats = NDArray[np.float64]
@@ -244,7 +250,9 @@ class Chain:
     def _coupling(self, *modes: int) -> int:
         for mode in modes:
             if integer(mode, "mode", 1) >= self.N:
-                raise InputError("mode", mode, f"1..{self.N - 1}", "name a mode of the chain")
+                raise InputError(
+                    "mode", mode, f"1..{self.N - 1}", "name a mode of the chain"
+                )
         first, *others = modes
         coupling = 0
         for signs in product((1, -1), repeat=len(others)):
@@ -299,7 +307,9 @@ class Chain:
     def _symbols(self) -> tuple[dict[int, Any], dict[int, Any], dict[int, Any]]:
         if self.N > LARGEST_EXPRESSION:
             allowed = f"at most {LARGEST_EXPRESSION} for an expression"
-            raise InputError("N", self.N, allowed, "use energy() and accelerations() with numbers")
+            raise InputError(
+                "N", self.N, allowed, "use energy() and accelerations() with numbers"
+            )
         modes = range(1, self.N)
         Q = {q: se.Symbol(f"Q{q}") for q in modes}
         P = {q: se.Symbol(f"P{q}") for q in modes}
@@ -324,5 +334,8 @@ def require_chain(chain: object) -> None:
     """InputError for what is no Chain."""
     if not isinstance(chain, Chain):
         raise InputError(
-            "chain", type(chain).__name__, "a Chain", "make one with Chain(N, alpha=..., beta=...)"
+            "chain",
+            type(chain).__name__,
+            "a Chain",
+            "make one with Chain(N, alpha=..., beta=...)",
         )

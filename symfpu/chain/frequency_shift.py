@@ -27,7 +27,9 @@ from symfpu.errors import InputError
 from symfpu.numbers.typed import exact, rational, seed_modes
 
 
-def shift_coefficients(N: int, q: int, n: int) -> tuple[tuple[Fraction, Fraction], Fraction]:
+def shift_coefficients(
+    N: int, q: int, n: int
+) -> tuple[tuple[Fraction, Fraction], Fraction]:
     """Closed form of the shift of mode q by the amplitude of mode n, as exact numbers ((a, b), c).
 
     omega_q - Omega_q = Omega_q A_n^2 [(alpha^2/2N) (a + b Omega_n^2) + (beta/2N) c Omega_n^2].

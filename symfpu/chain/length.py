@@ -81,7 +81,9 @@ def mode_label(value: Any, argument: str) -> int:
         number = int(value)
         if number > 0:
             return number
-    allowed = "a mode 1, 2, ... from the start of the spectrum, or 'N-1', 'N-2', ... from its end"
+    allowed = (
+        "a mode 1, 2, ... from the start of the spectrum, or 'N-1', 'N-2', ... from its end"
+    )
     raise InputError(argument, value, allowed, "count it from one of the ends")
 
 

@@ -42,16 +42,25 @@ def reachable_modes(
     modes = seed_modes(seeds, N)
     order = integer(order, "order", 0)
     if order > LARGEST_ORDER:
-        raise InputError("order", order, f"at most {LARGEST_ORDER}", "the sets repeat long before")
+        raise InputError(
+            "order", order, f"at most {LARGEST_ORDER}", "the sets repeat long before"
+        )
     if model not in MODELS:
-        raise InputError("model", model, "'alpha', 'beta' or 'alpha+beta'", "pass one of these")
+        raise InputError(
+            "model", model, "'alpha', 'beta' or 'alpha+beta'", "pass one of these"
+        )
     sums = {fold(q, N) for q in modes}
     reached = []
     for _k in range(order + 1):
         reached.append(tuple(sorted(sums - {0, N})))
         for _ in range(2 if model == "beta" else 1):
             # folding is a map of the sums modulo 2N and sign, so it may be done at every step
-            sums = {fold(total + sign * q, N) for total in sums for q in modes for sign in (1, -1)}
+            sums = {
+                fold(total + sign * q, N)
+                for total in sums
+                for q in modes
+                for sign in (1, -1)
+            }
     return reached
 
 
@@ -112,7 +121,9 @@ def coupled_modes(
         reached = set(modes)
         for orders in combinations_with_replacement(range(k), factors):
             if sum(orders) == k - 1:
-                for chosen in {tuple(sorted(c)) for c in product(*(sets[j] for j in orders))}:
+                for chosen in {
+                    tuple(sorted(c)) for c in product(*(sets[j] for j in orders))
+                }:
                     reached |= product_modes(N, chosen)
         sets.append(reached)
     return [tuple(sorted(members)) for members in sets]

@@ -30,7 +30,9 @@ from symfpu.files.writing import output_file
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.tori.quasiperiodic import FourierTorus
 
-DOUBLE_ENERGY = "the energy is met in doubles; the digits are of the orbit with the frequency found"
+DOUBLE_ENERGY = (
+    "the energy is met in doubles; the digits are of the orbit with the frequency found"
+)
 
 
 @app.command(epilog="Example: symfpu breather -N 32 --alpha 0.33 --seed 1 --energy 0.01")
@@ -50,7 +52,8 @@ def breather(
         str | None, typer.Option(help="The one of this energy H.", metavar="E")
     ] = None,
     digits: Annotated[
-        str | None, typer.Option(help="Any number of digits.  Default: doubles.", metavar="D")
+        str | None,
+        typer.Option(help="Any number of digits.  Default: doubles.", metavar="D"),
     ] = None,
     multipliers: Annotated[
         bool, typer.Option("--multipliers", help="Floquet multipliers.")
@@ -71,7 +74,9 @@ def breather(
         orbit: FourierTorus = _found(chain, mode, omega, amplitude, energy)
         if places is not None:
             advance("digits", NO_FRACTION)
-            orbit = periodic_orbit_digits(orbit, places, frequency=omega, amplitude=amplitude)
+            orbit = periodic_orbit_digits(
+                orbit, places, frequency=omega, amplitude=amplitude
+            )
         advance("multipliers" if multipliers else "energies", NO_FRACTION)
         stability = floquet(orbit) if multipliers else None
         if file:

@@ -26,15 +26,23 @@ def export(
     output: Annotated[
         str,
         typer.Option(
-            "-o", "--output", help="The source file; its name names the functions.", metavar="FILE"
+            "-o",
+            "--output",
+            help="The source file; its name names the functions.",
+            metavar="FILE",
         ),
     ],
     series: Annotated[
-        bool, typer.Option("--series", help="The series with free amplitudes instead of the torus.")
+        bool,
+        typer.Option(
+            "--series", help="The series with free amplitudes instead of the torus."
+        ),
     ] = False,
     order: Annotated[
         str | None,
-        typer.Option(help="With --series: order of the coordinates.  Default: all.", metavar="K"),
+        typer.Option(
+            help="With --series: order of the coordinates.  Default: all.", metavar="K"
+        ),
     ] = None,
     frequency_order: Annotated[
         str | None,
@@ -47,7 +55,9 @@ def export(
             help="With --series, in universal form: derivatives by the frequencies too.",
         ),
     ] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace an existing file.")
+    ] = False,
 ) -> None:
     """Source code of a torus, or of a series with free amplitudes.
 

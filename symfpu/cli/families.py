@@ -31,7 +31,12 @@ from symfpu.errors import InputError
 from symfpu.families.family import METHODS, Family, family
 from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_file, output_folder
-from symfpu.refinement.tori import RefinedTorus, refine, refine_at_amplitudes, refine_at_energy
+from symfpu.refinement.tori import (
+    RefinedTorus,
+    refine,
+    refine_at_amplitudes,
+    refine_at_energy,
+)
 from symfpu.reports.family import (
     family_record,
     family_table,
@@ -47,19 +52,27 @@ def refine_file(
     file: FileArgument,
     output: Annotated[
         str | None,
-        typer.Option("-o", "--output", help="Keep the refined torus in this file.", metavar="FILE"),
+        typer.Option(
+            "-o", "--output", help="Keep the refined torus in this file.", metavar="FILE"
+        ),
     ] = None,
     energy: Annotated[
         str | None,
-        typer.Option(help="The torus of this energy H, amplitudes in the same ratio.", metavar="E"),
+        typer.Option(
+            help="The torus of this energy H, amplitudes in the same ratio.", metavar="E"
+        ),
     ] = None,
     harmonic: Annotated[
         bool,
-        typer.Option("--harmonic", help="With --energy: the harmonic energy sum E_q instead of H."),
+        typer.Option(
+            "--harmonic", help="With --energy: the harmonic energy sum E_q instead of H."
+        ),
     ] = False,
     amplitudes: Annotated[
         str | None,
-        typer.Option(help="The torus of these amplitudes, one for each seed.", metavar="A,A,..."),
+        typer.Option(
+            help="The torus of these amplitudes, one for each seed.", metavar="A,A,..."
+        ),
     ] = None,
     tolerance: Annotated[
         str,
@@ -76,7 +89,10 @@ def refine_file(
     torus = held(load(path_named("FILE", file)).torus, file)
     if energy is not None and amplitudes is not None:
         raise InputError(
-            "amplitudes", amplitudes, "only one of --energy and --amplitudes", "leave one out"
+            "amplitudes",
+            amplitudes,
+            "only one of --energy and --amplitudes",
+            "leave one out",
         )
     if harmonic and energy is None:
         raise InputError(
@@ -124,7 +140,10 @@ def by_seed(argument: str, text: str, seeds: tuple[int, ...]) -> dict[int, str]:
     parts = text.split(",")
     if len(parts) != len(seeds):
         raise InputError(
-            argument, text, f"a number for each of the seeds {seeds}", "separate them by commas"
+            argument,
+            text,
+            f"a number for each of the seeds {seeds}",
+            "separate them by commas",
         )
     return dict(zip(seeds, parts, strict=True))
 
@@ -135,7 +154,8 @@ def ratio(argument: str, text: str | None, seeds: tuple[int, ...]) -> dict[int, 
 
 
 @app.command(
-    "family", epilog="Example: symfpu family -N 32 --alpha 0.33 --seeds 1 --to-energy 0.05 -o out"
+    "family",
+    epilog="Example: symfpu family -N 32 --alpha 0.33 --seeds 1 --to-energy 0.05 -o out",
 )
 def follow_family(
     bonds: BondsOption,
@@ -147,10 +167,13 @@ def follow_family(
     beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
     harmonic: Annotated[
         bool,
-        typer.Option("--harmonic", help="Energies are the harmonic energy sum E_q instead of H."),
+        typer.Option(
+            "--harmonic", help="Energies are the harmonic energy sum E_q instead of H."
+        ),
     ] = False,
     amplitude_ratio: Annotated[
-        str | None, typer.Option(help="Ratio of the amplitudes, such as 1,0.5.", metavar="R,R,...")
+        str | None,
+        typer.Option(help="Ratio of the amplitudes, such as 1,0.5.", metavar="R,R,..."),
     ] = None,
     energy_ratio: Annotated[
         str | None,

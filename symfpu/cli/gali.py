@@ -52,13 +52,15 @@ def gali(
             metavar="M",
         ),
     ] = None,
-    step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(STEP),
+    step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(
+        STEP
+    ),
     scheme: Annotated[
         str, typer.Option(help=f"{', '.join(PARTICLE_SCHEMES)}.", metavar="SCHEME")
     ] = SCHEME,
-    samples: Annotated[str, typer.Option(help="Times at which the indices are kept.")] = str(
-        SAMPLES
-    ),
+    samples: Annotated[
+        str, typer.Option(help="Times at which the indices are kept.")
+    ] = str(SAMPLES),
     seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
     output: Annotated[
         str | None,
@@ -69,7 +71,8 @@ def gali(
     checkpoint: Annotated[
         str | None,
         typer.Option(
-            help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE"
+            help="Keep the run in this file, and go on from it if it was killed.",
+            metavar="FILE",
         ),
     ] = None,
     estimate: Annotated[

@@ -36,7 +36,10 @@ def options(
     version: Annotated[
         bool,
         typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version and stop."
+            "--version",
+            callback=_print_version,
+            is_eager=True,
+            help="Print the version and stop.",
         ),
     ] = False,
 ) -> None:
@@ -48,7 +51,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command = typer.main.get_command(app)
     words = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     try:
-        code = command.main(args=words, prog_name="symfpu", standalone_mode=False, obj=words)
+        code = command.main(
+            args=words, prog_name="symfpu", standalone_mode=False, obj=words
+        )
     except InputError as error:
         return _fail(str(error), 2)
     except Interrupted as error:

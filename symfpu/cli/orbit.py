@@ -62,7 +62,8 @@ def orbit(
     checkpoint: Annotated[
         str | None,
         typer.Option(
-            help="Keep the run in this file, and go on from it if it was killed.", metavar="FILE"
+            help="Keep the run in this file, and go on from it if it was killed.",
+            metavar="FILE",
         ),
     ] = None,
     as_json: JsonOption = False,
@@ -102,7 +103,10 @@ def orbit(
 def _output(path: Path) -> Path:
     if path.suffix not in (".csv", ".npz"):
         raise InputError(
-            "output", str(path), "a name that ends in .csv or .npz", "choose another with -o"
+            "output",
+            str(path),
+            "a name that ends in .csv or .npz",
+            "choose another with -o",
         )
     return output_file(path)
 
@@ -140,7 +144,9 @@ def _print(record: dict[str, Any]) -> None:
     say(f"energy error       {energy_error:.3g}   (largest |H(t)/H(0) - 1| of the samples)")
     deviation = f"{record['largest_deviation']:.3g}"
     when = f"t = {record['largest_deviation_time']:.10g}"
-    say(f"off the torus      {deviation}   (largest at {when}, relative to the largest coordinate)")
+    say(
+        f"off the torus      {deviation}   (largest at {when}, relative to the largest coordinate)"
+    )
     if energy_error > LOST_ENERGY:
         say("the energy is lost: this is no orbit of the chain, take a shorter step")
     say("mode  time average of E_q      on the torus, for ever")
@@ -165,7 +171,10 @@ def _write(path: Path, made: Orbit) -> None:
     except OSError as error:
         draft.unlink(missing_ok=True)
         raise InputError(
-            "output", str(path), "a file that can be written", f"choose another ({error.strerror})"
+            "output",
+            str(path),
+            "a file that can be written",
+            f"choose another ({error.strerror})",
         ) from error
 
 

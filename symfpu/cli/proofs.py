@@ -65,16 +65,22 @@ def _set_of(modes: Iterable[int]) -> str:
     return f"{{{listed}}}"
 
 
-@app.command(epilog="Example: symfpu prove -N 8 --model beta --seeds 1,4 --order 3 -o proof.json")
+@app.command(
+    epilog="Example: symfpu prove -N 8 --model beta --seeds 1,4 --order 3 -o proof.json"
+)
 def prove(
     bonds: BondsOption,
     seeds: SeedsOption,
     order: OrderOption,
     model: Annotated[str, typer.Option(help="alpha or beta.")] = "alpha",
-    points: Annotated[str, typer.Option(help="Independent primes and random frequencies.")] = "1",
+    points: Annotated[
+        str, typer.Option(help="Independent primes and random frequencies.")
+    ] = "1",
     output: Annotated[
         str | None,
-        typer.Option("-o", "--output", help="Write the certificate to this file.", metavar="FILE"),
+        typer.Option(
+            "-o", "--output", help="Write the certificate to this file.", metavar="FILE"
+        ),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -120,7 +126,9 @@ def _print_proof(proof: PropagationProof) -> None:
     for case in proof.exceptions:
         found = "at no order" if case.actual is None else case.actual
         doubt = doubts.get(case.mode, "")
-        say(f"mode {case.mode}: predicted at order {case.predicted}, actually {found}{doubt}")
+        say(
+            f"mode {case.mode}: predicted at order {case.predicted}, actually {found}{doubt}"
+        )
     say(f"verdict: {proof.verdict}")
 
 
@@ -148,7 +156,9 @@ def verify(
     say("\n".join([*checked, "the certificate is valid"]))
 
 
-@app.command(epilog="Example: symfpu sweep --model beta --longest 9 --order 3 --file beta.jsonl")
+@app.command(
+    epilog="Example: symfpu sweep --model beta --longest 9 --order 3 --file beta.jsonl"
+)
 def sweep(
     order: OrderOption,
     model: Annotated[str, typer.Option(help="alpha or beta.")] = "alpha",
@@ -161,13 +171,17 @@ def sweep(
     file: Annotated[
         str | None,
         typer.Option(
-            help="Keep decided cases here; an interrupted sweep goes on from it.", metavar="FILE"
+            help="Keep decided cases here; an interrupted sweep goes on from it.",
+            metavar="FILE",
         ),
     ] = None,
     markdown: Annotated[
         str | None,
         typer.Option(
-            "-o", "--output", help="Write the summary to this Markdown file.", metavar="FILE"
+            "-o",
+            "--output",
+            help="Write the summary to this Markdown file.",
+            metavar="FILE",
         ),
     ] = None,
     as_json: JsonOption = False,

@@ -34,12 +34,16 @@ from symfpu.paper.targets import LONG_TARGETS, TARGETS, full_estimate, reproduce
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
 def reproduce(
     targets: Annotated[
-        list[str], typer.Argument(help=f"{', '.join(TARGETS)}, or all.", metavar="TARGET...")
+        list[str],
+        typer.Argument(help=f"{', '.join(TARGETS)}, or all.", metavar="TARGET..."),
     ],
     output: Annotated[
         str,
         typer.Option(
-            "-o", "--output", help="Folder for the report, pictures and data.", metavar="FOLDER"
+            "-o",
+            "--output",
+            help="Folder for the report, pictures and data.",
+            metavar="FOLDER",
         ),
     ] = "out",
     full: Annotated[
@@ -59,7 +63,10 @@ def reproduce(
     for target in targets:
         if target not in (*TARGETS, "all"):
             raise InputError(
-                "target", target, f"{', '.join(TARGETS)} or all", "name one or more of these"
+                "target",
+                target,
+                f"{', '.join(TARGETS)} or all",
+                "name one or more of these",
             )
     if full and not {*LONG_TARGETS, "all"} & set(targets):
         raise InputError(
@@ -94,7 +101,9 @@ def reproduce(
 
 def _kept(figures: dict[str, PaperFigure], folder: Path) -> str:
     """What stands of a reproduction that was interrupted."""
-    parts = [f"{folder}/report.md and report.json hold {', '.join(figures)}"] if figures else []
+    parts = (
+        [f"{folder}/report.md and report.json hold {', '.join(figures)}"] if figures else []
+    )
     if any(folder.glob("*.checkpoint")):
         parts.append(f"the same command goes on from {folder}/*.checkpoint")
     return "; ".join(parts) or NOTHING_KEPT

@@ -39,15 +39,21 @@ from symfpu.files.progress import Progress
 
 BondsOption = Annotated[
     str,
-    typer.Option("-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"),
+    typer.Option(
+        "-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"
+    ),
 ]
 SeedsOption = Annotated[
     str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")
 ]
-OrderOption = Annotated[str, typer.Option("--order", help="Order k of the series.", metavar="K")]
+OrderOption = Annotated[
+    str, typer.Option("--order", help="Order k of the series.", metavar="K")
+]
 FileArgument = Annotated[
     str,
-    typer.Argument(help="A file written by symfpu solve, breather or refine -o.", metavar="FILE"),
+    typer.Argument(
+        help="A file written by symfpu solve, breather or refine -o.", metavar="FILE"
+    ),
 ]
 JsonOption = Annotated[
     bool, typer.Option("--json", help="Machine-readable result on standard output.")
@@ -106,7 +112,10 @@ def path_named(argument: str, text: str) -> Path:
     """
     if not text.strip():
         raise InputError(
-            argument, text, "the name of a file or folder", "write . for the folder you are in"
+            argument,
+            text,
+            "the name of a file or folder",
+            "write . for the folder you are in",
         )
     return Path(text)
 
@@ -157,7 +166,9 @@ def folded(text: str, width: int | None) -> str:
     """The lines broken between words only, so that a number stays whole, however long it is."""
     if width is None:
         return text
-    return "\n".join(part for line in text.split("\n") for part in _folded_line(line, width))
+    return "\n".join(
+        part for line in text.split("\n") for part in _folded_line(line, width)
+    )
 
 
 def _folded_line(line: str, width: int) -> list[str]:
@@ -180,7 +191,9 @@ def console() -> Console:
 
 
 @contextmanager
-def progress_bar(label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT) -> Iterator[Progress]:
+def progress_bar(
+    label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT
+) -> Iterator[Progress]:
     """A function that shows on standard error what is being done.
 
     It shows a bar on a terminal, and lines elsewhere.
@@ -291,7 +304,11 @@ class Lines:
                 pause = max(pause, SILENCE)
             if quiet < pause:
                 return
-            print(f"symfpu: {_clock(passed)} {text}{self._left(now)}", file=sys.stderr, flush=True)
+            print(
+                f"symfpu: {_clock(passed)} {text}{self._left(now)}",
+                file=sys.stderr,
+                flush=True,
+            )
             self._said, self._printed = now, text
 
     def _left(self, now: float) -> str:

@@ -41,7 +41,9 @@ from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import assess
 
 
-@app.command(epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1 --omega 0.1962 --order 24")
+@app.command(
+    epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1 --omega 0.1962 --order 24"
+)
 def solve(
     context: typer.Context,
     bonds: BondsOption,
@@ -49,7 +51,8 @@ def solve(
     omega: Annotated[
         str,
         typer.Option(
-            help="Frequencies, one for each seed, such as 0.19626,0.39046.", metavar="W,W,..."
+            help="Frequencies, one for each seed, such as 0.19626,0.39046.",
+            metavar="W,W,...",
         ),
     ],
     order: OrderOption,
@@ -65,7 +68,8 @@ def solve(
     coordinate_order: Annotated[
         str | None,
         typer.Option(
-            help="Order at which the coordinates Q(t) are cut.  Default: --order.", metavar="K"
+            help="Order at which the coordinates Q(t) are cut.  Default: --order.",
+            metavar="K",
         ),
     ] = None,
     digits: Annotated[
@@ -75,7 +79,10 @@ def solve(
     output: Annotated[
         str | None,
         typer.Option(
-            "-o", "--output", help="Keep series, torus and verdict in this file.", metavar="FILE"
+            "-o",
+            "--output",
+            help="Keep series, torus and verdict in this file.",
+            metavar="FILE",
         ),
     ] = None,
     as_json: JsonOption = False,
@@ -135,7 +142,9 @@ def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
     say(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
     say(f"energy H           {record['energy']}   (at t = 0)")
     average = record["average_harmonic_energy"]
-    say(f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {average})")
+    say(
+        f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {average})"
+    )
     residual = f"{record['residual']:.2g}"
     relative = "equations of motion, relative to the largest acceleration"
     say(f"residual           {residual}   ({relative})")

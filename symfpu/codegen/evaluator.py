@@ -201,7 +201,9 @@ def find_compiler() -> list[str] | None:
 
 def _library(source: str, compiler: list[str]) -> ctypes.CDLL:
     """The loaded functions; their files are gone when this returns."""
-    with tempfile.TemporaryDirectory(prefix="symfpu-", ignore_cleanup_errors=True) as folder:
+    with tempfile.TemporaryDirectory(
+        prefix="symfpu-", ignore_cleanup_errors=True
+    ) as folder:
         written = Path(folder, f"{NAME}.c")
         library = Path(folder, f"{NAME}.so")
         written.write_text(source, encoding="ascii")
@@ -217,7 +219,9 @@ def _run(command: list[str]) -> None:
     try:
         run = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
     except OSError as error:
-        raise SymfpuError(f"{compiler} does not start: {error.strerror}; {advice}") from error
+        raise SymfpuError(
+            f"{compiler} does not start: {error.strerror}; {advice}"
+        ) from error
     if run.returncode:
         said = run.stderr.strip() or f"exit status {run.returncode}"
         first = said.splitlines()[0]

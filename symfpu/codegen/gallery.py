@@ -109,7 +109,9 @@ def build(folder: Path) -> Path:
         for language in LANGUAGES:
             manifest |= _written(folder, name, torus, language, {})
             if example.series_orders:
-                manifest |= _written(folder, name, torus.series, language, example.series_orders)
+                manifest |= _written(
+                    folder, name, torus.series, language, example.series_orders
+                )
     return write_manifest(folder, manifest)
 
 

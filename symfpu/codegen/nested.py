@@ -65,7 +65,9 @@ def _slices(block: Block, leading: Ints, trailing: Ints) -> tuple[Slice, ...]:
     names = _places(leading)
     places = _places(trailing)
     split = leading.shape[1]
-    groups: dict[int, dict[int, int]] = {}  # leading part -> {trailing part: row of the block}
+    groups: dict[
+        int, dict[int, int]
+    ] = {}  # leading part -> {trailing part: row of the block}
     for row, numbers in enumerate(block.harmonics.tolist()):
         harmonic = tuple(numbers)
         name = names[harmonic[:split]]

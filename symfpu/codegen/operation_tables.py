@@ -114,12 +114,16 @@ def operation_tables(
         levels=levels,
         signs=_signs(series.chain, orders[first]),
         frequency_signs=_signs(series.chain, frequency_orders),
-        order_starts=np.searchsorted(frequency_orders, np.arange(1, max(1, frequency_order) + 2)),
+        order_starts=np.searchsorted(
+            frequency_orders, np.arange(1, max(1, frequency_order) + 2)
+        ),
         linear=linear,
         weights=weights,
         kappa=_kappa_expression(series.chain),
     )
-    placed = SeriesTables(scales, powers, blocks, linear[seeds], frequency_powers, frequency_nodes)
+    placed = SeriesTables(
+        scales, powers, blocks, linear[seeds], frequency_powers, frequency_nodes
+    )
     _refuse_large(written_bytes(placed, operations))
     return placed, operations
 
@@ -167,7 +171,11 @@ class _Numbering:
         """Starts (S+1,), terms in these numbers, levels (V+1,); one zero where there is none."""
         if not len(self.chosen):
             nothing = np.array([NODE_OF_ZERO])
-            return np.array([0, 1]), Terms(nothing, nothing, np.array([1])), np.array([0, 1])
+            return (
+                np.array([0, 1]),
+                Terms(nothing, nothing, np.array([1])),
+                np.array([0, 1]),
+            )
         found = term_slices(self.program, self.chosen)
         counts = np.diff(self.program.start)[self.chosen]
         starts = np.concatenate([[0], np.cumsum(counts)])
@@ -196,7 +204,9 @@ def _coordinate_rows(
         degree = series.degree(k)
         nu, index = series.grading.harmonics(degree)
         orders = np.full(len(index), k)
-        rows.append((orders, nu[index], series.grading.powers(degree), numbering(table.nodes)))
+        rows.append(
+            (orders, nu[index], series.grading.powers(degree), numbering(table.nodes))
+        )
     orders, harmonics, powers, nodes = map(np.concatenate, zip(*rows, strict=True))
     return orders, harmonics, powers, nodes
 

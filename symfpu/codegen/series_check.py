@@ -92,14 +92,18 @@ class SlopeCheck:
     corrected: tuple[tuple[str, ...], ...]
 
 
-def slope_check(series: LindstedtSeries, cuts: tuple[int, int], check: SeriesCheck) -> SlopeCheck:
+def slope_check(
+    series: LindstedtSeries, cuts: tuple[int, int], check: SeriesCheck
+) -> SlopeCheck:
     """Derivatives as central differences of the recursion at SLOPE_DIGITS digits.
 
     Nothing of the program is used. series : with the frequencies of the check.
     """
     found = []
     for j in range(len(series.seeds)):
-        ends = [_at_moved_frequency(series, cuts, check, j, sign * STEP) for sign in (1, -1)]
+        ends = [
+            _at_moved_frequency(series, cuts, check, j, sign * STEP) for sign in (1, -1)
+        ]
         with MULTIPRECISION.context(SLOPE_DIGITS):
             slopes = [(a - b) / (2 * exact(STEP)) for a, b in zip(*ends, strict=True)]
             found.append([texts(slope, DOUBLE_DIGITS + 2) for slope in slopes])
@@ -108,7 +112,11 @@ def slope_check(series: LindstedtSeries, cuts: tuple[int, int], check: SeriesChe
 
 
 def _at_moved_frequency(
-    series: LindstedtSeries, cuts: tuple[int, int], check: SeriesCheck, j: int, step: Fraction
+    series: LindstedtSeries,
+    cuts: tuple[int, int],
+    check: SeriesCheck,
+    j: int,
+    step: Fraction,
 ) -> tuple[Numbers, Numbers, Numbers]:
     """Q, P (T, N-1) and omega(A) (1, s) with one frequency moved."""
     frequencies = list(series.frequencies or ())

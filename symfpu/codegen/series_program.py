@@ -115,7 +115,9 @@ def _refuse_residues(series: LindstedtSeries) -> None:
 def _refuse_derivatives(derivatives: bool) -> None:
     if derivatives:
         allowed = "a series in universal form, whose frequencies are parameters"
-        raise InputError("derivatives", True, allowed, "make it by lindstedt without frequencies")
+        raise InputError(
+            "derivatives", True, allowed, "make it by lindstedt without frequencies"
+        )
 
 
 def series_facts(
@@ -201,7 +203,9 @@ def _short_statements(
     return straight if straight.operations <= STRAIGHT_LINE else None
 
 
-def _near_linear(series: LindstedtSeries, cuts: Cuts) -> tuple[LindstedtSeries, SeriesCheck]:
+def _near_linear(
+    series: LindstedtSeries, cuts: Cuts
+) -> tuple[LindstedtSeries, SeriesCheck]:
     """The series at frequencies near the linear ones, and test vectors there."""
     known = _not_resonant(series, max(cuts))
     rates = [float(w) for w in known.frequencies or ()]

@@ -66,7 +66,9 @@ class SeriesTables:
         return int(sum(counts))
 
 
-def series_tables(series: LindstedtSeries, order: int, frequency_order: int) -> SeriesTables:
+def series_tables(
+    series: LindstedtSeries, order: int, frequency_order: int
+) -> SeriesTables:
     """The tables of a series with chosen frequencies, rows without a coefficient left out."""
     terms = [series.amplitude_terms(k) for k in range(order + 1)]
     nu, e, values = map(np.concatenate, zip(*terms, strict=True))

@@ -36,7 +36,9 @@ CONSTANT_DIGITS = 40
 Statement = tuple[str, sympy.Expr]
 Powers = tuple[int, ...]
 Row = tuple[Powers, Powers, int, Any]  # harmonic, powers of A, mode, coefficient
-Constants = dict[str, tuple[Any, str]]  # name -> (value, the same as an expression of mpmath)
+Constants = dict[
+    str, tuple[Any, str]
+]  # name -> (value, the same as an expression of mpmath)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,7 +184,9 @@ class _Orbit:
         self.waves.append((f"sin{h}", sympy.sin(angle)))
         self.coefficients.append((f"rate{h}", rate))
 
-    def _add_term(self, h: int, mode: int, coefficient: sympy.Expr, *, moving: bool) -> None:
+    def _add_term(
+        self, h: int, mode: int, coefficient: sympy.Expr, *, moving: bool
+    ) -> None:
         """A harmonic that does not move has no wave, and no momentum."""
         c, d = sympy.symbols(f"c{h}_{mode} d{h}_{mode}")
         column = mode - 1
@@ -312,7 +316,9 @@ def universal_statements(
     return straight if straight.operations <= LARGEST_ELIMINATED else None
 
 
-def _expressions(series: LindstedtSeries, order: int, frequency_order: int) -> Iterator[Any]:
+def _expressions(
+    series: LindstedtSeries, order: int, frequency_order: int
+) -> Iterator[Any]:
     """All coefficients of coordinates and frequencies, low orders first."""
     for k in range(max(order, frequency_order) + 1):
         for q in range(1, series.chain.N):

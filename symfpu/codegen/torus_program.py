@@ -23,7 +23,11 @@ from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
-CHECK_PERIODS = (0.0, 0.37, 41.3)  # times of the test vectors, in periods of the slowest seed
+CHECK_PERIODS = (
+    0.0,
+    0.37,
+    41.3,
+)  # times of the test vectors, in periods of the slowest seed
 DOUBLE_DIGITS = 17  # after which decimal text reads back as the same double
 EXTRA_DIGITS = 5
 TOLERANCE = 1e-13  # of the self-test, relative to the largest coordinate or momentum
@@ -74,7 +78,9 @@ class TorusProgram:
         return highest_numbers(harmonics, len(self.seeds))
 
 
-def torus_program(torus: QuasiPeriodic, name: str, facts: Mapping[str, str]) -> TorusProgram:
+def torus_program(
+    torus: QuasiPeriodic, name: str, facts: Mapping[str, str]
+) -> TorusProgram:
     """Order the numbers of a torus for code; facts come first in the header."""
     chain, seeds = torus.chain, torus.seeds
     blocks = _blocks(torus)

@@ -212,7 +212,9 @@ def alignment_indices(
     drawn = integer(seed, "seed", 0)
     frame = moving_frame(chain, Q, P, *_random_frame(count, n, drawn), h, scheme=integrator)
     if not np.any(frame.x) and not np.any(frame.p):
-        raise InputError("Q, P", 0.0, "a state other than the equilibrium", "start from an orbit")
+        raise InputError(
+            "Q, P", 0.0, "a state other than the equilibrium", "start from an orbit"
+        )
     before = float(chain.energy(*frame.orbit()))
     run = FrameRun(frame, marks, h, longest, seconds_between(every))
     if file is not None:
@@ -251,7 +253,9 @@ def seconds_needed(
     n, h, integrator = chain.N - 1, abs(step_length(step)), particle_scheme(scheme)
     count, last = _vectors(n, vectors), _steps(T, h)
     small = np.where(np.arange(n) == 0, 1e-3, 0.0)
-    frame = moving_frame(chain, small, small, *_random_frame(count, n, 0), h, scheme=integrator)
+    frame = moving_frame(
+        chain, small, small, *_random_frame(count, n, 0), h, scheme=integrator
+    )
     return last * seconds_a_step(frame, BLOCK)
 
 

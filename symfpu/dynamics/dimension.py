@@ -30,7 +30,9 @@ FLOOR = 0.1
 ODDNESS = 1 / 3  # a slope so far from every integer it should be decides nothing
 CERTAINTY = 0.95  # weight of a dimension that is called decided
 POWER = 3  # of t: no regular orbit has a |v| that outgrows it
-CHAOS_GROWTH = 10.0  # e-foldings of |v| beyond this power that are called chaos; regular: up to 0.3
+CHAOS_GROWTH = (
+    10.0  # e-foldings of |v| beyond this power that are called chaos; regular: up to 0.3
+)
 EARLY_TIME = 10.0  # time before which growth says nothing: |v| finds its directions
 PIECE = 1.0  # decades of time in which |v| is asked to grow as t
 STRIDE = 0.5  # decades from one such piece to the next
@@ -80,7 +82,9 @@ class Evidence:
 
     def steps(self, decades: float) -> Floats:
         """Slopes of log GALI_j - log GALI_(j-1), j = 2 .. vectors, with errors; (vectors-1, 2)."""
-        return np.array(fits(self.times, np.diff(self.log10_gali, axis=1, prepend=0.0), decades))
+        return np.array(
+            fits(self.times, np.diff(self.log10_gali, axis=1, prepend=0.0), decades)
+        )
 
 
 def torus_dimension(seen: Evidence) -> TorusDimension:
@@ -207,7 +211,9 @@ def _growth_doubt(seen: Evidence, outgrown: float) -> tuple[str, str]:
     return reason, ""
 
 
-def _slope_doubt(seen: Evidence, steps: Floats, best: int, weight: float) -> tuple[str, str]:
+def _slope_doubt(
+    seen: Evidence, steps: Floats, best: int, weight: float
+) -> tuple[str, str]:
     """The slope farthest from its integer, and why slopes decide nothing or have not settled.
 
     The second is empty if they decide.

@@ -159,7 +159,11 @@ class FrameRun:
             for end in self._ends():
                 self._move_to(end)
                 place = f"at t = {end * self.step:.6g} of {last * self.step:.6g}"
-                look(place, end == last, partial(tell, f"t = {end * self.step:.3g}", end / last))
+                look(
+                    place,
+                    end == last,
+                    partial(tell, f"t = {end * self.step:.3g}", end / last),
+                )
 
     def _move_to(self, end: int) -> None:
         steps = end - self.done

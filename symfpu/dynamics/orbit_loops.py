@@ -168,11 +168,19 @@ def move_modes(
     for i in range(stages + 1):
         drift = entry if i == stages else drifts[i]
         for q in range(N):
-            halves[i, q], sines[i, q] = np.tan(0.5 * drift * Omega[q]), np.sin(drift * Omega[q])
+            halves[i, q], sines[i, q] = (
+                np.tan(0.5 * drift * Omega[q]),
+                np.sin(drift * Omega[q]),
+            )
     terms = len(law)
     while terms > 1 and law[terms - 1] == 0.0:
         terms -= 1
-    wide, power, next_power, pull = np.zeros(3 * N + 2), np.zeros(N), np.zeros(N), np.zeros(N)
+    wide, power, next_power, pull = (
+        np.zeros(3 * N + 2),
+        np.zeros(N),
+        np.zeros(N),
+        np.zeros(N),
+    )
     done = 0
     _rotate(v, w, halves[stages], sines[stages])
     while done < steps:

@@ -164,7 +164,9 @@ def integrate(
         raise InputError("averages", averages, "True or False", "leave it out")
     stride = steps_between_looks(step) if averages else 1
     looks = _whole_steps(T, step * stride)
-    run = _Run(chain, found, T, looks * stride, stride * _sample_steps(T, looks, samples), Q, P)
+    run = _Run(
+        chain, found, T, looks * stride, stride * _sample_steps(T, looks, samples), Q, P
+    )
     if averages:
         run.take_averages(stride)
     seconds = seconds_between(every)
@@ -204,7 +206,9 @@ class _Run:
             require_stable(chain, scheme, self.step, float(energy))
         limits = [stretch_bounds(chain, float(energy)) for energy in energies]
         can_escape = [escapes for _, _, escapes in limits]
-        self.escapes = [can or energy < 0 for can, energy in zip(can_escape, energies, strict=True)]
+        self.escapes = [
+            can or energy < 0 for can, energy in zip(can_escape, energies, strict=True)
+        ]
         self.start = chain.harmonic_energies(Q, P)
         bounds = np.array([limit[:2] for limit in limits]).reshape(-1, 2)
         self.motion = Motion(chain, scheme, self.step, bounds)
@@ -224,7 +228,10 @@ class _Run:
 
     def take_averages(self, stride: int) -> None:
         """Looks at the orbits every so many steps."""
-        self.stride, self.running = stride, RunningAverages(self.chain, self.Q[0], self.P[0])
+        self.stride, self.running = (
+            stride,
+            RunningAverages(self.chain, self.Q[0], self.P[0]),
+        )
         self.averages[0] = self.running.start
 
     def keep_in(self, path: Path, every: float, *, exact: bool) -> None:
@@ -272,7 +279,12 @@ class _Run:
         """What a checkpoint holds, but for its first array as views of it."""
         marks = self._known_marks()
         known = len(marks)
-        kept = {"sampled": marks, "Q": self.Q[:known], "P": self.P[:known], "state": self.state}
+        kept = {
+            "sampled": marks,
+            "Q": self.Q[:known],
+            "P": self.P[:known],
+            "state": self.state,
+        }
         if self.stride:
             kept["averages"] = self.averages[:known]
             kept["total"] = self.running.total
@@ -373,7 +385,9 @@ class _Run:
         times = np.asarray(self.T * (self.sampled / self.steps), dtype=np.float64)
         averages = self.averages.reshape(Q.shape) if self.stride else None
         seconds = time.perf_counter() - self.begun
-        return Orbit(self.chain, self.scheme, self.step, times, Q, P, energies, averages, seconds)
+        return Orbit(
+            self.chain, self.scheme, self.step, times, Q, P, energies, averages, seconds
+        )
 
 
 def _start(
@@ -395,7 +409,9 @@ def _start(
         if not is_number or not math.isfinite(float(value)) or value == 0:
             raise InputError(name, value, "a finite number other than 0", "pass a time")
     if step < 0:
-        raise InputError("step", step, "a positive number", "for the past take a negative T")
+        raise InputError(
+            "step", step, "a positive number", "for the past take a negative T"
+        )
     return Q, P, float(T), float(step)
 
 
@@ -427,6 +443,8 @@ def _sample_steps(T: float, steps: int, samples: object) -> Ints:
         except (TypeError, ValueError) as error:
             raise InputError("samples", samples, allowed, "pass one of them") from error
         if inner.ndim != 1 or not ((inner >= 0) & (inner <= steps)).all():
-            raise InputError("samples", samples, f"{allowed} = {T:.10g}", "leave out the others")
+            raise InputError(
+                "samples", samples, f"{allowed} = {T:.10g}", "leave out the others"
+            )
     marks = np.concatenate([[0], inner, [steps]])
     return np.unique(marks.astype(np.int64))

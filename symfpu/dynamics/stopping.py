@@ -134,6 +134,8 @@ def _first(reached: Callable[[float], bool], low: float, high: float) -> float:
     It goes by the logarithm while the numbers are far apart.
     """
     for _ in range(2 * BISECTIONS):
-        middle = math.sqrt(max(low, 1e-200) * high) if high > 2 * low else 0.5 * (low + high)
+        middle = (
+            math.sqrt(max(low, 1e-200) * high) if high > 2 * low else 0.5 * (low + high)
+        )
         low, high = (low, middle) if reached(middle) else (middle, high)
     return high

@@ -92,7 +92,9 @@ def tangent_steps(
 
     frame = moving_frame(chain, Q, P, dQ, dP, step, scheme=scheme)
     count = integer(steps, "steps", 0)
-    advance(frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts, count)
+    advance(
+        frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts, count
+    )
     return *frame.orbit(), *frame.deviations()
 
 
@@ -173,11 +175,15 @@ def step_length(step: float, name: str = "step") -> float:
     """The step as a float; InputError if it is no finite number other than zero."""
     is_number = isinstance(step, Real) and not isinstance(step, bool)
     if not is_number or not math.isfinite(float(step)) or step == 0:
-        raise InputError(name, step, "a finite time, not zero", "pass a number such as 0.25")
+        raise InputError(
+            name, step, "a finite time, not zero", "pass a number such as 0.25"
+        )
     return float(step)
 
 
-def _particles(chain: Chain, name: str, values: ArrayLike, shape: tuple[int, ...]) -> Floats:
+def _particles(
+    chain: Chain, name: str, values: ArrayLike, shape: tuple[int, ...]
+) -> Floats:
     """Of modes to particles, both of this shape; raises InputError."""
     given = np.shape(values)
     if given != shape:

@@ -19,14 +19,19 @@ LANES = 8  # deviation vectors moved by one instruction stream
 # least ratio of a diagonal entry of R to its column, above and below which the block changes
 LONGER_BLOCK, SHORTER_BLOCK = 1e-3, 1e-5
 
-_compiled, _inlined = compiled(error_model="numpy"), compiled(error_model="numpy", keep=False)
+_compiled, _inlined = (
+    compiled(error_model="numpy"),
+    compiled(error_model="numpy", keep=False),
+)
 _tension, _stiffness = _inlined(tension), _inlined(stiffness)
 # a call at every kick costs some per cent of a short chain
 _always_inlined = compiled(error_model="numpy", forceinline=True)
 
 
 @_always_inlined
-def move_lanes(dx: Any, dp: Any, stiffness: Any, drift: float, pull: Any, slope: Any) -> None:
+def move_lanes(
+    dx: Any, dp: Any, stiffness: Any, drift: float, pull: Any, slope: Any
+) -> None:
     """A kick of all deviations by bonds of this stiffness times the kick, (N,), and a drift.
 
     dx, dp, pull, slope : as for `kick_and_drift`.

@@ -86,9 +86,8 @@ class AppendixAMember:
             f"omega_{q}={text(float(w), 12)}"
             for q, w in zip(self.torus.seeds, self.frequencies, strict=True)
         )
-        return (
-            f"AppendixAMember({omega}, epsilon_l={self.linear_specific_energy:.8g}, {self.torus!r})"
-        )
+        size = f"epsilon_l={self.linear_specific_energy:.8g}"
+        return f"AppendixAMember({omega}, {size}, {self.torus!r})"
 
     @property
     def frequencies(self) -> tuple[Fraction, ...]:
@@ -221,7 +220,10 @@ def appendix_a_members(
     step = None if increment is None else float(exact(increment, "increment"))
     if step is not None and not 0 < step < np.inf:
         raise InputError(
-            "increment", increment, "a positive number", "take a part of the linear specific energy"
+            "increment",
+            increment,
+            "a positive number",
+            "take a part of the linear specific energy",
         )
     family = _Family(chain, modes, plan)
     if after is not None:
@@ -264,20 +266,29 @@ def members_between(
         last = found
 
 
-def member_at(level: Level, before: AppendixAMember, last: AppendixAMember) -> AppendixAMember:
+def member_at(
+    level: Level, before: AppendixAMember, last: AppendixAMember
+) -> AppendixAMember:
     """The torus of an energy between two members, its frequencies on the line between theirs.
 
     Raises NoFurtherMember.
     """
     series = before.torus.series
     plan = checked_plan(
-        series.chain, series.order, before.torus.frequency_order, before.torus.order, None, None
+        series.chain,
+        series.order,
+        before.torus.frequency_order,
+        before.torus.order,
+        None,
+        None,
     )
     return _Family(series.chain, series.seeds, plan).between(before, last, level)
 
 
 def _last_two(family: _Family, after: object) -> tuple[AppendixAMember, AppendixAMember]:
-    allowed = f"two successive members of a family of {family.chain!r}, seeds {family.seeds}"
+    allowed = (
+        f"two successive members of a family of {family.chain!r}, seeds {family.seeds}"
+    )
     match after:
         case (AppendixAMember() as before, AppendixAMember() as last):
             same = all(
@@ -331,11 +342,17 @@ class _Family:
         """Initialization, (i) to (iv), then the iteration."""
         failure: SymfpuError | None = None
         for _ in range(ATTEMPTS):
-            step = increment or INCREMENT * linear_specific_energy(self.chain, self._by_seed(trial))
+            step = increment or INCREMENT * linear_specific_energy(
+                self.chain, self._by_seed(trial)
+            )
             try:
-                first = AppendixAMember(self._torus(self.trial_shifts(trial), trial**2), step)
+                first = AppendixAMember(
+                    self._torus(self.trial_shifts(trial), trial**2), step
+                )
                 raised = np.sqrt(trial**2 + self._growth(step))
-                second = AppendixAMember(self._torus(self.trial_shifts(raised), raised**2), step)
+                second = AppendixAMember(
+                    self._torus(self.trial_shifts(raised), raised**2), step
+                )
                 break
             except NO_ROOT as error:
                 failure, trial = error, LOWERING * trial
@@ -356,10 +373,14 @@ class _Family:
         yield first
         raised = np.sqrt(trial**2 + self._growth(increment))
         try:
-            second = AppendixAMember(self._torus(self.trial_shifts(raised), raised**2), increment)
+            second = AppendixAMember(
+                self._torus(self.trial_shifts(raised), raised**2), increment
+            )
         except NO_ROOT as error:
             tried = (self.linear + self.trial_shifts(raised)).tolist()
-            raise NoFurtherMember("no further torus", self.seeds, tried, _first(error)) from error
+            raise NoFurtherMember(
+                "no further torus", self.seeds, tried, _first(error)
+            ) from error
         yield second
         yield from self.continued(first, second)
 
@@ -420,7 +441,10 @@ class _Family:
         except NO_ROOT as error:
             reason = _first(error)
         raise NoFurtherMember(
-            f"no torus of {level.name} = {level.energy:.6g}", self.seeds, tried.tolist(), reason
+            f"no torus of {level.name} = {level.energy:.6g}",
+            self.seeds,
+            tried.tolist(),
+            reason,
         )
 
     def continued(
@@ -439,20 +463,26 @@ class _Family:
         aimed = shift
         try:
             aimed = shift + np.linalg.solve(
-                self._jacobian(shift, squares, float(np.linalg.norm(shift - earlier))), growth
+                self._jacobian(shift, squares, float(np.linalg.norm(shift - earlier))),
+                growth,
             )
             torus = self._torus(aimed, squares + growth)
         except (*NO_ROOT, np.linalg.LinAlgError) as failure:
             raise NoFurtherMember(
                 "no further torus", self.seeds, self.linear + aimed, _first(failure)
             ) from failure
-        gained = linear_specific_energy(self.chain, torus.amplitudes) - last.linear_specific_energy
+        gained = (
+            linear_specific_energy(self.chain, torus.amplitudes)
+            - last.linear_specific_energy
+        )
         if not abs(gained - last.increment) <= INCREMENT_CHANGE * last.increment:
             reason = (
                 f"the linear specific energy grew by {gained:.3g}, not {last.increment:.3g}: "
                 f"too long a step, or another root"
             )
-            raise NoFurtherMember("no further torus", self.seeds, self.linear + aimed, reason)
+            raise NoFurtherMember(
+                "no further torus", self.seeds, self.linear + aimed, reason
+            )
         return torus
 
     def _jacobian(self, shift: Floats, squares: Floats, difference: float) -> Floats:
@@ -475,14 +505,19 @@ class _Family:
 
     def _root(self, shift: Floats, guess: Floats) -> Floats:
         """A^2 at shifts of the frequencies."""
-        series = lindstedt(self.chain, self.seeds, self._exact(shift), self.plan.frequency_order)
+        series = lindstedt(
+            self.chain, self.seeds, self._exact(shift), self.plan.frequency_order
+        )
         return np.asarray(root_squares(series, self.plan.frequency_order, guess)[0])
 
     def _torus(self, shift: Floats, guess: Floats) -> QTorus:
         series = lindstedt(self.chain, self.seeds, self._exact(shift), self.plan.order)
         K, coordinates = self.plan.frequency_order, self.plan.coordinate_order
         return solve_amplitudes(
-            series, frequency_order=K, order=coordinates, guess=self._by_seed(np.sqrt(guess))
+            series,
+            frequency_order=K,
+            order=coordinates,
+            guess=self._by_seed(np.sqrt(guess)),
         )
 
     def trial_shifts(self, amplitudes: Floats) -> Floats:
@@ -492,11 +527,13 @@ class _Family:
 
         With beta alone no divisor enters, and both are Eq. omebguess. Shape (s,).
         """
-        middle = np.array(list(frequency_shift(self.chain, self._by_seed(amplitudes)).values()))
-        first = 2 // self.chain.degree_step
-        terms, _ = lindstedt(self.chain, self.seeds, self._exact(middle), first).frequency_terms(
-            amplitudes**2
+        middle = np.array(
+            list(frequency_shift(self.chain, self._by_seed(amplitudes)).values())
         )
+        first = 2 // self.chain.degree_step
+        terms, _ = lindstedt(
+            self.chain, self.seeds, self._exact(middle), first
+        ).frequency_terms(amplitudes**2)
         return np.asarray(terms[first])
 
     def _growth(self, increment: float) -> Floats:

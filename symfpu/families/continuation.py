@@ -21,7 +21,13 @@ from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress
 from symfpu.numbers.arithmetic import text
-from symfpu.refinement.conditions import Amplitude, Condition, Energy, Plane, ratio_conditions
+from symfpu.refinement.conditions import (
+    Amplitude,
+    Condition,
+    Energy,
+    Plane,
+    ratio_conditions,
+)
 from symfpu.refinement.invariance import DIGITS, Floats, Ints
 from symfpu.refinement.tori import (
     TOLERANCE,
@@ -41,12 +47,18 @@ FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
 DOUBTFUL_STEP = 0.05
 EASY_STEPS = 4  # Newton steps up to which the next step along the way is longer
 FACTOR = 1.3  # by how much
-KEPT_SCALE = 0.3  # of the largest shift so far, below which the unit of shifts does not fall
+KEPT_SCALE = (
+    0.3  # of the largest shift so far, below which the unit of shifts does not fall
+)
 # distance from the predicted point, in steps, beyond which a member belongs to another family
 DISTANCE_LIMIT = 0.5
 RESIDUAL_LIMIT = 1e-6  # residual beyond which a torus is no member
-ENERGY_TOLERANCE = 1e-12  # relative: what an energy asked for and that of a member may differ by
-OVERHANG = 1e-6  # of the distance of two tori, by which one between them may seem to lie outside
+ENERGY_TOLERANCE = (
+    1e-12  # relative: what an energy asked for and that of a member may differ by
+)
+OVERHANG = (
+    1e-6  # of the distance of two tori, by which one between them may seem to lie outside
+)
 # relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
 GUESS_CHANGE = 0.3
 
@@ -178,7 +190,9 @@ def first_torus(
     """
     guess = _short_series(chain, amplitudes)
     if energy_ratio is None:
-        return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance, progress=progress)
+        return refine_at_amplitudes(
+            guess, amplitudes, tolerance=tolerance, progress=progress
+        )
     first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
     conditions = [first, *ratio_conditions(tuple(amplitudes), energy_ratio, energies=True)]
     return refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
@@ -203,7 +217,9 @@ def first_at(
     found = refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
     astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
     if astray > GUESS_CHANGE:
-        raise NoTorus(f"an amplitude is {astray:.0%} off the one expected", found, found.residual())
+        raise NoTorus(
+            f"an amplitude is {astray:.0%} off the one expected", found, found.residual()
+        )
     return found
 
 
@@ -329,7 +345,9 @@ class Way:
         plane = Plane(tuple(x), tuple(tangent.tolist()), tuple(scales.tolist()), distance)
         guess = extrapolated(before, last, distance / length)
         conditions = self._conditions(plane)
-        found = refined_torus(guess, conditions, tolerance=self.tolerance, progress=self.progress)
+        found = refined_torus(
+            guess, conditions, tolerance=self.tolerance, progress=self.progress
+        )
         _require_resolved(found)
         gone = (self.variables(found, scales) - x).astype(float)
         off = float(np.linalg.norm(gone - distance * tangent))
@@ -345,7 +363,9 @@ class Way:
         part = (level.energy - low) / (high - low)
         conditions = self._conditions(level.condition)
         guess = extrapolated(before, last, part - 1)
-        found = refined_torus(guess, conditions, tolerance=self.tolerance, progress=self.progress)
+        found = refined_torus(
+            guess, conditions, tolerance=self.tolerance, progress=self.progress
+        )
         _require_resolved(found)
         along, astray = self.place(found)
         if astray > DISTANCE_LIMIT or not -OVERHANG <= along <= 1 + OVERHANG:
@@ -393,7 +413,9 @@ def _require_resolved(found: RefinedTorus) -> None:
     if min(found.frequencies) <= 0:  # the mirror image of the family behind a saddle
         raise NoTorus("a frequency passes zero", found, found.residual())
     if found.warnings and (residual := found.residual()) > RESIDUAL_LIMIT:
-        raise NoTorus(f"{len(found.harmonics)} harmonics do not resolve it", found, residual)
+        raise NoTorus(
+            f"{len(found.harmonics)} harmonics do not resolve it", found, residual
+        )
 
 
 def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> FourierTorus:
@@ -403,7 +425,9 @@ def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> Fo
     omega = zip(before.frequencies, last.frequencies, strict=True)
     frequencies = tuple(b + Fraction(ratio) * (b - a) for a, b in omega)
     phases = dict(last.phases)
-    return FourierTorus(last.chain, last.seeds, frequencies, last.harmonics, cosines, phases)
+    return FourierTorus(
+        last.chain, last.seeds, frequencies, last.harmonics, cosines, phases
+    )
 
 
 def _cosines_at(harmonics: Ints, torus: QuasiPeriodic, missing: Floats) -> Floats:

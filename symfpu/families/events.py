@@ -206,7 +206,10 @@ def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTo
     for _ in range(LOCATIONS):
         near = sorted(known, key=lambda s: abs(s - place))[:3]
         vertex = _vertex(near, [measure(known[s]) for s in near])
-        if not min(known) <= vertex <= max(known) or abs(vertex - place) < LOCATION_TOLERANCE:
+        if (
+            not min(known) <= vertex <= max(known)
+            or abs(vertex - place) < LOCATION_TOLERANCE
+        ):
             break
         try:
             torus, place = local.at(vertex), vertex

@@ -18,7 +18,12 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, RunInterrupted, SymfpuError
-from symfpu.families.appendix_a import AppendixAMember, NoFurtherMember, member_at, members_between
+from symfpu.families.appendix_a import (
+    AppendixAMember,
+    NoFurtherMember,
+    member_at,
+    members_between,
+)
 from symfpu.families.continuation import (
     Event,
     Level,
@@ -36,7 +41,13 @@ from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
-from symfpu.refinement.tori import TOLERANCE, NoTorus, RefinedTorus, refine_at_energy, refined_torus
+from symfpu.refinement.tori import (
+    TOLERANCE,
+    NoTorus,
+    RefinedTorus,
+    refine_at_energy,
+    refined_torus,
+)
 from symfpu.tori.torus import QTorus
 
 SECOND_RATIO = 1.1  # ratio of the amplitudes of the second member and the first
@@ -46,9 +57,8 @@ METHODS = ("arclength", APPENDIX_A)
 ENDED_AT_GOAL = "reached the energy asked for"
 LOWERING = 0.25  # factor of a first energy that no torus of the series has
 LOWEST_SHARE = 1e-12  # the part of it that is given up
-APPENDIX_MEMBERS = (
-    20  # about how many steps lead with Appendix A from the beginning to the energy asked for
-)
+# about how many steps lead with Appendix A from the beginning to the energy asked for
+APPENDIX_MEMBERS = 20
 
 
 class NotInFamily(SymfpuError):
@@ -145,10 +155,14 @@ def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Refine
         raise NotInFamily(level.name, value, (least, largest), found.ending)
     distances = np.abs(np.log(known / value))
     nearest = found.members[int(np.argmin(distances))].torus
-    return refine_at_energy(nearest, energy, harmonic=harmonic, energy_ratio=found.energy_ratio)
+    return refine_at_energy(
+        nearest, energy, harmonic=harmonic, energy_ratio=found.energy_ratio
+    )
 
 
-def member_at_frequency(found: Family, seed: int, frequency: Number) -> tuple[RefinedTorus, ...]:
+def member_at_frequency(
+    found: Family, seed: int, frequency: Number
+) -> tuple[RefinedTorus, ...]:
     """The tori of a family on which this seed has this frequency.
 
     One for every pair of neighbouring members with the frequency between them.
@@ -186,7 +200,9 @@ def _require_family(found: object) -> None:
         raise InputError("found", type(found).__name__, "a Family", "pass what family gave")
 
 
-def _between(found: Family, k: int, place: int, omega: Fraction, part: float) -> RefinedTorus:
+def _between(
+    found: Family, k: int, place: int, omega: Fraction, part: float
+) -> RefinedTorus:
     """The torus with this frequency, between member k and the next, near the given part."""
     seed = found.seeds[place]
     with mpmath.workdps(2 * DIGITS):
@@ -255,7 +271,9 @@ def family(
     [0.0005, 0.000605, 0.000772, 0.001]
     """
     if method not in METHODS:
-        raise InputError("method", method, f"one of {', '.join(METHODS)}", "name one of these")
+        raise InputError(
+            "method", method, f"one of {', '.join(METHODS)}", "name one of these"
+        )
     if (method == APPENDIX_A) != (order is not None):
         raise InputError(
             "order",
@@ -297,10 +315,14 @@ def family(
     except KeyboardInterrupt as stop:
         if kept.folder is None:
             raise
-        raise RunInterrupted(f"after {len(kept.members)} members", str(kept.folder)) from stop
+        raise RunInterrupted(
+            f"after {len(kept.members)} members", str(kept.folder)
+        ) from stop
 
 
-def _by_arclength(plan: Plan, kept: Kept, progress: Progress, *, lower: bool = True) -> Family:
+def _by_arclength(
+    plan: Plan, kept: Kept, progress: Progress, *, lower: bool = True
+) -> Family:
     """Newton's method and pseudo-arclength continuation, gone on with from the members there are.
 
     lower : as for `_begun`.
@@ -316,7 +338,9 @@ def _by_arclength(plan: Plan, kept: Kept, progress: Progress, *, lower: bool = T
     if not why:
         way = _way(plan, kept, progress)
         try:
-            for found in continued(way, kept.members, plan.level, multipliers=plan.multipliers):
+            for found in continued(
+                way, kept.members, plan.level, multipliers=plan.multipliers
+            ):
                 kept.step, kept.largest = way.step, way.largest
                 kept.cut(found.kept)
                 kept.add(found.member, found.events)
@@ -327,9 +351,13 @@ def _by_arclength(plan: Plan, kept: Kept, progress: Progress, *, lower: bool = T
     return _family(plan, kept.members, kept.events, why)
 
 
-def _way(plan: Plan, kept: Kept, progress: Progress, tori: Sequence[RefinedTorus] = ()) -> Way:
+def _way(
+    plan: Plan, kept: Kept, progress: Progress, tori: Sequence[RefinedTorus] = ()
+) -> Way:
     """The way of a family from its last members, or from other tori."""
-    known = tori or [m.torus for m in kept.members[-3:] if isinstance(m.torus, RefinedTorus)]
+    known = tori or [
+        m.torus for m in kept.members[-3:] if isinstance(m.torus, RefinedTorus)
+    ]
     return Way(
         plan.ratio,
         energies=plan.energies,
@@ -341,9 +369,13 @@ def _way(plan: Plan, kept: Kept, progress: Progress, tori: Sequence[RefinedTorus
     )
 
 
-def _family(plan: Plan, members: Sequence[Member], events: Sequence[Event], why: str) -> Family:
+def _family(
+    plan: Plan, members: Sequence[Member], events: Sequence[Event], why: str
+) -> Family:
     ratio = plan.ratio if plan.energies and plan.order is None else None
-    return Family(plan.chain, plan.seeds, tuple(members), tuple(events), why, plan.harmonic, ratio)
+    return Family(
+        plan.chain, plan.seeds, tuple(members), tuple(events), why, plan.harmonic, ratio
+    )
 
 
 def _ending(plan: Plan, kept: Kept) -> str:
@@ -359,7 +391,9 @@ def _ending(plan: Plan, kept: Kept) -> str:
 
 def _turned(kept: Kept) -> str:
     """Where the energy turned, if it did."""
-    folds = [event.energy for event in kept.events if (event.kind, event.what) == ("fold", "H")]
+    folds = [
+        event.energy for event in kept.events if (event.kind, event.what) == ("fold", "H")
+    ]
     return f"turned at H = {folds[-1]:.7g} and " if folds else ""
 
 
@@ -417,7 +451,9 @@ def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
     way = _way(plan, kept, progress, tori)
     for torus in tori[len(kept.members) : plan.most]:
         found = member(torus, multipliers=plan.multipliers)
-        kept.add(found, events_between(way, kept.members[-1], found, 0) if kept.members else [])
+        kept.add(
+            found, events_between(way, kept.members[-1], found, 0) if kept.members else []
+        )
     return why
 
 
@@ -456,7 +492,9 @@ def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[RefinedTor
     leading = _by_arclength(below, led, progress, lower=False)
     if below.done(led.members) < 1:
         energies = [goal.of_member(m) for m in led.members]
-        raise NotInFamily(goal.name, goal.energy, (min(energies), max(energies)), leading.ending)
+        raise NotInFamily(
+            goal.name, goal.energy, (min(energies), max(energies)), leading.ending
+        )
     way = _way(plan, led, progress)
     first = way.tori[-1]
     kept.step, kept.largest = way.step, way.largest
@@ -495,7 +533,10 @@ def _by_appendix_a(plan: Plan, order: int, kept: Kept, tell: Progress) -> Family
 
 
 def _steps(
-    plan: Plan, order: int, increment: float, after: tuple[AppendixAMember, AppendixAMember] | None
+    plan: Plan,
+    order: int,
+    increment: float,
+    after: tuple[AppendixAMember, AppendixAMember] | None,
 ) -> Iterator[AppendixAMember]:
     """The members by Appendix A that come next.
 
@@ -521,7 +562,9 @@ def _steps(
             begin = replace(begin, energy=LOWERING * begin.energy)
 
 
-def _followed(plan: Plan, kept: Kept, tell: Progress, steps: Iterator[AppendixAMember]) -> str:
+def _followed(
+    plan: Plan, kept: Kept, tell: Progress, steps: Iterator[AppendixAMember]
+) -> str:
     """Keeps members as long as they are asked for; why there are no more."""
     for found in steps:
         kept.add(series_member(found.torus), [])

@@ -16,7 +16,14 @@ from typing import Any
 from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.families.continuation import FIRST_STEP, Event, Level, Member, member, series_member
+from symfpu.families.continuation import (
+    FIRST_STEP,
+    Event,
+    Level,
+    Member,
+    member,
+    series_member,
+)
 from symfpu.files.writing import write_text
 from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
@@ -212,7 +219,9 @@ class Kept:
                 else self.plan.start
             )
             # records of before resonances were located do not say that they were interpolated
-            known = [{"interpolated": event["kind"] == "resonance"} | event for event in events]
+            known = [
+                {"interpolated": event["kind"] == "resonance"} | event for event in events
+            ]
             self.events = [
                 Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in known
             ]
@@ -225,7 +234,9 @@ class Kept:
             ) from error
         if not self.plan.chosen:
             self.plan = replace(self.plan, start=start)
-        different = [key for key, value in self.plan.described().items() if plan.get(key) != value]
+        different = [
+            key for key, value in self.plan.described().items() if plan.get(key) != value
+        ]
         if different:
             raise InputError(
                 "folder",
@@ -254,7 +265,10 @@ class Kept:
             )
             raise InputError("folder", str(self.folder), allowed, advice) from error
         ours = self.plan.chain, self.plan.seeds
-        if not isinstance(torus, (RefinedTorus, QTorus)) or (torus.chain, torus.seeds) != ours:
+        if (
+            not isinstance(torus, (RefinedTorus, QTorus))
+            or (torus.chain, torus.seeds) != ours
+        ):
             advice = f"{self._file(index).name} is another torus; choose another folder"
             raise InputError("folder", str(self.folder), "members of one family", advice)
         return torus

@@ -26,7 +26,10 @@ from symfpu.numbers.typed import integer
 Array = NDArray[Any]
 Json = dict[str, Any]
 
-FORMAT, SCHEMA = "symfpu bundle", 2  # the newest that is read; files say the oldest that reads them
+FORMAT, SCHEMA = (
+    "symfpu bundle",
+    2,
+)  # the newest that is read; files say the oldest that reads them
 DOCUMENT = "bundle.json"
 COMPRESSION = 1  # mantissas are noise; the zeros between them are gone at the first level
 CHUNK = 1 << 22
@@ -111,7 +114,9 @@ class Archive:
         entries = self._zip.infolist()
         members = {info.filename: info for info in entries}
         if DOCUMENT not in members:
-            raise BundleError(path, f"is not a symfpu bundle (no {DOCUMENT} in it)", SAVED_ADVICE)
+            raise BundleError(
+                path, f"is not a symfpu bundle (no {DOCUMENT} in it)", SAVED_ADVICE
+            )
         if len(members) < len(entries):
             raise ValueError("a member occurs twice")
         size = os.fstat(stream.fileno()).st_size
@@ -127,7 +132,9 @@ class Archive:
         self.digests: dict[str, str] = self.body["arrays"]
         named = {f"{name}.npy" for name in self.digests}
         if set(members) != {DOCUMENT, *named}:
-            raise ValueError(f"it holds {sorted(members)}, not the arrays {sorted(self.digests)}")
+            raise ValueError(
+                f"it holds {sorted(members)}, not the arrays {sorted(self.digests)}"
+            )
 
     def _document(self, path: Path) -> Json:
         info = self._zip.getinfo(DOCUMENT)
@@ -138,7 +145,9 @@ class Archive:
             raise BundleError(path, problem, SAVED_ADVICE)
         schema = integer(body["schema"], "schema", 1)
         if schema > SCHEMA:
-            newer = f"was written by a newer symfpu (schema {schema}; this one reads {SCHEMA})"
+            newer = (
+                f"was written by a newer symfpu (schema {schema}; this one reads {SCHEMA})"
+            )
             raise BundleError(path, newer, "update symfpu")
         if body.pop("digest") != digest_of(body):
             raise ValueError(f"{DOCUMENT} does not match its digest")
@@ -158,12 +167,16 @@ class Archive:
         nbytes = np.dtype(dtype).itemsize * count
         due = len(header) + nbytes
         if info.file_size != due:
-            raise ValueError(f"{info.filename} holds {info.file_size} bytes where {due} are due")
+            raise ValueError(
+                f"{info.filename} holds {info.file_size} bytes where {due} are due"
+            )
         values: Array = np.empty(count, dtype)
         flat = values.view(np.uint8)
         with self._zip.open(info) as member:
             if member.read(len(header)) != header:
-                raise ValueError(f"{info.filename} is not an array of {count} numbers {dtype}")
+                raise ValueError(
+                    f"{info.filename} is not an array of {count} numbers {dtype}"
+                )
             for start in range(0, nbytes, CHUNK):
                 part = member.read(min(CHUNK, nbytes - start))
                 flat[start : start + CHUNK] = np.frombuffer(part, np.uint8)

@@ -19,7 +19,10 @@ def write_text(path: Path, text: str) -> None:
     except OSError as error:
         draft.unlink(missing_ok=True)
         raise InputError(
-            "output", str(path), "a file that can be written", f"choose another ({error.strerror})"
+            "output",
+            str(path),
+            "a file that can be written",
+            f"choose another ({error.strerror})",
         ) from error
 
 

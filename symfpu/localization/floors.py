@@ -33,7 +33,9 @@ Floats = NDArray[Any]
 Ints = NDArray[np.int64]
 
 EPS = 2.0**-52
-WIDENING = 1.5  # times the largest harmonic of one angle: up to there left out ones are solved for
+WIDENING = (
+    1.5  # times the largest harmonic of one angle: up to there left out ones are solved for
+)
 SAFETY = 2.0  # on errors of first order
 CORRECTIONS = 3  # times that the rest of Newton's matrix is applied
 
@@ -89,7 +91,10 @@ def coefficient_errors(solution: QuasiPeriodic) -> NDArray[np.float64]:
     """
     errors = _errors(solution)
     wanted = solution.harmonics
-    rows = {nu: i for i, nu in enumerate(map(tuple, _canonical_signs(errors.harmonics).tolist()))}
+    rows = {
+        nu: i
+        for i, nu in enumerate(map(tuple, _canonical_signs(errors.harmonics).tolist()))
+    }
     places = [rows[nu] for nu in map(tuple, _canonical_signs(wanted).tolist())]
     return np.asarray(errors.sizes[places], dtype=np.float64)
 
@@ -116,8 +121,12 @@ def _degrees(chain: Chain, seeds: tuple[int, ...]) -> Ints:
     """
     model = "beta" if chain.model == "beta" else "alpha"
     degrees = np.full(chain.N - 1, chain.N)
-    for order, modes in enumerate(excitation_sequence(chain.N, seeds, chain.N, model=model)):
-        degrees[np.array(modes, dtype=np.int64) - 1] = min(1 + chain.degree_step * order, chain.N)
+    for order, modes in enumerate(
+        excitation_sequence(chain.N, seeds, chain.N, model=model)
+    ):
+        degrees[np.array(modes, dtype=np.int64) - 1] = min(
+            1 + chain.degree_step * order, chain.N
+        )
     return degrees
 
 
@@ -161,7 +170,9 @@ def _of_newton(torus: QuasiPeriodic) -> _Errors:
     sizes *= SAFETY
     relative = float(np.max(sizes[seeds] / np.abs(cosines[seeds])))
     relative += EPS / 2  # they are rounded to doubles
-    sizes += _along_the_family(torus.chain, torus.seeds, equation.harmonics, cosines, relative)
+    sizes += _along_the_family(
+        torus.chain, torus.seeds, equation.harmonics, cosines, relative
+    )
     harmonics, rates, omitted = _left_out(equation, shifts, cosines, rounding)
     return _Errors(
         np.concatenate([equation.harmonics, harmonics]),
@@ -186,11 +197,15 @@ def _left_out(
 ) -> tuple[Ints, Floats, Floats]:
     """Harmonics next to those of the equation, their frequencies, and coefficients by forces."""
     known = set(map(tuple, equation.harmonics.tolist()))
-    around = np.unique(_canonical_signs(dilated(equation.harmonics, OVERSAMPLING / 2)), axis=0)
+    around = np.unique(
+        _canonical_signs(dilated(equation.harmonics, OVERSAMPLING / 2)), axis=0
+    )
     harmonics = around[[nu not in known for nu in map(tuple, around.tolist())]]
     forces = equation.force_at(cosines, harmonics)
     rates = harmonics @ (equation.linear[equation.seed_columns] + shifts)
-    divisors = np.abs((rates[:, None] - equation.linear) * (rates[:, None] + equation.linear))
+    divisors = np.abs(
+        (rates[:, None] - equation.linear) * (rates[:, None] + equation.linear)
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         sizes = SAFETY * (np.abs(forces) + rounding) / divisors
     return harmonics, rates, np.where(equation.allowed(harmonics), sizes, 0)
@@ -199,7 +214,10 @@ def _left_out(
 def _on(torus: QuasiPeriodic, harmonics: Ints) -> Floats:
     """The coefficients of a torus, in long doubles, at given harmonics; shape (H, N-1)."""
     rows = {nu: i for i, nu in enumerate(map(tuple, harmonics.tolist()))}
-    places = [rows[nu] for nu in map(tuple, _canonical_signs(np.asarray(torus.harmonics)).tolist())]
+    places = [
+        rows[nu]
+        for nu in map(tuple, _canonical_signs(np.asarray(torus.harmonics)).tolist())
+    ]
     cosines = np.zeros((len(harmonics), torus.chain.N - 1), dtype=np.longdouble)
     cosines[places] = torus.cosines.astype(float)
     return cosines

@@ -152,7 +152,10 @@ def growth_exponents(
     """
     if averages is None:
         raise InputError(
-            "averages", None, "those of an orbit that has them", "integrate with averages=True"
+            "averages",
+            None,
+            "those of an orbit that has them",
+            "integrate with averages=True",
         )
     require_chain(chain)
     t, Ebar = energy_record(times, averages, "averages")

@@ -150,7 +150,9 @@ def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) 
     """
     require_chain(chain)
     if chain.model != "alpha":
-        raise InputError("chain", chain, "the alpha model", "the law is stated for it alone")
+        raise InputError(
+            "chain", chain, "the alpha model", "the law is stated for it alone"
+        )
     specific_energy = positive(energy, "energy") / chain.N
     gamma = packet_parameter(chain, 1, specific_energy)
     first = energy if seed_energy is None else positive(seed_energy, "seed_energy")
@@ -429,13 +431,20 @@ def packet_width(chain: Chain, s: int) -> int:
     require_chain(chain)
     if integer(s, "s", 1) >= chain.N:
         raise InputError(
-            "s", s, f"1..{chain.N - 1} (N = {chain.N})", "take fewer seeds or a longer chain"
+            "s",
+            s,
+            f"1..{chain.N - 1} (N = {chain.N})",
+            "take fewer seeds or a longer chain",
         )
     return int(s)
 
 
 def finite(value: float, argument: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(float(value)):
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, Real)
+        or not math.isfinite(float(value))
+    ):
         raise InputError(argument, value, "a finite number", "pass a number")
     return float(value)
 
@@ -478,7 +487,9 @@ def _modes(chain: Chain, s: int, modes: str | Sequence[int]) -> tuple[int, ...]:
         return tuple(range(s + 1, chain.N)) if modes == "tail" else middle_modes(chain, s)
     listed = seed_modes(modes, chain.N)
     if min(listed) <= s:
-        raise InputError("modes", listed, f"modes beyond the seeds 1..{s}", "leave out the seeds")
+        raise InputError(
+            "modes", listed, f"modes beyond the seeds 1..{s}", "leave out the seeds"
+        )
     return tuple(sorted(listed))
 
 

@@ -26,7 +26,9 @@ SHARES = ("energy", "amplitude")
 
 
 def fpu_trajectory(
-    chain: Chain, amplitudes: Mapping[int, Number], phases: Mapping[int, Number] | None = None
+    chain: Chain,
+    amplitudes: Mapping[int, Number],
+    phases: Mapping[int, Number] | None = None,
 ) -> tuple[Floats, Floats]:
     """Initial conditions (Q, P), each (N-1,), of the FPU-trajectory with these seeds.
 
@@ -118,7 +120,10 @@ def normalised_averages(orbit: Orbit) -> Floats:
     """
     if getattr(orbit, "averages", None) is None:
         raise InputError(
-            "orbit", repr(orbit), "an orbit with running averages", "integrate with averages=True"
+            "orbit",
+            repr(orbit),
+            "an orbit with running averages",
+            "integrate with averages=True",
         )
     if not (orbit.energies[0] > 0).all():
         raise InputError(
@@ -209,7 +214,9 @@ def mode_energies(values: ArrayLike, name: str) -> Floats:
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError(name, values, "an array of numbers", "pass those of an orbit") from error
+        raise InputError(
+            name, values, "an array of numbers", "pass those of an orbit"
+        ) from error
     if not (np.isfinite(array) & (array >= 0)).all():
         raise InputError(
             name,

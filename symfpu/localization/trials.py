@@ -96,12 +96,17 @@ def slope_by_energy(
     >>> round(slope_by_energy(chain, 4, energies, spectra, floor=0).rate, 9)
     8.0
     """
-    energies = np.array([positive(energy, "specific_energies") for energy in specific_energies])
+    energies = np.array(
+        [positive(energy, "specific_energies") for energy in specific_energies]
+    )
     try:
         rows = np.asarray(spectra, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InputError(
-            "spectra", type(spectra).__name__, "numbers, (n, N-1)", "pass one row for each energy"
+            "spectra",
+            type(spectra).__name__,
+            "numbers, (n, N-1)",
+            "pass one row for each energy",
         ) from error
     different = len(set(energies.tolist()))
     if different < LEAST_POINTS or rows.shape != (len(energies), chain.N - 1):
@@ -240,7 +245,9 @@ class ProfileInvariance:
     def _logs_at(self, q: int, coarse: int, per_mode: bool) -> list[float]:
         """log10 e_kappa at kappa = q/coarse by size; none if one of them is below its floor."""
         logs = []
-        for chain, spectra, floor in zip(self.chains, self.spectra, self.floors, strict=True):
+        for chain, spectra, floor in zip(
+            self.chains, self.spectra, self.floors, strict=True
+        ):
             place = chain.N // coarse * q - 1
             share = float(spectra[:, place].mean())
             if not share > floor[place]:
@@ -257,12 +264,16 @@ def _middle_halves(chain: Chain, fraction: Fraction) -> list[NDArray[np.int64]]:
     middles = []
     for group in packet_groups(chain, s)[1:]:
         if len(group) == width:
-            middle = [q for place, q in enumerate(group, 1) if width < 4 * place <= 3 * width]
+            middle = [
+                q for place, q in enumerate(group, 1) if width < 4 * place <= 3 * width
+            ]
             middles.append(np.array(middle))
     return middles
 
 
-def _level(N: int, shares: Floats, floor: Floats, places: NDArray[np.int64]) -> tuple[float, float]:
+def _level(
+    N: int, shares: Floats, floor: Floats, places: NDArray[np.int64]
+) -> tuple[float, float]:
     """Mean of log10 E_q/eps over these places, and its standard error over realisations."""
     if not (shares.mean(axis=0)[places] > floor[places]).all():
         return math.nan, math.nan
@@ -317,7 +328,9 @@ def profile_invariance(
     if phases not in PHASES:
         raise InputError("phases", phases, ", ".join(PHASES), "choose one of them")
     if integer(realisations, "realisations", 1) > 1 and phases == "equal":
-        raise InputError("realisations", realisations, "1 with equal phases", "take random phases")
+        raise InputError(
+            "realisations", realisations, "1 with equal phases", "take random phases"
+        )
     chains = tuple(replace(chain, N=N) for N in sorted(set(sizes)))
     how = {"scheme": scheme, "step": step, "workers": workers}
     power = _power_of_the_law(chain)

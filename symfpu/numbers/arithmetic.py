@@ -209,7 +209,9 @@ def integers(values: NDArray[Any]) -> tuple[NDArray[np.object_], NDArray[np.int6
     return table, exponents
 
 
-def from_integers(values: NDArray[np.object_], exponents: NDArray[Any]) -> NDArray[np.object_]:
+def from_integers(
+    values: NDArray[np.object_], exponents: NDArray[Any]
+) -> NDArray[np.object_]:
     """Integers times 2^exponents as mpf, rounded to the working precision.
 
     Shapes that broadcast.

@@ -34,7 +34,9 @@ def exact(value: object, argument: str) -> Fraction:
             raise TypeError("a truth value is no number")
         if isinstance(value, str):
             exponent = re.search(r"[eE]([+-]?\d+)", value)
-            if len(value) > LONGEST_NUMBER or (exponent and abs(int(exponent[1])) > LONGEST_NUMBER):
+            if len(value) > LONGEST_NUMBER or (
+                exponent and abs(int(exponent[1])) > LONGEST_NUMBER
+            ):
                 raise ValueError("too long")
             return Fraction(value.strip())
         if isinstance(value, Rational):
@@ -46,7 +48,13 @@ def exact(value: object, argument: str) -> Fraction:
         if isinstance(value, Real):
             return Fraction(Decimal(repr(float(value))))
         raise TypeError("not a real number")
-    except (TypeError, ValueError, OverflowError, ZeroDivisionError, InvalidOperation) as error:
+    except (
+        TypeError,
+        ValueError,
+        OverflowError,
+        ZeroDivisionError,
+        InvalidOperation,
+    ) as error:
         raise InputError(
             argument,
             value,
@@ -85,7 +93,9 @@ def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
     try:
         listed = list(seeds)
     except TypeError as error:
-        raise InputError("seeds", seeds, allowed, "pass a sequence such as (1, 2)") from error
+        raise InputError(
+            "seeds", seeds, allowed, "pass a sequence such as (1, 2)"
+        ) from error
     for seed in listed:
         if isinstance(seed, bool) or not isinstance(seed, Integral):
             raise InputError("seeds", seed, allowed, "pass whole numbers")
@@ -121,7 +131,11 @@ def decimal(value: Fraction) -> str:
     if rest != 1:
         return str(value)
     digits = f"{abs(value.numerator) * 10**power // value.denominator:0{power + 1}d}"
-    text = f"{digits[: len(digits) - power]}.{digits[len(digits) - power :]}" if power else digits
+    text = (
+        f"{digits[: len(digits) - power]}.{digits[len(digits) - power :]}"
+        if power
+        else digits
+    )
     return f"-{text}" if value < 0 else text
 
 

@@ -43,7 +43,9 @@ def same_numbers(line: PrintedLine, law: ProfileLine) -> bool:
     return rounds_to(law.slope, line.slope) and rounds_to(law.intercept, line.intercept)
 
 
-def caption_claim(line: PrintedLine, section: str, readings: dict[str, ProfileLine]) -> Claim:
+def caption_claim(
+    line: PrintedLine, section: str, readings: dict[str, ProfileLine]
+) -> Claim:
     """Whether the laws give the printed line.
 
     With the caption's parameters for every chain, or only with some other reading.

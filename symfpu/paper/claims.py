@@ -29,7 +29,9 @@ class Claim:
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
-            raise InputError("verdict", self.verdict, ", ".join(VERDICTS), "choose one of them")
+            raise InputError(
+                "verdict", self.verdict, ", ".join(VERDICTS), "choose one of them"
+            )
 
     def record(self) -> dict[str, str]:
         """For JSON."""
@@ -57,7 +59,9 @@ class PaperFigure:
 
     def __repr__(self) -> str:
         found = [claim.verdict for claim in self.claims]
-        counts = [f"{found.count(verdict)} {verdict}" for verdict in VERDICTS if verdict in found]
+        counts = [
+            f"{found.count(verdict)} {verdict}" for verdict in VERDICTS if verdict in found
+        ]
         claims = ", ".join(counts) or "none"
         panels = ", ".join(panel.name for panel in self.panels)
         return f"PaperFigure({self.name}, panels {panels}; claims: {claims})"

@@ -32,7 +32,9 @@ def claims_table(claims: Iterable[Claim]) -> str:
         verdict = f"**{claim.verdict}**"
         row = (claim.section, claim.text, printed, claim.ours, verdict)
         rows.append([_cell(text) for text in row])
-    return markdown_table(["section", "the paper says", "printed", "found here", "verdict"], rows)
+    return markdown_table(
+        ["section", "the paper says", "printed", "found here", "verdict"], rows
+    )
 
 
 def _cell(text: str) -> str:

@@ -32,7 +32,15 @@ ROOT_ORDERS = (2, 10, 50, 100, 150, 200)  # and the last
 ROOT_LIMITS = (1.25, 1.5)  # of the picture of A(K)
 FIRST_RESIDUAL = 2  # order from which residuals are drawn
 BREATHER_HEAD = ("periodic orbit with the", "omega", "A", "H", "harmonic E(0)", "residual")
-AMPLITUDE_HEAD = ("order", "residual", "resummed", "A_1", "A_2", "A_1 resummed", "A_2 resummed")
+AMPLITUDE_HEAD = (
+    "order",
+    "residual",
+    "resummed",
+    "A_1",
+    "A_2",
+    "A_1 resummed",
+    "A_2 resummed",
+)
 
 
 def convergence(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
@@ -40,7 +48,9 @@ def convergence(folder: Path, progress: Progress, *, full: bool = False) -> Pape
     return convergence_figure(cancellation_study(progress), breather_study(progress))
 
 
-def convergence_figure(cancellation: CancellationStudy, breather: BreatherStudy) -> PaperFigure:
+def convergence_figure(
+    cancellation: CancellationStudy, breather: BreatherStudy
+) -> PaperFigure:
     """What the studies found."""
     title = "Convergence of the series: two questions"
     panels = (*cancellation_panels(cancellation), *breather_panels(breather))
@@ -135,7 +145,9 @@ def _orbit_row(name: str, orbit: PeriodicOrbit) -> list[str]:
     return row
 
 
-def convergence_numbers(cancellation: CancellationStudy, breather: BreatherStudy) -> dict[str, Any]:
+def convergence_numbers(
+    cancellation: CancellationStudy, breather: BreatherStudy
+) -> dict[str, Any]:
     """Both questions for JSON."""
     orbit = breather.orbit
     limit = breather.limit.orbit
@@ -177,7 +189,9 @@ def cancellation_panels(data: CancellationStudy) -> tuple[Panel, ...]:
     difference, size = r"$\max_i |A_i(k+2) - A_i(k)|$", r"$\mu^k S_2(k)$"
     name, title = "convergence-c", "Residual of the 2-torus of Fig. 1"
     return (
-        by_order_panel("convergence-a", "Settling of the amplitudes", difference, differences),
+        by_order_panel(
+            "convergence-a", "Settling of the amplitudes", difference, differences
+        ),
         by_order_panel("convergence-b", "Size of the terms of mode 1", size, sums),
         by_order_panel(name, title, "relative residual", both, columns=shown),
     )

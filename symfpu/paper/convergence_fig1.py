@@ -33,11 +33,17 @@ SHOWN_ORDERS = (12, 18, 24, 30, 36, 42)  # of the resummed torus
 LONG_ORDER = 42  # beyond the paper's 30, to see what the terms tend to
 PRINTED_DIGITS = 7  # of the amplitudes that the paper goes on with
 RESONANT_MODE, RESONANT_HARMONIC = 3, (5, -4)
-PROBE_SHIFTS = ("1e-6", "1e-7")  # of the probe frequency from the resonance, to extrapolate to it
+PROBE_SHIFTS = (
+    "1e-6",
+    "1e-7",
+)  # of the probe frequency from the resonance, to extrapolate to it
 PROBE_ORDER = 14
 REAL_ROOT = 1e-9  # imaginary part below which a root of the probe counts as real
 # printed digits, then sqrt 2, sqrt 3
-INCOMMENSURABLE_FREQUENCIES = ("0.19626000014142135623730950488", "0.39046000017320508075688772935")
+INCOMMENSURABLE_FREQUENCIES = (
+    "0.19626000014142135623730950488",
+    "0.39046000017320508075688772935",
+)
 # the divisor of the resonance 12.6 times larger, of the other sign
 DETUNED_FREQUENCIES = ("0.19626", "0.39056")
 
@@ -126,7 +132,9 @@ def _variants(progress: Progress) -> tuple[Variant, ...]:
     variants.append(
         _variant(name, _series(INCOMMENSURABLE_FREQUENCIES, MORE_DIGITS, name, progress))
     )
-    variants.append(_variant(detuned, _series(DETUNED_FREQUENCIES, None, detuned, progress)))
+    variants.append(
+        _variant(detuned, _series(DETUNED_FREQUENCIES, None, detuned, progress))
+    )
     return tuple(variants)
 
 
@@ -139,7 +147,9 @@ def _series(
     return lindstedt(chain, seeds, frequencies, TWO_TORUS.order, digits=digits)
 
 
-def _variant(name: str, series: LindstedtSeries, *, amplitude_digits: int | None = None) -> Variant:
+def _variant(
+    name: str, series: LindstedtSeries, *, amplitude_digits: int | None = None
+) -> Variant:
     """What a series shows, with its own amplitudes or with rounded ones."""
     torus = solve_amplitudes(series, frequency_order=FIG1_AMPLITUDE_ORDER)
     if amplitude_digits is not None:

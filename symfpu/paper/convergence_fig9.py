@@ -28,7 +28,9 @@ from symfpu.tori.verdict import Assessment, assess
 Floats = NDArray[np.float64]
 
 BREATHER_DIGITS = 30
-SINGULARITY_TERMS = 60  # last terms of the frequency series to which its singularity is fitted
+SINGULARITY_TERMS = (
+    60  # last terms of the frequency series to which its singularity is fitted
+)
 LIMIT_ORDER = 160  # of the series whose ends are followed along a family
 LIMIT_ENERGIES = ("0.0005", "0.05")  # where the family is followed for the picture
 LIMIT_POINTS = 14
@@ -74,7 +76,11 @@ class SchemeLimit:
 
 def breather_study(progress: Progress = unheard) -> BreatherStudy:
     """Compute question (ii)."""
-    chain, seeds, rates = FIG9_BREATHER.chain, FIG9_BREATHER.seeds, FIG9_BREATHER.frequencies
+    chain, seeds, rates = (
+        FIG9_BREATHER.chain,
+        FIG9_BREATHER.seeds,
+        FIG9_BREATHER.frequencies,
+    )
     (seed,) = seeds
     progress("convergence: breather series", NO_FRACTION)
     series = lindstedt(chain, seeds, rates, FIG9_BREATHER.order, digits=BREATHER_DIGITS)

@@ -106,7 +106,10 @@ def corrected_rows(
 
 
 def corrected_row(
-    printed: PrintedTorus, progress: Progress = unheard, *, series: LindstedtSeries | None = None
+    printed: PrintedTorus,
+    progress: Progress = unheard,
+    *,
+    series: LindstedtSeries | None = None,
 ) -> CorrectedRow:
     """The exact torus of the printed frequencies, and the errors of the series at every order.
 
@@ -127,7 +130,9 @@ def corrected_row(
     energies = _energies(torus)
     residual = torus.residual()
     errors = series_errors(series, torus, tell)
-    return CorrectedRow(printed, torus, reason, digits, deviations, energies, residual, errors)
+    return CorrectedRow(
+        printed, torus, reason, digits, deviations, energies, residual, errors
+    )
 
 
 def _energies(torus: RefinedTorus) -> dict[str, float]:
@@ -167,7 +172,9 @@ def _refined(printed: PrintedTorus, tell: Progress) -> tuple[RefinedTorus | None
     return last, min(MOST_DIGITS, digits), ""
 
 
-def _refinements(printed: PrintedTorus, progress: Progress) -> tuple[list[RefinedTorus], str]:
+def _refinements(
+    printed: PrintedTorus, progress: Progress
+) -> tuple[list[RefinedTorus], str]:
     """The tori of all tolerances until one fails, and how that one failed."""
     found: list[RefinedTorus] = []
     try:

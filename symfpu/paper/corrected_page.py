@@ -48,9 +48,18 @@ SCALING = (
 AMPLITUDE_HEAD = ("torus", "mode", "printed A", "exact A", "printed/exact - 1")
 ENERGIES = ("printed E", "H", "harmonic E(0)", "average", "printed E is, or nearest")
 ENERGY_HEAD = ("torus", *ENERGIES, "residual", "harmonics")
-EXPONENT_HEAD = ("torus", "K", "exponent, A exact", "expected", "exponent, A(K)", "expected")
+EXPONENT_HEAD = (
+    "torus",
+    "K",
+    "exponent, A exact",
+    "expected",
+    "exponent, A(K)",
+    "expected",
+)
 ORDER_LABEL = r"order $K$ of coordinates and frequencies"
-ERROR_LABEL = r"$\max\,\Omega_q |c_q^{(K)}[\nu] - c_q[\nu]| \,/\, \max\,\Omega_q |c_q[\nu]|$"
+ERROR_LABEL = (
+    r"$\max\,\Omega_q |c_q^{(K)}[\nu] - c_q[\nu]| \,/\, \max\,\Omega_q |c_q[\nu]|$"
+)
 SCALE_LABEL = r"$\mu A$, relative to the printed torus"
 
 
@@ -134,7 +143,9 @@ def _exponent_lines(studies: Sequence[ScalingStudy]) -> list[list[str]]:
     return lines
 
 
-def corrected_record(row: CorrectedRow, study: ScalingStudy | None = None) -> dict[str, Any]:
+def corrected_record(
+    row: CorrectedRow, study: ScalingStudy | None = None
+) -> dict[str, Any]:
     """A corrected row for JSON: numbers of more than 15 digits as strings, errors by order."""
     if row.torus is None or row.errors is None:
         return {"refined": False, "verdict": row.verdict}
@@ -145,7 +156,9 @@ def corrected_record(row: CorrectedRow, study: ScalingStudy | None = None) -> di
     record["converged_digits"] = row.digits
     record["amplitude_deviations"] = _rounded(row.deviations)
     record["energies"] = {name: repr(value) for name, value in row.energies.items()}
-    record["energy_deviations"] = {name: fifteen_digits(x) for name, x in deviations.items()}
+    record["energy_deviations"] = {
+        name: fifteen_digits(x) for name, x in deviations.items()
+    }
     record["residual"] = fifteen_digits(row.residual)
     record["harmonics"] = len(row.torus.harmonics)
     record["errors"] = _errors_record(row.errors)

@@ -57,7 +57,9 @@ def slopes_text(found: AlignmentIndices) -> str:
     return f"slopes {slopes} of G_2..G_{found.vectors} to t = {last}: {verdict}"
 
 
-def settled_after(found: AlignmentIndices, k: int, decades: float = SETTLED_DECADES) -> float:
+def settled_after(
+    found: AlignmentIndices, k: int, decades: float = SETTLED_DECADES
+) -> float:
     """The time after which log10 G_k stays within so many decades of its last value."""
     values = found.log10_gali[:, k - 2]
     off = np.abs(values - values[-1]) > decades

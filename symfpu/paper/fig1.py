@@ -135,9 +135,13 @@ def figure1_text(data: Figure1) -> tuple[str, ...]:
     ours = data.claims()
     rows = [[key.replace("_", " "), FIG1_CLAIMS[key], ours[key]] for key in ours]
     even = [f"{k}: {value:.1e}" for k, value in data.residuals.items() if k % 2 == 0]
-    residuals = f"Residual of the equations of motion by coordinate order: {', '.join(even)}."
+    residuals = (
+        f"Residual of the equations of motion by coordinate order: {', '.join(even)}."
+    )
     reasons = "; ".join(data.assessment.reasons)
-    precision = f"Computed with {data.torus.series.precision}. In doubles the amplitudes of all "
+    precision = (
+        f"Computed with {data.torus.series.precision}. In doubles the amplitudes of all "
+    )
     precision += f"orders come out the same to {data.rounding:.1e}."
     return (
         markdown_table(["claim", "printed", "computed"], rows),

@@ -111,7 +111,9 @@ def residual_terms_claim(data: Figure1) -> Claim:
     ours = f"S_1 goes from {upper[2]:.0e} at k = 2 to {upper[k]:.0e} at k = {k}; "
     ours += f"S_2 from {lower[2]:.0e} to {lower[k]:.0e}, "
     ours += f"is least at k = {least} and {lower[-1]:.0e} at k = {last}"
-    text = "a near-cancellation of terms of increasing size leaves a residual that decreases "
+    text = (
+        "a near-cancellation of terms of increasing size leaves a residual that decreases "
+    )
     text += "as k increases"
     verdict = judged(grows and falls(lower, last), grows and least >= k)
     return Claim("3.2", text, "", ours, verdict)

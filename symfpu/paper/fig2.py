@@ -95,7 +95,9 @@ def _profile_panel(
     return profile_panel("fig2a", title, chain, profiles, *laws, floors=floors)
 
 
-def _other_panels(found: AlignmentIndices, sums: tuple[Floats, Floats]) -> tuple[Panel, Panel]:
+def _other_panels(
+    found: AlignmentIndices, sums: tuple[Floats, Floats]
+) -> tuple[Panel, Panel]:
     """Alignment indices; sums of the terms."""
     indices = "Fig. 2(b): alignment indices of PLn"
     cancellations = "Fig. 2(c): cancellations in the series of mode 1"
@@ -173,7 +175,9 @@ def _dimension_claim(found: AlignmentIndices) -> Claim:
     settled = settled_after(found, 4)
     more = f"; G_4 within 0.3 decades of its last value from t = {settled:.0e} on"
     text = "G_2, G_3 soon constant, G_4 after 3e7, G_5 falls as 1/t from there to 1e9"
-    return dimension_claim("4", text, 4, found, shown_after=PLATEAU, whole=FULL_TIME, more=more)
+    return dimension_claim(
+        "4", text, 4, found, shown_after=PLATEAU, whole=FULL_TIME, more=more
+    )
 
 
 def _sums_claims(sums: tuple[Floats, Floats], order: int) -> tuple[Claim, Claim]:

@@ -15,7 +15,11 @@ from symfpu.chain.propagation import excitation_sequence
 from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import Progress
 from symfpu.localization.growth import GroupGrowth, GrowthExponents, growth_exponents
-from symfpu.localization.profiles import fpu_trajectory, normalised_averages, profile_distance
+from symfpu.localization.profiles import (
+    fpu_trajectory,
+    normalised_averages,
+    profile_distance,
+)
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import (
     ENERGY_FLOOR,
@@ -60,7 +64,9 @@ def figure3(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     chain = row.chain
     torus = printed_torus(row)
     start = fpu_trajectory(chain, printed_amplitudes(row))
-    orbit = integrated_orbit("fig3 FPU-trajectory", chain, start, TIME, progress, samples=LOOKS)
+    orbit = integrated_orbit(
+        "fig3 FPU-trajectory", chain, start, TIME, progress, samples=LOOKS
+    )
     shares = normalised_averages(orbit)
     groups = excitation_sequence(chain.N, row.seeds, (chain.N - 1) // len(row.seeds))
     own = growth_exponents(chain, orbit.times, shares, groups, window=None)
@@ -83,7 +89,9 @@ def figure3(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
         _growth_panel(orbit.times, shares, groups),
         profile_panel("fig3b", title_b, chain, profiles, floors=floors),
     )
-    return PaperFigure("fig3", "Fig. 3: the FPU-trajectory near the 4-torus", panels, claims)
+    return PaperFigure(
+        "fig3", "Fig. 3: the FPU-trajectory near the 4-torus", panels, claims
+    )
 
 
 def _growth_panel(times: Floats, shares: Floats, groups: list[tuple[int, ...]]) -> Panel:

@@ -18,7 +18,12 @@ from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.localization.laws import least_packet, middle_modes, packet_parameter
 from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
-from symfpu.localization.trials import ProfileInvariance, Trend, profile_invariance, slope_by_energy
+from symfpu.localization.trials import (
+    ProfileInvariance,
+    Trend,
+    profile_invariance,
+    slope_by_energy,
+)
 from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_line
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import SIMILAR_DECADES
@@ -33,7 +38,11 @@ EXPONENT_TOLERANCE = 0.15
 # decades, over all chains: what a picture of thirty decades does not show; a fiftieth of its
 # height
 UNSEEN_DECADES, SHIFT_DECADES = 0.2, 0.6
-SLOPE_CHAIN, SLOPE_SEEDS, SLOPE_TIME = 32, 4, 3e4  # packets whose slope is followed in energy
+SLOPE_CHAIN, SLOPE_SEEDS, SLOPE_TIME = (
+    32,
+    4,
+    3e4,
+)  # packets whose slope is followed in energy
 LAMBDAS = {"weak": (5e-10, 5e-9, 5e-8), "strong": (5e-4, 5e-3, 5e-2)}
 # of slopes and intercepts of a law: half a unit of the last printed digit
 LAW_TOLERANCE = 0.005
@@ -80,7 +89,9 @@ def _trial(line: PrintedLine, T: float, *, random: bool = False) -> ProfileInvar
     )
 
 
-def spectra_panel(line: PrintedLine, found: ProfileInvariance, *, random: bool = False) -> Panel:
+def spectra_panel(
+    line: PrintedLine, found: ProfileInvariance, *, random: bool = False
+) -> Panel:
     """Spectra of all chains above the noise, and the line of the caption."""
     curves = []
     for chain, rows, floor in zip(found.chains, found.spectra, found.floors, strict=True):
@@ -200,7 +211,9 @@ def _rates(name: str) -> tuple[Trend, float, float]:
     for energy in energies:
         amplitudes = packet_amplitudes(chain, range(1, s + 1), energy * chain.N)
         start = fpu_trajectory(chain, amplitudes)
-        orbit = integrated_orbit("fig4 slopes", chain, start, SLOPE_TIME, unheard, samples=1)
+        orbit = integrated_orbit(
+            "fig4 slopes", chain, start, SLOPE_TIME, unheard, samples=1
+        )
         assert orbit.averages is not None
         spectra.append(orbit.averages[-1])
     trend = slope_by_energy(chain, s, energies, spectra, floor=0.0)

@@ -33,12 +33,16 @@ EXAMPLES = {
     "Fig. 5d": "at 3/4",
 }
 PRINTED_LEVELS = {"Fig. 5c": 1e-60}  # down to which the text says that both spectra agree
-MIRROR_PAIRS = ((10, 12), (9, 13), (20, 22), (19, 23))  # around the seeds 11 and 21 of Example 1
+MIRROR_PAIRS = (
+    (10, 12),
+    (9, 13),
+    (20, 22),
+    (19, 23),
+)  # around the seeds 11 and 21 of Example 1
 # "quite similar", where neighbouring groups are two to four decades apart
 PAIR_DECADES = 0.5
-GROUPS_TEXT = (
-    "modes of one group D_k have like energies, distinct groups quite different ones (section 5)"
-)
+LIKE_ENERGIES = "modes of one group D_k have like energies"
+GROUPS_TEXT = f"{LIKE_ENERGIES}, distinct groups quite different ones (section 5)"
 # where the text says that both spectra agree; of b and d it says nothing
 STATED_FIGURES = ("Fig. 5a",)
 # a level given by its order of magnitude where neighbouring groups are five decades apart
@@ -69,7 +73,9 @@ def _example(label: str, progress: Progress) -> tuple[Panel, list[Claim]]:
     orbit = integrated_orbit(f"fig5 {letter}", row.chain, torus, TIME, progress)
     series = np.asarray(torus.average_spectrum() / torus.energy(), dtype=float)
     profiles = {"PL": series, "PLn": normalised_averages(orbit)[-1]}
-    title = f"Fig. 5({letter}): {EXAMPLES[label]}, seeds {runs(row.seeds)}, N = {row.chain.N}"
+    title = (
+        f"Fig. 5({letter}): {EXAMPLES[label]}, seeds {runs(row.seeds)}, N = {row.chain.N}"
+    )
     floors = {"PL": normalised_floor(torus)}
     name = f"fig5{letter}"
     panel = profile_panel(name, title, row.chain, profiles, by_kappa=False, floors=floors)

@@ -83,7 +83,9 @@ def _table(packets: dict[str, Packet]) -> str:
         seeds = f"{packet.seeds[0]}..{packet.seeds[-1]}"
         latest = max(packet.orders.values())
         rows.append([letter, seeds, str(len(packet.orders)), str(latest)])
-    return markdown_table(["panel", "seeds", "modes excited", "at order, at the latest"], rows)
+    return markdown_table(
+        ["panel", "seeds", "modes excited", "at order, at the latest"], rows
+    )
 
 
 def intervals_claim(packet: Packet) -> Claim:

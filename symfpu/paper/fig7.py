@@ -58,9 +58,14 @@ def figure7(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     row = printed_row("Fig. 7")
     chain = row.chain
     torus = printed_torus(row)
-    newton = periodic_orbit_digits(periodic_orbit(chain, 1, row.frequencies[0]), NEWTON_DIGITS)
+    newton = periodic_orbit_digits(
+        periodic_orbit(chain, 1, row.frequencies[0]), NEWTON_DIGITS
+    )
     fpu = fpu_trajectory(chain, printed_amplitudes(row))
-    starts: dict[str, Starting | tuple[Floats, Floats]] = {"PLn": torus, "FPU-trajectory": fpu}
+    starts: dict[str, Starting | tuple[Floats, Floats]] = {
+        "PLn": torus,
+        "FPU-trajectory": fpu,
+    }
     moments = np.linspace(0.0, TIME, LOOKS)
     orbits = {}
     for name, start in starts.items():
@@ -93,7 +98,9 @@ def _energy_panels(times: Floats, shares: dict[str, Floats]) -> list[Panel]:
     panels = []
     for letter, (name, energies) in zip("abc", shares.items(), strict=True):
         title = f"Fig. 7({letter}): {name}"
-        panel = energies_panel(f"fig7{letter}", title, times, energies, modes, bottom=bottom)
+        panel = energies_panel(
+            f"fig7{letter}", title, times, energies, modes, bottom=bottom
+        )
         panels.append(panel)
     return panels
 

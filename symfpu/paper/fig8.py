@@ -15,7 +15,12 @@ from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import Progress
 from symfpu.localization.profiles import fpu_trajectory
-from symfpu.paper.breather_profiles import ALIKE_TEXT, SHOWN_ONLY, hierarchy_claim, profiles_of
+from symfpu.paper.breather_profiles import (
+    ALIKE_TEXT,
+    SHOWN_ONLY,
+    hierarchy_claim,
+    profiles_of,
+)
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import SIMILAR_DECADES, same_profile
 from symfpu.paper.printed import PrintedTorus
@@ -106,13 +111,19 @@ def _shares(row: PrintedTorus, torus: QTorus, progress: Progress) -> Shares:
     return shares | {"PL": (times, series)}
 
 
-def _averaged_orbits(row: PrintedTorus, torus: QTorus, progress: Progress) -> dict[str, Orbit]:
+def _averaged_orbits(
+    row: PrintedTorus, torus: QTorus, progress: Progress
+) -> dict[str, Orbit]:
     """Orbits of the series and of the FPU-trajectory, long enough for their averages."""
     chain, T, looks = row.chain, AVERAGING_TIME, AVERAGING_LOOKS
     fpu = fpu_trajectory(chain, printed_amplitudes(row))
     name = "fig8 PLn"
-    orbit = integrated_orbit(name, chain, torus, T, progress, samples=looks, step=BREATHER_STEP)
-    trajectory = integrated_orbit("fig8 FPU-trajectory", chain, fpu, T, progress, samples=looks)
+    orbit = integrated_orbit(
+        name, chain, torus, T, progress, samples=looks, step=BREATHER_STEP
+    )
+    trajectory = integrated_orbit(
+        "fig8 FPU-trajectory", chain, fpu, T, progress, samples=looks
+    )
     return {"PLn": orbit, "FPU-trajectory": trajectory}
 
 

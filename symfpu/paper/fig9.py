@@ -21,7 +21,11 @@ from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Panel
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.localization.laws import natural_packet
-from symfpu.localization.profiles import fpu_trajectory, normalised_averages, packet_amplitudes
+from symfpu.localization.profiles import (
+    fpu_trajectory,
+    normalised_averages,
+    packet_amplitudes,
+)
 from symfpu.localization.recurrence import recurrence
 from symfpu.numbers.typed import Number
 from symfpu.paper.breather_profiles import (
@@ -120,11 +124,15 @@ def _trajectories(row: PrintedTorus, progress: Progress) -> dict[str, Orbit]:
     for name, values in amplitudes.items():
         start = fpu_trajectory(row.chain, values)
         label = f"fig9 {name}"
-        orbits[name] = integrated_orbit(label, row.chain, start, TIME, progress, samples=moments)
+        orbits[name] = integrated_orbit(
+            label, row.chain, start, TIME, progress, samples=moments
+        )
     return orbits
 
 
-def _energy_panels(times: Floats, breather: Floats, trajectory: Floats) -> tuple[Panel, Panel]:
+def _energy_panels(
+    times: Floats, breather: Floats, trajectory: Floats
+) -> tuple[Panel, Panel]:
     """Panels (a) and (b): instantaneous energies."""
     modes = tuple(range(1, SHOWN_MODES + 1))
     constant = "Fig. 9(a): breather of the printed frequency"
@@ -139,7 +147,9 @@ def _energy_panels(times: Floats, breather: Floats, trajectory: Floats) -> tuple
 def _profile_claims(profiles: dict[str, Floats]) -> tuple[Claim, Claim]:
     low = "the spectra of breather and FPU-trajectory agree quite well, "
     low += "especially in the low modes"
-    by_series = "the series of order 242 shows the spectrum of the breather by Newton's method"
+    by_series = (
+        "the series of order 242 shows the spectrum of the breather by Newton's method"
+    )
     options = {"floor": LOW_FLOOR, "within": SIMILAR_DECADES}
     return (
         same_profile("6.4.3", low, profiles, "Newton", "FPU-trajectory", **options),
@@ -200,7 +210,9 @@ def frequencies_claim(found: AlignmentIndices) -> Claim:
     text = "five incommensurable frequencies: G_2, G_3 constant from the start, "
     text += "G_4, G_5 from 5e7 on, a torus of dimension 5"
     more = f"; within 0.3 decades of the last value from t = {times} on"
-    return dimension_claim("6.4.3", text, 5, found, shown_after=PLATEAU, whole=FULL_TIME, more=more)
+    return dimension_claim(
+        "6.4.3", text, 5, found, shown_after=PLATEAU, whole=FULL_TIME, more=more
+    )
 
 
 def packet_claims(row: PrintedTorus) -> tuple[Claim, ...]:

@@ -25,7 +25,9 @@ SAME_DECADES = 0.1
 # of the energy: T + V leaves in a mode the squared rounding of all others
 ENERGY_FLOOR = 1e-28
 SHOWN_GROUPS = 6  # medians in the text
-SIZE_DECADES = 0.5  # within which a size is the one that the paper gives by its order of magnitude
+SIZE_DECADES = (
+    0.5  # within which a size is the one that the paper gives by its order of magnitude
+)
 
 
 def same_profile(
@@ -47,7 +49,9 @@ def same_profile(
     upper = profile_distance(profiles[first], profiles[second], high)
     ours = f"{first} and {second} differ by at most {found.distance:.2g} decades "
     ours += f"(mode {found.mode}) in the {found.modes} modes above {floor:.0e}, "
-    ours += f"by {upper.distance:.2g} (mode {upper.mode}) in the {upper.modes} above {high:.0e}"
+    ours += (
+        f"by {upper.distance:.2g} (mode {upper.mode}) in the {upper.modes} above {high:.0e}"
+    )
     verdict = judged(found.distance <= within, upper.distance <= within)
     return Claim(section, text, "", ours, verdict)
 

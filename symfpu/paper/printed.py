@@ -180,12 +180,10 @@ APPENDIX_F = (
 
 FIG9_BREATHER = APPENDIX_F[-1]
 
-FIG1_AMPLITUDE_ORDER = (
-    24  # "in subsequent calculations we use the values of the amplitudes found at the order k=24"
-)
-FIG1_CANCELLATION_ORDER = (
-    14  # "the cancellation takes place up to four orders of magnitude ... at the order k=14"
-)
+# "in subsequent calculations we use the values of the amplitudes found at the order k=24"
+FIG1_AMPLITUDE_ORDER = 24
+# "the cancellation takes place up to four orders of magnitude ... at the order k=14"
+FIG1_CANCELLATION_ORDER = 14
 
 # our choice: doubles lose some of their digits in the cancellations of Fig. 1(c)
 FIG1_DIGITS = 20
@@ -314,8 +312,7 @@ LINES = (
     ),
 )
 
-FIG9_RECURRENCE = (
-    12000.0  # section 6.4.3, "a nearly complete return to their initial values at the time t=12000"
-)
+# section 6.4.3, "a nearly complete return to their initial values at the time t=12000"
+FIG9_RECURRENCE = 12000.0
 # section 6.4.3, widths by the power of eps in the estimate
 FIG9_PACKETS = {"1/4": "2.7", "1/5": "4.43"}

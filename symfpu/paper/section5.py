@@ -133,7 +133,9 @@ def parities_claim() -> Claim:
     ours = f"for all seeds of {SIZES_TEXT}"
     if wrong:
         ours += f" but {'; '.join(wrong)}"
-    text = "example i: even seeds excite even modes, odd ones in beta odd modes, in alpha both"
+    text = (
+        "example i: even seeds excite even modes, odd ones in beta odd modes, in alpha both"
+    )
     return Claim("5", text, "", ours, judged(not wrong, len(wrong) <= TOLERATED_EXCEPTIONS))
 
 
@@ -256,7 +258,9 @@ def reachable_sets_claim() -> Claim:
     for seeds in sets:
         of_alpha = reachable_modes(N, seeds, 6)[::2]
         wrong += of_alpha != reachable_modes(N, seeds, 3, model="beta")
-    ours = f"for {len(sets) - wrong} of the {len(sets)} sets of up to three seeds of N = {N}, "
+    ours = (
+        f"for {len(sets) - wrong} of the {len(sets)} sets of up to three seeds of N = {N}, "
+    )
     ours += "k to 3"
     text = "M_2k of alpha is M_k of beta for every excitation"
     return Claim("5", text, "", ours, judged(not wrong, wrong <= TOLERATED_EXCEPTIONS))

@@ -231,7 +231,9 @@ class ScalingStudy:
         return exponents
 
 
-def scaling_study(torus: RefinedTorus, label: str, progress: Progress = unheard) -> ScalingStudy:
+def scaling_study(
+    torus: RefinedTorus, label: str, progress: Progress = unheard
+) -> ScalingStudy:
     """The errors of the orders SCALED_ORDERS at an exact torus and at scaled ones.
 
     Those have 1/2, 1/4, ... of its amplitudes.

@@ -80,7 +80,9 @@ class AmplitudeRow:
             numbers = ", ".join(map(str, orders))
             cuts.append(f"{name} of coordinate orders {numbers}")
         order = self.printed.order
-        return f"printed E is not that of the printed order {order}, but {' and '.join(cuts)}"
+        return (
+            f"printed E is not that of the printed order {order}, but {' and '.join(cuts)}"
+        )
 
 
 def agreement_digits(ours: tuple[float, ...], printed: tuple[str, ...]) -> float:
@@ -105,15 +107,28 @@ def amplitude_row(printed: PrintedTorus) -> AmplitudeRow:
     """
     series = lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order)
     history = amplitude_history(series)
-    digits = {k: agreement_digits(a, printed.amplitudes) for k, a in history.amplitudes.items()}
+    digits = {
+        k: agreement_digits(a, printed.amplitudes) for k, a in history.amplitudes.items()
+    }
     met = _met_orders(printed, history, digits)
     chosen = max(met, key=lambda k: digits[k]) if met else None
     torus = solve_amplitudes(series, frequency_order=chosen)
     values = energies(torus)
-    matches = tuple(name for name, value in values.items() if rounds_to(value, printed.energy))
+    matches = tuple(
+        name for name, value in values.items() if rounds_to(value, printed.energy)
+    )
     other = {} if matches else _energy_orders(torus, printed.energy)
     return AmplitudeRow(
-        printed, series, history, digits, met, torus, values, matches, other, torus.residual()
+        printed,
+        series,
+        history,
+        digits,
+        met,
+        torus,
+        values,
+        matches,
+        other,
+        torus.residual(),
     )
 
 

@@ -31,7 +31,17 @@ WHAT = (
     "the energies."
 )
 ENERGIES = ("printed E", "H(0)", "harmonic E(0)", "average")
-HEAD = ("torus", "N", "alpha", "seeds", "order", "met at K", "digits", *ENERGIES, "residual")
+HEAD = (
+    "torus",
+    "N",
+    "alpha",
+    "seeds",
+    "order",
+    "met at K",
+    "digits",
+    *ENERGIES,
+    "residual",
+)
 
 
 def table(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
@@ -66,12 +76,16 @@ def row_record(row: AmplitudeRow) -> dict[str, Any]:
     record["printed_label"] = printed.printed_label
     record["printed_amplitudes"] = dict(by_seed)
     record["printed_energy"] = printed.energy
-    record["digits_by_frequency_order"] = {str(k): round(d, 2) for k, d in row.digits.items()}
+    record["digits_by_frequency_order"] = {
+        str(k): round(d, 2) for k, d in row.digits.items()
+    }
     record["met_at_frequency_orders"] = list(row.met)
     record["digits"] = round(row.digits[row.best], 2)
     record["energies"] = {name: repr(value) for name, value in row.energies.items()}
     record["energy_matches"] = list(row.energy_matches)
-    record["energy_orders"] = {name: list(orders) for name, orders in row.energy_orders.items()}
+    record["energy_orders"] = {
+        name: list(orders) for name, orders in row.energy_orders.items()
+    }
     record["verdict"] = row.verdict
     record["torus"] = torus_record(row.torus)
     return record
@@ -84,7 +98,9 @@ def row_line(record: dict[str, Any]) -> str:
     for q, printed in record["printed_amplitudes"].items():
         lines.append(f"  A_{q:<3} printed {printed:<24} computed {computed[q]}")
     energies = [f"{name} {float(value):.9g}" for name, value in record["energies"].items()]
-    lines.append(f"  E    printed {record['printed_energy']:<24} computed {', '.join(energies)}")
+    lines.append(
+        f"  E    printed {record['printed_energy']:<24} computed {', '.join(energies)}"
+    )
     lines.append(f"  {record['verdict']}")
     return "\n".join(lines)
 

@@ -29,7 +29,9 @@ class Maker(Protocol):
     `progress` hears what comes next. full : what takes hours, too.
     """
 
-    def __call__(self, folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure: ...
+    def __call__(
+        self, folder: Path, progress: Progress, *, full: bool = False
+    ) -> PaperFigure: ...
 
 
 TARGETS: dict[str, Maker] = {
@@ -50,7 +52,9 @@ TARGETS: dict[str, Maker] = {
 LONG_TARGETS = ("table", "fig1", "fig2", "fig9")
 
 
-def reproduced(target: str, folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
+def reproduced(
+    target: str, folder: Path, progress: Progress, *, full: bool = False
+) -> PaperFigure:
     """The figure of a target, with its tables and pictures in the folder."""
     figure = TARGETS[target](folder, progress, full=full)
     write_panel_csv(figure, folder)

@@ -199,8 +199,8 @@ def _energy(series: SeriesForAllN, q: int, order: int, count: int) -> Any:
     monomials: list[tuple[int, ...]] = []
 
     def expanded(length: int) -> list[Laurent]:
-        by_harmonic: dict[tuple[int, ...], list[tuple[tuple[int, ...], Laurent]]] = defaultdict(
-            list
+        by_harmonic: dict[tuple[int, ...], list[tuple[tuple[int, ...], Laurent]]] = (
+            defaultdict(list)
         )
         rows = zip(_values(series, nodes, length), powers, harmonics, strict=True)
         for value, row, nu in rows:
@@ -222,7 +222,9 @@ def _energy(series: SeriesForAllN, q: int, order: int, count: int) -> Any:
     return se.expand(total * _squared_mu(series.chain) ** order)
 
 
-def _kinetic_and_potential(q: int, seeds: Sequence[int], nu: Sequence[int], length: int) -> Laurent:
+def _kinetic_and_potential(
+    q: int, seeds: Sequence[int], nu: Sequence[int], length: int
+) -> Laurent:
     """What the square of sum c w^e of a harmonic has to be multiplied with.
 
     u_q = 2 c w^e cos(nu.theta) has the mean energy (1/4) (1 + (nu.Omega / Omega_q)^2) (2 c w^e)^2.
@@ -318,7 +320,9 @@ class Laurent:
 
 def _sine(q: int, length: int) -> Laurent:
     """sin(qx)/x in powers of y = x^2."""
-    terms = [Fraction((-1) ** i * q ** (2 * i + 1), factorial(2 * i + 1)) for i in range(length)]
+    terms = [
+        Fraction((-1) ** i * q ** (2 * i + 1), factorial(2 * i + 1)) for i in range(length)
+    ]
     return Laurent(0, terms)
 
 
@@ -337,7 +341,10 @@ def _values(series: SeriesForAllN, nodes: NDArray[np.int64], length: int) -> lis
     leaves: list[Any] = []
     for leaf, symbol in zip(program.leaves, program.symbols, strict=True):
         if leaf in needed and isinstance(symbol, Multiplier):
-            own, drive = _sine(symbol.mode, length), _drive(series.seeds, symbol.harmonic, length)
+            own, drive = (
+                _sine(symbol.mode, length),
+                _drive(series.seeds, symbol.harmonic, length),
+            )
             square = own * own
             leaves.append(square * (square + drive * drive * -1).inverse())
         else:
@@ -380,7 +387,9 @@ def _low(seeds: Sequence[int]) -> tuple[int, ...]:
     labels = seed_labels(seeds)
     if any(isinstance(q, HighMode) for q in labels):
         allowed = "modes from the start of the spectrum"
-        raise InputError("seeds", labels, allowed, "expand closed_form(...) in 1/N for others")
+        raise InputError(
+            "seeds", labels, allowed, "expand closed_form(...) in 1/N for others"
+        )
     return tuple(sorted(labels))
 
 

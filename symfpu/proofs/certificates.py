@@ -227,7 +227,9 @@ def prove_propagation(
     N = integer(N, "N", 2)
     points = integer(points, "points", 0)
     if model not in ("alpha", "beta"):
-        raise InputError("model", model, "'alpha' or 'beta'", "the rule is stated for these")
+        raise InputError(
+            "model", model, "'alpha' or 'beta'", "the rule is stated for these"
+        )
     modes = seed_modes(seeds, N)
     seeds = tuple(sorted(modes))
     order = integer(order, "order", 0)
@@ -314,7 +316,9 @@ def random_point(N: int, seeds: int, degree: int, source: random.Random) -> Resi
     period = 4 * N
     top = largest_modulus(seeds, degree) // period
     if top < 2**12:
-        none_left = f"no primes 1 mod {period} are left for order {degree - 1} with {seeds} seeds"
+        none_left = (
+            f"no primes 1 mod {period} are left for order {degree - 1} with {seeds} seeds"
+        )
         raise SymfpuError(f"{none_left}; take a lower order")
     prime = 4
     while not isprime(prime):
@@ -340,7 +344,9 @@ def _run_at_random_point(
     for _ in range(ATTEMPTS):
         point = random_point(chain.N, len(seeds), degree, source)
         try:
-            series = residue_series(chain, seeds, point, order, workers=workers, progress=progress)
+            series = residue_series(
+                chain, seeds, point, order, workers=workers, progress=progress
+            )
         except VanishingResidue:
             continue
         return point, series

@@ -66,7 +66,9 @@ class LeadingTerm:
             modes = []
             for i, exponent in enumerate(monomial):
                 modes += [self.seeds[i // 2]] * exponent
-            phases = [n * se.Symbol(f"theta{q}") for n, q in zip(nu, self.seeds, strict=True)]
+            phases = [
+                n * se.Symbol(f"theta{q}") for n, q in zip(nu, self.seeds, strict=True)
+            ]
             angle = se.Add(*phases)
             factor = _factor(self.mode, self.order, modes, nu)
             pair = 2 if any(nu) else 1
@@ -112,7 +114,9 @@ def leading_term(chain: Chain, seeds: Sequence[int], q: int) -> Any:
             if q in terms:
                 return terms[q].expression()
     allowed = f"a mode, no seed, that the seeds {modes} excite"
-    raise InputError("q", q, allowed, "other terms are zero, or A_q cos(theta_q) for a seed")
+    raise InputError(
+        "q", q, allowed, "other terms are zero, or A_q cos(theta_q) for a seed"
+    )
 
 
 def leading_factor(
@@ -230,7 +234,9 @@ def _first_excited(terms: Mapping[int, LeadingTerm], order: int) -> tuple[int, .
     return tuple(q for q, term in terms.items() if term.order == order)
 
 
-def _weights(seeds: tuple[int, ...], terms: Mapping[int, LeadingTerm]) -> dict[int, Polynomial]:
+def _weights(
+    seeds: tuple[int, ...], terms: Mapping[int, LeadingTerm]
+) -> dict[int, Polynomial]:
     """What a mode brings into a product: of seeds L K = 1, of excited modes L_q K_q (Eq. Lm)."""
     weights: dict[int, Polynomial] = {}
     for q in seeds:
@@ -346,7 +352,9 @@ def kernel_trees(order: int, factors: int) -> Counter[Tree]:
             continue
         shapes = [kernel_trees(l, factors).items() for l in orders]
         for chosen in product(*shapes):
-            parts = sorted((t for t, _ in chosen), key=lambda t: (_leaves(t), t), reverse=True)
+            parts = sorted(
+                (t for t, _ in chosen), key=lambda t: (_leaves(t), t), reverse=True
+            )
             trees[tuple(parts)] += prod(count for _, count in chosen)
     return trees
 
@@ -366,7 +374,9 @@ def appendix_d(order: int = 3, *, model: str = "alpha", one_symbol: bool = True)
     """
     factors = {"alpha": 2, "beta": 3}
     if model not in factors:
-        raise InputError("model", model, "'alpha' or 'beta'", "the Lemma is stated for these")
+        raise InputError(
+            "model", model, "'alpha' or 'beta'", "the Lemma is stated for these"
+        )
     lines = []
     for k in range(1, integer(order, "order", 1) + 1):
         terms = []
@@ -452,7 +462,9 @@ def _coupling(chain: Chain, q: int, modes: Sequence[int]) -> int:
 def _seeds(chain: Chain, seeds: Sequence[int]) -> tuple[int, ...]:
     if chain.model not in ("alpha", "beta"):
         allowed = "one coupling, alpha or beta"
-        raise InputError("chain", chain, allowed, "the Lemma is stated for each model alone")
+        raise InputError(
+            "chain", chain, allowed, "the Lemma is stated for each model alone"
+        )
     return tuple(sorted(seed_modes(seeds, chain.N)))
 
 

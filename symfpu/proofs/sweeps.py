@@ -10,7 +10,13 @@ import json
 import multiprocessing
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import (
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    as_completed,
+)
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from itertools import combinations
@@ -155,7 +161,9 @@ def sweep_propagation(
     lengths = sorted({integer(N, "N", 2) for N in lengths})
     largest_set, order = integer(largest_set, "largest_set", 1), integer(order, "order", 0)
     if model not in ("alpha", "beta"):
-        raise InputError("model", model, "'alpha' or 'beta'", "the rule is stated for these")
+        raise InputError(
+            "model", model, "'alpha' or 'beta'", "the rule is stated for these"
+        )
     cases = [
         (N, seeds)
         for N in lengths
@@ -163,7 +171,9 @@ def sweep_propagation(
         for seeds in combinations(range(1, N), s)
     ]
     log = SweepLog(Path(file), model, order) if file is not None else None
-    decided = {key: case for key, case in (log.read() if log else {}).items() if key in set(cases)}
+    decided = {
+        key: case for key, case in (log.read() if log else {}).items() if key in set(cases)
+    }
     todo = [case for case in cases if case not in decided]
     failures: dict[Key, Exception] = {}
     with ExitStack() as stack:
@@ -208,7 +218,9 @@ def _results(
             task.cancel()
 
 
-def _submitted(pool: Executor, batch: Sequence[Key], model: str, order: int) -> Future[Decided]:
+def _submitted(
+    pool: Executor, batch: Sequence[Key], model: str, order: int
+) -> Future[Decided]:
     """The task of a batch, submitted.
 
     One that has failed already in a pool whose workers died while it was filled.

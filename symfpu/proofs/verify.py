@@ -28,14 +28,25 @@ MOST_SEEDS = 64
 MOST_POINTS = 256
 LARGEST_N = 4096
 # above 0, up to 1
-PROBABILITY = re.compile(r"1(\.0+)?(e[+-]?0+)?|0\.0*[1-9][0-9]*|[1-9](\.[0-9]+)?e-0*[1-9][0-9]*")
+PROBABILITY = re.compile(
+    r"1(\.0+)?(e[+-]?0+)?|0\.0*[1-9][0-9]*|[1-9](\.[0-9]+)?e-0*[1-9][0-9]*"
+)
 # with these Miller-Rabin is a proof below 3.3e24
 BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41)
-READING_ERRORS = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError)
+READING_ERRORS = (
+    OSError,
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    RecursionError,
+)
 
 Json = dict[str, Any]
 Monomial = tuple[int, ...]
-Polynomial = dict[tuple[Any, ...], int]  # sorted symbols -> coefficient; a residue is a constant
+Polynomial = dict[
+    tuple[Any, ...], int
+]  # sorted symbols -> coefficient; a residue is a constant
 ByMode = dict[int, Polynomial]
 
 
@@ -87,9 +98,14 @@ def read_certificate(path: Path) -> Json:
 
 def check_header(data: Json) -> None:
     """It is a certificate of this kind, of the version that this checker knows."""
-    need(data["format"] == "symfpu propagation certificate", "not a propagation certificate")
+    need(
+        data["format"] == "symfpu propagation certificate", "not a propagation certificate"
+    )
     schema = data["schema"]
-    need(schema == 1, f"schema version {schema!r:.40} is unknown: this checker supports version 1")
+    need(
+        schema == 1,
+        f"schema version {schema!r:.40} is unknown: this checker supports version 1",
+    )
 
 
 def check_digest(data: Json) -> None:
@@ -151,7 +167,9 @@ class Budget:
         """The items, each a step."""
         for item in items:
             self.steps += 1
-            need(self.steps <= MOST_STEPS, "checking it would take more than 2 million steps")
+            need(
+                self.steps <= MOST_STEPS, "checking it would take more than 2 million steps"
+            )
             yield item
 
 
@@ -216,7 +234,9 @@ class Recursion:
         self.add_corrections(m, bracket)
         nu = harmonic(m)
         secular = {
-            q for q, e in zip(self.case.seeds, nu, strict=True) if abs(e) == 1 == sum(map(abs, nu))
+            q
+            for q, e in zip(self.case.seeds, nu, strict=True)
+            if abs(e) == 1 == sum(map(abs, nu))
         }
         for q in bracket.keys() - secular:
             self.add(u, q, self.multiplier(q, nu), bracket[q])
@@ -239,7 +259,9 @@ class Recursion:
                     secular = self.term(raised(f, i))[1].get(q, {})
                     self.add(bracket, q, secular, rest[q], -1)
 
-    def products(self, factors: int, m: Monomial) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
+    def products(
+        self, factors: int, m: Monomial
+    ) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
         """Modes l1 .. lr and value of each product u_l1 .. u_lr at monomial m.
 
         Its degree fixes the sum of the orders.
@@ -255,7 +277,9 @@ class Recursion:
                 for modes, others in self.products(factors - 1, quotient(m, f)):
                     yield (q, *modes), self.add({}, q, value, others)
 
-    def add(self, total: ByMode, q: int, x: Polynomial, y: Polynomial, sign: int = 1) -> Polynomial:
+    def add(
+        self, total: ByMode, q: int, x: Polynomial, y: Polynomial, sign: int = 1
+    ) -> Polynomial:
         """total[q] += sign x y; returns total[q]."""
         value, prime = total.setdefault(q, {}), self.point.prime
         for (a, s), (b, t) in self.budget.counted(product(x.items(), y.items())):
@@ -383,7 +407,9 @@ def folded(total: int, N: int) -> int:
     return min(total % (2 * N), -total % (2 * N))
 
 
-def check_conclusions(data: Json, case: Case, rule: list[list[int]], orders: dict[int, int]) -> str:
+def check_conclusions(
+    data: Json, case: Case, rule: list[list[int]], orders: dict[int, int]
+) -> str:
     """Rule, actual sets, exceptions and verdict follow from the rest; returns the verdict."""
     predicted = {q: k for k, modes in enumerate(rule) for q in modes}
     unsure = {e["mode"] for e in data["undecided"]}
@@ -391,7 +417,12 @@ def check_conclusions(data: Json, case: Case, rule: list[list[int]], orders: dic
     decided = {e["mode"] for e in exceptions} - unsure
     verdict = "refuted" if decided else "undecided" if unsure else "proved"
     actual = [sorted(q for q in orders if orders[q] == k) for k in range(case.order + 1)]
-    conclusions = {"rule": rule, "actual": actual, "exceptions": exceptions, "verdict": verdict}
+    conclusions = {
+        "rule": rule,
+        "actual": actual,
+        "exceptions": exceptions,
+        "verdict": verdict,
+    }
     for key, value in conclusions.items():
         need(data[key] == value, f"{key} is not {value!r:.200}")
     named = len(case.seeds) + len(data["excited"])
@@ -402,7 +433,9 @@ def check_conclusions(data: Json, case: Case, rule: list[list[int]], orders: dic
     return verdict
 
 
-def find_exceptions(case: Case, predicted: dict[int, int], orders: dict[int, int]) -> list[Json]:
+def find_exceptions(
+    case: Case, predicted: dict[int, int], orders: dict[int, int]
+) -> list[Json]:
     """Modes whose order is not the predicted one."""
     found: list[Json] = []
     for q in range(1, case.N):
@@ -536,7 +569,9 @@ def report(data: Json, case: Case, verdict: str, zeros: int, steps: int) -> list
     """What was checked."""
     unsure = sorted({e["mode"] for e in data["undecided"]})
     primes = [e["prime"] for e in data["points"]]
-    chain = f"{data['model']} chain, N = {case.N}, seeds {case.seeds}, orders to {case.order}"
+    chain = (
+        f"{data['model']} chain, N = {case.N}, seeds {case.seeds}, orders to {case.order}"
+    )
     excited = f"{len(data['excited'])} modes excited"
     return [
         f"{chain}: rule, orders and exceptions follow; {verdict}",

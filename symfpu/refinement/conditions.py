@@ -18,7 +18,9 @@ from symfpu.refinement.invariance import Floats, InvarianceEquation
 class Condition(Protocol):
     """One equation more."""
 
-    def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
+    def value(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
         """What is to be zero, relative to its own size."""
         ...
 
@@ -36,7 +38,9 @@ class FrequencyShift:
     place: int
     shift: np.longdouble
 
-    def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
+    def value(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
         off = shifts[self.place] - self.shift
         return np.longdouble(off / self._size(equation))
 
@@ -63,7 +67,9 @@ class Crossing:
     shift: np.longdouble
     size: float
 
-    def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
+    def value(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
         moved = np.dot(np.array(self.harmonic), shifts)
         return np.longdouble((moved - self.shift) / self.size)
 
@@ -81,7 +87,9 @@ class Amplitude:
     place: int
     amplitude: np.longdouble
 
-    def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
+    def value(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
         A = seed_amplitudes(equation, cosines)[self.place]
         return np.longdouble(A / self.amplitude - 1)
 
@@ -101,7 +109,9 @@ class AmplitudeRatio:
     place: int
     ratio: float
 
-    def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
+    def value(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
         A = seed_amplitudes(equation, cosines)
         expected = self.ratio * A[0]
         return np.longdouble(A[self.place] / expected - 1)
@@ -124,7 +134,9 @@ class EnergyRatio:
     place: int
     ratio: float
 
-    def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
+    def value(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
         averages = self._averages(equation, cosines, shifts)[0]
         expected = self.ratio * averages[0]
         return np.longdouble(averages[self.place] / expected - 1)
@@ -166,7 +178,9 @@ class Energy:
     energy: np.longdouble
     harmonic: bool
 
-    def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
+    def value(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
         Q = cosines.sum(axis=0)
         harmonic = (equation.linear**2 * Q**2).sum() / 2
         energy = harmonic if self.harmonic else equation.potential(Q)
@@ -194,7 +208,9 @@ class Plane:
     scales: tuple[float, ...]
     distance: float
 
-    def value(self, equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> np.longdouble:
+    def value(
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
         x = plane_variables(equation, cosines, shifts, self.scales)
         gone = np.dot(np.array(self.tangent), x - np.array(self.start))
         return np.longdouble(gone - self.distance)

@@ -77,7 +77,9 @@ class Lattice:
 
     def __init__(self, harmonics: Ints) -> None:
         self.harmonics = harmonics
-        self.period, self.generator = generated_lattice(dilated(harmonics, OVERSAMPLING / 2))
+        self.period, self.generator = generated_lattice(
+            dilated(harmonics, OVERSAMPLING / 2)
+        )
         self.points = self.period // 2 + 1
         self._place = self.entries(harmonics)
         self._weight = _halves_of_pairs(harmonics)
@@ -152,7 +154,9 @@ def _known_lattice(content: bytes, s: int) -> tuple[int, tuple[int, ...]]:
         factors = draw.integers(1, period, TRIALS) if s > 1 else [1]
         for factor in factors:
             generator = np.array([pow(int(factor), k, period) for k in range(s)])
-            if _distinct(few, generator, period) and _distinct(harmonics, generator, period):
+            if _distinct(few, generator, period) and _distinct(
+                harmonics, generator, period
+            ):
                 return period, tuple(generator.tolist())
         size *= 1.1
 
@@ -174,7 +178,10 @@ def generated_lattice(harmonics: Ints) -> tuple[int, Ints]:
 
 
 WORKERS = os.cpu_count() or 1
-FIRST_TRIED, TRIALS = 500, 60  # harmonics that are tried first, and generators of one period
+FIRST_TRIED, TRIALS = (
+    500,
+    60,
+)  # harmonics that are tried first, and generators of one period
 
 
 class InvarianceEquation:
@@ -289,7 +296,9 @@ class InvarianceEquation:
             tension[part] = np.mean(bonds.anharmonic_tension(self._law, r) ** 2, axis=1)
         sizes = np.sqrt(self._back**2 @ tension)
         points = self.grid.points
-        return np.asarray(np.finfo(np.longdouble).eps * np.sqrt(np.log2(points) / points) * sizes)
+        return np.asarray(
+            np.finfo(np.longdouble).eps * np.sqrt(np.log2(points) / points) * sizes
+        )
 
     def potential(self, Q: Floats) -> np.longdouble:
         """The potential energy of mode coordinates (N-1,), by all bonds."""
@@ -347,7 +356,9 @@ class InvarianceEquation:
 
     def _spectrum(self, slopes: Floats) -> Floats:
         """Coefficients of the slopes of all bonds, by place; shape (bonds, points)."""
-        return np.concatenate([self.grid.spectrum(slopes[part]) for part in self._portions()])
+        return np.concatenate(
+            [self.grid.spectrum(slopes[part]) for part in self._portions()]
+        )
 
     def sparse_derivative(self, slopes: Floats) -> Any:
         """The derivative of the force by the largest harmonics of the slopes alone.

@@ -21,7 +21,9 @@ from symfpu.refinement.conditions import Condition
 from symfpu.refinement.invariance import Floats, Ints, InvarianceEquation
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
-NEARNESS = 3.0  # divisors up to so many times what the coupling adds to them belong to the block
+NEARNESS = (
+    3.0  # divisors up to so many times what the coupling adds to them belong to the block
+)
 KRYLOV, RESTARTS = 60, 4
 ACCURACY = 1e-8  # of a Krylov solution
 # relative change to come that ends the iteration, and the one that does when it no longer shrinks
@@ -87,7 +89,9 @@ class _System:
         for nu in equation.harmonics.T:
             slope = (2 * rates * nu)[:, None] * cosines
             self.by_shift.append(slope.astype(float)[self.mask])
-        gradients = [condition.gradient(equation, cosines, shifts) for condition in conditions]
+        gradients = [
+            condition.gradient(equation, cosines, shifts) for condition in conditions
+        ]
         by_cosine, by_shift = zip(*gradients, strict=True)
         self.by_cosine = np.array([slope[self.mask] for slope in by_cosine])
         self.corner = np.array(by_shift)

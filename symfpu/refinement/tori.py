@@ -110,7 +110,9 @@ class RefinedTorus(QuasiPeriodic):
         rates = ", ".join(f"omega_{q}={float(w):.16g}" for q, w in by_seed)
         energy = float(self.energy())
         doubts = "".join(f"; {warning}" for warning in self.warnings)
-        nearest = f", smallest divisor {self.near_resonances[0]}" if self.near_resonances else ""
+        nearest = (
+            f", smallest divisor {self.near_resonances[0]}" if self.near_resonances else ""
+        )
         found = f"{len(self.harmonics)} harmonics, residual {self.residual():.2g}"
         return (
             f"RefinedTorus({chain}, {rates}, {amplitudes}, H={energy:.12g}, "
@@ -129,7 +131,9 @@ class NoTorus(SymfpuError):
         self.reason, self.iterate, self.residual = reason, iterate, residual
         left = f"the best iterate leaves {residual:.2g} of the largest acceleration"
         advice = "start from a torus nearer to it, such as one of less energy"
-        super().__init__(f"no torus of the seeds {iterate.seeds}: {reason}; {left}; {advice}")
+        super().__init__(
+            f"no torus of the seeds {iterate.seeds}: {reason}; {left}; {advice}"
+        )
 
 
 def refine(
@@ -183,7 +187,9 @@ def refine_at_amplitudes(
     0.390507682
     """
     require_solution(torus, "torus")
-    values = [long(a) for a in _by_seed("amplitudes", amplitudes, torus, signed=True).values()]
+    values = [
+        long(a) for a in _by_seed("amplitudes", amplitudes, torus, signed=True).values()
+    ]
     return refined_torus(
         torus,
         [Amplitude(i, a) for i, a in enumerate(values)],
@@ -232,7 +238,10 @@ def refine_at_energy(
         )
     if not isinstance(harmonic, (bool, np.bool_)):
         raise InputError(
-            "harmonic", harmonic, "True for sum E_q, False for H", "say which energy is meant"
+            "harmonic",
+            harmonic,
+            "True for sum E_q, False for H",
+            "say which energy is meant",
         )
     if amplitude_ratio is not None and energy_ratio is not None:
         raise InputError(
@@ -290,7 +299,9 @@ def refined_torus(
     """
     require_solution(torus, "torus")
     if not isinstance(tolerance, Real) or not 0 < tolerance < 1:
-        raise InputError("tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more")
+        raise InputError(
+            "tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more"
+        )
     tell = progress or unheard
     chain, seeds = torus.chain, torus.seeds
     known = _rows(torus.harmonics, _moderate_coefficients(torus))
@@ -315,7 +326,9 @@ def refined_torus(
             return refined
         if full or residual > before / 2:
             reason = "as many harmonics as fit" if full else "more harmonics change nothing"
-            left = f"leave a residual of {residual:.2g}, above the tolerance {tolerance:.0e}"
+            left = (
+                f"leave a residual of {residual:.2g}, above the tolerance {tolerance:.0e}"
+            )
             return replace(refined, warnings=(f"{reason} {left}",))
         before, shifts = residual, found.shifts
         known = _rows(harmonics, np.asarray(found.cosines))
@@ -415,7 +428,9 @@ def _inside(
             yield n, *others
 
 
-def _result(torus: QuasiPeriodic, equation: InvarianceEquation, found: Iterate) -> RefinedTorus:
+def _result(
+    torus: QuasiPeriodic, equation: InvarianceEquation, found: Iterate
+) -> RefinedTorus:
     with mpmath.workdps(2 * DIGITS):
         linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
         pairs = zip(linear, found.shifts, strict=True)
@@ -443,7 +458,9 @@ def _fraction(value: Any) -> Fraction:
     return Fraction(text(value, 25))
 
 
-def _near_resonances(equation: InvarianceEquation, found: Iterate) -> tuple[NearResonance, ...]:
+def _near_resonances(
+    equation: InvarianceEquation, found: Iterate
+) -> tuple[NearResonance, ...]:
     every = equation.divisors(found.shifts).astype(float)
     divisors = np.where(equation.mask, every, np.inf)
     divisors[equation.seed_rows, equation.seed_columns] = np.inf

@@ -84,12 +84,16 @@ def refined_text(torus: RefinedTorus) -> str:
     amplitudes = record["amplitudes"]
     average = f"time average {record['average_harmonic_energy']:.12g}"
     relative = "equations of motion, relative to the largest acceleration"
-    newton = f"Newton steps {len(torus.steps)}, the last change {torus.steps[-1].change:.1g}"
+    newton = (
+        f"Newton steps {len(torus.steps)}, the last change {torus.steps[-1].change:.1g}"
+    )
     lines = [f"verdict: {record['verdict']}"]
     for q, w in record["frequencies"].items():
         lines.append(f"seed {q:<4} omega {w:<28} amplitude {amplitudes[q]:.15g}")
     lines.append(f"energy H           {record['energy']:.15g}   (at t = 0)")
-    lines.append(f"harmonic energy    {record['harmonic_energy']:.15g}   (at t = 0; {average})")
+    lines.append(
+        f"harmonic energy    {record['harmonic_energy']:.15g}   (at t = 0; {average})"
+    )
     lines.append(f"residual           {record['residual']:.2g}   ({relative})")
     over = "relative, over 25 periods of the slowest seed"
     lines.append(f"energy constancy   {record['energy_error']:.2g}   ({over})")

@@ -37,7 +37,9 @@ def solution_record(
         "seeds": list(solution.seeds),
         "frequencies": {str(q): decimal(omega) for q, omega in frequencies},
         "digits": digits,
-        "amplitudes": {str(q): number_text(a, digits) for q, a in solution.amplitudes.items()},
+        "amplitudes": {
+            str(q): number_text(a, digits) for q, a in solution.amplitudes.items()
+        },
         **{name: number_text(value, digits) for name, value in energies.items()},
         "residual": fifteen_digits(solution.residual()),
         "harmonics": len(solution.harmonics),
@@ -61,7 +63,9 @@ def solution_text(record: dict[str, Any]) -> str:
     """The same for a reader, from the record."""
     average = record["average_harmonic_energy"]
     digits = "doubles" if record["digits"] is None else f"{record['digits']} digits"
-    lines = [f"{record['kind']}, N={record['N']}, alpha={record['alpha']}, beta={record['beta']}"]
+    lines = [
+        f"{record['kind']}, N={record['N']}, alpha={record['alpha']}, beta={record['beta']}"
+    ]
     for q, amplitude in record["amplitudes"].items():
         omega = record["frequencies"][q]
         shown = omega if len(omega) <= SHOWN_FREQUENCY else f"{omega[:SHOWN_FREQUENCY]}.."

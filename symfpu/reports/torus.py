@@ -27,7 +27,9 @@ def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[st
     record["frequency_order"] = torus.frequency_order
     record["digits"] = digits
     record["guard_digits"] = None if digits is None else series.guard_digits
-    record["amplitudes"] = {str(q): number_text(a, digits) for q, a in torus.amplitudes.items()}
+    record["amplitudes"] = {
+        str(q): number_text(a, digits) for q, a in torus.amplitudes.items()
+    }
     record["certified"] = None if certificate is None else certificate.certified
     record["history"] = _history(torus)
     record["energy"] = number_text(torus.energy(), digits)

@@ -93,7 +93,9 @@ class SeriesForAllN(LindstedtSeries):
             allowed = f"from {self.valid_from} up"
             advice = "lower the order, or run lindstedt on the chain itself"
             raise InputError("N", N, allowed, advice)
-        program = _renamed(self.coordinates[0].program, {q: mode_of(q, N) for q in self.modes})
+        program = _renamed(
+            self.coordinates[0].program, {q: mode_of(q, N) for q in self.modes}
+        )
         columns = np.array([mode_of(q, N) - 1 for q in self.modes])
         coordinates = []
         for table in self.coordinates:
@@ -133,7 +135,11 @@ class SeriesForAllN(LindstedtSeries):
 
 
 def series_for_all_lengths(
-    chain: Chain, seeds: Sequence[int | str], order: int, ring: str, progress: Progress | None
+    chain: Chain,
+    seeds: Sequence[int | str],
+    order: int,
+    ring: str,
+    progress: Progress | None,
 ) -> SeriesForAllN:
     """The universal series of a chain whose N is a symbol, from its shortest representative.
 

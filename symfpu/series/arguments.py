@@ -12,7 +12,9 @@ MOST_DIGITS = 10_000
 SMALLEST, LARGEST = Fraction(1, 10**6), 10**6
 
 
-def frequencies_of(frequencies: Sequence[Number], seeds: tuple[int, ...]) -> tuple[Fraction, ...]:
+def frequencies_of(
+    frequencies: Sequence[Number], seeds: tuple[int, ...]
+) -> tuple[Fraction, ...]:
     """One exact positive number for each seed; raises InputError."""
     if isinstance(frequencies, (str, Mapping)) or not isinstance(frequencies, Iterable):
         allowed = "a sequence, one positive number for each seed"

@@ -56,7 +56,11 @@ def substitute_multipliers(expression: Any, seeds: Sequence[int | str]) -> Any:
 
 
 def closed_form(
-    expression: Any, chain: Chain, seeds: Sequence[int | str], *, frequencies: str = "chosen"
+    expression: Any,
+    chain: Chain,
+    seeds: Sequence[int | str],
+    *,
+    frequencies: str = "chosen",
 ) -> Any:
     """An expression of a universal series as a formula in N.
 
@@ -83,7 +87,9 @@ def closed_form(
     formula = substitute_multipliers(expression, seeds)
     length = se.Symbol("N") if chain.symbolic else se.Integer(chain.N)
     if frequencies == "linear":
-        formula = formula.subs({chosen_symbol(q): linear_symbol(q) for q in seed_labels(seeds)})
+        formula = formula.subs(
+            {chosen_symbol(q): linear_symbol(q) for q in seed_labels(seeds)}
+        )
     sines = {}
     for symbol in formula.free_symbols:
         found = LINEAR.fullmatch(symbol.name)
@@ -118,7 +124,9 @@ def collect_terms(expression: Any, symbols: Iterable[Any]) -> dict[Any, Any]:
     chosen = set()
     for symbol in symbols:
         if not getattr(se.sympify(symbol), "is_Symbol", False):
-            raise InputError("symbols", str(symbol), "symbols", "take those of free_symbols")
+            raise InputError(
+                "symbols", str(symbol), "symbols", "take those of free_symbols"
+            )
         chosen.add(se.sympify(symbol))
     expanded = se.expand(se.sympify(expression))
     summands = expanded.args if isinstance(expanded, se.Add) else (expanded,)
@@ -149,7 +157,9 @@ def same_series(a: LindstedtSeries, b: LindstedtSeries) -> bool:
     (True, True)
     """
     for series in (a, b):
-        if not series.symbolic or not all(isinstance(t, NodeTable) for t in series.coordinates):
+        if not series.symbolic or not all(
+            isinstance(t, NodeTable) for t in series.coordinates
+        ):
             advice = "leave frequencies out"
             raise InputError("series", series.ring, "a series in universal form", advice)
     a, b = _at_the_same_length(a, b)
@@ -217,4 +227,6 @@ def _polynomials(table: NodeTable, columns: Sequence[int]) -> dict[tuple[int, in
 
 
 def _name(symbol: Any) -> str:
-    return str(multiplier_symbol(*symbol)) if isinstance(symbol, Multiplier) else str(symbol)
+    return (
+        str(multiplier_symbol(*symbol)) if isinstance(symbol, Multiplier) else str(symbol)
+    )

@@ -69,7 +69,11 @@ class Float64Divisors:
     """
 
     def __init__(
-        self, chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], degree: int
+        self,
+        chain: Chain,
+        seeds: Sequence[int],
+        frequencies: Sequence[Fraction],
+        degree: int,
     ) -> None:
         self.chain = chain
         self.seeds = tuple(seeds)
@@ -97,7 +101,9 @@ class Float64Divisors:
             fine.append(float(value - on_grid))
         return np.array(coarse), np.array(fine)
 
-    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Floats:
+    def multipliers(
+        self, harmonics: Ints, carried: NDArray[np.bool_], order: int
+    ) -> Floats:
         """L_q(nu) where the selection rules let mode q carry nu.
 
         Zero elsewhere and in the gauge term nu = e_q of a seed.
@@ -225,7 +231,9 @@ class MultiplierModuli:
     def __init__(self, divisors: FixedPointDivisors) -> None:
         self._divisors = divisors
 
-    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Floats:
+    def multipliers(
+        self, harmonics: Ints, carried: NDArray[np.bool_], order: int
+    ) -> Floats:
         """|L_q(nu)|, enlarged by more than the rounding to a double; shape (H, N-1)."""
         whole = self._divisors.multipliers(harmonics, carried, order)
         doubles = (whole / 2**self._divisors.bits).astype(np.float64)
@@ -244,7 +252,11 @@ class ResidueDivisors:
     """
 
     def __init__(
-        self, chain: Chain, seeds: Sequence[int], ring: ResidueRing, frequencies: Sequence[int]
+        self,
+        chain: Chain,
+        seeds: Sequence[int],
+        ring: ResidueRing,
+        frequencies: Sequence[int],
     ) -> None:
         self.chain = chain
         self.seeds = tuple(seeds)
@@ -257,7 +269,9 @@ class ResidueDivisors:
             self._lambda[q - 1] = ring.element(omega * omega)
         self._omega = [int(w) for w in frequencies]
 
-    def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Floats:
+    def multipliers(
+        self, harmonics: Ints, carried: NDArray[np.bool_], order: int
+    ) -> Floats:
         """L_q(nu) modulo the prime.
 
         Zero where the selection rules keep nu from mode q, and in the gauge term.

@@ -107,8 +107,12 @@ def expandable_term(
     term = ExpandableTerm(f"{name}^({order})", parts, tuple(reached.values()))
     openings = OpenableFormulas(term.meanings).openings(parts.expression)
     if openings > MOST_OPENINGS:
-        allowed = f"a term with at most {MOST_OPENINGS} symbols to open (this one has {openings})"
-        raise InputError("order", order, allowed, 'take a lower one, or term(q, k, form="cse")')
+        allowed = (
+            f"a term with at most {MOST_OPENINGS} symbols to open (this one has {openings})"
+        )
+        raise InputError(
+            "order", order, allowed, 'take a lower one, or term(q, k, form="cse")'
+        )
     return term
 
 
@@ -124,7 +128,10 @@ def _meanings(
     yield Meaning(se.Symbol("t"), "the time")
     chosen = dict(zip(series.seeds, omega or (), strict=False))
     for q in series.seeds:
-        free, angle = se.Symbol(f"phi{str(phase_symbol(q)).removeprefix('theta')}"), phase_symbol(q)
+        free, angle = (
+            se.Symbol(f"phi{str(phase_symbol(q)).removeprefix('theta')}"),
+            phase_symbol(q),
+        )
         yield Meaning(amplitude_symbol(q), f"the amplitude of mode {q}, free")
         yield Meaning(angle, chosen_symbol(q) * se.Symbol("t") + free)
         yield Meaning(free, f"the phase of mode {q}, free")
@@ -169,7 +176,9 @@ def _multiplier(seeds: Sequence[int], leaf: Multiplier) -> Any:
     """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2), lambda_q = omega_q^2 of a seed (Eq. Lm)."""
     linear = linear_symbol(leaf.mode)
     base = chosen_symbol(leaf.mode) if leaf.mode in seeds else linear
-    drive = se.Add(*(n * chosen_symbol(q) for n, q in zip(leaf.harmonic, seeds, strict=True)))
+    drive = se.Add(
+        *(n * chosen_symbol(q) for n, q in zip(leaf.harmonic, seeds, strict=True))
+    )
     return linear**2 / (base**2 - drive**2)
 
 

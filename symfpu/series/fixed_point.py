@@ -149,7 +149,9 @@ def _rounding_bounds(
     none = np.zeros((0, len(space.seeds)))
     radii = []
     lost = 0.0
-    for errors, correction_errors, degree in zip(modes, [none, *diagonal], tables, strict=True):
+    for errors, correction_errors, degree in zip(
+        modes, [none, *diagonal], tables, strict=True
+    ):
         radius = float(errors.max(initial=0.0))
         radii.append((radius, correction_errors))
         lost = max(lost, _lost_bits(radius, tables[degree]))

@@ -44,7 +44,9 @@ from symfpu.series.series import LindstedtSeries
 MOST_SEEDS = 2
 
 
-def frequency_expansion(chain: Chain, seeds: Sequence[int | str], q: int | str, order: int) -> Any:
+def frequency_expansion(
+    chain: Chain, seeds: Sequence[int | str], q: int | str, order: int
+) -> Any:
     """omega_q^(k) with linear frequencies in all divisors, as a closed formula, without mu^k.
 
     omega_q = Omega_q + sum_k mu^k omega_q^(k)(A), dimensionless: the frequency as a function of
@@ -71,7 +73,9 @@ def frequency_expansion(chain: Chain, seeds: Sequence[int | str], q: int | str, 
     start = lindstedt(chain, seeds, order=0, ring="nested")
     if len(start.seeds) > MOST_SEEDS:
         allowed = f"at most {MOST_SEEDS} for a closed form"
-        raise InputError("seeds", start.seeds, allowed, "see LindstedtSeries.frequency_correction")
+        raise InputError(
+            "seeds", start.seeds, allowed, "see LindstedtSeries.frequency_correction"
+        )
     place = start.seeds.index(_seed(start, q))
     if order == 0:
         return linear_symbol(start.seeds[place])
@@ -272,7 +276,9 @@ class _Expanded:
 
     def formula(self, place: int, order: int) -> Any:
         """omega^(k) of a seed as an expression."""
-        values = [roots[place].coefficients[order] for roots in self._frequencies().values()]
+        values = [
+            roots[place].coefficients[order] for roots in self._frequencies().values()
+        ]
         scaled = [value * self.linear[place] for value in values]
         half = order * self.series.chain.degree_step
         if half % 2:

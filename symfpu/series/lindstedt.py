@@ -90,7 +90,9 @@ def _refuse_numbers(frequencies: object, digits: int | None, ring: str) -> None:
         if value is not None:
             raise InputError(name, value, "none while N is a symbol", ADVICE)
     if ring not in UNIVERSAL:
-        raise InputError("ring", ring, f"one of {', '.join(UNIVERSAL)} while N is a symbol", ADVICE)
+        raise InputError(
+            "ring", ring, f"one of {', '.join(UNIVERSAL)} while N is a symbol", ADVICE
+        )
 
 
 def _require_no_ring(ring: str | None) -> None:

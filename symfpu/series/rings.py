@@ -41,7 +41,9 @@ class RingKind:
     exact_point: bool = False
 
 
-def _double_divisors(chain: Chain, space: CosineModes, frequencies: Frequencies) -> Divisors:
+def _double_divisors(
+    chain: Chain, space: CosineModes, frequencies: Frequencies
+) -> Divisors:
     chosen = chosen_frequencies(frequencies, "float64")
     return Float64Divisors(chain, space.seeds, chosen, space.grading.degree)
 

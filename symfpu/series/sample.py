@@ -140,7 +140,9 @@ class SampledSeries:
                 slope = 2 * drive * symbol.harmonic[j]
                 if symbol.mode == seeds[j]:
                     slope = slope - 2 * omega
-                leaves[number] = self._leaves[number] ** 2 / squares[symbol.mode - 1] * slope
+                leaves[number] = (
+                    self._leaves[number] ** 2 / squares[symbol.mode - 1] * slope
+                )
             found.append(tangents_in_doubles(self._program, self.values, leaves))
         return found
 
@@ -153,7 +155,9 @@ class SampledSeries:
         given = np.asarray(amplitudes, dtype=np.float64)
         if given.shape not in ((s,), self.frequencies.shape):
             allowed = f"the shape {(s,)} or {self.frequencies.shape}"
-            raise InputError("amplitudes", given.shape, allowed, "pass one row for every point")
+            raise InputError(
+                "amplitudes", given.shape, allowed, "pass one row for every point"
+            )
         A = np.broadcast_to(given, self.frequencies.shape)
         linear = chain.frequencies()[np.array(self.series.seeds) - 1]
         kappa = abs(chain.mu) ** (1 / chain.degree_step)
@@ -171,7 +175,9 @@ class SampledSeries:
             moved = _root_changes(linear, terms, y.sums(corrections))
             by_frequencies.append(moved.sum(axis=0))
         return FrequencyChanges(
-            terms.sum(axis=0), np.stack(by_amplitudes, axis=2), np.stack(by_frequencies, axis=2)
+            terms.sum(axis=0),
+            np.stack(by_amplitudes, axis=2),
+            np.stack(by_frequencies, axis=2),
         )
 
 
@@ -250,7 +256,9 @@ def sample_series(
         advice = "pass a row for every point, a column for every seed"
         raise InputError("frequencies", chosen.shape, f"the shape {shape}", advice)
     if not (np.isfinite(chosen).all() and (chosen > 0).all()):
-        raise InputError("frequencies", chosen, "positive finite numbers", "leave others out")
+        raise InputError(
+            "frequencies", chosen, "positive finite numbers", "leave others out"
+        )
     points = len(chosen)
     _require_room(tables[0].program.size, points)
     couplings = _relative(series, relative, points)
@@ -275,5 +283,7 @@ def _require_room(nodes: int, points: int) -> None:
     needed, free = 3 * 8 * nodes * points, psutil.virtual_memory().available
     if needed > free:
         most = free // (3 * 8 * nodes)
-        allowed = f"at most {most} (of {nodes} nodes each, in {free:.3g} bytes of free memory)"
+        allowed = (
+            f"at most {most} (of {nodes} nodes each, in {free:.3g} bytes of free memory)"
+        )
         raise InputError("frequencies", f"{points} points", allowed, "take them in parts")

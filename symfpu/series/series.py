@@ -15,7 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.formulas import NodeTable, expressions, named_expressions
 from symfpu.algebra.grading import Grading, Ints
-from symfpu.algebra.polynomials import Polynomial, evaluate, powers_of, rescaled, square_root
+from symfpu.algebra.polynomials import (
+    Polynomial,
+    evaluate,
+    powers_of,
+    rescaled,
+    square_root,
+)
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.notebook import latex_lines
@@ -155,7 +161,9 @@ class LindstedtSeries:
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
         smallest = (
-            f", smallest divisor {self.smallest_divisors[0]}" if self.smallest_divisors else ""
+            f", smallest divisor {self.smallest_divisors[0]}"
+            if self.smallest_divisors
+            else ""
         )
         return (
             f"LindstedtSeries({chain}, seeds={','.join(map(str, self.seeds))}, order {self.order}, "
@@ -207,7 +215,10 @@ class LindstedtSeries:
     def _order(self, order: int) -> int:
         if integer(order, "order", 0) > self.order:
             raise InputError(
-                "order", order, f"0..{self.order}, the series' order", "compute a longer series"
+                "order",
+                order,
+                f"0..{self.order}, the series' order",
+                "compute a longer series",
             )
         return int(order)
 
@@ -219,7 +230,10 @@ class LindstedtSeries:
     def _seed(self, q: int) -> int:
         if q not in self.seeds:
             raise InputError(
-                "q", q, f"a seed, one of {self.seeds}", "only seeds have frequency corrections"
+                "q",
+                q,
+                f"a seed, one of {self.seeds}",
+                "only seeds have frequency corrections",
             )
         return self.seeds.index(q)
 
@@ -231,7 +245,9 @@ class LindstedtSeries:
     ) -> NDArray[Any]:
         """values times prod Omega_i^powers unit^units 2^-halves, in numbers or in symbols."""
         linear = [self._linear(q) for q in self.seeds]
-        return self.tables.scaled(values, linear, powers, Exponents(self.unit, units, halves))
+        return self.tables.scaled(
+            values, linear, powers, Exponents(self.unit, units, halves)
+        )
 
     def coefficients(self, q: int, order: int) -> tuple[Ints, NDArray[Any]]:
         """Q_q^(k) without mu^k, a polynomial in z_i = (A_i/2) exp(i theta_i), conj z_i.
@@ -344,7 +360,9 @@ class LindstedtSeries:
             found = certified_tables(tables, chain, self.seeds, chosen, digits_of(digits))
             radii = self._radii(found.radii, none)
             numeric = {"ring": FIXED_POINT.name, "digits": digits, "bits": found.bits}
-            return self._with(chain, found.tables, none, frequencies=chosen, radii=radii, **numeric)
+            return self._with(
+                chain, found.tables, none, frequencies=chosen, radii=radii, **numeric
+            )
         divisors = Float64Divisors(chain, self.seeds, chosen, self.grading.degree)
         space = monomial_space(chain, self.seeds, self.order)
         leaves = leaves_in_doubles(tables[0].program, chain, space, divisors, self.order)
@@ -378,10 +396,14 @@ class LindstedtSeries:
         chain = Chain(self.chain.N, alpha, beta)
         if chain.model != self.chain.model:
             allowed = f"couplings of the same model, {self.chain.model}"
-            raise InputError("alpha, beta", (alpha, beta), allowed, "make a series of that model")
+            raise InputError(
+                "alpha, beta", (alpha, beta), allowed, "make a series of that model"
+            )
         return chain
 
-    def _with(self, chain: Chain, values: list[Any], none: Any, **numeric: Any) -> LindstedtSeries:
+    def _with(
+        self, chain: Chain, values: list[Any], none: Any, **numeric: Any
+    ) -> LindstedtSeries:
         """This series with numbers in its tables, coordinates first."""
         count = self.order + 1
         coordinates, corrections = tuple(values[:count]), (none, *values[count:])
@@ -424,7 +446,9 @@ class LindstedtSeries:
         nodes = table.nodes[:, column]
         if form == "cse":
             names, values = named_expressions(table.program, nodes)
-            return NamedParts(tuple(names), self._term(*self._coefficients_of(q, order, values)))
+            return NamedParts(
+                tuple(names), self._term(*self._coefficients_of(q, order, values))
+            )
         values = expressions(table.program, nodes, expanded=form == "expanded")
         return self._term(*self._coefficients_of(q, order, values))
 
@@ -469,7 +493,9 @@ class LindstedtSeries:
     def _numeric(self) -> None:
         if self.frequencies is None:
             allowed = "a series with chosen frequencies"
-            raise InputError("series", "universal form", allowed, "give frequencies= to lindstedt")
+            raise InputError(
+                "series", "universal form", allowed, "give frequencies= to lindstedt"
+            )
 
     @cached_property
     def _kappa(self) -> Any:
@@ -632,7 +658,9 @@ class LindstedtSeries:
         for i, q in enumerate(self.seeds):
             squares = [self.squared_polynomial(i, k) for k in range(self.order + 1)]
             roots = square_root(squares, self._linear(q))
-            by_seed.append([rescaled(p, slopes, self._sign(k)) for k, p in enumerate(roots)])
+            by_seed.append(
+                [rescaled(p, slopes, self._sign(k)) for k, p in enumerate(roots)]
+            )
         return [list(row) for row in zip(*by_seed, strict=True)]
 
     def _frequency_doubles(self, squares: Floats, top: int) -> tuple[Floats, Floats]:

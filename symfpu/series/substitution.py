@@ -98,7 +98,11 @@ def tables_in_doubles(tables: Tables, leaves: Floats) -> list[Floats]:
 
 
 def sampled_leaves(
-    program: Program, chain: Chain, seeds: Sequence[int], frequencies: Floats, relative: Floats
+    program: Program,
+    chain: Chain,
+    seeds: Sequence[int],
+    frequencies: Floats,
+    relative: Floats,
 ) -> Floats:
     """Values of the symbols at many points, (symbols, points).
 
@@ -106,10 +110,14 @@ def sampled_leaves(
     long doubles. Raises ResonantDivisor for one that is zero in them.
     """
     values = np.empty((len(program.symbols), len(frequencies)))
-    linear = np.array([np.longdouble(str(chain.linear_frequency(q))) for q in range(1, chain.N)])
+    linear = np.array(
+        [np.longdouble(str(chain.linear_frequency(q))) for q in range(1, chain.N)]
+    )
     chosen = frequencies.astype(np.longdouble)
     for order, leaves in multipliers_by_order(program, chain.degree_step).items():
-        own = np.broadcast_to(linear[leaves.modes - 1, None], (len(leaves.modes), len(chosen)))
+        own = np.broadcast_to(
+            linear[leaves.modes - 1, None], (len(leaves.modes), len(chosen))
+        )
         base = own.copy()
         for i, q in enumerate(seeds):
             base[leaves.modes == q] = chosen[:, i]
@@ -130,7 +138,12 @@ def sampled_leaves(
 
 
 def tables_of_residues(
-    tables: Tables, chain: Chain, seeds: Sequence[int], prime: int, root: int, omega: Sequence[int]
+    tables: Tables,
+    chain: Chain,
+    seeds: Sequence[int],
+    prime: int,
+    root: int,
+    omega: Sequence[int],
 ) -> list[Floats]:
     """Tables of nodes modulo a prime, as doubles in -p/2 .. p/2. Raises VanishingResidue."""
     program = tables[0].program
@@ -146,8 +159,12 @@ def tables_of_residues(
                 raise VanishingResidue(prime, order)
             leaves[number] = flint.nmod(own, prime) / flint.nmod(divisor, prime)
     for number, value in couplings_of(program, chain):
-        leaves[number] = flint.nmod(value.numerator, prime) / flint.nmod(value.denominator, prime)
-    return [_centered(table, values_in(program, leaves, table.nodes), prime) for table in tables]
+        leaves[number] = flint.nmod(value.numerator, prime) / flint.nmod(
+            value.denominator, prime
+        )
+    return [
+        _centered(table, values_in(program, leaves, table.nodes), prime) for table in tables
+    ]
 
 
 def _centered(table: NodeTable, values: NDArray[np.object_], prime: int) -> Floats:
@@ -168,7 +185,11 @@ class Certified(NamedTuple):
 
 
 def certified_tables(
-    tables: Tables, chain: Chain, seeds: Sequence[int], omega: Sequence[Fraction], digits: int
+    tables: Tables,
+    chain: Chain,
+    seeds: Sequence[int],
+    omega: Sequence[Fraction],
+    digits: int,
 ) -> Certified:
     """Tables of nodes to so many digits of the largest entry of each, proved by balls.
 
@@ -179,16 +200,25 @@ def certified_tables(
         with flint.ctx.workprec(bits):
             leaves = leaves_in_balls(tables[0].program, chain, seeds, omega, bits)
             balls = [values_in(table.program, leaves, table.nodes) for table in tables]
-        found = [_rounded(table, values, bits) for table, values in zip(tables, balls, strict=True)]
+        found = [
+            _rounded(table, values, bits)
+            for table, values in zip(tables, balls, strict=True)
+        ]
         if all(_precise(table, radii, digits) for table, radii in found):
             whole, radii = map(list, zip(*found, strict=True))
             return Certified(whole, radii, bits)
         bits *= 2
-    raise SymfpuError(f"{digits} digits need more than {MOST_BITS} bits; take a lower order")
+    raise SymfpuError(
+        f"{digits} digits need more than {MOST_BITS} bits; take a lower order"
+    )
 
 
 def leaves_in_balls(
-    program: Program, chain: Chain, seeds: Sequence[int], omega: Sequence[Fraction], bits: int
+    program: Program,
+    chain: Chain,
+    seeds: Sequence[int],
+    omega: Sequence[Fraction],
+    bits: int,
 ) -> list[Any]:
     """Values of the symbols as balls that hold them, at the precision of flint's context."""
     chosen = [flint.arb(flint.fmpq(w.numerator, w.denominator)) for w in omega]
@@ -197,7 +227,9 @@ def leaves_in_balls(
         for number, mode, harmonic in zip(*(part.tolist() for part in found), strict=True):
             own = 2 * flint.arb.sin_pi_fmpq(flint.fmpq(mode, 2 * chain.N))
             base = chosen[seeds.index(mode)] if mode in seeds else own
-            drive = sum((n * w for n, w in zip(harmonic, chosen, strict=True)), flint.arb(0))
+            drive = sum(
+                (n * w for n, w in zip(harmonic, chosen, strict=True)), flint.arb(0)
+            )
             divisor = (base - drive) * (base + drive)
             if divisor.contains(0):
                 exact = vanishes(chain.N, seeds, omega, mode, harmonic)

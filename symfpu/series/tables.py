@@ -21,7 +21,13 @@ from symfpu.algebra.program import ZERO
 from symfpu.algebra.words import IntegerTable
 from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, from_integers
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    MULTIPRECISION,
+    Arithmetic,
+    Numbers,
+    from_integers,
+)
 from symfpu.numbers.typed import integer
 from symfpu.series.expressions import expressions_of
 from symfpu.series.programs import Member, program_entries, program_from, program_members
@@ -151,7 +157,9 @@ class DoubleTables:
     ) -> Array:
         """By logarithms to base two, whose whole part cannot overflow."""
         logarithm = powers @ np.log2(np.array(linear))
-        logarithm = logarithm + exponents.units * np.log2(float(exponents.unit)) - exponents.halves
+        logarithm = (
+            logarithm + exponents.units * np.log2(float(exponents.unit)) - exponents.halves
+        )
         whole = np.floor(logarithm).astype(int)
         with np.errstate(over="ignore", under="ignore"):
             return np.asarray(np.ldexp(values * np.exp2(logarithm - whole), whole))
@@ -164,7 +172,9 @@ class DoubleTables:
         """The values, if doubles hold them."""
         if not np.isfinite(values).all():
             advice = "evaluate at amplitudes (harmonic_terms) instead"
-            raise SymfpuError(f"{what} has coefficients beyond the range of doubles; {advice}")
+            raise SymfpuError(
+                f"{what} has coefficients beyond the range of doubles; {advice}"
+            )
         return values
 
     def symbol(self, value: Any) -> Any:
@@ -217,7 +227,11 @@ class FixedPointTables:
 
     def doubles(self, table: Any) -> Floats:
         """Rounded; the corrections of order 0 are an array without rows."""
-        return table.floats(-self.bits) if isinstance(table, IntegerTable) else np.asarray(table)
+        return (
+            table.floats(-self.bits)
+            if isinstance(table, IntegerTable)
+            else np.asarray(table)
+        )
 
     def nonzero(self, table: Any) -> NDArray[np.bool_]:
         """By their words."""
@@ -227,7 +241,9 @@ class FixedPointTables:
         self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
     ) -> Array:
         """In mpf."""
-        scale = MULTIPRECISION.number(exponents.unit) ** exponents.units / 2**exponents.halves
+        scale = (
+            MULTIPRECISION.number(exponents.unit) ** exponents.units / 2**exponents.halves
+        )
         return multiplied(values, linear, powers, scale)
 
     def simplified(self, values: Array) -> Array:
@@ -246,8 +262,12 @@ class FixedPointTables:
 
     def pack(self, parts: Parts) -> tuple[Parts, Json]:
         """Words of integers, and how many words an entry has."""
-        words = {name: tuple(table.words for table in tables) for name, tables in parts.items()}
-        counts = {name: [int(part.shape[2]) for part in tables] for name, tables in words.items()}
+        words = {
+            name: tuple(table.words for table in tables) for name, tables in parts.items()
+        }
+        counts = {
+            name: [int(part.shape[2]) for part in tables] for name, tables in words.items()
+        }
         return words, {"words": counts}
 
     def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
@@ -311,11 +331,17 @@ class ExpressionTables:
         self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
     ) -> Array:
         """In symbols; their unit is one."""
-        return multiplied(values, linear, powers, se.Integer(1) / se.Integer(2) ** exponents.halves)
+        return multiplied(
+            values, linear, powers, se.Integer(1) / se.Integer(2) ** exponents.halves
+        )
 
     def simplified(self, values: Array) -> Array:
         """Expanded, if the tables are."""
-        return np.array([se.expand(v) for v in values], dtype=object) if self.expanded else values
+        return (
+            np.array([se.expand(v) for v in values], dtype=object)
+            if self.expanded
+            else values
+        )
 
     def finite(self, values: Array, what: str) -> Array:
         """Expressions have no size."""

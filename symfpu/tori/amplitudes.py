@@ -39,8 +39,12 @@ RESIDUAL_POINTS = 128  # angles at which two neighbouring orders are compared, a
 SHIFT_GUARD = 35
 NEWTON_STEPS = 50
 LOST_DIGITS = 5  # of the guard digits of an evaluation, at a root
-ROUNDING = 256 * np.finfo(float).eps  # of the sum of moduli of the series: what a root may leave
-AGREEMENT = 1e-3  # relative change from the neighbouring order above which a root is doubtful
+ROUNDING = (
+    256 * np.finfo(float).eps
+)  # of the sum of moduli of the series: what a root may leave
+AGREEMENT = (
+    1e-3  # relative change from the neighbouring order above which a root is doubtful
+)
 
 
 @dataclass(frozen=True)
@@ -161,7 +165,9 @@ def solve_amplitudes(
     """
     if series.frequencies is None:
         allowed = "a series with chosen frequencies"
-        raise InputError("series", "universal form", allowed, "give frequencies= to lindstedt")
+        raise InputError(
+            "series", "universal form", allowed, "give frequencies= to lindstedt"
+        )
     _refuse_commensurable(series)
     K = order_argument("frequency_order", frequency_order, series)
     coordinate_order = order_argument("order", order, series)
@@ -171,7 +177,9 @@ def solve_amplitudes(
     if not orders:
         first = 2 // series.chain.degree_step
         allowed = f"{first} or more, the order of the first frequency correction"
-        advice = "compute a longer series" if series.order < first else f"take {first} or more"
+        advice = (
+            "compute a longer series" if series.order < first else f"take {first} or more"
+        )
         raise InputError("frequency_order", K, allowed, advice)
     history = amplitude_history(series)
     start = _start(series, orders, history, guess)
@@ -217,7 +225,9 @@ def _refuse_commensurable(series: LindstedtSeries) -> None:
             if other != nu:
                 typed = tuple(map(decimal, series.frequencies))
                 allowed = "incommensurable up to the harmonics of the series"
-                coincide = f"harmonics {nu} and {other} of the seeds {series.seeds} coincide"
+                coincide = (
+                    f"harmonics {nu} and {other} of the seeds {series.seeds} coincide"
+                )
                 change = f"change omega_{series.seeds[-1]} or lower the order"
                 raise InputError("frequencies", typed, allowed, f"{coincide}: {change}")
 
@@ -235,7 +245,9 @@ def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int
     return int(value)
 
 
-def by_seed(name: str, values: Mapping[int, Any] | None, series: LindstedtSeries) -> dict[int, Any]:
+def by_seed(
+    name: str, values: Mapping[int, Any] | None, series: LindstedtSeries
+) -> dict[int, Any]:
     """Numbers by seed in the arithmetic of the series.
 
     InputError naming the argument for other keys or values.
@@ -264,7 +276,9 @@ def _start(
             raise InputError("guess", dict(guess), allowed, "complete it or leave it out")
         if not all(0 < abs(a) < LARGEST_GUESS for a in given.values()):
             allowed = f"amplitudes that are not 0 and below {LARGEST_GUESS:g}"
-            raise InputError("guess", dict(guess), allowed, "take them near the expected ones")
+            raise InputError(
+                "guess", dict(guess), allowed, "take them near the expected ones"
+            )
         return np.array([float(given[q]) ** 2 for q in series.seeds])
     earlier = [k for k in orders if k in history.amplitudes]
     if not earlier:
@@ -395,7 +409,9 @@ def order_doubts(
     """Why the root may be one of the truncated polynomial only."""
     K = orders[-1]
     if len(orders) == 1:
-        return (f"order {K} is the only frequency order: nothing to compare the amplitudes with",)
+        return (
+            f"order {K} is the only frequency order: nothing to compare the amplitudes with",
+        )
     before = orders[-2]
     earlier = history.amplitudes.get(before)
     if earlier is None:
@@ -406,7 +422,9 @@ def order_doubts(
     change = max(changes)
     doubts = []
     if change > AGREEMENT:
-        differ = f"the amplitudes of frequency orders {before} and {K} differ by {change:.1%}"
+        differ = (
+            f"the amplitudes of frequency orders {before} and {K} differ by {change:.1%}"
+        )
         doubts.append(f"{differ}: not a torus to that accuracy")
     doubts += _parting_doubts(orders, history)
     return tuple(doubts)
@@ -423,7 +441,9 @@ def _parting_doubts(orders: list[int], history: AmplitudeHistory) -> list[str]:
     orders_beyond = orders.index(K) - at
     if orders_beyond <= 2 or not differences[before] > 2 * differences[best]:
         return []
-    agree = f"the amplitudes agree best between frequency orders {best} and {orders[at + 1]}"
+    agree = (
+        f"the amplitudes agree best between frequency orders {best} and {orders[at + 1]}"
+    )
     return [f"{agree} and move apart beyond"]
 
 
@@ -439,7 +459,9 @@ def residual_doubts(torus: QTorus) -> tuple[str, ...]:
     doubts = []
     if residual > LARGE_RESIDUAL:
         met = f"{torus.residual():.2g}"
-        doubts.append(f"the equations of motion are met only to {met} of the largest acceleration")
+        doubts.append(
+            f"the equations of motion are met only to {met} of the largest acceleration"
+        )
     before = torus.order - 2
     if before >= 1 and residual > RESIDUAL_FLOOR:
         shorter = replace(torus, order=before)

@@ -192,7 +192,9 @@ def _refuse_strange(found: Found[tuple[Point, QTorus]], member: _Member) -> None
     distance = float(np.max(np.abs(found.x - member.unknowns)))
     size = float(np.max(np.abs(member.unknowns)))
     if distance > LARGEST_DEVIATION * size:
-        raise NotFound(found.x, found.residual, "the torus found is far from the one before")
+        raise NotFound(
+            found.x, found.residual, "the torus found is far from the one before"
+        )
     _, torus = found.value
     points = max(3, round(POINTS ** (1 / len(torus.seeds))))
     left = torus.in_doubles().residual(points)
@@ -253,7 +255,9 @@ def torus_at_energy(
         raise InputError("harmonic", harmonic, allowed, "say which energy is meant")
     total = exact(energy, "energy")
     if not 1 / LARGEST_NUMBER <= total <= LARGEST_NUMBER:
-        raise InputError("energy", energy, "a positive number, 1e-60 to 1e60", "take a small one")
+        raise InputError(
+            "energy", energy, "a positive number, 1e-60 to 1e60", "take a small one"
+        )
     weights = _weights(chain, modes, amplitude_ratio, energy_ratio)
     search = Frequencies(chain, modes, plan.frequency_order)
     by_amplitude = amplitude_ratio is not None
@@ -275,7 +279,9 @@ def _weights(
     """Weights of A^2 or of the mode energies, of sum 1."""
     if amplitude_ratio is not None and energy_ratio is not None:
         allowed = "at most one of amplitude_ratio and energy_ratio"
-        raise InputError("energy_ratio", dict(energy_ratio), allowed, "leave one of them out")
+        raise InputError(
+            "energy_ratio", dict(energy_ratio), allowed, "leave one of them out"
+        )
     by_amplitude = amplitude_ratio is not None
     name = "amplitude_ratio" if by_amplitude else "energy_ratio"
     given = amplitude_ratio if by_amplitude else energy_ratio

@@ -58,7 +58,11 @@ Equations = Callable[[Numbers], tuple[Numbers, float, Value]]
 
 
 def solve(
-    equations: Equations[Value], start: Numbers, inverse: Numbers, least: float, enough: float
+    equations: Equations[Value],
+    start: Numbers,
+    inverse: Numbers,
+    least: float,
+    enough: float,
 ) -> Found[Value]:
     """The x with equations(x) = 0 near a start, with the given matrix or one from differences.
 
@@ -131,7 +135,9 @@ def _iterated(
     raise NotFound(best.x, best.residual, "the iteration does not converge")
 
 
-def walk(start: State, reach: Callable[[State, float], State]) -> tuple[State, NotFound | None]:
+def walk(
+    start: State, reach: Callable[[State, float], State]
+) -> tuple[State, NotFound | None]:
     """Follow a family to the end of a way: the last state, and why it is not the end, if it is not.
 
     reach : the last state and the part of the way to go to, up to 1; it raises NotFound where the

@@ -20,7 +20,13 @@ import numpy as np
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, SymfpuError, UndeterminedAmplitudes
-from symfpu.numbers.arithmetic import DOUBLES, GUARD_DIGITS, MULTIPRECISION, Arithmetic, Numbers
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    GUARD_DIGITS,
+    MULTIPRECISION,
+    Arithmetic,
+    Numbers,
+)
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
@@ -76,7 +82,11 @@ class NoSelfConsistentFrequencies(SymfpuError):
         asked = _listed("A", self.amplitudes)
         last = _listed("A", self.reached)
         omega = _listed("omega", self.frequencies)
-        left = "" if np.isnan(self.residual) else f" and leaves {self.residual:.2g} of the shifts"
+        left = (
+            ""
+            if np.isnan(self.residual)
+            else f" and leaves {self.residual:.2g} of the shifts"
+        )
         where = f"no frequencies for {asked} at frequency order {self.frequency_order}"
         end = f"the last iterate is {omega}{left}"
         way = f"solutions were followed from rest to {last}"
@@ -117,7 +127,11 @@ class Frequencies:
     """
 
     def __init__(
-        self, chain: Chain, seeds: tuple[int, ...], frequency_order: int, digits: int | None = None
+        self,
+        chain: Chain,
+        seeds: tuple[int, ...],
+        frequency_order: int,
+        digits: int | None = None,
     ) -> None:
         self.chain = chain
         self.seeds = seeds
@@ -174,7 +188,9 @@ class Frequencies:
         size = max(expected_size, found_size)
         distance = float(np.max(np.abs(found.x - guess)))
         if distance > LARGEST_DEVIATION * size:
-            raise NotFound(found.x, found.residual, "the solution found is far from its prediction")
+            raise NotFound(
+                found.x, found.residual, "the solution found is far from its prediction"
+            )
         series, slopes = found.value
         return Point(squares, found.x, slopes, found.inverse, series)
 
@@ -192,7 +208,10 @@ class Frequencies:
         The size is relative to the terms; the slopes are by A^2.
         """
         series = self._series_at(y)
-        with np.errstate(over="ignore", invalid="ignore"), self.numbers.context(self.digits):
+        with (
+            np.errstate(over="ignore", invalid="ignore"),
+            self.numbers.context(self.digits),
+        ):
             terms, slopes = series.frequency_terms(squares, self.frequency_order)
             linear = self.chain.frequencies(self.numbers)[self.modes]
             corrections = terms[1:]
@@ -230,7 +249,9 @@ class Frequencies:
                 values.append(Fraction(int(whole), 10**places))
         return tuple(values)
 
-    def polished(self, point: Point, squares: Numbers, digits: int) -> tuple[Frequencies, Point]:
+    def polished(
+        self, point: Point, squares: Numbers, digits: int
+    ) -> tuple[Frequencies, Point]:
         """The same solution with so many digits; squares as mpf."""
         search = Frequencies(self.chain, self.seeds, self.frequency_order, digits)
         with search.numbers.context(digits):
@@ -347,7 +368,9 @@ def torus_at_amplitudes(
     point = search.at(squares)
     if digits is not None:
         with MULTIPRECISION.context(digits):
-            exact_squares = np.array([MULTIPRECISION.number(a) ** 2 for a in numbers.values()])
+            exact_squares = np.array(
+                [MULTIPRECISION.number(a) ** 2 for a in numbers.values()]
+            )
             search, point = search.polished(point, exact_squares, digits)
     torus = assembled(search, point, plan, numbers)
     return doubted(torus)
@@ -371,7 +394,9 @@ def positive_by_seed(
     return numbers
 
 
-def refuse_tiny(search: Frequencies, squares: Numbers, argument: str, typed: object) -> None:
+def refuse_tiny(
+    search: Frequencies, squares: Numbers, argument: str, typed: object
+) -> None:
     """InputError where the lowest corrections are too small for exact frequencies to show them."""
     lowest = search.rest.slopes @ squares
     shift = float(np.max(np.abs(lowest)))
@@ -391,7 +416,9 @@ def assembled(
     series = point.series
     if series is None or series.order != plan.order:
         frequencies = search.exact(point.shifts)
-        series = lindstedt(search.chain, search.seeds, frequencies, plan.order, digits=digits)
+        series = lindstedt(
+            search.chain, search.seeds, frequencies, plan.order, digits=digits
+        )
     with search.numbers.context(digits):
         terms, _ = series.frequency_terms(point.squares, plan.frequency_order)
         left = terms[1:].sum(axis=0) - shifts(series)

@@ -18,7 +18,13 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, with_digits
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    MULTIPRECISION,
+    Arithmetic,
+    Numbers,
+    with_digits,
+)
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -153,7 +159,10 @@ class QuasiPeriodic(Parts):
         """
         if np.ndim(t):
             raise InputError(
-                "t", t, "one finite number", "take positions(t) and momenta(t) for many times"
+                "t",
+                t,
+                "one finite number",
+                "take positions(t) and momenta(t) for many times",
             )
         Q, P = self.positions(t), self.momenta(t)
         return Q.astype(float), P.astype(float)
@@ -264,7 +273,9 @@ class QuasiPeriodic(Parts):
 
     def _finite_average(self, T: float) -> Floats:
         if not isinstance(T, Real) or not np.isfinite(float(T)) or T <= 0:
-            raise InputError("T", T, "a positive finite time, or None for infinite", "pass T > 0")
+            raise InputError(
+                "T", T, "a positive finite time, or None for infinite", "pass T > 0"
+            )
         linear = self.chain.frequencies()
         rates, cosines = self._rates.astype(float), self.cosines.astype(float)
         psi = self.harmonics @ np.array([float(self.phases[q]) for q in self.seeds])

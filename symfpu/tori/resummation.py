@@ -109,7 +109,9 @@ def _epsilon(terms: Numbers) -> tuple[Numbers, Floats]:
 
 
 def pade_frequencies(
-    series: LindstedtSeries, amplitudes: Mapping[int, Any], frequency_order: int | None = None
+    series: LindstedtSeries,
+    amplitudes: Mapping[int, Any],
+    frequency_order: int | None = None,
 ) -> PadeSum:
     """Resummed frequencies omega_q at these amplitudes, of all terms up to frequency_order.
 
@@ -191,7 +193,9 @@ def _checked(
     """
     if series.frequencies is None:
         allowed = "a series with chosen frequencies"
-        raise InputError("series", "universal form", allowed, "give frequencies= to lindstedt")
+        raise InputError(
+            "series", "universal form", allowed, "give frequencies= to lindstedt"
+        )
     top = series.order
     if frequency_order is not None:
         top = integer(frequency_order, "frequency_order", 1)
@@ -199,7 +203,9 @@ def _checked(
     if not orders or top > series.order:
         first = 2 // series.chain.degree_step
         allowed = f"{first}..{series.order}, orders with a frequency correction"
-        raise InputError("frequency_order", top, allowed, "take another or compute a longer series")
+        raise InputError(
+            "frequency_order", top, allowed, "take another or compute a longer series"
+        )
     return series, orders
 
 
@@ -288,7 +294,9 @@ def resum_by_order(torus: QTorus, orders: Iterable[int]) -> Iterator[ResummedTor
     for order in orders:
         with context(digits):
             cosines, disagreement = _resummed(table[: order + 1], torus)
-        yield ResummedTorus(*keep, cosines, torus.phases, torus.digits, disagreement=disagreement)
+        yield ResummedTorus(
+            *keep, cosines, torus.phases, torus.digits, disagreement=disagreement
+        )
 
 
 def _terms_by_order(torus: QTorus) -> Numbers:

@@ -16,7 +16,13 @@ from typing import Any
 import flint
 import mpmath
 
-from symfpu.algebra.polynomials import Polynomial, evaluate, powers_of, rescaled, square_root
+from symfpu.algebra.polynomials import (
+    Polynomial,
+    evaluate,
+    powers_of,
+    rescaled,
+    square_root,
+)
 from symfpu.chain.chain import Chain
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.torus import RootCertificate
@@ -58,7 +64,9 @@ def certify_root(
             step_bound = step[i, 0].abs_upper()
             allowed = radius.abs_lower()
             if not step_bound < allowed:
-                bounds = f"bounded by {float(step_bound):.3g}, not below {float(allowed):.3g}"
+                bounds = (
+                    f"bounded by {float(step_bound):.3g}, not below {float(allowed):.3g}"
+                )
                 reason = f"seed {q}: the Newton step of A^2 is only {bounds}"
                 return RootCertificate(False, reached, reason)
     return RootCertificate(True, reached)

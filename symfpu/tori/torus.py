@@ -83,7 +83,9 @@ class QTorus(QuasiPeriodic):
     def __repr__(self) -> str:
         places = self.digits or 12
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        amplitudes = ", ".join(f"A_{q}={text(a, places)}" for q, a in self.amplitudes.items())
+        amplitudes = ", ".join(
+            f"A_{q}={text(a, places)}" for q, a in self.amplitudes.items()
+        )
         orders = f"frequency order {self.frequency_order}, order {self.order}"
         quality = f"H={float(self.energy()):.10g}, residual {self.residual():.2g}"
         doubts = "".join(f"; {warning}" for warning in self.warnings)
@@ -131,7 +133,9 @@ class QTorus(QuasiPeriodic):
         with self._context():
             orders = range(self.order + 1)
             parts = [self.series.harmonic_terms(amplitudes, k) for k in orders]
-            keys = np.concatenate([self.series.grading.harmonic_keys(nu) for nu, _ in parts])
+            keys = np.concatenate(
+                [self.series.grading.harmonic_keys(nu) for nu, _ in parts]
+            )
             _, first, index = np.unique(keys, return_index=True, return_inverse=True)
             values = self.numbers.zeros((len(first), self.chain.N - 1))
             at = 0
@@ -163,7 +167,8 @@ def require_series_torus(torus: object, argument: str = "torus") -> QTorus:
     """A torus that was solved from a series; raises InputError for any other solution."""
     if isinstance(torus, QTorus):
         return torus
-    advice = (
-        "pass what solve_amplitudes gave; a solution without a series is judged by its residual()"
+    judge = "a solution without a series is judged by its residual()"
+    advice = f"pass what solve_amplitudes gave; {judge}"
+    raise InputError(
+        argument, type(torus).__name__, "a QTorus, which has its series", advice
     )
-    raise InputError(argument, type(torus).__name__, "a QTorus, which has its series", advice)

@@ -44,9 +44,8 @@ GRID_POINTS, MOST_POINTS = 512, 1024
 FALLING_BUT_UNSETTLED = (
     "the residual still falls, but the root has not settled: more orders are needed"
 )
-UNSETTLED = (
-    "the root does not settle with the frequency order: it is one of the truncated polynomial only"
-)
+TRUNCATED_ROOT = "it is one of the truncated polynomial only"
+UNSETTLED = f"the root does not settle with the frequency order: {TRUNCATED_ROOT}"
 STILL_FALLING = "the residual still falls: more orders would tell whether it goes on"
 
 
@@ -403,7 +402,9 @@ def _growth(terms: list[LargestTerm], step: int) -> float:
     return _ratio(orders, sizes)
 
 
-def _ratio(orders: Sequence[int] | NDArray[np.int64], sizes: Sequence[float] | Floats) -> float:
+def _ratio(
+    orders: Sequence[int] | NDArray[np.int64], sizes: Sequence[float] | Floats
+) -> float:
     """Factor an order of the geometric series nearest to these sizes, by least squares of logs."""
     slope = np.polyfit(orders, np.log(sizes), 1)[0]
     return float(np.exp(slope))
@@ -485,7 +486,11 @@ def _word(evidence: Assessment, step: int, floor: float) -> tuple[str, tuple[str
     falling = evidence.best_order > evidence.order - step
     shrinking = falling and evidence.growth < 1
     if uncertainty > AGREEMENT:
-        return ("undecided", (FALLING_BUT_UNSETTLED,)) if falling else ("not a torus", (UNSETTLED,))
+        return (
+            ("undecided", (FALLING_BUT_UNSETTLED,))
+            if falling
+            else ("not a torus", (UNSETTLED,))
+        )
     if least > LARGE_RESIDUAL:
         return "not a torus", ("no truncation meets the equations of motion",)
     if least < floor or (shrinking and least < SMALL_RESIDUAL):

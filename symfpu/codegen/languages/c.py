@@ -36,7 +36,12 @@ TILE = 4  # modes of a register tile
 LARGEST_PRODUCT = 4  # highest power written as a product
 EXACT_INTEGERS = 2**53  # integers below are exact in doubles
 INT = 2**31
-INTEGERS = {"signed char": 7, "short": 15, "int": 31, "long long": 63}  # bits besides the sign
+INTEGERS = {
+    "signed char": 7,
+    "short": 15,
+    "int": 31,
+    "long long": 63,
+}  # bits besides the sign
 REPLACEMENTS = {"*/": "* /", "/*": "/ *", "??": "? ?"}  # in comments
 
 

@@ -41,10 +41,14 @@ LINES = 200  # of a DATA statement; the standard allows 255 continuations
 TERMS = 100  # of a sum in one statement
 TIMES = 64  # evaluated together
 TILE = 256  # harmonics of one matrix product: cosines and sines of 64 times are 256 kB
-WORD = 24  # bits of the leading parts of omega / 2 pi: times halves of a time they are exact
+WORD = (
+    24  # bits of the leading parts of omega / 2 pi: times halves of a time they are exact
+)
 INTEGERS = {"byte": 7, "short": 15, "long": 31}  # bits besides the sign
 EXACT_INTEGERS = 2**53  # integers below are doubles
-BREAKS = re.compile(r"(?<=[ (])|(?<=[^*]\*)(?!\*)|(?<=/)")  # after blank, bracket, star, slash
+BREAKS = re.compile(
+    r"(?<=[ (])|(?<=[^*]\*)(?!\*)|(?<=/)"
+)  # after blank, bracket, star, slash
 PLACEHOLDER = "\N{WHITE SQUARE}"  # stands for the module's name, and occurs nowhere else
 REPLACEMENTS = {"\\": "/", "*/": "* /", "/*": "/ *"}  # in comments
 TABLES = {"default_phases"}
@@ -212,7 +216,9 @@ class Modules(Language):
         own = _identifiers(code) | TABLES
         legal = re.fullmatch(r"[a-z][a-z0-9_]{0,49}", name.lower(), re.ASCII)
         if not legal or name.lower() in own:
-            allowed = "a file name that is a Fortran identifier the module does not use itself"
+            allowed = (
+                "a file name that is a Fortran identifier the module does not use itself"
+            )
             raise InputError("path", name, allowed, "rename the file")
         return code.replace(PLACEHOLDER, name)
 
@@ -321,5 +327,7 @@ FORTRAN = Modules(
     },
     torus_words=_torus,
     series_words=_series,
-    reserved=frozenset({"program", "module", "end", "subroutine", "function", "real", "integer"}),
+    reserved=frozenset(
+        {"program", "module", "end", "subroutine", "function", "real", "integer"}
+    ),
 )
