@@ -22,6 +22,7 @@ from symfpu.series.frequency_expansion import frequency_expansion as frequency_e
 from symfpu.series.expandable import ExpandableTerm as ExpandableTerm
 from symfpu.series.expandable import expandable_term as expandable_term
 from symfpu.series.lindstedt import lindstedt as lindstedt
+from symfpu.series.sample import EnergyChanges as EnergyChanges
 from symfpu.series.sample import FrequencyChanges as FrequencyChanges
 from symfpu.series.sample import SampledSeries as SampledSeries
 from symfpu.series.sample import sample_series as sample_series

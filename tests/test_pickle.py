@@ -187,6 +187,7 @@ RESULTS = {
     **{f"LindstedtSeries, {kind}": (partial(series_of, kind), repr) for kind in SERIES},
     "LeadingTerm": (lambda _: leading_terms(PAIR, (1, 2), 3)[5], lambda x: x.expression()),
     "SampledSeries": (lambda _: sampled(), lambda x: (x.coordinates, x.derivatives_by_frequency(1)[1])),
+    "EnergyChanges": (lambda _: sampled().energies_at([0.1]), lambda x: x.by_frequencies),
     "FrequencyChanges": (lambda _: sampled().frequencies_at([0.1]), lambda x: x.by_frequencies),
     "NamedParts": (lambda _: lindstedt(PAIR, (1,), order=4).term(5, 4, form="cse"), lambda x: str(x.whole())),
     "ExpandableTerm": (lambda _: expandable_term(lindstedt(PAIR, (1,), order=2), 3, 2, ("0.39",)), lambda x: x.html()),

@@ -52,6 +52,30 @@ class FrequencyChanges:
         return f"FrequencyChanges({len(self.omega)} points, omega of the first {first})"
 
 
+@dataclass(frozen=True)
+class EnergyChanges:
+    """Average mode energies of the tori with given amplitudes, and derivatives, at P points.
+
+    Made by `SampledSeries`; dimensionless. Ours.
+
+    energies : infinite-time averages of E_q (Eq. harmonicene), (P, N-1). by_amplitudes :
+        d E_q / d A_j, (P, N-1, s). by_frequencies : d E_q / d omega_j, (P, N-1, s).
+
+    >>> from symfpu import Chain, lindstedt, sample_series
+    >>> series = lindstedt(Chain(N=8, beta=1), (1,), order=1)
+    >>> sample_series(series, [[0.4], [0.41]]).energies_at([0.1])
+    EnergyChanges(2 points, sum of the first 0.00078060...)
+    """
+
+    energies: Floats
+    by_amplitudes: Floats
+    by_frequencies: Floats
+
+    def __repr__(self) -> str:
+        total = self.energies[0].sum()
+        return f"EnergyChanges({len(self.energies)} points, sum of the first {total:.12g})"
+
+
 @dataclass(frozen=True, eq=False)
 class SampledSeries:
     """A universal series at P points: tables of numbers with the point as last axis.
@@ -152,13 +176,7 @@ class SampledSeries:
         amplitudes : (s,), or (P, s), in the order of the seeds. Raises InputError.
         """
         chain, s = self.series.chain, len(self.series.seeds)
-        given = np.asarray(amplitudes, dtype=np.float64)
-        if given.shape not in ((s,), self.frequencies.shape):
-            allowed = f"the shape {(s,)} or {self.frequencies.shape}"
-            raise InputError(
-                "amplitudes", given.shape, allowed, "pass one row for every point"
-            )
-        A = np.broadcast_to(given, self.frequencies.shape)
+        A = self._amplitudes(amplitudes)
         linear = chain.frequencies()[np.array(self.series.seeds) - 1]
         kappa = abs(chain.mu) ** (1 / chain.degree_step)
         slope = (kappa * linear / 2) ** 2
@@ -179,6 +197,96 @@ class SampledSeries:
             np.stack(by_amplitudes, axis=2),
             np.stack(by_frequencies, axis=2),
         )
+
+    def energies_at(self, amplitudes: ArrayLike) -> EnergyChanges:
+        """The average mode energies of these amplitudes (Eq. harmonicene), and derivatives.
+
+        amplitudes : (s,), or (P, s), in the order of the seeds. Raises InputError.
+        """
+        A = self._amplitudes(amplitudes)
+        sums = _Cosines(self.series, A)
+        cosines = sums.of(self.coordinates)
+        energies = self._energies(sums.harmonics, cosines, cosines)
+        by_amplitudes, by_frequencies = [], []
+        for j, values in enumerate(self._by_frequency):
+            moved = sums.of(self.coordinates, by_amplitude=j)
+            by_amplitudes.append(2 * self._energies(sums.harmonics, cosines, moved))
+            changed = sums.of(self._tables(values)[0])
+            rates = 2 * (sums.harmonics @ self.frequencies.T) * sums.harmonics[:, j, None]
+            turned = np.einsum("h,hp,hqp->pq", _averages(sums.harmonics), rates, cosines**2)
+            change = 2 * self._energies(sums.harmonics, cosines, changed)
+            by_frequencies.append(turned + change)
+        return EnergyChanges(
+            energies, np.stack(by_amplitudes, axis=2), np.stack(by_frequencies, axis=2)
+        )
+
+    def _energies(self, harmonics: Ints, left: Floats, right: Floats) -> Floats:
+        """Averages of (P P' + Omega^2 Q Q') / 2 of two motions with these cosines; (P, N-1)."""
+        weights = _averages(harmonics)
+        squares = (harmonics @ self.frequencies.T) ** 2
+        own = self.series.chain.frequencies() ** 2
+        moving = np.einsum("h,hp,hqp,hqp->pq", weights, squares, left, right)
+        resting = np.einsum("h,q,hqp,hqp->pq", weights, own, left, right)
+        return np.asarray(moving + resting)
+
+    def _amplitudes(self, amplitudes: ArrayLike) -> Floats:
+        """One row for every point; InputError for other shapes."""
+        given, s = np.asarray(amplitudes, dtype=np.float64), self.frequencies.shape[1]
+        if given.shape not in ((s,), self.frequencies.shape):
+            allowed = f"the shape {(s,)} or {self.frequencies.shape}"
+            raise InputError(
+                "amplitudes", given.shape, allowed, "pass one row for every point"
+            )
+        return np.broadcast_to(given, self.frequencies.shape)
+
+
+def _averages(harmonics: Ints) -> Floats:
+    """The averages of half the square of each cosine; (H,)."""
+    return np.asarray(np.where((harmonics != 0).any(axis=1), 0.25, 0.5))
+
+
+class _Cosines:
+    """Sums of tables of coordinates over monomials: cosine coefficients of Q_q, all orders.
+
+    harmonics : those of all orders, (H, s).
+    """
+
+    def __init__(self, series: LindstedtSeries, amplitudes: Floats) -> None:
+        self.series, self.amplitudes = series, amplitudes
+        chain, grading = series.chain, series.grading
+        self.degrees = [series.degree(k) for k in range(series.order + 1)]
+        every = np.concatenate([grading.harmonics(d)[0] for d in self.degrees])
+        _, first = np.unique(grading.harmonic_keys(every), return_index=True)
+        self.harmonics = every[first]
+        self.pairs = np.where((self.harmonics != 0).any(axis=1), 2.0, 1.0)
+        self.kappa = abs(chain.mu) ** (1 / chain.degree_step)
+        linear = chain.frequencies()
+        self.slopes = self.kappa / 2 * linear[np.array(series.seeds) - 1]
+        self.own = linear
+
+    def of(self, tables: Tables, by_amplitude: int | None = None) -> Floats:
+        """Cosines (H, N-1, P), or their derivatives by one amplitude."""
+        keys = self.series.grading.harmonic_keys(self.harmonics)
+        cosines = np.zeros((len(keys), len(self.own), len(self.amplitudes)))
+        for k, (degree, table) in enumerate(zip(self.degrees, tables, strict=True)):
+            nu, index = self.series.grading.harmonics(degree)
+            places = np.searchsorted(keys, self.series.grading.harmonic_keys(nu))[index]
+            sign = -1.0 if self.series.chain.mu < 0 and k % 2 else 1.0
+            monomials = sign * self._monomials(degree, by_amplitude)
+            np.add.at(cosines, places, table * monomials[:, None, :])
+        return cosines * self.pairs[:, None, None] / (self.kappa * self.own[:, None])
+
+    def _monomials(self, degree: int, by_amplitude: int | None) -> Floats:
+        """x^e of the canonical monomials, (canonical, P), or their derivatives."""
+        powers = self.series.grading.powers(degree)
+        x = self.slopes * self.amplitudes
+        if by_amplitude is None:
+            return np.asarray(np.prod(x[None] ** powers[:, None, :], axis=2))
+        j = by_amplitude
+        lowered = powers.copy()
+        lowered[:, j] = np.maximum(powers[:, j] - 1, 0)
+        products = np.prod(x[None] ** lowered[:, None, :], axis=2)
+        return np.asarray(powers[:, j, None] * self.slopes[j] * products)
 
 
 class _Monomials:

@@ -19,6 +19,7 @@ from symfpu.series.residues import residue_series
 from symfpu.series.sample import sample_series
 from symfpu.series.series import ResiduePoint
 from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.quasiperiodic import FourierTorus
 from tests.oracles.cases import DEEP, SHALLOW
 from tests.tolerances import COEFFICIENT, DIFFERENCE_OF_DOUBLES, ROUNDING
 
@@ -209,6 +210,28 @@ def test_frequencies_of_a_sample_are_those_of_the_series(chain, seeds, omega, or
         sampled.frequencies_at([0.1] * 3)
     with pytest.raises(InputError, match="only seeds have chosen frequencies"):
         sampled.derivatives_by_frequency(max(seeds) + 1)
+
+
+@pytest.mark.parametrize(("chain", "seeds", "omega", "order"), SAMPLES, ids=str)
+def test_energies_of_a_sample_are_those_of_the_torus(chain, seeds, omega, order):
+    """Averages of the torus with the same amplitudes and frequencies, and limits of differences."""
+    series, step = lindstedt(chain, seeds, order=order), 1e-6
+    amplitudes = 0.2 + 0.1 * np.arange(len(seeds))
+    found = sample_series(series, [omega]).energies_at(amplitudes)
+    numeric = lindstedt(chain, seeds, [Fraction(float(w)) for w in omega], order)
+    rows = {}
+    for k in range(order + 1):
+        for nu, values in zip(*numeric.harmonic_terms(amplitudes, k), strict=True):
+            rows[tuple(nu.tolist())] = rows.get(tuple(nu.tolist()), 0) + values
+    torus = FourierTorus(chain, seeds, tuple(omega), np.array(list(rows)), np.array(list(rows.values())), dict.fromkeys(seeds, 0.0))
+    expected = torus.average_spectrum()
+    assert np.abs(found.energies[0] - expected).max() <= COEFFICIENT * expected.max()
+    for j in range(len(seeds)):
+        unit = step * np.eye(len(seeds))[j]
+        more, less = (sample_series(series, [omega + sign * unit]).energies_at(amplitudes).energies for sign in (1, -1))
+        assert np.abs(found.by_frequencies[0, :, j] - (more - less)[0] / (2 * step)).max() <= DIFFERENCE_OF_DOUBLES
+        more, less = (sample_series(series, [omega]).energies_at(amplitudes + sign * unit).energies for sign in (1, -1))
+        assert np.abs(found.by_amplitudes[0, :, j] - (more - less)[0] / (2 * step)).max() <= DIFFERENCE_OF_DOUBLES
 
 
 def test_the_coupling_is_a_variable():
