@@ -274,7 +274,10 @@ class _Cosines:
             sign = -1.0 if self.series.chain.mu < 0 and k % 2 else 1.0
             monomials = sign * self._monomials(degree, by_amplitude)
             np.add.at(cosines, places, table * monomials[:, None, :])
-        return cosines * self.pairs[:, None, None] / (self.kappa * self.own[:, None])
+        return np.asarray(
+            cosines * self.pairs[:, None, None] / (self.kappa * self.own[:, None]),
+            dtype=np.float64,
+        )
 
     def _monomials(self, degree: int, by_amplitude: int | None) -> Floats:
         """x^e of the canonical monomials, (canonical, P), or their derivatives."""
