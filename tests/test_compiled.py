@@ -127,6 +127,7 @@ def test_interpreted_products_modulo_a_prime_are_exact():
     assert np.max(np.abs(found)) <= 1.5 * prime
 
 
+@pytest.mark.long
 def test_the_bits_of_an_orbit_do_not_depend_on_what_was_compiled_before(tmp_path):
     """Two modules compile the bond law, each for itself: neither must be given the code of the other."""
     from_scratch = run(ORBIT, NUMBA_CACHE_DIR=str(tmp_path / "one"))

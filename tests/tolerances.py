@@ -479,3 +479,15 @@ ALLOWANCE_ESTIMATE = 0.01
 
 # The growth of terms at order 30, squared, against its limit.
 GROWTH_OF_TERMS = 0.01
+
+# A formula in N typed in doubles beside the one derived: powers of pi, sines and quotients, each rounded once.
+TYPED_LAW = 1e-12
+
+# The law of q-breathers with its first correction, at N = 32 and amplitude 0.01: (pi/N)^4 and the squared amplitude are left.
+SMALL_BREATHER = 5e-3
+
+# Group energies at N = 200 by the leading power of 1/N alone, typed and derived: the same formula, rounded.
+LIMIT_OF_LONG_CHAINS = 1e-9
+
+# A frequency of amplitude 0.2 by its series in the amplitude: the next power is left.
+SMALL_SHIFT_ERROR = 1e-6

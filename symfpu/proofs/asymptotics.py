@@ -25,7 +25,7 @@ import numpy as np
 import symengine as se
 from numpy.typing import NDArray
 
-from symfpu.algebra.formulas import Multiplier
+from symfpu.algebra.formulas import Coupling, Multiplier
 from symfpu.algebra.program_values import ancestors, values_in
 from symfpu.chain.chain import Chain
 from symfpu.chain.length import HighMode, seed_labels
@@ -348,7 +348,8 @@ def _values(series: SeriesForAllN, nodes: NDArray[np.int64], length: int) -> lis
             square = own * own
             leaves.append(square * (square + drive * drive * -1).inverse())
         else:
-            leaves.append(symbol if leaf in needed else None)
+            value = symbol.value if isinstance(symbol, Coupling) else None
+            leaves.append(value if leaf in needed else None)
     found = values_in(program, leaves, nodes)[:, 0].tolist()
     return [v if isinstance(v, Laurent) else Laurent.number(v, length) for v in found]
 

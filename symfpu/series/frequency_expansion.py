@@ -20,7 +20,6 @@ Ours; at lowest order it is `frequency_shift_formula`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from itertools import pairwise, product
 from math import prod
 from typing import Any
@@ -28,7 +27,7 @@ from typing import Any
 import numpy as np
 import symengine as se
 
-from symfpu.algebra.formulas import Multiplier, NodeTable
+from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
 from symfpu.algebra.program_values import ancestors, values_in
 from symfpu.algebra.selection import fold
 from symfpu.chain.chain import Chain
@@ -254,8 +253,8 @@ class _Expanded:
             elif isinstance(symbol, Multiplier):
                 leaves.append(self._multiplier(symbol, roots))
             else:
-                assert isinstance(symbol, Fraction)
-                number = self.one * symbol.numerator / symbol.denominator
+                assert isinstance(symbol, Coupling)
+                number = self.one * symbol.value.numerator / symbol.value.denominator
                 leaves.append(PowerSeries([number, *[0] * (len(roots[0]) - 1)]))
         return values_in(program, leaves, table.nodes)
 

@@ -131,6 +131,7 @@ def test_the_breather_of_figure_9():
     assert periodic_orbit(ALPHA, 1, FIG9, printed.cosines).amplitude == pytest.approx(orbit.amplitude, rel=PERIODIC_ORBIT)
 
 
+@pytest.mark.long
 def test_the_walk_stays_on_the_family():
     """At A = 3 Newton's method from the linear mode falls onto a branch in resonance, mode 17 at harmonic 15, omega = 0.09874."""
     assert float(breather_at_amplitude(ALPHA, 1, 3).frequency) == pytest.approx(0.0999729484, abs=TEN_PLACES)

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 HASHES = """
 import hashlib
 from symfpu.codegen import series_program
@@ -22,6 +24,7 @@ for name, language in LANGUAGES.items():
 """
 
 
+@pytest.mark.long
 def test_same_bytes_whatever_the_order_of_sets():
     root = Path(__file__).parents[2]
     found = []

@@ -138,8 +138,15 @@ def from_octave(name, folder):
 RUNS = {"c": from_c, "fortran": from_fortran, "numpy": from_numpy, "mpmath": from_mpmath, "octave": from_octave}
 
 
-@pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("language", LANGUAGES)
+def pairs():
+    """Every language with every case; the large one takes seconds but in C."""
+    for language in LANGUAGES:
+        for name in CASES:
+            slow = name == "large" and language != "c"
+            yield pytest.param(language, name, marks=[pytest.mark.long] * slow)
+
+
+@pytest.mark.parametrize(("language", "name"), pairs())
 def test_values_and_derivatives_are_those_of_the_series(language, name, tmp_path, request):
     more = [request.getfixturevalue("build")] if language == "fortran" else []
     found = RUNS[language](name, tmp_path, *more)

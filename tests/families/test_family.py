@@ -114,8 +114,11 @@ ENDS = {
 }
 
 
+SLOW_ENDS = ("alpha, far from linear", "appendix-a, near")  # seconds each
+
+
 @pytest.mark.parametrize("harmonic", [False, True])
-@pytest.mark.parametrize("case", ENDS)
+@pytest.mark.parametrize("case", [pytest.param(case, marks=[pytest.mark.long] * (case in SLOW_ENDS)) for case in ENDS])
 def test_both_ends_have_the_energies_asked_for(case, harmonic):
     """The linear estimate is 1.8 and 2.3 times too small in the first two cases."""
     chain, seeds, first, goal, options = ENDS[case]
@@ -132,6 +135,7 @@ def test_both_ends_have_the_energies_asked_for(case, harmonic):
         assert [omega(found.members[k]) for k in (0, -1)] == pytest.approx([float(o.frequency) for o in ends], rel=SAME_ORBIT)
 
 
+@pytest.mark.long
 def test_a_goal_just_below_a_turn_of_the_energy_is_not_passed_by():
     """A step leads over the turn at H = 0.8127149; both members beside it are below the goal, and the family is not."""
     near = family(LOOP, (1,), "0.8127", from_energy="0.02", tolerance=1e-10)
@@ -243,6 +247,7 @@ def test_a_resonance_of_two_frequencies_is_located():
     assert abs(divisor(at)) < RESONANCE_ENERGY * abs(second - first)
 
 
+@pytest.mark.long
 def test_a_resonance_between_the_first_members_is_found():
     later = next(e for e in resonant().events if e.mode == 17)
     found = family(LONG, (1,), "0.043", from_energy="0.0385", members=2)

@@ -89,7 +89,7 @@ def require_above(floor, errors, loose=LOOSE):
     assert (floor[excited] <= loose * errors[excited]).all()
 
 
-@pytest.mark.parametrize("case", BREATHERS)
+@pytest.mark.parametrize("case", [pytest.param(case, marks=[pytest.mark.long] * (case == "alpha, large")) for case in BREATHERS])
 def test_floors_of_breathers_are_above_their_errors(case):
     """Harmonic balance in doubles, and Newton's method on tori, whose residuals are long doubles."""
     require_above(spectrum_floor(orbit(case)), error_energies(orbit(case), precise(case)))
@@ -137,6 +137,7 @@ def test_floors_of_series_in_doubles_are_above_their_errors(case):
     assert coefficient_errors(torus).shape == torus.cosines.shape
 
 
+@pytest.mark.long
 def test_floors_with_digits_are_bounds():
     """They fall with the digits asked for; what is carried beyond these they do not count."""
     chain, seeds, frequencies, order = SERIES["2-torus"]

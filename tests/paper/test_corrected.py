@@ -274,6 +274,7 @@ def test_zeros_at_the_end_of_an_amplitude_are_kept(breather):
     assert "A_1 = 0.25000000," in corrected_line(replace(breather, torus=torus, digits=0))
 
 
+@pytest.mark.long
 def test_data_and_pictures_are_written(two_rows, study, tmp_path):
     figure = figure_of(two_rows, study)
     paths = write_panel_csv(figure, tmp_path)

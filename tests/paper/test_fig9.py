@@ -66,6 +66,7 @@ def test_gain_after_order_50(late, verdict):
     assert "50: 2.0e-03, 100: 2.0e-03, 150:" in claim.ours
 
 
+@pytest.mark.long
 def test_figure_9_with_a_short_series(monkeypatch, tmp_path):
     shorter_figure_9(monkeypatch)
     figure = fig9.figure9(tmp_path, unheard)

@@ -162,6 +162,7 @@ def test_pictures_are_written_as_png_and_pdf(cancellation, breather, tmp_path):
         assert path.stat().st_size > 5000
 
 
+@pytest.mark.long
 def test_reproduce_convergence_writes_page_data_and_pictures(cancellation, breather, monkeypatch, capsys, tmp_path):
     steps = []
     monkeypatch.setattr("symfpu.paper.convergence.cancellation_study", lambda progress: progress("first", NO_FRACTION) or cancellation)

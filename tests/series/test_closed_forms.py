@@ -13,7 +13,7 @@ from symfpu.errors import InputError
 from symfpu.proofs.leading import leading_term
 from symfpu.series.closed_forms import closed_form, collect_terms, same_series, substitute_multipliers
 from symfpu.series.lindstedt import lindstedt
-from tests.tolerances import COEFFICIENT
+from tests.tolerances import COEFFICIENT, TYPED_LAW
 
 N = 11
 CASES = [
@@ -66,7 +66,7 @@ def test_linear_frequencies_leave_nothing_but_N():
     # Eq. omamid in closed form: Omega_1 ((1 - 3/4 Omega_1^2) A_1^2 - Omega_2^2 A_2^2)
     first, second = Chain(20, alpha=1).frequencies()[:2]
     value = float(formula.subs({"N": 20, "A1": 1, "A2": 2}))
-    assert value == pytest.approx(first * (1 - 0.75 * first**2 - 4 * second**2), rel=1e-10)
+    assert value == pytest.approx(first * (1 - 0.75 * first**2 - 4 * second**2), rel=TYPED_LAW)
 
 
 def test_divisors_of_leading_terms_are_those_of_the_paper():

@@ -207,7 +207,10 @@ def close(ours, printed):
         return all(abs(a - mpmath.mpf(right(text))) <= LAST_PLACE for a, text in zip(ours, printed, strict=True))
 
 
-@pytest.mark.parametrize("reference", REFERENCES, ids=["alpha, 2-torus", "beta, breather"])
+@pytest.mark.parametrize(
+    "reference",
+    [pytest.param(REFERENCES[0], id="alpha, 2-torus", marks=pytest.mark.long), pytest.param(REFERENCES[1], id="beta, breather")],
+)
 def test_printed_amplitudes_are_met_to_their_last_digit(reference):
     """All seven strings to all 40 places, but the two misprinted ones, which ours differ from in the 23rd place."""
     series = series_of(reference, 45)
@@ -519,6 +522,7 @@ print(peak() - before, _needed(chain, len(seeds), order, "fixedpoint", digits))
     ],
     ids=lambda c: f"N={c['N']} order {c['order']} digits {c['digits']}",
 )
+@pytest.mark.long
 def test_the_predicted_memory_is_an_upper_bound(case):
     """Peak of a process of its own, less what it had before."""
     frequencies = {16: ("0.19626", "0.39046", "0.581"), 32: ("0.0984",)}[case["N"]]

@@ -12,7 +12,7 @@ from symfpu.chain.frequency_shift import frequency_shift_formula
 from symfpu.errors import InputError
 from symfpu.series.frequency_expansion import frequency_expansion
 from symfpu.tori.frequencies import torus_at_amplitudes
-from tests.tolerances import SLOPE
+from tests.tolerances import SLOPE, SMALL_SHIFT_ERROR
 
 
 def value(chain, amplitudes, q, order):
@@ -40,7 +40,7 @@ def test_error_of_one_seed_falls_with_the_next_power_of_the_amplitude(chain, q, 
     # the next even degree
     degree = chain.degree_step * order
     assert math.log2(errors[0] / errors[1]) > 2 * (degree // 2) + 2 - 4 * SLOPE
-    assert errors[0] < 1e-6
+    assert errors[0] < SMALL_SHIFT_ERROR
 
 
 TORI = [

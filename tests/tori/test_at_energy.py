@@ -60,6 +60,7 @@ def test_equal_mode_energies_are_the_default_and_phases_count():
 
 
 @pytest.mark.parametrize("harmonic", [False, True])
+@pytest.mark.long
 def test_many_digits(harmonic):
     import mpmath
 
