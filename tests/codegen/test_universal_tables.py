@@ -146,7 +146,7 @@ def pairs():
             yield pytest.param(language, name, marks=[pytest.mark.long] * slow)
 
 
-@pytest.mark.parametrize(("language", "name"), pairs())
+@pytest.mark.parametrize(("language", "name"), list(pairs()))
 def test_values_and_derivatives_are_those_of_the_series(language, name, tmp_path, request):
     more = [request.getfixturevalue("build")] if language == "fortran" else []
     found = RUNS[language](name, tmp_path, *more)

@@ -114,7 +114,7 @@ def test_the_stated_case():
         assert (off[known] <= np.sqrt(floor[known]) + RELATIVE_SHIFT * np.sqrt(truth[known])).all()
 
 
-@pytest.mark.parametrize("case", BREATHERS)
+@pytest.mark.parametrize("case", [pytest.param(case, marks=[pytest.mark.long] * (case == "alpha, large")) for case in BREATHERS])
 def test_coefficients_know_their_errors(case):
     breather = orbit(case)
     errors = coefficient_errors(breather)
