@@ -20,7 +20,7 @@ OUT = Path("out")
 
 def test_breather(benchmark, record):
     benchmark.pedantic(periodic_orbit, (CHAIN, 1, OMEGA), rounds=3, iterations=1)
-    record("breather N = 32, seed 1, doubles", note=f"residual {periodic_orbit(CHAIN, 1, OMEGA).residual:.1e}")
+    record("breather N = 32, seed 1, doubles", note=f"residual {periodic_orbit(CHAIN, 1, OMEGA).residual():.1e}")
 
 
 def test_breather_at_a_hundred_digits(benchmark, record):
