@@ -10,10 +10,10 @@ import typer
 from symfpu.bundles.bundle import load
 from symfpu.cli.terminal import FileArgument, optional, path_named, progress_bar
 from symfpu.cli.verbs import app
-from symfpu.codegen.export import LANGUAGES
-from symfpu.codegen.export import export as export_source
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file
+
+LANGUAGES = "c, fortran, numpy, mpmath, octave"  # known to the help without importing them
 
 
 @app.command(epilog="Example: symfpu export torus.symfpu --lang c -o my_torus")
@@ -21,7 +21,7 @@ def export(
     context: typer.Context,
     file: FileArgument,
     language: Annotated[
-        str, typer.Option("--lang", help=f"{', '.join(LANGUAGES)}.", metavar="LANGUAGE")
+        str, typer.Option("--lang", help=f"{LANGUAGES}.", metavar="LANGUAGE")
     ],
     output: Annotated[
         str,
@@ -63,6 +63,9 @@ def export(
 
     It needs nothing of symfpu, and tests itself.
     """
+    # lazy: printers of SymPy take half of the time of symfpu --help
+    from symfpu.codegen.export import export as export_source
+
     target = output_file(path_named("output", output))
     bundle = load(path_named("FILE", file))
     solution = bundle.series if series else bundle.torus

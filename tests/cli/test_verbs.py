@@ -97,3 +97,10 @@ def test_the_package_is_a_program():
         module, installed = python("-m", "symfpu", *words), python("-c", script, *words)
         assert module.returncode == installed.returncode == code
         assert (module.stdout, module.stderr) == (installed.stdout, installed.stderr)
+
+
+def test_the_help_of_export_names_every_language():
+    from symfpu.cli.export import LANGUAGES as named
+    from symfpu.codegen.export import LANGUAGES
+
+    assert named.split(", ") == list(LANGUAGES)
