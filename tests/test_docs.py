@@ -59,7 +59,12 @@ RUNNING = [page for page in PAGES if any(word == "" for _, word, _ in blocks(pag
 LONG = [page for page in PAGES if any(word == "long" for _, word, _ in blocks(page))]
 
 
-@pytest.mark.parametrize("page", RUNNING, ids=lambda page: page.name)
+SLOW_PAGES = ("export.md", "dynamics.md")  # seconds of compilers and orbits
+
+
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, id=page.name, marks=[pytest.mark.long] * (page.name in SLOW_PAGES)) for page in RUNNING]
+)
 def test_page_runs(page, tmp_path, monkeypatch):
     run(page, tmp_path, monkeypatch, {"long", "parsed"})
 

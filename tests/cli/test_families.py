@@ -152,6 +152,7 @@ def test_a_refined_torus_is_exported(capsys, refined, tmp_path):
     assert "series" in refusal(capsys, "export", refined, "--series", "--lang", "numpy", "-o", str(tmp_path / "series.py"))
 
 
+@pytest.mark.long
 def test_family_writes_members_table_and_pictures(capsys, tmp_path):
     code, out, err = run(capsys, *FAMILY, "--multipliers", "-o", str(tmp_path))
     lines = out.splitlines()

@@ -76,6 +76,7 @@ def test_a_scheme_is_chosen_by_name(capsys, kept):
     assert "yoshida4, aba864, blanes_moan6, kahan_li8" in err
 
 
+@pytest.mark.long
 def test_a_folder_gets_the_table_and_the_pictures(capsys, kept, tmp_path):
     out_folder = tmp_path / "out"
     code, out, err = run(capsys, "gali", str(kept), "--time", "1000", "--samples", "64", "-o", str(out_folder))

@@ -41,6 +41,7 @@ def short(monkeypatch):
     shorter_figure_9(monkeypatch)
 
 
+@pytest.mark.long
 def test_reproduce_writes_claims_pictures_and_data(short, capsys, tmp_path):
     code, out, err = run(capsys, "section5", "fig6", "fig3", "-o", str(tmp_path))
     assert (code, err) == (0, "")

@@ -101,7 +101,10 @@ def source(torus, name):
     return FORTRAN.torus(torus_program(torus, name, torus_facts(torus)))
 
 
-@pytest.fixture(scope="module", params=CASES)
+SHORT = tuple(CASES)[:3]  # the compiler takes its time: the others are run by `make long`, and in C by `make test`
+
+
+@pytest.fixture(scope="module", params=[pytest.param(name, marks=[pytest.mark.long] * (name not in SHORT)) for name in CASES])
 def torus(request):
     return made(request.param)
 

@@ -341,6 +341,7 @@ def test_a_change_of_stability_is_located():
     assert ", unstable" in repr(destabilised().members[-1])
 
 
+@pytest.mark.long
 def test_a_family_turns_below_a_barrier():
     """x'' + Omega^2 x + b x^2 = 0 has a saddle at H = Omega^6 / 6 b^2. Up to it A turns, since the orbit rests there ever longer; both,
     and omega, are those of the exact oscillator, whose quadrature resolves 48 harmonics."""

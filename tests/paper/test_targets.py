@@ -154,6 +154,7 @@ def test_a_study_without_a_pole_still_has_a_record(cancellation, breather, asses
     assert record["torus"]["radius_by_poles"] is record["torus"]["radius_by_ratio"] is None
 
 
+@pytest.mark.long
 def test_pictures_are_written_as_png_and_pdf(cancellation, breather, tmp_path):
     paths = draw_panels(convergence_figure(cancellation, breather), tmp_path)
     assert [path.name for path in paths] == [f"{name}.{suffix}" for name in FILES for suffix in ("png", "pdf")]
