@@ -22,12 +22,12 @@ from symfpu.series.frequency_expansion import frequency_expansion as frequency_e
 from symfpu.series.expandable import ExpandableTerm as ExpandableTerm
 from symfpu.series.expandable import expandable_term as expandable_term
 from symfpu.series.lindstedt import lindstedt as lindstedt
+from symfpu.series.named_parts import NamedParts as NamedParts
 from symfpu.series.sample import EnergyChanges as EnergyChanges
 from symfpu.series.sample import FrequencyChanges as FrequencyChanges
 from symfpu.series.sample import SampledSeries as SampledSeries
 from symfpu.series.sample import sample_series as sample_series
 from symfpu.series.series import LindstedtSeries as LindstedtSeries
-from symfpu.series.series import NamedParts as NamedParts
 
 # tori from series
 from symfpu.tori.amplitudes import AmplitudeHistory as AmplitudeHistory

@@ -189,7 +189,7 @@ class Program:
         fresh = fresh[nodes[fresh] == ZERO]
         if len(fresh):
             nodes[fresh] = self._made(
-                hashes[fresh], counts[fresh], terms.at(_ranges(start, fresh))
+                hashes[fresh], counts[fresh], terms.at(ranges(start, fresh))
             )
         return np.asarray(nodes[original])
 
@@ -286,7 +286,7 @@ def _mixed(terms: Terms) -> Residues:
     return mixed
 
 
-def _ranges(start: Ints, chosen: Ints) -> Ints:
+def ranges(start: Ints, chosen: Ints) -> Ints:
     """The places of the terms of the chosen sums, sum after sum."""
     counts = start[chosen + 1] - start[chosen]
     before = np.cumsum(counts) - counts
@@ -297,7 +297,7 @@ def _equal(a: tuple[Ints, Terms, Ints], b: tuple[Ints, Terms, Ints]) -> NDArray[
     """Whether chosen sums of one list have the same terms as those of another, one by one."""
     lengths = [start[chosen + 1] - start[chosen] for start, _, chosen in (a, b)]
     same = lengths[0] == lengths[1]
-    places = [_ranges(start, chosen[same]) for start, _, chosen in (a, b)]
+    places = [ranges(start, chosen[same]) for start, _, chosen in (a, b)]
     differs = np.zeros(len(places[0]), dtype=np.bool_)
     for left, right in zip(a[1], b[1], strict=True):
         differs |= left[places[0]] != right[places[1]]

@@ -51,25 +51,6 @@ def evaluate_doubles(start: Any, left: Any, right: Any, factor: Any, values: Any
 
 
 @compiled(fastmath={"contract"})
-def carry_adjoints(
-    start: Any, left: Any, right: Any, factor: Any, values: Any, adjoints: Any
-) -> None:
-    """Derivatives of one sum by every node, from last to first: reverse differentiation.
-
-    adjoints : (nodes, points), those of the sum's own nodes given; overwritten.
-    """
-    points = values.shape[1]
-    for node in range(start.size - 2, -1, -1):
-        for t in range(start[node], start[node + 1]):
-            weight = factor[t]
-            i, j = left[t], right[t]
-            for p in range(points):
-                carried = weight * adjoints[node, p]
-                adjoints[i, p] += carried * values[j, p]
-                adjoints[j, p] += carried * values[i, p]
-
-
-@compiled(fastmath={"contract"})
 def carry_tangents(
     start: Any, left: Any, right: Any, factor: Any, values: Any, tangents: Any
 ) -> None:

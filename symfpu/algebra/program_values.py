@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.algebra.program import Ints, Program, Terms
+from symfpu.algebra.program import Ints, Program
 
 Floats = NDArray[np.float64]
 
@@ -69,18 +69,11 @@ def terms_of(program: Program, node: int) -> list[tuple[int, int, int]]:
     return list(zip(*columns, strict=True))
 
 
-def gradient_in_doubles(program: Program, values: Floats, weights: Floats) -> Floats:
-    """Derivatives by all symbols of a weighted sum of nodes.
-
-    values : of all nodes, (nodes, points). weights : of the sum, the same shape; overwritten.
-    Returns (symbols, points).
-    """
-    from symfpu.algebra.program_loops import carry_adjoints
-
-    terms = program.terms
-    factor = terms.factor.astype(np.float64)
-    carry_adjoints(program.start, terms.left, terms.right, factor, values, weights)
-    return np.asarray(weights[program.leaves])
+def tabled(values: Floats, nodes: Ints) -> Floats:
+    """Values (nodes, points) at a table of nodes, (..., points); zero where there is no node."""
+    zeros = np.zeros((1, values.shape[1]))  # the last row, which ZERO = -1 points to
+    padded = np.concatenate([values, zeros])
+    return np.asarray(padded[nodes])
 
 
 def tangents_in_doubles(program: Program, values: Floats, leaves: Floats) -> Floats:
@@ -96,12 +89,3 @@ def tangents_in_doubles(program: Program, values: Floats, leaves: Floats) -> Flo
     factor = terms.factor.astype(np.float64)
     carry_tangents(program.start, terms.left, terms.right, factor, values, tangents)
     return tangents
-
-
-def term_slices(program: Program, nodes: Ints) -> Terms:
-    """The terms of some nodes, node after node."""
-    start = program.start
-    counts = start[nodes + 1] - start[nodes]
-    before = np.cumsum(counts) - counts
-    places = np.repeat(start[nodes] - before, counts) + np.arange(int(counts.sum()))
-    return program.terms.at(places)

@@ -17,8 +17,8 @@ import numpy as np
 
 from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
 from symfpu.algebra.grading import Ints
-from symfpu.algebra.program import ONE, Program, Terms
-from symfpu.algebra.program_values import ancestors, term_slices
+from symfpu.algebra.program import ONE, Program, Terms, ranges
+from symfpu.algebra.program_values import ancestors
 from symfpu.chain.chain import Chain
 from symfpu.codegen.series_tables import SeriesTables, row_blocks
 from symfpu.codegen.torus_program import DOUBLE_DIGITS, EXTRA_DIGITS
@@ -176,7 +176,7 @@ class _Numbering:
                 Terms(nothing, nothing, np.array([1])),
                 np.array([0, 1]),
             )
-        found = term_slices(self.program, self.chosen)
+        found = self.program.terms.at(ranges(self.program.start, self.chosen))
         counts = np.diff(self.program.start)[self.chosen]
         starts = np.concatenate([[0], np.cumsum(counts)])
         terms = Terms(self(found.left), self(found.right), found.factor)

@@ -24,7 +24,8 @@ from symfpu.notebook import Meaning, OpenableFormulas
 from symfpu.numbers.typed import Number
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.arguments import frequencies_of
-from symfpu.series.series import LindstedtSeries, NamedParts
+from symfpu.series.named_parts import NamedParts
+from symfpu.series.series import LindstedtSeries
 from symfpu.series.substitution import leaves_in_balls
 
 MOST_OPENINGS = 30_000  # some ten million characters

@@ -19,6 +19,7 @@ Ours; at lowest order it is `frequency_shift_formula`.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from itertools import pairwise, product
 from math import prod
@@ -175,7 +176,7 @@ class _Element:
         return self._with(number * self.a / norm, -number * self.b / norm)
 
 
-class _Expanded:
+class _Expanded(ABC):
     """The recursion's nodes with divisors expanded in mu, over a field that subclasses choose.
 
     series : universal. names : of its seeds in the formula. one : of the field. linear : Omega_q
@@ -188,13 +189,13 @@ class _Expanded:
     def __init__(self, series: LindstedtSeries, names: Sequence[int]) -> None:
         self.series, self.seeds, self.names = series, series.seeds, names
 
+    @abstractmethod
     def linear_square(self, q: int) -> Any:
         """Omega_q^2 of any mode."""
-        raise NotImplementedError
 
+    @abstractmethod
     def expression(self, value: Any) -> Any:
         """An element of the field as an expression."""
-        raise NotImplementedError
 
     def _frequencies(self) -> dict[tuple[int, ...], list[PowerSeries]]:
         """omega_i / Omega_i as series in mu, at A_1^2 = 1 and several A_2^2."""

@@ -11,6 +11,7 @@ from symfpu.algebra.program_ring import predicted_bytes as program_bytes
 from symfpu.algebra.residue import PRIME_BITS
 from symfpu.chain.chain import Chain
 from symfpu.errors import TooLarge
+from symfpu.series.rings import RINGS
 from symfpu.series.tables import LOG10_2
 
 # digits, an order and at most, for the prediction of memory only
@@ -18,7 +19,6 @@ EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60
 # series in doubles that the stages before and after a fixed-point series hold, with their radii
 OTHER_STAGES = 6
 CONSTANT_BYTES = 2**24
-PROGRAMS = ("symbolic", "nested")
 
 
 def check_size(
@@ -43,7 +43,7 @@ def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int
         bits_of_products = (digits + guard) / LOG10_2 * 2
         primes = math.ceil(bits_of_products / (PRIME_BITS - 2))
         return CONSTANT_BYTES + size * (primes + OTHER_STAGES)
-    if ring in PROGRAMS:
+    if RINGS[ring].program:
         step, cubic = chain.degree_step, chain.beta != 0
         return size + program_bytes(chain.N, seeds, degree, step, cubic=cubic)
     return size

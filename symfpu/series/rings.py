@@ -30,7 +30,7 @@ class RingKind:
     tables : of its coefficients, from digits and bits. ring, divisors : how they are made; None
     where that takes more than a name: residues want a point, fixed-point numbers their precision.
     numeric, exact_point : whether a series has frequencies, or a point where its residues were
-        taken.
+        taken. program : whether it keeps coefficients as a program.
     """
 
     name: str
@@ -39,6 +39,7 @@ class RingKind:
     divisors: Callable[[Chain, CosineModes, Frequencies], Divisors] | None = None
     numeric: bool = False
     exact_point: bool = False
+    program: bool = False
 
 
 def _double_divisors(
@@ -66,12 +67,14 @@ SYMBOLIC = RingKind(
     partial(_expression_tables, expanded=True),
     partial(ProgramRing, expanded=True),
     _universal_divisors,
+    program=True,
 )
 NESTED = RingKind(
     "nested",
     partial(_expression_tables, expanded=False),
     partial(ProgramRing, expanded=False),
     _universal_divisors,
+    program=True,
 )
 FIXED_POINT = RingKind("fixedpoint", FixedPointTables, numeric=True)
 RESIDUE = RingKind("residue", _double_tables, exact_point=True)

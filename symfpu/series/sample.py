@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.formulas import Coupling, Multiplier
 from symfpu.algebra.program import Program
-from symfpu.algebra.program_values import tangents_in_doubles, values_in_doubles
+from symfpu.algebra.program_values import tabled, tangents_in_doubles, values_in_doubles
 from symfpu.errors import InputError
 from symfpu.series.series import LindstedtSeries
 from symfpu.series.substitution import sampled_leaves
@@ -114,9 +114,7 @@ class SampledSeries:
         return self._tables(self.values)[1]
 
     def _tables(self, values: Floats) -> tuple[Tables, Tables]:
-        zero = np.zeros((1, values.shape[1]))  # the last row, which ZERO = -1 points to
-        padded = np.concatenate([values, zero])
-        found = [padded[table.nodes] for table in self.series.node_tables()]
+        found = [tabled(values, table.nodes) for table in self.series.node_tables()]
         count = self.series.order + 1
         return tuple(found[:count]), tuple(found[count:])
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.program import Program
-from symfpu.algebra.program_values import values_in, values_in_doubles
+from symfpu.algebra.program_values import tabled, values_in, values_in_doubles
 from symfpu.algebra.residue import cosine_table
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.words import IntegerTable
@@ -92,9 +92,7 @@ def tables_in_doubles(tables: Tables, leaves: Floats) -> list[Floats]:
     """Tables of nodes in doubles; leaves : (symbols, points) to (..., points)."""
     program = tables[0].program
     values = values_in_doubles(program, leaves)
-    zeros = np.zeros((1, leaves.shape[1]))  # the last row, which ZERO = -1 points to
-    padded = np.concatenate([values, zeros])
-    return [padded[table.nodes] for table in tables]
+    return [tabled(values, table.nodes) for table in tables]
 
 
 def sampled_leaves(
