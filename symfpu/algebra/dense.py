@@ -44,17 +44,17 @@ def available_cores() -> int:
     )
 
 
-def predicted_bytes(N: int, seeds: int, top: int, *, cubic: bool) -> int:
+def predicted_bytes(N: int, seeds: int, top: int, *, powers: int) -> int:
     """Upper bound of the memory of a series up to degree `top`, temporaries included.
 
-    Closed form, nothing is allocated.
+    powers : how many functions on the bonds it keeps. Closed form, nothing is allocated.
     """
     half = (N + 1) // 2
     width = lane_width(half)
     lanes = -(-half // width) * width
     rows = comb(top + 2 * seeds, 2 * seeds)
     canonical = (rows + comb(top // 2 + seeds, seeds)) // 2
-    on_bonds = lanes * (2 if cubic else 1)
+    on_bonds = lanes * powers
     of_seeds = 16 * -(-seeds // 8) + 4 * seeds + 4
     stored = rows * 8 * (on_bonds + of_seeds)
     modes = canonical * (N - 1) * 8
@@ -75,6 +75,7 @@ class DenseRing(ABC, Generic[Bonds]):
     """
 
     modulus: float | None = None
+    grows = False
 
     def __init__(
         self, space: CosineModes, *, workers: int | None = None, points: int | None = None
@@ -103,6 +104,7 @@ class DenseRing(ABC, Generic[Bonds]):
         self._active = np.zeros(rows, dtype=np.bool_)
         self._degrees: list[int] = []
         self._power_degrees: dict[int, list[int]] = {}
+        self._completed: dict[int, set[int]] = {}
         self._correction_degrees: list[int] = []
         self._modes: list[Floats] = []
         self._diagonal: list[Floats] = []
@@ -361,6 +363,8 @@ class DenseRing(ABC, Generic[Bonds]):
 class ValuesRing(DenseRing[Floats]):
     """Powers on the bonds as their values, as the kernel leaves them: (slices, rows, lanes)."""
 
+    grows = True
+
     def power(self, power: int, degree: int) -> Floats:
         if power == 2:
             splits = self._square_splits(degree)
@@ -374,6 +378,50 @@ class ValuesRing(DenseRing[Floats]):
     def _put_power(self, power: int, degree: int) -> None:
         values = self.power(power, degree)
         self._store_power(power, degree, self._canonical_points(degree, values))
+
+    @abstractmethod
+    def number(self, value: Fraction) -> float:
+        """As of `GrowingRing`."""
+
+    def coupling(self, power: int, value: Fraction) -> float:
+        return self.number(value)
+
+    def growth(self, number: int, slope: Fraction, rate: Fraction, degree: int) -> Floats:
+        """As of `GrowingRing`; g is kept among the powers, under a name of its own."""
+        name = -1 - number
+        self._complete(name, rate)
+        splits = [(d, degree - d) for d in self._degrees if degree - d in self._degrees]
+        weighted = self._weighted_bonds(slope, rate, degree)
+        out = self._product(weighted, self._powers[name], degree, splits)
+        divided = self.number(Fraction(1, degree)) * np.ldexp(2.0, -self.exponent)
+        out = self._times(out, float(divided))
+        self._store_power(name, degree, self._canonical_points(degree, out))
+        return out
+
+    def _complete(self, name: int, rate: Fraction) -> None:
+        """Add 2 rate c_d to what lower degrees gave to g_d, where it is not there yet."""
+        if name not in self._completed:
+            self._completed[name] = set()
+            self._powers[name] = np.zeros_like(self._bonds)
+            self._power_degrees[name] = list(self._degrees)
+        factor = self.number(2 * rate)
+        for degree in self._degrees:
+            if degree not in self._completed[name]:
+                rows = self._rows(degree)
+                own = self._times(self._bonds[:, rows].copy(), factor)
+                self._powers[name][:, rows] = self._reduced(
+                    self._powers[name][:, rows] + own
+                )
+                self._completed[name].add(degree)
+
+    def _weighted_bonds(self, slope: Fraction, rate: Fraction, degree: int) -> Floats:
+        """(rate j - slope (degree - j)) c_j, all lower degrees j."""
+        first_row = self.grading.first_row
+        weights = [self.number(rate * j - slope * (degree - j)) for j in range(degree)]
+        counts = np.diff(first_row[: degree + 1])
+        of_rows = np.repeat(np.array(weights), counts)[:, None]
+        end = int(first_row[degree])
+        return self._times(self._bonds[:, :end].copy(), of_rows)
 
     def project(self, degree: int, parts: Sequence[tuple[float, Floats]]) -> Floats:
         canonical = self.grading.canonical(degree)

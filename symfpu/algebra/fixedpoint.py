@@ -90,6 +90,7 @@ class FixedPointRing:
     """Coefficients as integers times 2^-bits."""
 
     name = "fixedpoint"
+    grows = False
 
     def __init__(self, space: CosineModes, precision: Precision) -> None:
         self.space, self.grading, self.precision = space, space.grading, precision

@@ -46,7 +46,7 @@ class Float64Ring(DoublesRing[Floats], ValuesRing):
 
     name = "float64"
 
-    def coupling(self, power: int, value: Fraction) -> float:
+    def number(self, value: Fraction) -> float:
         return float(value)
 
     def _keep_in_range(self, degree: int, modes: Floats) -> None:

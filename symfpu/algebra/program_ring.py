@@ -29,12 +29,12 @@ TERM_BYTES = (
 STORED_BYTES, SORTED_BYTES = 20, 100  # of a pair of cosines, fitted to what programs take
 
 
-def predicted_bytes(N: int, seeds: int, top: int, step: int, *, cubic: bool) -> int:
+def predicted_bytes(N: int, seeds: int, top: int, step: int, highest: int) -> int:
     """Memory of a program up to degree `top`, by the pairs of cosines that it multiplies.
 
-    step : from one degree of the series to the next. A monomial of degree d is taken to carry as
-    many modes as it has signed sums, at most half of all. Nothing is allocated but vectors of
-    degrees; between one and six times what was measured.
+    step : from one degree of the series to the next. highest : power of the force. A monomial of
+    degree d is taken to carry as many modes as it has signed sums, at most half of all. Nothing is
+    allocated but vectors of degrees; between one and six times what was measured.
     """
     degrees = np.arange(top + 1)
     monomials = np.array([float(monomial_count(seeds, d)) for d in degrees.tolist()])
@@ -42,9 +42,11 @@ def predicted_bytes(N: int, seeds: int, top: int, step: int, *, cubic: bool) -> 
     sizes = monomials * carried
     series = np.where((degrees % step == 1 % step) & (degrees > 0), sizes, 0.0)
     pairs = np.convolve(series, series)[: top + 1] / 4  # canonical products, each pair once
-    if cubic:
-        squares = np.where(pairs > 0, sizes, 0.0)
-        pairs = pairs + np.convolve(squares, series)[: top + 1] / 2
+    added = pairs
+    for _ in range(2, highest):
+        lower = np.where(added > 0, sizes, 0.0)
+        added = np.convolve(lower, series)[: top + 1] / 2
+        pairs = pairs + added
     return int(STORED_BYTES * pairs.sum() + SORTED_BYTES * pairs.max())
 
 
@@ -82,6 +84,8 @@ class ProgramRing:
     were.
     """
 
+    grows = False
+
     def __init__(self, space: CosineModes, *, expanded: bool) -> None:
         self.name = "symbolic" if expanded else "nested"
         self.space, self.grading, self.expanded = space, space.grading, expanded
@@ -113,8 +117,7 @@ class ProgramRing:
 
     def coupling(self, power: int, value: Fraction) -> int:
         """The first coupling, in whose units all are, is one."""
-        if not self._couplings:
-            assert value == 1
+        if not self._couplings and value == 1:
             self._couplings[power] = ONE
         known = self._couplings.get(power)
         return self.program.leaf(Coupling(power, value)) if known is None else known
@@ -217,6 +220,8 @@ class ProgramRing:
     def project(self, degree: int, parts: Sequence[tuple[int, Ints]]) -> Ints:
         mask = self.space.mask(degree)
         tables = [np.where(mask, bonds[:, 1:], ZERO) for _, bonds in parts]
+        if not parts:
+            return np.full(mask.shape, ZERO, dtype=np.int64)
         if len(parts) == 1 and parts[0][0] == ONE:
             return tables[0]
         out, left, right = [], [], []

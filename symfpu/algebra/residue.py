@@ -47,7 +47,7 @@ class ResidueRing(ValuesRing):
         residue = number % self.prime
         return float(residue - self.prime if residue > self.prime // 2 else residue)
 
-    def coupling(self, power: int, value: Fraction) -> float:
+    def number(self, value: Fraction) -> float:
         inverse = pow(value.denominator, -1, self.prime)
         return self.element(value.numerator * inverse)
 

@@ -16,15 +16,18 @@ from typing import Any, Protocol
 
 from symfpu.algebra.selection import CosineModes
 
+Parts = Sequence[tuple[Any, Any]]  # (coefficient, bonds)
+
 
 class Ring(Protocol):
     """Coefficients, storage and products of one series.
 
-    Degrees are put in ascending order, each once.
+    Degrees are put in ascending order, each once. grows : whether it is a GrowingRing.
     """
 
     name: str
     space: CosineModes
+    grows: bool
 
     @property
     def multiply_adds(self) -> int:
@@ -45,7 +48,7 @@ class Ring(Protocol):
         O c, `power` factors from 2 up, over all stored degrees with this sum.
         """
 
-    def project(self, degree: int, parts: Sequence[tuple[Any, Any]]) -> Any:
+    def project(self, degree: int, parts: Parts) -> Any:
         """Modes of sum coefficient * bonds, selection rules applied.
 
         Parts are pairs (coefficient, bonds).
@@ -74,4 +77,19 @@ class Ring(Protocol):
     def results(self) -> tuple[list[Any], list[Any], Fraction]:
         """Modes and corrections of all degrees, and the unit by which degree d was scaled:
         unit^-(d - 1).
+        """
+
+
+class GrowingRing(Ring, Protocol):
+    """A ring that divides by whole numbers, and solves differential equations in the stretch."""
+
+    def number(self, value: Fraction) -> Any:
+        """An exact number as an element."""
+
+    def growth(self, number: int, slope: Fraction, rate: Fraction, degree: int) -> Any:
+        """Bonds of what the lower degrees give to degree d of g, (1 + slope r) g' = rate g.
+
+        number : which of several such functions, from 0 up. With r = 2c, c the stored function on
+        the bonds, this is 1/d sum (rate j - slope (d - j)) c_j o g_(d-j) over 0 < j < d; the rest
+        of g_d is 2 rate c_d.
         """

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from itertools import product
+from itertools import count, product
 from typing import Any
 
 import mpmath
@@ -19,6 +19,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import bonds
 from symfpu.chain.length import LENGTH, SymbolicLength
+from symfpu.chain.potentials.polynomial import Polynomial
+from symfpu.chain.potentials.potential import Potential, checked_coupling
+from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import (
     DOUBLES,
@@ -27,28 +30,33 @@ from symfpu.numbers.arithmetic import (
     arithmetic_of,
     sine_matrix,
 )
-from symfpu.numbers.typed import Number, decimal, exact, integer, rational
+from symfpu.numbers.typed import Number, decimal, integer, rational
 
 Floats = NDArray[np.float64]
-SMALLEST_COUPLING = Fraction(1, 10**50)
 LARGEST_EXPRESSION = 40  # bonds; the cubic coupling has about N^3 terms
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False, repr=False)
 class Chain:
-    """FPU chain of N bonds (N - 1 moving particles, fixed ends), Eq. fpuham; dimensionless.
+    """Chain of N bonds (N - 1 moving particles, fixed ends), Eq. fpuham; dimensionless.
 
     N : number of bonds, at least 2; modes are q = 1 .. N-1. "N" leaves it a symbol: such a chain
         has universal series (`lindstedt`), and no numbers until `at` puts one for N.
-    alpha, beta : cubic and quartic coupling, exact numbers (see symfpu.numbers.typed); at least
-        one is not zero. "0.33" and Fraction(33, 100) are what they say, a float is read by its
-        shortest decimal.
+    alpha, beta : cubic and quartic coupling of an FPU chain, V = r^2/2 + alpha r^3/3 +
+        beta r^4/4, exact numbers (see symfpu.numbers.typed); at least one is not zero. "0.33" and
+        Fraction(33, 100) are what they say, a float is read by its shortest decimal.
+    potential : any other law of a bond, V = r^2/2 + c_3 r^3/3 + c_4 r^4/4 + ...: `toda`,
+        `lennard_jones`, `polynomial` and others, or as typed on the command line, "toda:1/2".
 
-    The paper has one coupling at a time; here both may act. A changed chain is
-    dataclasses.replace(chain, beta="1/10"). Raises InputError for an argument outside its range.
+    The paper has one coupling at a time; here all may act. Order k means mu^k: the small parameter
+    mu multiplies the amplitudes, mu = c_3/sqrt(2N), and the terms of order k have degree k + 1 in
+    them; where V is even it multiplies their squares, mu = c_4/(2N), and the degree is 2k + 1. c_3
+    (c_4) is replaced by 1 where it is zero.
 
-    >>> Chain(N=32, alpha="0.33")
-    Chain(N=32, alpha=0.33)
+    Raises InputError for an argument outside its range.
+
+    >>> Chain(N=32, alpha="0.33"), Chain(N=8, potential="toda:1/2")
+    (Chain(N=32, alpha=0.33), Chain(N=8, potential=toda(0.5)))
     >>> Chain(N=2, beta=1).frequencies()
     array([1.41421356])
     >>> Chain("N", beta=1), Chain("N", beta=1).at(N=32)
@@ -56,48 +64,96 @@ class Chain:
     """
 
     N: int
-    alpha: Fraction
-    beta: Fraction
+    potential: Potential
 
-    def __init__(self, N: int | str, alpha: Number = 0, beta: Number = 0) -> None:
+    def __init__(
+        self,
+        N: int | str,
+        alpha: Number = 0,
+        beta: Number = 0,
+        *,
+        potential: Potential | str | None = None,
+    ) -> None:
         symbolic = N == "N" or isinstance(N, SymbolicLength)
         object.__setattr__(self, "N", LENGTH if symbolic else integer(N, "N", 2))
-        object.__setattr__(self, "alpha", exact(alpha, "alpha"))
-        object.__setattr__(self, "beta", exact(beta, "beta"))
-        largest = 1 / SMALLEST_COUPLING
-        for name, typed, value in (("alpha", alpha, self.alpha), ("beta", beta, self.beta)):
-            if value and not SMALLEST_COUPLING <= abs(value) <= largest:
-                allowed = "0, or a number of size 1e-50 to 1e50"
-                raise InputError(name, typed, allowed, "rescale the amplitudes")
-        if self.alpha == 0 and self.beta == 0:
-            allowed = "at least one of them not zero"
-            raise InputError("alpha, beta", (0, 0), allowed, "give alpha=, beta= or both")
+        couplings = checked_coupling(alpha, "alpha"), checked_coupling(beta, "beta")
+        if potential is None:
+            if not any(couplings):
+                allowed = "at least one of them not zero"
+                advice = "give alpha=, beta= or both, or potential="
+                raise InputError("alpha, beta", (0, 0), allowed, advice)
+            potential = Polynomial(couplings)
+        elif any(couplings):
+            typed = ", ".join(map(decimal, couplings))
+            allowed = "couplings or a potential, not both"
+            raise InputError("alpha, beta", typed, allowed, f"leave them to {potential}")
+        object.__setattr__(self, "potential", _potential(potential))
 
     def __repr__(self) -> str:
-        couplings = []
-        if self.alpha:
-            couplings.append(f"alpha={decimal(self.alpha)}")
-        if self.beta:
-            couplings.append(f"beta={decimal(self.beta)}")
         length = "'N'" if self.symbolic else self.N
-        return f"Chain(N={length}, {', '.join(couplings)})"
+        return f"Chain(N={length}, {self._law_text()})"
+
+    def _law_text(self) -> str:
+        """The law of its bonds as an argument."""
+        if self.fpu:
+            names = zip(("alpha", "beta"), self.couplings, strict=True)
+            return ", ".join(f"{name}={decimal(c)}" for name, c in names if c)
+        return f"potential={self.potential!r}"
 
     @property
     def symbolic(self) -> bool:
         """Whether N is a symbol."""
         return isinstance(self.N, SymbolicLength)
 
-    def at(self, *, N: int) -> Chain:
-        """The same couplings on N bonds.
+    def at(
+        self,
+        *,
+        N: int | None = None,
+        alpha: Number | None = None,
+        beta: Number | None = None,
+    ) -> Chain:
+        """The chain with another N, or an FPU chain with another coupling; None keeps its own.
 
         >>> Chain("N", alpha="1/4").at(N=8).frequencies()[:2].round(3)
         array([0.39 , 0.765])
+        >>> Chain(8, alpha="1/4").at(beta="1/10")
+        Chain(N=8, alpha=0.25, beta=0.1)
         """
-        return Chain(N, self.alpha, self.beta)
+        N = self.N if N is None else N
+        if alpha is None and beta is None:
+            return Chain(N, potential=self.potential)
+        alpha = self.alpha if alpha is None else alpha
+        return Chain(N, alpha, self.beta if beta is None else beta)
+
+    @property
+    def fpu(self) -> bool:
+        """Whether it is one of the paper's chains: V has alpha and beta and nothing else."""
+        return isinstance(self.potential, Polynomial) and self.potential.degree <= 4
+
+    @property
+    def couplings(self) -> tuple[Fraction, Fraction]:
+        """(alpha, beta) of an FPU chain; InputError for another, by its name."""
+        if not self.fpu:
+            allowed = "an FPU chain: V of degree 4 at most"
+            advice = "this is known for alpha and beta only: take Chain(N, alpha=, beta=)"
+            raise InputError("chain", self, allowed, advice)
+        return self.potential.coefficient(3), self.potential.coefficient(4)
+
+    @property
+    def alpha(self) -> Fraction:
+        """c_3 of an FPU chain; InputError for another, by its name."""
+        return self.couplings[0]
+
+    @property
+    def beta(self) -> Fraction:
+        """c_4 of an FPU chain; InputError for another, by its name."""
+        return self.couplings[1]
 
     @property
     def model(self) -> str:
-        """'alpha', 'beta' or 'alpha+beta'."""
+        """'alpha', 'beta' or 'alpha+beta'; else the kind of the potential, as 'toda'."""
+        if not self.fpu:
+            return self.potential.kind
         if self.alpha and self.beta:
             return "alpha+beta"
         return "alpha" if self.alpha else "beta"
@@ -106,37 +162,46 @@ class Chain:
     def degree_step(self) -> int:
         """How much the degree in the amplitudes grows with the order.
 
-        1 if alpha is not zero (r = k+1), else 2 (r = 2k+1).
+        1 (r = k+1); 2 if V is even (r = 2k+1).
         """
-        return 1 if self.alpha else 2
+        return 2 if self.potential.even else 1
+
+    @property
+    def lowest_force(self) -> int:
+        """The least power n > 1 of r in the tension."""
+        powers = count(2)
+        return next(n for n in powers if self.potential.coefficient(n + 1))
+
+    @property
+    def unit_coupling(self) -> Fraction:
+        """The coupling in the small parameter: c_3, or c_4 where V is even; 1 where it is zero."""
+        return self.potential.coefficient(2 + self.degree_step) or Fraction(1)
 
     @property
     def mu(self) -> float:
-        """The small parameter: alpha/sqrt(2N) if alpha is not zero, else beta/(2N)."""
-        if self.alpha:
+        """The small parameter: c_3/sqrt(2N), or c_4/(2N) where V is even."""
+        if self.degree_step == 1:
             root: float = (2 * self.N) ** 0.5
-            return float(self.alpha) / root
-        return float(self.beta / (2 * self.N))
-
-    @property
-    def couplings(self) -> tuple[Fraction, ...]:
-        """(c_3, c_4) = (alpha, beta) of the bond law V = r^2/2 + c_3 r^3/3 + c_4 r^4/4."""
-        return self.alpha, self.beta
+            return float(self.unit_coupling) / root
+        return float(self.unit_coupling / (2 * self.N))
 
     def law(self, numbers: Arithmetic = DOUBLES) -> bonds.Law:
-        """The couplings in an arithmetic, as the functions of symfpu.chain.bonds take them."""
-        return tuple(numbers.number(coupling) for coupling in self.couplings)
+        """The law of a bond in an arithmetic, as the functions of symfpu.chain.bonds take it."""
+        return self.potential.law(numbers)
 
-    @property
-    def relative_couplings(self) -> dict[int, Fraction]:
-        """By power n of the force r^n, the coupling in units of mu.
+    def relative_couplings(self, highest: int) -> dict[int, Fraction]:
+        """By power n of the force r^n, from 2 to the highest, the coupling in units of mu.
 
-        Those units are mu^(n-1) (alpha in the chain) or mu^((n-1)/2) (beta alone).
+        Those units are mu^(n-1), or mu^((n-1)/2) where V is even. Powers that do not act are left
+        out.
         """
-        if not self.alpha:
-            return {3: Fraction(1)}
-        relative = {2: Fraction(1), 3: self.beta / self.alpha**2}
-        return {power: coupling for power, coupling in relative.items() if coupling}
+        step, unit = self.degree_step, self.unit_coupling
+        relative = {}
+        for power in range(1 + step, highest + 1, step):
+            coupling = self.potential.coefficient(power + 1)
+            if coupling:
+                relative[power] = coupling / unit ** ((power - 1) // step)
+        return relative
 
     def linear_frequency(self, q: int) -> mpmath.mpf:
         """Omega_q = 2 sin(q pi / 2N) (Eq. fpuspec) at the working precision of mpmath."""
@@ -147,9 +212,9 @@ class Chain:
         """mu in the given arithmetic."""
         if numbers is DOUBLES:
             return self.mu
-        if self.alpha:
-            return numbers.number(self.alpha) / mpmath.sqrt(2 * self.N)
-        return numbers.number(self.beta / (2 * self.N))
+        if self.degree_step == 1:
+            return numbers.number(self.unit_coupling) / mpmath.sqrt(2 * self.N)
+        return numbers.number(self.unit_coupling / (2 * self.N))
 
     def frequencies(self, numbers: Arithmetic = DOUBLES) -> Numbers:
         """Linear frequencies Omega_q (Eq. fpuspec), correctly rounded; shape (N-1,).
@@ -339,3 +404,13 @@ def require_chain(chain: object) -> None:
             "a Chain",
             "make one with Chain(N, alpha=..., beta=...)",
         )
+
+
+def _potential(value: object) -> Potential:
+    """A potential as it was given, or as typed."""
+    if isinstance(value, str):
+        value = potential_of_text(value)
+    if not isinstance(value, Potential):
+        allowed = "a potential, or a text such as 'toda:1/2'"
+        raise InputError("potential", value, allowed, "write potential=toda('1/2')")
+    return value

@@ -14,12 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.chain.bonds import tension
+from symfpu.chain import bond_loops
 from symfpu.compiled import compiled
 
 _ONE = np.uint64(1)
 _compiled = compiled(error_model="numpy")
-_tension = compiled(error_model="numpy", keep=False)(tension)
 
 
 @_compiled
@@ -49,10 +48,10 @@ def move_particles(
         for i in range(kicks.shape[0]):
             kick, drift = kicks[i], drifts[i]
             r = x[one]
-            left = _tension(law, r)
+            left = bond_loops.tension(law, r)
             for j in range(one, bonds):
                 r = x[j + one] - x[j]
-                right = _tension(law, r)
+                right = bond_loops.tension(law, r)
                 momentum = p[j] + kick * (right - left)
                 p[j] = momentum
                 x[j] += drift * momentum

@@ -12,18 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.chain.bonds import stiffness, tension
+from symfpu.chain import bond_loops
 from symfpu.compiled import compiled
 
 LANES = 8  # deviation vectors moved by one instruction stream
 # least ratio of a diagonal entry of R to its column, above and below which the block changes
 LONGER_BLOCK, SHORTER_BLOCK = 1e-3, 1e-5
 
-_compiled, _inlined = (
-    compiled(error_model="numpy"),
-    compiled(error_model="numpy", keep=False),
-)
-_tension, _stiffness = _inlined(tension), _inlined(stiffness)
+_compiled = compiled(error_model="numpy")
 # a call at every kick costs some per cent of a short chain
 _always_inlined = compiled(error_model="numpy", forceinline=True)
 
@@ -67,8 +63,8 @@ def kick_and_drift(
     ahead = x[1:]
     for j in range(bonds):
         r = ahead[j] - x[j]
-        tension[j] = kick * _tension(law, r)
-        stiffness[j] = kick * _stiffness(law, r)
+        tension[j] = kick * bond_loops.tension(law, r)
+        stiffness[j] = kick * bond_loops.stiffness(law, r)
     inner_x, inner_p, after = x[1:], p[1:], tension[1:]
     for j in range(bonds - 1):
         inner_p[j] += after[j] - tension[j]

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
-from symfpu.numbers.arithmetic import mpf
+from symfpu.numbers.arithmetic import Arithmetic, mpf
 
 Floats = NDArray[Any]
 Ints = NDArray[np.int64]
@@ -41,6 +41,16 @@ def long(value: Any) -> np.longdouble:
     with mpmath.workdps(DIGITS):
         exact = mpf(value)
         return np.longdouble(mpmath.nstr(exact, DIGITS))
+
+
+class LongDoubles(Arithmetic):
+    """Numbers as long doubles."""
+
+    def number(self, value: Fraction) -> np.longdouble:
+        return long(value)
+
+
+LONG_DOUBLES = LongDoubles()
 
 
 def rational(value: np.longdouble) -> Fraction:
@@ -227,7 +237,7 @@ class InvarianceEquation:
         self._stretch = self._all_bonds[:, : len(half)]
         own_image = 2 * half + 1 == N
         self._back = self._stretch * np.where(own_image, 1, 2)
-        self._law = tuple(long(coupling) for coupling in self.chain.couplings)
+        self._law = self.chain.law(LONG_DOUBLES)
 
     def _set_divisors(self, linear: Sequence[Any]) -> None:
         """nu.Omega - Omega_q and nu.Omega + Omega_q from twice as many digits as they keep."""
@@ -266,7 +276,7 @@ class InvarianceEquation:
         Zero where the mask does not hold.
         """
         kind = cosines.dtype
-        law = tuple(coupling.astype(kind) for coupling in self._law)
+        law = bonds.cast(self._law, kind)
         total = np.zeros(cosines.shape, dtype=kind)
         for part in self._portions():
             there = self._stretch[:, part].astype(kind)

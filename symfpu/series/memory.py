@@ -11,6 +11,7 @@ from symfpu.algebra.program_ring import predicted_bytes as program_bytes
 from symfpu.algebra.residue import PRIME_BITS
 from symfpu.chain.chain import Chain
 from symfpu.errors import TooLarge
+from symfpu.series.force import stored_powers
 from symfpu.series.rings import RINGS
 from symfpu.series.tables import LOG10_2
 
@@ -37,13 +38,14 @@ def check_size(
 
 def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int:
     degree = 1 + chain.degree_step * order
-    size = predicted_bytes(chain.N, seeds, degree, cubic=chain.beta != 0)
+    powers = stored_powers(chain, degree, grows=RINGS[ring].grows)
+    size = predicted_bytes(chain.N, seeds, degree, powers=powers)
     if ring == "fixedpoint":
         guard = EXPECTED_GUARD + min(EXPECTED_LOSS * order, MOST_EXPECTED)
         bits_of_products = (digits + guard) / LOG10_2 * 2
         primes = math.ceil(bits_of_products / (PRIME_BITS - 2))
         return CONSTANT_BYTES + size * (primes + OTHER_STAGES)
     if RINGS[ring].program:
-        step, cubic = chain.degree_step, chain.beta != 0
-        return size + program_bytes(chain.N, seeds, degree, step, cubic=cubic)
+        highest = max(chain.relative_couplings(degree), default=0)
+        return size + program_bytes(chain.N, seeds, degree, chain.degree_step, highest)
     return size

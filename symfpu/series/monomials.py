@@ -10,11 +10,10 @@ from symfpu.chain.chain import Chain
 
 
 def monomial_space(chain: Chain, seeds: tuple[int, ...], order: int) -> CosineModes:
-    """Modes and monomials of a series; its first order is a plain product of the seeds."""
-    factors = 1 + chain.degree_step
+    """Modes and monomials of a series; its first force is a plain product of the seeds."""
     degree = 1 + chain.degree_step * order
     grading = shared_grading(len(seeds), degree)
-    return CosineModes(chain.N, seeds, grading, factors)
+    return CosineModes(chain.N, seeds, grading, chain.lowest_force)
 
 
 @lru_cache(maxsize=4)

@@ -15,6 +15,7 @@ from symfpu.algebra.selection import CosineModes
 from symfpu.chain.chain import Chain
 from symfpu.files.progress import Progress
 from symfpu.series.divisors import Divisors
+from symfpu.series.force import force_of
 from symfpu.series.rings import Frequencies, RingKind
 from symfpu.series.series import LindstedtSeries
 
@@ -26,17 +27,11 @@ def run_recursion(
 
     It fills the ring degree by degree.
     """
-    couplings = {}
-    for power, coupling in chain.relative_couplings.items():
-        couplings[power] = ring.coupling(power, coupling)
+    law = force_of(ring, chain, 1 + chain.degree_step * order)
     ring.put(1, ring.seed_terms())
     for k in range(1, order + 1):
         degree = 1 + chain.degree_step * k
-        parts = []
-        for power, number in couplings.items():
-            if power <= degree:
-                parts.append((number, ring.power(power, degree)))
-        force = ring.project(degree, parts)
+        force = ring.project(degree, law.parts(degree))
         secular = ring.secular(degree, force)
         ring.correct(degree - 1, secular)
         harmonics, _ = ring.space.grading.harmonics(degree)

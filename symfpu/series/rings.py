@@ -30,7 +30,8 @@ class RingKind:
     tables : of its coefficients, from digits and bits. ring, divisors : how they are made; None
     where that takes more than a name: residues want a point, fixed-point numbers their precision.
     numeric, exact_point : whether a series has frequencies, or a point where its residues were
-        taken. program : whether it keeps coefficients as a program.
+        taken. program : whether it keeps coefficients as a program. grows : whether it is a
+        GrowingRing.
     """
 
     name: str
@@ -40,6 +41,7 @@ class RingKind:
     numeric: bool = False
     exact_point: bool = False
     program: bool = False
+    grows: bool = False
 
 
 def _double_divisors(
@@ -61,7 +63,9 @@ def _expression_tables(digits: int | None, bits: int, *, expanded: bool) -> Tabl
     return ExpressionTables(expanded)
 
 
-FLOAT64 = RingKind("float64", _double_tables, Float64Ring, _double_divisors, numeric=True)
+FLOAT64 = RingKind(
+    "float64", _double_tables, Float64Ring, _double_divisors, numeric=True, grows=True
+)
 SYMBOLIC = RingKind(
     "symbolic",
     partial(_expression_tables, expanded=True),
@@ -77,7 +81,7 @@ NESTED = RingKind(
     program=True,
 )
 FIXED_POINT = RingKind("fixedpoint", FixedPointTables, numeric=True)
-RESIDUE = RingKind("residue", _double_tables, exact_point=True)
+RESIDUE = RingKind("residue", _double_tables, exact_point=True, grows=True)
 
 RINGS = {kind.name: kind for kind in (FLOAT64, SYMBOLIC, NESTED, FIXED_POINT, RESIDUE)}
 # those that a series can be asked for by name

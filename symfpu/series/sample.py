@@ -97,7 +97,7 @@ class SampledSeries:
 
     series: LindstedtSeries
     frequencies: Floats
-    relative: Floats
+    relative: Floats | None
     values: Floats = field(repr=False)
 
     def __repr__(self) -> str:
@@ -377,12 +377,15 @@ def sample_series(
     return SampledSeries(series, chosen, couplings, values)
 
 
-def _relative(series: LindstedtSeries, relative: ArrayLike | None, points: int) -> Floats:
-    _, *others = series.chain.relative_couplings.values()
+def _relative(
+    series: LindstedtSeries, relative: ArrayLike | None, points: int
+) -> Floats | None:
+    """The second coupling of an FPU chain at every point; None stands for those of the chain."""
+    chain = series.chain
+    both = chain.fpu and chain.alpha and chain.beta
     if relative is None:
-        value = float(others[0]) if others else 1.0
-        return np.full(points, value)
-    if not others:
+        return np.full(points, float(chain.relative_couplings(3)[3])) if both else None
+    if not both:
         allowed = "None: the chain has one coupling"
         raise InputError("relative", relative, allowed, "leave it out")
     return np.array(np.broadcast_to(np.asarray(relative, dtype=np.float64), (points,)))

@@ -353,6 +353,8 @@ class LindstedtSeries:
         return tables
 
     def _chain_with(self, alpha: Number | None, beta: Number | None) -> Chain:
+        if alpha is None and beta is None:
+            return self.chain
         alpha = self.chain.alpha if alpha is None else alpha
         beta = self.chain.beta if beta is None else beta
         chain = Chain(self.chain.N, alpha, beta)

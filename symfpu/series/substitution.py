@@ -85,7 +85,7 @@ def couplings_of(program: Program, chain: Chain) -> Iterator[tuple[int, Fraction
     """The places of the couplings among the symbols, and their values in a chain."""
     for number, symbol in enumerate(program.symbols):
         if isinstance(symbol, Coupling):
-            yield number, chain.relative_couplings[symbol.power]
+            yield number, chain.relative_couplings(symbol.power)[symbol.power]
 
 
 def tables_in_doubles(tables: Tables, leaves: Floats) -> list[Floats]:
@@ -100,12 +100,13 @@ def sampled_leaves(
     chain: Chain,
     seeds: Sequence[int],
     frequencies: Floats,
-    relative: Floats,
+    relative: Floats | None,
 ) -> Floats:
     """Values of the symbols at many points, (symbols, points).
 
-    frequencies : (points, s). relative : of the second coupling, (points,). Divisors are taken in
-    long doubles. Raises ResonantDivisor for one that is zero in them.
+    frequencies : (points, s). relative : of the second coupling of an FPU chain, (points,); None
+    takes the couplings of the chain. Divisors are taken in long doubles. Raises ResonantDivisor
+    for one that is zero in them.
     """
     values = np.empty((len(program.symbols), len(frequencies)))
     linear = np.array(
@@ -126,9 +127,8 @@ def sampled_leaves(
             nu = tuple(leaves.harmonics[place].tolist())
             raise ResonantDivisor(int(leaves.modes[place]), nu, seeds, order, exact=True)
         values[leaves.numbers] = own * own / divisors
-    for number, symbol in enumerate(program.symbols):
-        if isinstance(symbol, Coupling):
-            values[number] = relative
+    for number, value in couplings_of(program, chain):
+        values[number] = float(value) if relative is None else relative
     return values
 
 

@@ -1,0 +1,60 @@
+"""The law of one bond inside compiled loops.
+
+Importing this module imports numba, whose overloads have no annotations. A loop that calls
+`tension(law, r)` is compiled for the type of its law: the coefficients of a polynomial, or the
+class of a closed law with its own functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba.extending import overload
+
+from symfpu.chain import bonds
+from symfpu.chain.bonds import stiffness, tension
+from symfpu.compiled import compiled
+from symfpu.numbers import functions
+
+__all__ = ["stiffness", "tension"]
+
+Function = Callable[..., Any]
+_inlined = compiled(error_model="numpy", keep=False)
+_series = _inlined(functions.expm2_series)
+
+
+def _law_by_type(function: Function, of_polynomials: Function) -> None:
+    """Teaches the compiler a function of symfpu.chain.bonds."""
+
+    def choose(law, r):  # type: ignore[no-untyped-def]
+        kind = getattr(law, "instance_class", None)
+        own = getattr(kind, function.__name__, None)
+        loop = _inlined(own or of_polynomials)
+        return lambda law, r: loop(law, r)
+
+    overload(function)(choose)
+
+
+_law_by_type(tension, bonds.polynomial_tension)
+_law_by_type(stiffness, bonds.polynomial_stiffness)
+
+
+@overload(functions.expm1)
+def _expm1(x):  # type: ignore[no-untyped-def]
+    return lambda x: np.expm1(x)
+
+
+@overload(functions.log1p)
+def _log1p(x):  # type: ignore[no-untyped-def]
+    return lambda x: np.log1p(x)
+
+
+def _expm2_of_number(x):  # type: ignore[no-untyped-def]
+    return float(_series(x)) if abs(x) < 1.0 else float(np.expm1(x) - x)
+
+
+@overload(functions.expm2)
+def _expm2(x):  # type: ignore[no-untyped-def]
+    return _expm2_of_number

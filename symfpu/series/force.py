@@ -1,0 +1,78 @@
+"""The force of a bond beyond the harmonic one, degree by degree, from what a ring can multiply.
+
+With the stretch in units of the small parameter the tension is a power series in it. A ring adds
+up its powers; or, where the tension is made of functions that solve (1 + slope r) g' = rate g
+(exponentials and powers) and the ring can divide by whole numbers, one product a degree gives each
+of them: with the Euler operator, which multiplies degree d by d,
+
+    d g_d = rate d r_d + sum_(0<j<d) (rate j - slope (d - j)) r_j g_(d-j),
+
+where the first term is linear in the unknown r_d and belongs to the linear part.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from symfpu.algebra.ring import GrowingRing, Parts, Ring
+from symfpu.chain.chain import Chain
+from symfpu.chain.potentials.potential import Growth
+
+
+class Force(Protocol):
+    """What the recursion asks for."""
+
+    def parts(self, degree: int) -> Parts:
+        """(coefficient, bonds) whose sum is the force of a degree, all lower ones known."""
+
+
+class PowerForce:
+    """The sum of the powers of the stretch."""
+
+    def __init__(self, ring: Ring, chain: Chain, top: int) -> None:
+        self.ring = ring
+        self.couplings = {}
+        for power, coupling in chain.relative_couplings(top).items():
+            self.couplings[power] = ring.coupling(power, coupling)
+
+    def parts(self, degree: int) -> Parts:
+        return [
+            (number, self.ring.power(power, degree))
+            for power, number in self.couplings.items()
+            if power <= degree
+        ]
+
+
+class GrowthForce:
+    """The sum of functions that solve a differential equation."""
+
+    def __init__(self, ring: GrowingRing, growths: tuple[Growth, ...]) -> None:
+        self.ring, self.growths = ring, growths
+
+    def parts(self, degree: int) -> Parts:
+        found = []
+        for number, growth in enumerate(self.growths):
+            bonds = self.ring.growth(number, growth.slope, growth.rate, degree)
+            found.append((self.ring.number(growth.weight / 2), bonds))
+        return found
+
+
+def scaled_growths(chain: Chain) -> tuple[Growth, ...]:
+    """Those of the chain's tension in units of the small parameter."""
+    return tuple(g.scaled(chain.unit_coupling) for g in chain.potential.growths())
+
+
+def stored_powers(chain: Chain, top: int, *, grows: bool) -> int:
+    """How many functions on the bonds a ring keeps for a series up to a degree."""
+    growths = chain.potential.growths()
+    if grows and growths:
+        return len(growths) + 2
+    return max(chain.relative_couplings(top), default=2) - 1
+
+
+def force_of(ring: Any, chain: Chain, top: int) -> Force:
+    """The cheapest way that the ring has."""
+    growths = scaled_growths(chain)
+    if growths and ring.grows:
+        return GrowthForce(ring, growths)
+    return PowerForce(ring, chain, top)
