@@ -21,7 +21,7 @@ from symfpu.breathers.balance import (
     as_periodic_orbit,
     orbit_near,
 )
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.typed import Number, exact, seed_modes
@@ -132,6 +132,7 @@ def breather_at_energy(
     >>> round(float(orbit.frequency), 12), round(float(orbit.energy()), 15)
     (1.883074184707, 0.00465)
     """
+    require_chain(chain)
     (seed,), target = seed_modes((seed,), chain.N), _positive(energy)
     if not isinstance(harmonic, bool):
         advice = "say whether energy means sum E_q at t = 0"

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import bonds
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
 from symfpu.numbers.typed import Number, decimal, exact, seed_modes
@@ -311,6 +311,7 @@ def periodic_orbit(
     >>> round(float(orbit.energy()), 12)
     0.004649999361
     """
+    require_chain(chain)
     (seed,), omega = seed_modes((seed,), chain.N), positive_frequency(frequency)
     shift, sigma = detuning(chain, seed, omega)
     if guess is not None:
@@ -374,6 +375,7 @@ def breather_at_amplitude(
     >>> round(float(breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4").frequency), 9)
     0.390491915
     """
+    require_chain(chain)
     (seed,), A = seed_modes((seed,), chain.N), float(exact(amplitude, "amplitude"))
     if A == 0:
         raise InputError(

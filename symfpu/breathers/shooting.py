@@ -28,7 +28,7 @@ from symfpu.breathers.balance import (
     lowest_amplitude,
     positive_frequency,
 )
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import particle_scheme
@@ -210,6 +210,7 @@ def shoot(
     >>> round(float(shot.energy()), 12), shot.closure < 1e-13
     (0.004649999361, True)
     """
+    require_chain(chain)
     (seed,), omega = seed_modes((seed,), chain.N), positive_frequency(frequency)
     integrator = particle_scheme(scheme)
     if guess is None:

@@ -8,7 +8,7 @@ from typing import Any
 import mpmath
 from mpmath import libmp
 
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError
 from symfpu.files.archive import Json
 from symfpu.numbers.arithmetic import text
@@ -49,6 +49,7 @@ def number(entry: Any) -> Any:
 
 def chain_entries(chain: Chain) -> Json:
     """A chain as exact text."""
+    require_fixed_ends(chain)
     return {
         "N": int(chain.N),
         "alpha": fraction_text(chain.alpha),

@@ -1,14 +1,14 @@
-"""The FPU chain with fixed ends: its modes, couplings and energies (section 2 of the paper).
+"""The chain: its modes, couplings and energies (section 2 of the paper).
 
 The Hamiltonian is also an expression.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import count, product
 from typing import Any
 
@@ -18,6 +18,7 @@ import symengine as se
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import bonds
+from symfpu.chain.ends import ENDS, Ends, checked_ends
 from symfpu.chain.length import LENGTH, SymbolicLength
 from symfpu.chain.potentials.polynomial import Polynomial
 from symfpu.chain.potentials.potential import Potential, checked_coupling
@@ -28,7 +29,6 @@ from symfpu.numbers.arithmetic import (
     Arithmetic,
     Numbers,
     arithmetic_of,
-    sine_matrix,
 )
 from symfpu.numbers.typed import Number, decimal, integer, rational
 
@@ -38,20 +38,24 @@ LARGEST_EXPRESSION = 40  # bonds; the cubic coupling has about N^3 terms
 
 @dataclass(frozen=True, init=False, repr=False)
 class Chain:
-    """Chain of N bonds (N - 1 moving particles, fixed ends), Eq. fpuham; dimensionless.
+    """Chain of N bonds, Eq. fpuham; dimensionless.
 
-    N : number of bonds, at least 2; modes are q = 1 .. N-1. "N" leaves it a symbol: such a chain
-        has universal series (`lindstedt`), and no numbers until `at` puts one for N.
+    N : number of bonds, at least 2. "N" leaves it a symbol: such a chain has universal series
+        (`lindstedt`), and no numbers until `at` puts one for N.
     alpha, beta : cubic and quartic coupling of an FPU chain, V = r^2/2 + alpha r^3/3 +
         beta r^4/4, exact numbers (see symfpu.numbers.typed); at least one is not zero. "0.33" and
         Fraction(33, 100) are what they say, a float is read by its shortest decimal.
     potential : any other law of a bond, V = r^2/2 + c_3 r^3/3 + c_4 r^4/4 + ...: `toda`,
         `lennard_jones`, `polynomial` and others, or as typed on the command line, "toda:1/2".
+    ends : "fixed", N - 1 moving particles between walls (the paper's), modes q = 1 .. N-1; or
+        "periodic", N particles on a ring, travelling modes q = -(N-1)/2 .. N/2 without 0, complex
+        and Q_(-q) = conj Q_q, the mean position and momentum zero. What cannot take a ring
+        refuses it by name.
 
     The paper has one coupling at a time; here all may act. Order k means mu^k: the small parameter
     mu multiplies the amplitudes, mu = c_3/sqrt(2N), and the terms of order k have degree k + 1 in
     them; where V is even it multiplies their squares, mu = c_4/(2N), and the degree is 2k + 1. c_3
-    (c_4) is replaced by 1 where it is zero.
+    (c_4) is replaced by 1 where it is zero, and 2N by N on a ring.
 
     Raises InputError for an argument outside its range.
 
@@ -61,10 +65,13 @@ class Chain:
     array([1.41421356])
     >>> Chain("N", beta=1), Chain("N", beta=1).at(N=32)
     (Chain(N='N', beta=1), Chain(N=32, beta=1))
+    >>> Chain(N=4, beta=1, ends="periodic").mode_numbers
+    (-1, 1, 2)
     """
 
     N: int
     potential: Potential
+    ends: str = "fixed"
 
     def __init__(
         self,
@@ -73,6 +80,7 @@ class Chain:
         beta: Number = 0,
         *,
         potential: Potential | str | None = None,
+        ends: str = "fixed",
     ) -> None:
         symbolic = N == "N" or isinstance(N, SymbolicLength)
         object.__setattr__(self, "N", LENGTH if symbolic else integer(N, "N", 2))
@@ -88,10 +96,15 @@ class Chain:
             allowed = "couplings or a potential, not both"
             raise InputError("alpha, beta", typed, allowed, f"leave them to {potential}")
         object.__setattr__(self, "potential", _potential(potential))
+        object.__setattr__(self, "ends", checked_ends(ends))
+        if symbolic and self.periodic:
+            advice = "put a number for N: series of a ring hold for one N"
+            raise InputError("N", "N", "a number where ends='periodic'", advice)
 
     def __repr__(self) -> str:
         length = "'N'" if self.symbolic else self.N
-        return f"Chain(N={length}, {self._law_text()})"
+        ends = ", ends='periodic'" if self.periodic else ""
+        return f"Chain(N={length}, {self._law_text()}{ends})"
 
     def _law_text(self) -> str:
         """The law of its bonds as an argument."""
@@ -104,6 +117,35 @@ class Chain:
     def symbolic(self) -> bool:
         """Whether N is a symbol."""
         return isinstance(self.N, SymbolicLength)
+
+    @property
+    def periodic(self) -> bool:
+        """Whether it is a ring."""
+        return self.ends == "periodic"
+
+    @cached_property
+    def _ends(self) -> Ends:
+        return ENDS[self.ends](self.N)
+
+    @property
+    def mode_numbers(self) -> tuple[int, ...]:
+        """The modes q in the order of every axis of modes, ascending; N - 1 of them."""
+        return self._ends.modes
+
+    def seeds_of(self, seeds: Iterable[object]) -> tuple[int, ...]:
+        """Distinct modes of the chain, in the given order; InputError for what is none.
+
+        seeds : any whole numbers.
+
+        >>> Chain(N=8, beta=1, ends="periodic").seeds_of((1, -1, 4))
+        (1, -1, 4)
+        """
+        return self._ends.seeds(seeds)
+
+    @property
+    def turn(self) -> int:
+        """The period of wave numbers: 2N, or N on a ring."""
+        return self.N if self.periodic else 2 * self.N
 
     def at(
         self,
@@ -121,9 +163,10 @@ class Chain:
         """
         N = self.N if N is None else N
         if alpha is None and beta is None:
-            return Chain(N, potential=self.potential)
+            return Chain(N, potential=self.potential, ends=self.ends)
         alpha = self.alpha if alpha is None else alpha
-        return Chain(N, alpha, self.beta if beta is None else beta)
+        beta = self.beta if beta is None else beta
+        return Chain(N, alpha, beta, ends=self.ends)
 
     @property
     def fpu(self) -> bool:
@@ -179,11 +222,11 @@ class Chain:
 
     @property
     def mu(self) -> float:
-        """The small parameter: c_3/sqrt(2N), or c_4/(2N) where V is even."""
+        """The small parameter: c_3/sqrt(2N), or c_4/(2N) where V is even; N for 2N on a ring."""
         if self.degree_step == 1:
-            root: float = (2 * self.N) ** 0.5
+            root: float = self.turn**0.5
             return float(self.unit_coupling) / root
-        return float(self.unit_coupling / (2 * self.N))
+        return float(self.unit_coupling / self.turn)
 
     def law(self, numbers: Arithmetic = DOUBLES) -> bonds.Law:
         """The law of a bond in an arithmetic, as the functions of symfpu.chain.bonds take it."""
@@ -204,8 +247,11 @@ class Chain:
         return relative
 
     def linear_frequency(self, q: int) -> mpmath.mpf:
-        """Omega_q = 2 sin(q pi / 2N) (Eq. fpuspec) at the working precision of mpmath."""
-        half_turns = mpmath.mpf(q) / (2 * self.N)
+        """Omega_q = 2 sin(q pi / 2N) (Eq. fpuspec) at the working precision of mpmath.
+
+        On a ring 2 |sin(q pi / N)|.
+        """
+        half_turns = mpmath.mpf(abs(q)) / self.turn
         return 2 * mpmath.sinpi(half_turns)
 
     def small_parameter(self, numbers: Arithmetic = DOUBLES) -> Any:
@@ -213,8 +259,8 @@ class Chain:
         if numbers is DOUBLES:
             return self.mu
         if self.degree_step == 1:
-            return numbers.number(self.unit_coupling) / mpmath.sqrt(2 * self.N)
-        return numbers.number(self.unit_coupling / (2 * self.N))
+            return numbers.number(self.unit_coupling) / mpmath.sqrt(self.turn)
+        return numbers.number(self.unit_coupling / self.turn)
 
     def frequencies(self, numbers: Arithmetic = DOUBLES) -> Numbers:
         """Linear frequencies Omega_q (Eq. fpuspec), correctly rounded; shape (N-1,).
@@ -222,41 +268,37 @@ class Chain:
         In another arithmetic at the working precision of mpmath.
         """
         if numbers is DOUBLES:
-            return linear_frequencies(self.N)
-        frequencies = [self.linear_frequency(q) for q in range(1, self.N)]
+            return linear_frequencies(self.N, self.ends)
+        frequencies = [self.linear_frequency(q) for q in self.mode_numbers]
         return np.array(frequencies, dtype=object)
 
     def positions(self, Q: ArrayLike) -> Numbers:
         """Particle displacements x_1 .. x_(N-1) of mode coordinates Q (Eq. lintra).
 
-        Shapes (..., N-1).
+        Shapes (..., N-1). On a ring x_0 .. x_(N-1) of complex Q_q, N^(-1/2) sum Q_q
+        e^(2 pi i q j / N), (..., N-1) to (..., N).
 
-        The transform is orthogonal and its own inverse: it also takes momenta, and positions to
-        modes. Here and below arrays of mpf give arrays of mpf at mpmath's working precision.
+        The transform of fixed ends is orthogonal and its own inverse: it also takes momenta, and
+        positions to modes. Here and below arrays of mpf give arrays of mpf at mpmath's working
+        precision; a ring has doubles.
         """
-        from scipy.fft import dst
-
-        state, numbers = self._state(Q, "Q")
-        if numbers is not DOUBLES:
-            return numbers.dot(state, sine_matrix(self.N))
-        return np.asarray(dst(state, type=1, norm="ortho", axis=-1))
+        state, numbers = self._ends.state(Q, "Q")
+        return self._ends.positions(state, numbers)
 
     def modes(self, x: ArrayLike) -> Numbers:
         """Mode coordinates Q_1 .. Q_(N-1) of displacements x (Eq. lintra inverted).
 
-        Shapes (..., N-1).
+        Shapes (..., N-1). On a ring (..., N) to complex (..., N-1): Q_q of `mode_numbers`; the
+        mean, which is no mode, is left out.
         """
-        return self.positions(x)
+        return self._ends.coordinates(*self._ends.displacements(x, "x"))
 
     def stretches(self, Q: ArrayLike) -> Numbers:
         """Bond stretches r_j = x_(j+1) - x_j, j = 0 .. N-1, of modes Q.
 
         Shape (..., N-1) to (..., N).
         """
-        x = self.positions(Q)
-        fixed_end = np.zeros_like(x[..., :1])
-        with_ends = np.concatenate([fixed_end, x, fixed_end], axis=-1)
-        return np.diff(with_ends, axis=-1)
+        return self._ends.stretches(self.positions(Q))
 
     def energy(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
         """Total energy H (Eq. fpuham) of mode coordinates Q and momenta P.
@@ -264,39 +306,28 @@ class Chain:
         Shapes (..., N-1) to (...).
         """
         r = self.stretches(Q)
-        P, numbers = self._state(P, "P")
+        P, numbers = self._ends.state(P, "P")
         potential = bonds.potential(self.law(numbers), r)
-        twice_kinetic = np.sum(P**2, axis=-1)
+        twice_kinetic = np.sum(_squared(P), axis=-1)
         return np.asarray(0.5 * twice_kinetic + np.sum(potential, axis=-1))
 
     def harmonic_energies(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
         """Harmonic energy E_q = (P_q^2 + Omega_q^2 Q_q^2)/2 of every mode (Eq. harmonicene).
 
-        Q, P : mode coordinates and momenta, shapes (..., N-1), as that of the result.
+        Q, P : mode coordinates and momenta, shapes (..., N-1), as that of the result. On a ring
+        |P_q|^2 and |Q_q|^2.
         """
-        Q, numbers = self._state(Q, "Q")
-        P, _ = self._state(P, "P")
+        Q, numbers = self._ends.state(Q, "Q")
+        P, _ = self._ends.state(P, "P")
         velocities = self.frequencies(numbers) * Q
-        return np.asarray(0.5 * (P**2 + velocities**2))
+        return np.asarray(0.5 * (_squared(P) + _squared(velocities)))
 
     def accelerations(self, Q: ArrayLike) -> Numbers:
         """Second time derivative of every mode coordinate Q (Eq. eqmo); shapes (..., N-1)."""
         r = self.stretches(Q)
         numbers = arithmetic_of(r)
         tension = bonds.tension(self.law(numbers), r)
-        return self.positions(np.diff(tension, axis=-1))
-
-    def _state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
-        numbers = arithmetic_of(values)
-        try:
-            array = numbers.array(values)
-        except (TypeError, ValueError) as error:
-            allowed = "an array of real numbers"
-            raise InputError(argument, values, allowed, "pass numbers") from error
-        if array.ndim == 0 or array.shape[-1] != self.N - 1:
-            allowed = f"an array whose last axis has length N-1 = {self.N - 1}"
-            raise InputError(argument, array.shape, allowed, "put the modes last")
-        return array, numbers
+        return self._ends.coordinates(self._ends.forces(tension), numbers)
 
     def B(self, q: int, l: int, m: int) -> int:
         """Coupling of three modes q, l, m (Eq. transa), by selection rule.
@@ -313,6 +344,7 @@ class Chain:
         return self._coupling(q, l, m, n)
 
     def _coupling(self, *modes: int) -> int:
+        require_fixed_ends(self)
         for mode in modes:
             if integer(mode, "mode", 1) >= self.N:
                 raise InputError(
@@ -330,6 +362,7 @@ class Chain:
 
     def coupled(self, *modes: int) -> Iterator[tuple[int, int]]:
         """The modes q with a coupling to the given two or three, each with its B or C."""
+        require_fixed_ends(self)
         for q in range(1, self.N):
             coupling = self._coupling(q, *modes)
             if coupling:
@@ -370,6 +403,7 @@ class Chain:
         return {q: -se.diff(H, Q[q]) for q in range(1, self.N)}
 
     def _symbols(self) -> tuple[dict[int, Any], dict[int, Any], dict[int, Any]]:
+        require_fixed_ends(self)
         if self.N > LARGEST_EXPRESSION:
             allowed = f"at most {LARGEST_EXPRESSION} for an expression"
             raise InputError(
@@ -383,12 +417,13 @@ class Chain:
 
 
 @lru_cache(maxsize=64)
-def linear_frequencies(N: int) -> Floats:
-    """Omega_1 .. Omega_(N-1), correctly rounded, as a read-only array."""
+def linear_frequencies(N: int, ends: str = "fixed") -> Floats:
+    """Omega_q of all modes, correctly rounded, as a read-only array."""
+    kind = ENDS[ends](N)
     frequencies = []
     with mpmath.workdps(30):
-        for q in range(1, N):
-            half_turns = mpmath.mpf(q) / (2 * N)
+        for q in kind.modes:
+            half_turns = mpmath.mpf(abs(q)) / kind.turn
             frequencies.append(float(2 * mpmath.sinpi(half_turns)))
     values = np.array(frequencies)
     values.flags.writeable = False
@@ -396,7 +431,15 @@ def linear_frequencies(N: int) -> Floats:
 
 
 def require_chain(chain: object) -> None:
-    """InputError for what is no Chain."""
+    """InputError for what is no Chain with fixed ends: what every public function asks first.
+
+    One that takes a ring too asks `require_any_chain`.
+    """
+    require_fixed_ends(require_any_chain(chain))
+
+
+def require_any_chain(chain: object) -> Chain:
+    """InputError for what is no Chain, whatever its ends."""
     if not isinstance(chain, Chain):
         raise InputError(
             "chain",
@@ -404,6 +447,22 @@ def require_chain(chain: object) -> None:
             "a Chain",
             "make one with Chain(N, alpha=..., beta=...)",
         )
+    return chain
+
+
+def require_fixed_ends(chain: Chain) -> None:
+    """InputError for a ring, by its name."""
+    if chain.periodic:
+        allowed = "a chain with fixed ends: this is not known on a ring"
+        advice = "leave ends= out, or see docs/chains.md for what takes ends='periodic'"
+        raise InputError("chain", chain, allowed, advice)
+
+
+def _squared(values: Numbers) -> Numbers:
+    """|values|^2."""
+    if values.dtype == complex:
+        return np.asarray(values.real**2 + values.imag**2)
+    return np.asarray(values**2)
 
 
 def _potential(value: object) -> Potential:

@@ -20,7 +20,7 @@ from typing import Any
 
 import symengine as se
 
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.length import seed_labels
 from symfpu.chain.symbols import amplitude_symbol, linear_symbol
 from symfpu.errors import InputError
@@ -54,6 +54,7 @@ def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, 
     >>> round(frequency_shift(Chain(N=2, beta=1), {1: 0.1})[1], 12)  # sqrt(2)/4 3/4 2 0.01
     0.005303300859
     """
+    require_chain(chain)
     if not isinstance(amplitudes, Mapping):
         allowed = "a mapping from modes to numbers"
         raise InputError("amplitudes", amplitudes, allowed, "write it as {mode: amplitude}")
@@ -91,6 +92,7 @@ def frequency_shift_formula(chain: Chain, seeds: Sequence[int | str]) -> dict[in
     >>> frequency_shift_formula(Chain("N", beta=1), (1,))
     {1: (9/16)*A1**2*Omega_1**3/N}
     """
+    require_chain(chain)
     symbolic = chain.symbolic
     modes = seed_labels(seeds) if symbolic else seed_modes(seeds, chain.N)
     length = se.Symbol("N") if symbolic else chain.N

@@ -16,7 +16,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError, RunInterrupted, SymfpuError
 from symfpu.families.appendix_a import (
     AppendixAMember,
@@ -270,6 +270,7 @@ def family(
     >>> [round(member.energy, 6) for member in tori.members]
     [0.0005, 0.000605, 0.000772, 0.001]
     """
+    require_chain(chain)
     if method not in METHODS:
         raise InputError(
             "method", method, f"one of {', '.join(METHODS)}", "name one of these"

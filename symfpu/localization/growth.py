@@ -150,6 +150,7 @@ def growth_exponents(
     >>> found.exponents.round(9)
     array([2.])
     """
+    require_chain(chain)
     if averages is None:
         raise InputError(
             "averages",
@@ -157,7 +158,6 @@ def growth_exponents(
             "those of an orbit that has them",
             "integrate with averages=True",
         )
-    require_chain(chain)
     t, Ebar = energy_record(times, averages, "averages")
     if Ebar.shape[1] != chain.N - 1:
         raise InputError(

@@ -81,6 +81,7 @@ def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
     >>> round(packet_parameter(Chain(N=256, beta="0.3"), 16, 1.5625e-6), 9)
     1.2159e-05
     """
+    require_chain(chain)
     s, epsilon = _packet(chain, s, specific_energy)
     width = math.pi * s / chain.N
     if chain.alpha:
@@ -102,6 +103,7 @@ def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> 
     >>> group_energy(Chain(N=256, beta="0.3"), 16, 1.5625e-6, [0, 1])
     array([2.50000000e-05, 3.69575361e-15])
     """
+    require_chain(chain)
     parameter = packet_parameter(chain, s, specific_energy)
     M = s / chain.N
     k = np.asarray(k, dtype=np.float64)
@@ -127,6 +129,7 @@ def profile_law(
     >>> profile_law(Chain(N=256, beta="0.3"), 16, 1.5625e-6)  # Fig. 4(b)
     log10 e = -78.6419 kappa - 1.20412
     """
+    require_chain(chain)
     parameter = packet_parameter(chain, s, specific_energy)
     unit = chain.N if denominator is None else integer(denominator, "denominator", 1)
     inverse_width = unit / s
@@ -172,6 +175,7 @@ def least_packet(chain: Chain, specific_energy: float) -> float:
     >>> round(least_packet(Chain(N=32, alpha="0.33"), 1e-4), 6)
     0.585136
     """
+    require_chain(chain)
     parameter = packet_parameter(chain, 1, specific_energy)
     return float(parameter ** (0.25 if chain.alpha else 0.5))
 
@@ -190,6 +194,7 @@ def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") 
     >>> round(natural_packet(Chain(N=32, alpha="0.33"), 1e-4), 6)
     1.83826
     """
+    require_chain(chain)
     if chain.model != "alpha" or exponent not in ("1/4", "1/5"):
         raise InputError(
             "chain, exponent",
@@ -215,6 +220,7 @@ def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
     >>> packet_groups(Chain(N=8, alpha=1), 2)
     (range(1, 3), range(3, 5), range(5, 7), range(7, 8))
     """
+    require_chain(chain)
     step = packet_width(chain, s) * chain.degree_step
     ends = [0, *range(s, chain.N - 1, step), chain.N - 1]
     return tuple(range(a + 1, b + 1) for a, b in pairwise(ends))
@@ -232,6 +238,7 @@ def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
     >>> middle_modes(Chain(N=12, alpha=1), 3)
     (4, 7, 10)
     """
+    require_chain(chain)
     step = packet_width(chain, s) * chain.degree_step
     offset = (s // 2 or 1) if chain.alpha else 0
     return tuple(range(step + offset, chain.N, step))
@@ -254,6 +261,7 @@ def rounding_floor(
     >>> float(rounding_floor(Chain(N=4, alpha=1), [1.0, 0, 0], 1e6, step=0.1).max()) < 1e-20
     True
     """
+    require_chain(chain)
     E = _spectrum(chain, spectrum)
     T = positive(T, "T")
     step = positive(step, "step")
@@ -334,6 +342,7 @@ def fit_profile(
     >>> round(fit.line.slope, 9), round(fit.scatter, 9)
     (-20.0, 0.0)
     """
+    require_chain(chain)
     E = _spectrum(chain, spectrum)
     s = packet_width(chain, s)
     power = None if power is None else finite(power, "power")

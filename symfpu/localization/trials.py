@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.localization.laws import (
@@ -96,6 +96,7 @@ def slope_by_energy(
     >>> round(slope_by_energy(chain, 4, energies, spectra, floor=0).rate, 9)
     8.0
     """
+    require_chain(chain)
     energies = np.array(
         [positive(energy, "specific_energies") for energy in specific_energies]
     )
@@ -320,6 +321,7 @@ def profile_invariance(
     >>> [spectra.shape for spectra in found.spectra]
     [(1, 15), (1, 31), (1, 47)]
     """
+    require_chain(chain)
     M = exact(fraction, "fraction")
     sizes = [integer(N, "sizes", 2) for N in sizes]
     epsilon = positive(specific_energy, "specific_energy")

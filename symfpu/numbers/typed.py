@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from numbers import Integral, Rational, Real
@@ -89,6 +89,13 @@ def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
     InputError if empty, repeated, outside or not integers.
     """
     allowed = f"distinct integers in 1..{N - 1} (N = {N})"
+    return distinct_modes(seeds, range(1, N), allowed)
+
+
+def distinct_modes(
+    seeds: Iterable[object], existing: Container[int], allowed: str
+) -> tuple[int, ...]:
+    """Modes of a chain, of those that exist; InputError as of seed_modes."""
     modes: list[int] = []
     try:
         listed = list(seeds)
@@ -100,7 +107,7 @@ def seed_modes(seeds: Iterable[object], N: int) -> tuple[int, ...]:
         if isinstance(seed, bool) or not isinstance(seed, Integral):
             raise InputError("seeds", seed, allowed, "pass whole numbers")
         modes.append(int(seed))
-        if not 1 <= modes[-1] <= N - 1:
+        if modes[-1] not in existing:
             raise InputError(
                 "seeds", modes[-1], allowed, "name a mode of the chain or take a longer one"
             )

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.formulas import Coupling, Multiplier
 from symfpu.algebra.program_values import ancestors, values_in
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.length import HighMode, seed_labels
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.chain.symbols import amplitude_symbol, phase_symbol
@@ -144,6 +144,7 @@ def asymptotic_energy(chain: Chain, seeds: Sequence[int], q: int, *, terms: int 
     >>> asymptotic_energy(Chain("N", alpha=1), (1,), 2, terms=1)
     4*N**3*E1**2/pi**4
     """
+    require_chain(chain)
     if not chain.symbolic:
         advice = "leave N open: Chain('N', alpha=...)"
         raise InputError("chain", chain, "a chain whose N is a symbol", advice)
@@ -179,6 +180,7 @@ def asymptotic_group_energy(chain: Chain, s: int, k: int, *, terms: int = 2) -> 
     >>> asymptotic_group_energy(Chain("N", alpha=1), 1, 2, terms=1)
     9*N**9*epsilon**3/pi**8
     """
+    require_chain(chain)
     s, k = integer(s, "s", 1), integer(k, "k", 0)
     if chain.degree_step == 1:
         middle = k * s + (s // 2 or 1)

@@ -26,7 +26,7 @@ from typing import Any
 import symengine as se
 
 from symfpu.algebra.formulas import multiplier_symbol
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.propagation import product_modes
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer, seed_modes
@@ -107,6 +107,7 @@ def leading_term(chain: Chain, seeds: Sequence[int], q: int) -> Any:
     >>> sorted(map(str, leading_term(Chain(N=8, alpha=1), (1,), 2).free_symbols))
     ['A1', 'L_{2}(0)', 'L_{2}(2)', 'Omega_1', 'Omega_2', 'theta1']
     """
+    require_chain(chain)
     modes = _seeds(chain, seeds)
     if integer(q, "q", 1) not in modes and q in _closure(chain, set(modes)):
         for k in range(1, 2 * chain.N):
@@ -171,6 +172,7 @@ def lemma_holds(chain: Chain, seeds: Sequence[int], order: int) -> dict[int, boo
     >>> lemma_holds(Chain(N=6, beta=1), (2, 3), 2)
     {1: True, 4: True, 5: True}
     """
+    require_chain(chain)
     series = lindstedt(chain, seeds, order=order)
     predicted = leading_terms(chain, seeds, order)
     first = _first_orders(series)

@@ -11,7 +11,7 @@ import symengine as se
 
 from symfpu.algebra.expansion import Expansion
 from symfpu.algebra.formulas import Multiplier, NodeTable, multiplier_symbol
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.length import HighMode, mode_label, seed_labels
 from symfpu.chain.symbols import chosen_symbol, linear_symbol
 from symfpu.errors import InputError
@@ -81,6 +81,7 @@ def closed_form(
     >>> closed_form(se.Symbol("Omega_{N-1}"), Chain("N", alpha=1), (1,))
     2*cos((1/2)*pi/N)
     """
+    require_chain(chain)
     if frequencies not in ("chosen", "linear"):
         allowed = "'chosen' or 'linear'"
         raise InputError("frequencies", frequencies, allowed, "leave it out for symbols")

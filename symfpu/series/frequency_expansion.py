@@ -31,7 +31,7 @@ import symengine as se
 from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
 from symfpu.algebra.program_values import ancestors, values_in
 from symfpu.algebra.selection import fold
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.length import mode_label, mode_of
 from symfpu.chain.symbols import amplitude_symbol, linear_symbol
 from symfpu.errors import InputError
@@ -69,6 +69,7 @@ def frequency_expansion(
     >>> frequency_expansion(Chain(N=32, beta=1), (5,), 5, 1)
     (9/8)*A5**2*Omega_5**3
     """
+    require_chain(chain)
     order = integer(order, "order", 0)
     start = lindstedt(chain, seeds, order=0, ring="nested")
     if len(start.seeds) > MOST_SEEDS:

@@ -17,7 +17,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, SymfpuError, UndeterminedAmplitudes
 from symfpu.numbers.arithmetic import (
@@ -304,8 +304,7 @@ def checked_plan(
     digits: int | None,
 ) -> Plan:
     """The arguments checked."""
-    if not isinstance(chain, Chain):
-        raise InputError("chain", chain, "a Chain", "make one: Chain(N=32, alpha='0.33')")
+    require_chain(chain)
     order = integer(order, "order", 0)
     K = integer(order if frequency_order is None else frequency_order, "frequency_order", 0)
     coordinates = order if coordinate_order is None else coordinate_order

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.grading import Ints
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import (
     DOUBLES,
@@ -427,6 +427,7 @@ class FourierTorus(QuasiPeriodic):
     digits: int | None = None
 
     def __post_init__(self) -> None:
+        require_fixed_ends(self.chain)
         phases = {q: self.phases.get(q, 0.0) for q in self.seeds}
         object.__setattr__(self, "phases", phases)
         show(self, "cosines", "phases")

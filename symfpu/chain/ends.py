@@ -1,0 +1,234 @@
+"""What the ends of a chain decide: its particles, its modes and the transform between them.
+
+Fixed ends: N - 1 particles between two walls, standing waves q = 1 .. N-1. A ring: N particles
+whose total momentum and mean position are zero, travelling waves q = -(N-1)/2 .. N/2 without 0.
+With `turn` the period of wave numbers, 2N or N, both have Omega_q = 2 |sin(q pi / turn)|, and the
+chain of N bonds with fixed ends is the odd part of the ring of 2N.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    Arithmetic,
+    Numbers,
+    arithmetic_of,
+    sine_matrix,
+)
+from symfpu.numbers.typed import distinct_modes, seed_modes
+
+SYMMETRY = 1e-9  # of modes q and -q, relative, above which no real displacement has them
+
+
+class Ends(ABC):
+    """N bonds with ends of one kind. Arrays end in the axis of particles or of modes."""
+
+    name: ClassVar[str]
+
+    def __init__(self, N: int) -> None:
+        self.N = N
+
+    @property
+    @abstractmethod
+    def turn(self) -> int:
+        """The number of bonds after which a wave repeats, whatever its mode."""
+
+    @property
+    @abstractmethod
+    def modes(self) -> tuple[int, ...]:
+        """The wave numbers, ascending: what the axis of modes means."""
+
+    @property
+    @abstractmethod
+    def particles(self) -> int:
+        """How many particles move."""
+
+    @abstractmethod
+    def positions(self, Q: Numbers, numbers: Arithmetic) -> Numbers:
+        """Displacements x of mode coordinates Q."""
+
+    @abstractmethod
+    def coordinates(self, x: Numbers, numbers: Arithmetic) -> Numbers:
+        """Mode coordinates Q of displacements x."""
+
+    @abstractmethod
+    def stretches(self, x: Numbers) -> Numbers:
+        """Stretches r_j = x_(j+1) - x_j of all N bonds."""
+
+    @abstractmethod
+    def forces(self, tension: Numbers) -> Numbers:
+        """Forces on the particles, from the tensions of the N bonds."""
+
+    @abstractmethod
+    def state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
+        """Mode coordinates or momenta as an array, and its arithmetic.
+
+        InputError if they are none.
+        """
+
+    def displacements(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
+        """Displacements or velocities of the particles, likewise."""
+        return self._real(values, argument, self.particles, "put the particles last")
+
+    def _real(
+        self, values: ArrayLike, argument: str, length: int, advice: str
+    ) -> tuple[Numbers, Arithmetic]:
+        numbers = arithmetic_of(values)
+        try:
+            array = numbers.array(values)
+        except (TypeError, ValueError) as error:
+            allowed = "an array of real numbers"
+            raise InputError(argument, values, allowed, "pass numbers") from error
+        self._require_length(array, argument, length, advice)
+        return array, numbers
+
+    def _require_length(
+        self, array: Numbers, argument: str, length: int, advice: str
+    ) -> None:
+        if array.ndim == 0 or array.shape[-1] != length:
+            name = "N-1" if length < self.N else "N"
+            allowed = f"an array whose last axis has length {name} = {length}"
+            raise InputError(argument, array.shape, allowed, advice)
+
+    @abstractmethod
+    def seeds(self, values: Iterable[object]) -> tuple[int, ...]:
+        """Distinct modes, in the given order; InputError for what is none."""
+
+    def place(self, q: int) -> int:
+        """Where a mode stands on the axis of modes."""
+        return self.modes.index(q)
+
+
+class FixedEnds(Ends):
+    """x_0 = x_N = 0."""
+
+    name = "fixed"
+
+    @property
+    def turn(self) -> int:
+        return 2 * self.N
+
+    @property
+    def modes(self) -> tuple[int, ...]:
+        return tuple(range(1, self.N))
+
+    @property
+    def particles(self) -> int:
+        return self.N - 1
+
+    def seeds(self, values: Iterable[object]) -> tuple[int, ...]:
+        return seed_modes(values, self.N)
+
+    def positions(self, Q: Numbers, numbers: Arithmetic) -> Numbers:
+        """The transform is orthogonal and its own inverse (Eq. lintra)."""
+        from scipy.fft import dst
+
+        if numbers is not DOUBLES:
+            return numbers.dot(Q, sine_matrix(self.N))
+        return np.asarray(dst(Q, type=1, norm="ortho", axis=-1))
+
+    def coordinates(self, x: Numbers, numbers: Arithmetic) -> Numbers:
+        return self.positions(x, numbers)
+
+    def stretches(self, x: Numbers) -> Numbers:
+        fixed_end = np.zeros_like(x[..., :1])
+        with_ends = np.concatenate([fixed_end, x, fixed_end], axis=-1)
+        return np.diff(with_ends, axis=-1)
+
+    def forces(self, tension: Numbers) -> Numbers:
+        return np.diff(tension, axis=-1)
+
+    def state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
+        return self._real(values, argument, self.N - 1, "put the modes last")
+
+
+class PeriodicEnds(Ends):
+    """x_(j+N) = x_j: x_j = N^(-1/2) sum_q Q_q e^(2 pi i q j / N), Q_(-q) = conj Q_q; in doubles."""
+
+    name = "periodic"
+
+    @property
+    def turn(self) -> int:
+        return self.N
+
+    @property
+    def modes(self) -> tuple[int, ...]:
+        first, last = -((self.N - 1) // 2), self.N // 2
+        return tuple(q for q in range(first, last + 1) if q)
+
+    @property
+    def particles(self) -> int:
+        return self.N
+
+    def seeds(self, values: Iterable[object]) -> tuple[int, ...]:
+        modes = self.modes
+        inside = f"distinct integers in {modes[0]}..{modes[-1]}"
+        allowed = f"{inside} without 0 (a ring of N = {self.N})"
+        return distinct_modes(values, modes, allowed)
+
+    def positions(self, Q: Numbers, numbers: Arithmetic) -> Numbers:
+        """Real, with the mean zero."""
+        whole = np.zeros((*Q.shape[:-1], self.N), dtype=complex)
+        whole[..., np.array(self.modes)] = Q
+        return np.asarray(np.fft.ifft(whole, norm="ortho", axis=-1).real)
+
+    def coordinates(self, x: Numbers, numbers: Arithmetic) -> Numbers:
+        """The mean is left out."""
+        whole = np.fft.fft(x, norm="ortho", axis=-1)
+        return np.asarray(whole[..., np.array(self.modes)])
+
+    def stretches(self, x: Numbers) -> Numbers:
+        return np.asarray(np.roll(x, -1, axis=-1) - x)
+
+    def forces(self, tension: Numbers) -> Numbers:
+        return np.asarray(tension - np.roll(tension, 1, axis=-1))
+
+    def state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
+        self._require_doubles(values, argument)
+        try:
+            array = np.asarray(values, dtype=complex)
+        except (TypeError, ValueError) as error:
+            allowed = "an array of complex numbers"
+            raise InputError(
+                argument, type(values).__name__, allowed, "pass numbers"
+            ) from error
+        self._require_length(array, argument, self.N - 1, "put the modes last")
+        self._require_symmetry(array, argument)
+        return array, DOUBLES
+
+    def displacements(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
+        self._require_doubles(values, argument)
+        return super().displacements(values, argument)
+
+    def _require_doubles(self, values: ArrayLike, argument: str) -> None:
+        if arithmetic_of(values) is not DOUBLES:
+            advice = "round the state of a ring to doubles"
+            raise InputError(argument, "of many digits", "an array of doubles", advice)
+
+    def _require_symmetry(self, array: Numbers, argument: str) -> None:
+        """Displacements are real: Q_(-q) = conj Q_q."""
+        opposite = [self.place(q if 2 * q == self.N else -q) for q in self.modes]
+        excess = np.abs(array - array[..., opposite].conj()).max(initial=0.0)
+        if not excess <= SYMMETRY * np.abs(array).max(initial=0.0):
+            allowed = "modes with Q_(-q) = conj Q_q, those of real displacements"
+            advice = "take chain.modes(x) of the displacements"
+            raise InputError(argument, f"off by {excess:.3g}", allowed, advice)
+
+
+ENDS: dict[Any, type[Ends]] = {kind.name: kind for kind in (FixedEnds, PeriodicEnds)}
+
+
+def checked_ends(ends: object) -> str:
+    """The name of a kind of ends; InputError for any other."""
+    if not isinstance(ends, str) or ends not in ENDS:
+        allowed = " or ".join(map(repr, ENDS))
+        raise InputError("ends", ends, allowed, "leave it out for fixed ends")
+    return ends
