@@ -183,6 +183,14 @@ class Chain:
         return self.potential.coefficient(3), self.potential.coefficient(4)
 
     @property
+    def typed_law(self) -> dict[str, str]:
+        """The law of its bonds as files name it: alpha and beta, or the potential as typed."""
+        if not self.fpu:
+            return {"potential": self.potential.text}
+        names = zip(("alpha", "beta"), self.couplings, strict=True)
+        return {name: decimal(coupling) for name, coupling in names}
+
+    @property
     def alpha(self) -> Fraction:
         """c_3 of an FPU chain; InputError for another, by its name."""
         return self.couplings[0]

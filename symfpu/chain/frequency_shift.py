@@ -1,6 +1,7 @@
 """The lowest frequency correction at the linear frequencies, in closed form (Appendix A).
 
-This is Eq. omamid with the right bracket, and Eq. omebguess where only beta acts.
+This is Eq. omamid with the right bracket, and Eq. omebguess where only beta acts. In other
+potentials alpha is c_3 and beta is c_4: no higher coefficient enters at this order.
 
 For generic modes, mu^2 omega_q^(2) = (alpha^2/2N) Omega_q [(1 - 3/4 Omega_q^2) A_q^2 - sum_n
 Omega_n^2 A_n^2] and mu omega_q^(1) = (beta/2N) Omega_q [9/8 Omega_q^2 A_q^2 + 3/2 sum_n Omega_n^2
@@ -8,8 +9,8 @@ A_n^2], n running over the other seeds. Special modes: for q = N/2 the first bra
 and 9/8 becomes 3/4; for q + n = N the term of n is halved in both. N/3 and 2N/3 are not special.
 
 At beta = 2 alpha^2/3 both add up to (alpha^2/2N) Omega_q A_q^2, for every mode and without any
-other seed: there the FPU chain agrees with the Toda lattice to fourth order, whose Birkhoff
-normal form of this order is a sum of squares of the single actions.
+other seed: these are the couplings of the Toda lattice, whose Birkhoff normal form of this order
+is a sum of squares of the single actions.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def shift_coefficients(
 def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, float]:
     """omega_q - Omega_q of every seed to lowest order, for seed amplitudes by mode; dimensionless.
 
-    chain : alpha, beta or both; alpha counts with alpha^2, beta with its first power.
+    chain : of any potential; c_3 counts with its square, c_4 with its first power.
     amplitudes : A_q by seed, of cos(omega_q t + phi_q) in Q_q.
 
     Returns the shifts by seed, the lowest terms of Eq. omeser with the linear frequencies in the
@@ -61,8 +62,9 @@ def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, 
     seeds = seed_modes(amplitudes, chain.N)
     numbers = {q: float(exact(amplitudes[q], f"amplitudes, A_{q}")) for q in seeds}
     linear = chain.frequencies()
-    quadratic = float(chain.alpha**2) / (2 * chain.N)
-    cubic = float(chain.beta) / (2 * chain.N)
+    alpha, beta = (chain.potential.coefficient(n) for n in (3, 4))
+    quadratic = float(alpha**2) / (2 * chain.N)
+    cubic = float(beta) / (2 * chain.N)
     shifts = {}
     for q in seeds:
         total = 0.0
@@ -79,7 +81,7 @@ def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, 
 def frequency_shift_formula(chain: Chain, seeds: Sequence[int | str]) -> dict[int, Any]:
     """omega_q - Omega_q of every seed to lowest order, as expressions in Omega_q, A{q}.
 
-    chain : its exact couplings stand in the formulas.
+    chain : its exact c_3 and c_4 stand in the formulas.
     seeds : distinct modes, whose amplitudes A{q} are symbols; all is dimensionless. Where N is a
         symbol also 'N-1', 'N-2', ...; the formulas then hold from some N on, where the modes are
         none of the special ones but for q + n = N.
@@ -87,7 +89,7 @@ def frequency_shift_formula(chain: Chain, seeds: Sequence[int | str]) -> dict[in
     Returns expressions by seed, the closed form (ours) of the lowest terms of Eq. omeser, whose
     numbers `frequency_shift` gives. Raises InputError for modes outside the chain or repeated.
 
-    >>> frequency_shift_formula(Chain(N=12, alpha=1, beta="2/3"), (1, 5))
+    >>> frequency_shift_formula(Chain(N=12, potential="toda:1"), (1, 5))
     {1: (1/24)*A1**2*Omega_1, 5: (1/24)*A5**2*Omega_5}
     >>> frequency_shift_formula(Chain("N", beta=1), (1,))
     {1: (9/16)*A1**2*Omega_1**3/N}
@@ -96,8 +98,9 @@ def frequency_shift_formula(chain: Chain, seeds: Sequence[int | str]) -> dict[in
     symbolic = chain.symbolic
     modes = seed_labels(seeds) if symbolic else seed_modes(seeds, chain.N)
     length = se.Symbol("N") if symbolic else chain.N
-    quadratic = rational(chain.alpha**2) / (2 * length)
-    cubic = rational(chain.beta) / (2 * length)
+    alpha, beta = (chain.potential.coefficient(n) for n in (3, 4))
+    quadratic = rational(alpha**2) / (2 * length)
+    cubic = rational(beta) / (2 * length)
     formulas = {}
     for q in modes:
         terms = []

@@ -37,6 +37,7 @@ from symfpu.dynamics.frame_run import FrameRun, seconds_a_step
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import particle_scheme
 from symfpu.dynamics.tangent import moving_frame, step_length
+from symfpu.dynamics.wells import require_within_walls
 from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path, digest, seconds_between
 from symfpu.files.progress import Progress, unheard
@@ -211,6 +212,7 @@ def alignment_indices(
     marks = _marks(last, h, _samples(samples))
     drawn = integer(seed, "seed", 0)
     frame = moving_frame(chain, Q, P, *_random_frame(count, n, drawn), h, scheme=integrator)
+    require_within_walls(chain, np.asarray(Q, dtype=np.float64))
     if not np.any(frame.x) and not np.any(frame.p):
         raise InputError(
             "Q, P", 0.0, "a state other than the equilibrium", "start from an orbit"

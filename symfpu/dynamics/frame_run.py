@@ -26,7 +26,6 @@ from symfpu.files.checkpoint import (
 )
 from symfpu.files.interruption import kept_run
 from symfpu.files.progress import Progress
-from symfpu.numbers.typed import decimal
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -38,7 +37,8 @@ TRIAL = 0.2  # seconds of a measurement
 class OrbitLost(SymfpuError):
     """An orbit that went to infinity.
 
-    Orbits of the alpha model over its barrier do so, and any orbit with too long a step.
+    Orbits of the alpha model over its barrier do so, and any orbit with too long a step, which
+    may also take a bond across the wall of its potential.
 
     Raised by `alignment_indices`. Ours.
 
@@ -87,8 +87,7 @@ class FrameRun:
         chain = frame.chain
         known = {
             "N": chain.N,
-            "alpha": decimal(chain.alpha),
-            "beta": decimal(chain.beta),
+            **chain.typed_law,
             "vectors": frame.vectors,
             "scheme": frame.scheme.name,
             "step": repr(self.step),

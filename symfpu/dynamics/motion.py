@@ -15,6 +15,7 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
 
 Floats = NDArray[np.float64]
+CLOSED = 16  # a tension by exponentials and logarithms, in those of a polynomial, about
 
 
 class Motion:
@@ -51,6 +52,26 @@ class Motion:
             Q = np.asarray(self.chain.modes(state[:, 0, 1:-1]))
             P = np.asarray(self.chain.modes(state[:, 1, 1:-1]))
         return Q, P
+
+    @property
+    def moves_a_kick(self) -> int:
+        """The work of a kick: particles moved, or products of two modes."""
+        chain = self.chain
+        if self.scheme.in_modes:
+            terms = [place for place, c in enumerate(self.law, 1) if c]
+            return int(chain.N**2 * terms[-1])
+        return chain.N if chain.potential.degree else CLOSED * chain.N
+
+    def beyond_wall(self, row: Floats) -> bool:
+        """Whether the coordinates of one orbit have a bond beyond the wall of its potential.
+
+        What is no number has been there.
+        """
+        wall = self.chain.potential.wall
+        if wall is None:
+            return False
+        stretches = np.diff(row[0])
+        return not bool(((stretches - wall) * np.sign(wall) < 0).all())
 
     def advance(self, state: Floats, steps: int, each: Callable[..., Any]) -> list[int]:
         """Moves all orbits; returns the steps done by each of them before it had to stop.

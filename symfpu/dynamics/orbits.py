@@ -23,14 +23,14 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.averages import LOOKS, RunningAverages, steps_between_looks
 from symfpu.dynamics.motion import Motion
 from symfpu.dynamics.scheme import Scheme
-from symfpu.dynamics.schemes import scheme_named
+from symfpu.dynamics.schemes import scheme_of
 from symfpu.dynamics.stopping import (
     EscapedOrbit,
     OrbitStopped,
     UnstableStep,
     require_stable,
-    stretch_bounds,
 )
+from symfpu.dynamics.wells import leaving_bond, require_within_walls, stretch_bounds
 from symfpu.errors import InputError
 from symfpu.files.archive import BundleError
 from symfpu.files.checkpoint import (
@@ -44,7 +44,7 @@ from symfpu.files.checkpoint import (
 )
 from symfpu.files.interruption import kept_run
 from symfpu.files.progress import Progress, unheard
-from symfpu.numbers.typed import decimal, integer
+from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -133,7 +133,8 @@ def integrate(
     Q, P : shapes (..., N-1), many orbits at once.
     T : a time, negative for the past.
     step : its length is cut to a whole number of steps.
-    scheme : of symfpu.dynamics.schemes; aba864_modes splits harmonic + anharmonic, others T + V.
+    scheme : of symfpu.dynamics.schemes; aba864_modes splits harmonic + anharmonic and is for
+        polynomial potentials, others split T + V.
     samples : about how many, log-spaced from one step to T and 0; or times between 0 and T, shape
         (S,), each moved to the nearest step.
     averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if
@@ -152,14 +153,14 @@ def integrate(
     factor 1/2; the averages here are of Eq. harmonicene, with it.
     Raises InputError, also for a file of other parameters or of a longer run, and for times
     before its end that it has not; BundleError for one that is no checkpoint; UnstableStep and
-    EscapedOrbit with time, mode and energy; RunInterrupted, a KeyboardInterrupt, where there is a
-    file.
+    EscapedOrbit with time, mode, bond and energy; RunInterrupted, a KeyboardInterrupt, where there
+    is a file.
 
     >>> integrate(Chain(N=2, beta=1), [0.0], [1.0], 100, step=0.125, samples=4).times
     array([  0.   ,   0.125,   1.125,  10.75 , 100.   ])
     """
     Q, P, T, step = _start(chain, Q, P, T, step)
-    found, workers = scheme_named(scheme), integer(workers, "workers", 1)
+    found, workers = scheme_of(chain, scheme), integer(workers, "workers", 1)
     if not isinstance(averages, bool):
         raise InputError("averages", averages, "True or False", "leave it out")
     stride = steps_between_looks(step) if averages else 1
@@ -243,8 +244,7 @@ class _Run:
         chain, scheme = self.chain, self.scheme
         self.parameters = {
             "N": chain.N,
-            "alpha": decimal(chain.alpha),
-            "beta": decimal(chain.beta),
+            **chain.typed_law,
             "scheme": scheme.name,
             "step": repr(self.step),
             "steps": self.steps,
@@ -296,9 +296,7 @@ class _Run:
         Blocks depend on the chain and the scheme alone, so that an interrupted run rounds like
         one that was not.
         """
-        size = self.chain.N
-        if self.scheme.in_modes:
-            size = self.chain.N**2 * (2 if self.chain.beta else 1)
+        size = self.motion.moves_a_kick
         block = max(1, BLOCK // (size * self.scheme.stages))
         if self.stride:
             block = self.stride * min(LOOKS, max(1, block // self.stride))
@@ -349,13 +347,17 @@ class _Run:
 
     def _stopped_in_block(self, before: Floats, row: int, done: list[int]) -> None:
         """Goes to the last step at which all was well, where the numbers are finite, and raises."""
+        crossed = self.motion.beyond_wall(self.state[row])
         self.state[row] = before[row]
         if done[row] > 1:
             self.motion.move(self.state[row], self.motion.bounds[row], done[row] - 1)
-        self._stop(row, self.done + done[row] - 1, escaped=self.escapes[row])
+        steps = self.done + done[row] - 1
+        self._stop(row, steps, escaped=self.escapes[row], crossed=crossed)
 
-    def _stop(self, row: int, steps: int, *, escaped: bool) -> None:
+    def _stop(self, row: int, steps: int, *, escaped: bool, crossed: bool = False) -> None:
         Q, P = (part[0] for part in self.motion.modes(self.state[row : row + 1]))
+        r, speeds = (np.asarray(self.chain.stretches(part)) for part in (Q, P))
+        bond = leaving_bond(r, speeds, self.motion.bounds[row])
         begun_with = self.start[row] if steps else 0.0
         growth = np.abs(self.chain.harmonic_energies(Q, P) - begun_with)
         place: tuple[int, ...] = ()
@@ -368,6 +370,9 @@ class _Run:
             kind = EscapedOrbit
             reason = "a bond passes the barrier of its potential"
             advice = "start from a state of less energy"
+        elif crossed:
+            wall = f"the wall r = {self.chain.potential.wall:g} of its potential"
+            reason = f"a step of {abs(self.step):.6g} takes bond {bond} across {wall}"
         raise kind(
             reason,
             advice,
@@ -375,6 +380,7 @@ class _Run:
             mode=int(np.argmax(growth)) + 1,
             energy=float(self.chain.energy(Q, P)),
             orbit=place,
+            bond=bond,
         )
 
     def result(self) -> Orbit:
@@ -397,6 +403,7 @@ def _start(
     require_chain(chain)
     chain.positions(Q), chain.positions(P)  # refuses other shapes
     Q, P = np.array(Q, dtype=np.float64), np.array(P, dtype=np.float64)
+    require_within_walls(chain, Q)
     if Q.shape != P.shape:
         advice = "pass one momentum for each coordinate"
         raise InputError("P", P.shape, f"the shape of Q, {Q.shape}", advice)

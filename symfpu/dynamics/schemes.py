@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.aba864 import ABA864, ABA864_MODES
 from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
@@ -14,11 +15,19 @@ SCHEMES = {scheme.name: scheme for scheme in _LIST}
 PARTICLE_SCHEMES = {name: scheme for name, scheme in SCHEMES.items() if not scheme.in_modes}
 
 
-def scheme_named(name: object) -> Scheme:
-    """Any scheme; raises InputError."""
-    if not isinstance(name, str) or name not in SCHEMES:
-        raise InputError("scheme", name, ", ".join(SCHEMES), "choose one of them")
-    return SCHEMES[name]
+def scheme_of(chain: Chain, name: object) -> Scheme:
+    """Any scheme that moves such a chain; raises InputError.
+
+    In modes kicks are products of modes: of polynomials in the stretches.
+    """
+    polynomial = chain.potential.degree is not None
+    known = SCHEMES if polynomial else PARTICLE_SCHEMES
+    if isinstance(name, str) and name in known:
+        return known[name]
+    advice = "choose one of them"
+    if isinstance(name, str) and name in SCHEMES:
+        advice += f": {name} is for polynomial potentials, not for {chain.potential}"
+    raise InputError("scheme", name, ", ".join(known), advice)
 
 
 def particle_scheme(name: object) -> Scheme:

@@ -6,25 +6,11 @@ and numbers that overflow.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
-
 import numpy as np
-from numpy.typing import NDArray
 
-from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
 from symfpu.errors import SymfpuError
-
-Floats = NDArray[np.float64]
-
-# by which the energy of one bond may exceed the total: far beyond the error of any step worth
-# taking
-FACTOR = 4.0
-# bond stretches, where nothing else bounds them: fourth powers do not overflow much before
-LARGEST_STRETCH = 1e100
-BISECTIONS = 60
 
 
 class OrbitStopped(SymfpuError):
@@ -34,7 +20,8 @@ class OrbitStopped(SymfpuError):
 
     time : of the stop; mode : of the largest (growth of) harmonic energy; energy : total;
         dimensionless.
-    orbit : its place among several, () for one.
+    orbit : its place among several, () for one. bond : j of the bond that went too far, its
+        stretch r_j = x_(j+1) - x_j, j = 0 .. N-1; None where no bond is to blame.
     """
 
     def __init__(
@@ -46,8 +33,10 @@ class OrbitStopped(SymfpuError):
         mode: int,
         energy: float,
         orbit: tuple[int, ...] = (),
+        bond: int | None = None,
     ) -> None:
         self.time, self.mode, self.energy, self.orbit = time, mode, energy, orbit
+        self.bond = bond
         place = f" of orbit {orbit}" if orbit else ""
         super().__init__(
             f"{reason} at time {time:.10g} in mode {mode}{place}, energy {energy:.6g}; {advice}"
@@ -57,18 +46,19 @@ class OrbitStopped(SymfpuError):
 class EscapedOrbit(OrbitStopped):
     """A bond went over a barrier of its potential, beyond which it falls without bound.
 
-    Raised by `integrate`; the potential is that of Eq. fpuham.
+    Raised by `integrate`; the potential is that of Eq. fpuham or another of `Chain`.
 
-    time, mode, energy, orbit : as in OrbitStopped; dimensionless.
+    time, mode, energy, orbit, bond : as in OrbitStopped; dimensionless.
     """
 
 
 class UnstableStep(OrbitStopped):
     """The step is beyond the stability of the scheme, or too coarse to conserve the energy.
 
-    Raised by `integrate`. Ours.
+    A step too coarse may also take a bond across the wall of its potential, r = -1 of Lennard and
+    Jones, which the motion never reaches. Raised by `integrate`. Ours.
 
-    time, mode, energy, orbit : as in OrbitStopped; dimensionless.
+    time, mode, energy, orbit, bond : as in OrbitStopped; dimensionless.
     """
 
 
@@ -86,56 +76,3 @@ def require_stable(chain: Chain, scheme: Scheme, step: float, energy: float) -> 
             mode=mode,
             energy=energy,
         )
-
-
-def potential(chain: Chain, r: float) -> float:
-    """V(r) of one bond."""
-    return float(bonds.potential(chain.law(), r))
-
-
-def stretch_bounds(chain: Chain, energy: float) -> tuple[float, float, bool]:
-    """Stretches that no bond of an orbit of this energy leaves, and whether it can escape.
-
-    A bond leaves them only if the orbit escapes or the step is too coarse.
-
-    While all bonds are inside their wells each holds no more than the whole energy: it stays
-    where V <= energy. Where that is beyond a barrier, the bond may pass, and has passed for good
-    where V < 0. With beta > 0 there are no such barriers: V is bounded below.
-    """
-    left, right = (_bound(chain, energy, side) for side in (-1.0, 1.0))
-    return -left[0], right[0], left[1] or right[1]
-
-
-def _bound(chain: Chain, energy: float, side: float) -> tuple[float, bool]:
-    def V(distance: float) -> float:
-        return potential(chain, side * distance)
-
-    alpha, beta = side * float(chain.alpha), float(chain.beta)
-    square = alpha * alpha - 4 * beta  # V' = r (1 + alpha r + beta r^2)
-    slopes = [-alpha + sign * math.sqrt(square) for sign in (1, -1)] if square >= 0 else []
-    turns = [2 / slope for slope in slopes if slope > 0]
-    if beta > 0:
-        depth = max([0.0, *(-V(turn) for turn in turns)])
-        most = FACTOR * (energy + chain.N * depth)
-        outermost = max(turns, default=0.0)
-        return _first(lambda r: V(r) >= most, outermost, LARGEST_STRETCH), False
-    top = min([*turns, LARGEST_STRETCH])
-    height, enough = V(top), FACTOR * energy
-    if height >= enough:
-        return _first(lambda r: V(r) >= enough, 0.0, top), False
-    if height > energy:
-        return top, False
-    return _first(lambda r: V(r) < 0, top, LARGEST_STRETCH), True
-
-
-def _first(reached: Callable[[float], bool], low: float, high: float) -> float:
-    """Where a condition begins to hold between low and high, by bisection.
-
-    It goes by the logarithm while the numbers are far apart.
-    """
-    for _ in range(2 * BISECTIONS):
-        middle = (
-            math.sqrt(max(low, 1e-200) * high) if high > 2 * low else 0.5 * (low + high)
-        )
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return high

@@ -25,7 +25,7 @@ from symfpu.families.continuation import (
     series_member,
 )
 from symfpu.files.writing import write_text
-from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
+from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.tori.torus import QTorus
 
@@ -87,8 +87,7 @@ class Plan:
         start = {str(q): repr(a) for q, a in self.start.items()}
         return {
             "N": chain.N,
-            "alpha": decimal(chain.alpha),
-            "beta": decimal(chain.beta),
+            **chain.typed_law,
             "seeds": list(self.seeds),
             "ratio": ratio,
             "ratio_of": "mode energies" if self.energies else "amplitudes",

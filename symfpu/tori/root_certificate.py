@@ -124,11 +124,11 @@ def frequency_balls(series: LindstedtSeries) -> list[list[Polynomial]]:
 
 
 def _coupling_ball(chain: Chain) -> Any:
-    """mu: alpha/sqrt(2N), or beta/(2N) where only beta acts."""
-    if not chain.alpha:
-        return ball(chain.beta / (2 * chain.N))
+    """mu: c_3/sqrt(2N), or c_4/(2N) where V is even."""
+    if chain.potential.even:
+        return ball(chain.unit_coupling / (2 * chain.N))
     root = flint.arb(2 * chain.N).sqrt()
-    return ball(chain.alpha) / root
+    return ball(chain.unit_coupling) / root
 
 
 def _squared_frequency(series: LindstedtSeries, i: int, linear: Any) -> list[Polynomial]:

@@ -21,7 +21,8 @@ from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import integrate
 from symfpu.dynamics.schemes import SCHEMES
-from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep, potential, stretch_bounds
+from symfpu.dynamics.stopping import EscapedOrbit, OrbitStopped, UnstableStep
+from symfpu.dynamics.wells import potential, stretch_bounds
 from symfpu.errors import InputError, RunInterrupted
 from symfpu.files.archive import BundleError
 from symfpu.refinement.tori import refine
