@@ -111,6 +111,7 @@ def test_a_temporary_folder_is_of_this_user_alone(tmp_path, monkeypatch, mode):
     temporary_folder.cache_clear()
 
 
+@pytest.mark.long
 def test_everything_runs_without_the_compiler():
     """NUMBA_DISABLE_JIT=1: the same numbers to rounding, without a warning."""
     compiled, interpreted = run(EVERYTHING), run(EVERYTHING, NUMBA_DISABLE_JIT="1")

@@ -139,10 +139,10 @@ RUNS = {"c": from_c, "fortran": from_fortran, "numpy": from_numpy, "mpmath": fro
 
 
 def pairs():
-    """Every language with every case; the large one takes seconds but in C."""
+    """Every language with every case; the default run has what does not take seconds, and one case of each compiler."""
     for language in LANGUAGES:
         for name in CASES:
-            slow = name == "large" and language != "c"
+            slow = name == "large" or (language in ("c", "fortran") and name != "both couplings")
             yield pytest.param(language, name, marks=[pytest.mark.long] * slow)
 
 

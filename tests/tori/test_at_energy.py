@@ -77,7 +77,7 @@ def test_many_digits(harmonic):
     [
         (Chain(16, alpha="0.33"), (2,), "1e8"),
         (Chain(8, beta="-0.5"), (3,), "100"),
-        (Chain(8, alpha="0.3", beta="-0.2"), (1, 7), "100"),
+        pytest.param(Chain(8, alpha="0.3", beta="-0.2"), (1, 7), "100", marks=pytest.mark.long),
     ],
     ids=str,
 )
