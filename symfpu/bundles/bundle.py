@@ -27,14 +27,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.grading import canonical_count
-from symfpu.bundles.entries import chain_entries, chain_from, number, number_entry
+from symfpu.bundles.entries import (
+    UnknownPotential,
+    chain_entries,
+    chain_from,
+    number,
+    number_entry,
+)
 from symfpu.bundles.refined import refined_entries, refined_from
 from symfpu.bundles.solutions import FOURIER, solution_entries, solution_from
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.archive import (
     FORMAT,
-    SCHEMA,
     Archive,
     BundleError,
     Json,
@@ -68,6 +73,7 @@ PACKAGES = (
     "llvmlite",
 )
 RADII = "<f8"
+SOLUTIONS, POTENTIALS = 2, 3  # schemas that began with these
 REFINED_KIND = "refined"  # kind of a torus without a series
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
@@ -187,7 +193,9 @@ def _parts(result: LindstedtSeries | QuasiPeriodic) -> tuple[Json, dict[str, Arr
 
 def _schema(result: LindstedtSeries | QuasiPeriodic) -> int:
     """The least that a reader has to know: what the first version wrote, it still reads."""
-    return 1 if isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)) else SCHEMA
+    if not result.chain.fpu:
+        return POTENTIALS
+    return 1 if isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)) else SOLUTIONS
 
 
 def load(path: Path | str) -> Bundle:
@@ -218,6 +226,9 @@ def load(path: Path | str) -> Bundle:
             return _bundle(path, Archive(path, stream))
         except BundleError:
             raise
+        except UnknownPotential as error:
+            problem = f"{error}, which this symfpu does not know"
+            raise BundleError(path, problem, "update symfpu") from None
         # whatever zipfile, zlib, json, numpy and our own checks say to a damaged or hostile file
         except Exception as error:
             reason = " ".join(f"{type(error).__name__} {error}".split())[:LONGEST_REASON]

@@ -9,10 +9,19 @@ import mpmath
 from mpmath import libmp
 
 from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.chain.potentials.potential import Potential
+from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.errors import InputError
 from symfpu.files.archive import Json
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import fraction, fraction_text, integer
+
+
+class UnknownPotential(ValueError):
+    """The potential of a file that this symfpu cannot make."""
+
+    def __init__(self, written: str) -> None:
+        super().__init__(f"holds a chain of the potential {written!r:.60}")
 
 
 def number_entry(value: Any) -> str | dict[str, str]:
@@ -48,16 +57,35 @@ def number(entry: Any) -> Any:
 
 
 def chain_entries(chain: Chain) -> Json:
-    """A chain as exact text."""
+    """A chain as exact text: alpha and beta of an FPU chain, the potential of any other."""
     require_fixed_ends(chain)
-    return {
-        "N": int(chain.N),
-        "alpha": fraction_text(chain.alpha),
-        "beta": fraction_text(chain.beta),
-    }
+    N = int(chain.N)
+    if chain.fpu:
+        alpha, beta = map(fraction_text, chain.couplings)
+        return {"N": N, "alpha": alpha, "beta": beta}
+    return {"N": N, "potential": potential_entry(chain.potential)}
+
+
+def potential_entry(potential: Potential) -> str:
+    """A potential as it is typed; InputError where that would not give it back."""
+    try:
+        kept = potential_of_text(potential.text) == potential
+    except InputError:
+        kept = False
+    if not kept:
+        allowed = "a potential that its text gives back"
+        advice = "take shorter numbers for it"
+        raise InputError("potential", potential.text, allowed, advice)
+    return potential.text
 
 
 def chain_from(body: Json) -> Chain:
-    """The chain of such entries."""
+    """The chain of such entries; UnknownPotential where its potential is no known one."""
     N = integer(body["N"], "N", 2)
-    return Chain(N, fraction(body["alpha"]), fraction(body["beta"]))
+    if "potential" not in body:
+        return Chain(N, fraction(body["alpha"]), fraction(body["beta"]))
+    written = str(body["potential"])
+    try:
+        return Chain(N, potential=potential_of_text(written))
+    except InputError as error:
+        raise UnknownPotential(written) from error

@@ -13,8 +13,14 @@ from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.breathers.floquet import floquet
 from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
-from symfpu.cli.terminal import (
+from symfpu.cli.chains import (
+    AlphaOption,
+    BetaOption,
     BondsOption,
+    PotentialOption,
+    chain_of,
+)
+from symfpu.cli.terminal import (
     JsonOption,
     optional,
     path_named,
@@ -40,8 +46,9 @@ def breather(
     context: typer.Context,
     bonds: BondsOption,
     seed: Annotated[str, typer.Option("--seed", help="Seed mode.", metavar="Q")],
-    alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
-    beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
+    alpha: AlphaOption = "0",
+    beta: BetaOption = "0",
+    potential: PotentialOption = None,
     omega: Annotated[
         str | None, typer.Option(help="The breather of this frequency.", metavar="W")
     ] = None,
@@ -65,7 +72,7 @@ def breather(
     as_json: JsonOption = False,
 ) -> None:
     """A q-breather, found from exactly one of --omega, --amplitude and --energy."""
-    chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
+    chain = chain_of(bonds, alpha, beta, potential)
     mode, places = whole("seed", seed), optional("digits", digits)
     _require_one(omega, amplitude, energy)
     file = None if output is None else output_file(path_named("output", output))

@@ -10,10 +10,15 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.bundles.bundle import load, save
-from symfpu.chain.chain import Chain
+from symfpu.cli.chains import (
+    AlphaOption,
+    BetaOption,
+    BondsOption,
+    PotentialOption,
+    chain_of,
+)
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
-    BondsOption,
     FileArgument,
     JsonOption,
     SeedsOption,
@@ -163,8 +168,9 @@ def follow_family(
     to_energy: Annotated[
         str, typer.Option(help="Energy H up to which the family is followed.", metavar="E")
     ],
-    alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
-    beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
+    alpha: AlphaOption = "0",
+    beta: BetaOption = "0",
+    potential: PotentialOption = None,
     harmonic: Annotated[
         bool,
         typer.Option(
@@ -205,7 +211,7 @@ def follow_family(
     as_json: JsonOption = False,
 ) -> None:
     """A family of tori from small energy on, past folds and past the end of its series."""
-    chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
+    chain = chain_of(bonds, alpha, beta, potential)
     chosen = tuple(whole_numbers("seeds", seeds))
     folder = None if output is None else output_folder(path_named("output", output))
     with progress_bar("first member", lambda: _kept(folder)) as advance:

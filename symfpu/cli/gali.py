@@ -35,8 +35,8 @@ from symfpu.dynamics.alignment import (
 from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
-from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import fifteen_digits
+from symfpu.reports.torus import chain_record
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
@@ -132,7 +132,6 @@ def _print_estimate(seconds: float, as_json: bool) -> None:
 
 def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
     """The result for JSON; `dimension` is null where nothing is decided, and in chaos."""
-    chain = found.chain
     dimension = found.dimension()
     decided = dimension.value is not None
     slopes = {}
@@ -143,10 +142,7 @@ def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
     for k, index in enumerate(found.log10_gali[-1].tolist(), start=2):
         indices[str(k)] = fifteen_digits(index)
     return {
-        "N": chain.N,
-        "alpha": decimal(chain.alpha),
-        "beta": decimal(chain.beta),
-        "seeds": list(seeds),
+        **chain_record(found.chain, seeds),
         "time": fifteen_digits(float(found.times[-1])),
         "scheme": found.scheme.name,
         "step": fifteen_digits(found.step),

@@ -10,9 +10,9 @@ from typing import Annotated
 import typer
 
 from symfpu.chain.propagation import excitation_sequence
+from symfpu.cli.chains import BondsOption
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
-    BondsOption,
     JsonOption,
     OrderOption,
     SeedsOption,

@@ -37,12 +37,6 @@ from rich.text import Text
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
 
-BondsOption = Annotated[
-    str,
-    typer.Option(
-        "-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"
-    ),
-]
 SeedsOption = Annotated[
     str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")
 ]

@@ -9,9 +9,14 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.bundles.bundle import Bundle, load, save
-from symfpu.chain.chain import Chain
-from symfpu.cli.terminal import (
+from symfpu.cli.chains import (
+    AlphaOption,
+    BetaOption,
     BondsOption,
+    PotentialOption,
+    chain_of,
+)
+from symfpu.cli.terminal import (
     FileArgument,
     JsonOption,
     OrderOption,
@@ -56,8 +61,9 @@ def solve(
         ),
     ],
     order: OrderOption,
-    alpha: Annotated[str, typer.Option(help="Cubic coupling.")] = "0",
-    beta: Annotated[str, typer.Option(help="Quartic coupling.")] = "0",
+    alpha: AlphaOption = "0",
+    beta: BetaOption = "0",
+    potential: PotentialOption = None,
     frequency_order: Annotated[
         str | None,
         typer.Option(
@@ -91,7 +97,7 @@ def solve(
 
     With a verdict on its series.
     """
-    chain = Chain(whole("N", bonds), alpha=alpha, beta=beta)
+    chain = chain_of(bonds, alpha, beta, potential)
     chosen = whole_numbers("seeds", seeds)
     highest = optional("frequency-order", frequency_order)
     cut = optional("coordinate-order", coordinate_order)

@@ -26,10 +26,8 @@ from symfpu.numbers.typed import integer
 Array = NDArray[Any]
 Json = dict[str, Any]
 
-FORMAT, SCHEMA = (
-    "symfpu bundle",
-    2,
-)  # the newest that is read; files say the oldest that reads them
+FORMAT = "symfpu bundle"
+SCHEMA = 3  # the newest that is read; files say the oldest that reads them
 DOCUMENT = "bundle.json"
 COMPRESSION = 1  # mantissas are noise; the zeros between them are gone at the first level
 CHUNK = 1 << 22

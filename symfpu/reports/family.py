@@ -88,6 +88,8 @@ def refined_text(torus: RefinedTorus) -> str:
         f"Newton steps {len(torus.steps)}, the last change {torus.steps[-1].change:.1g}"
     )
     lines = [f"verdict: {record['verdict']}"]
+    if "potential" in record:
+        lines.append(f"potential          {record['potential']}")
     for q, w in record["frequencies"].items():
         lines.append(f"seed {q:<4} omega {w:<28} amplitude {amplitudes[q]:.15g}")
     lines.append(f"energy H           {record['energy']:.15g}   (at t = 0)")

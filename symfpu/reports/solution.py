@@ -32,8 +32,7 @@ def solution_record(
     return {
         "kind": type(solution).__name__,
         "N": chain.N,
-        "alpha": decimal(chain.alpha),
-        "beta": decimal(chain.beta),
+        **chain.typed_law,
         "seeds": list(solution.seeds),
         "frequencies": {str(q): decimal(omega) for q, omega in frequencies},
         "digits": digits,
@@ -63,9 +62,9 @@ def solution_text(record: dict[str, Any]) -> str:
     """The same for a reader, from the record."""
     average = record["average_harmonic_energy"]
     digits = "doubles" if record["digits"] is None else f"{record['digits']} digits"
-    lines = [
-        f"{record['kind']}, N={record['N']}, alpha={record['alpha']}, beta={record['beta']}"
-    ]
+    names = [name for name in ("alpha", "beta", "potential") if name in record]
+    law = ", ".join(f"{name}={record[name]}" for name in names)
+    lines = [f"{record['kind']}, N={record['N']}, {law}"]
     for q, amplitude in record["amplitudes"].items():
         omega = record["frequencies"][q]
         shown = omega if len(omega) <= SHOWN_FREQUENCY else f"{omega[:SHOWN_FREQUENCY]}.."

@@ -118,7 +118,7 @@ class Bomb:
 
 
 CHANGES = {
-    "newer": (lambda m, b: b.update(schema=3), r"newer symfpu \(schema 3; this one reads 2\); update symfpu"),
+    "newer": (lambda m, b: b.update(schema=4), r"newer symfpu \(schema 4; this one reads 3\); update symfpu"),
     "newer without a digest": (lambda m, b: b.update(schema=7, arrays={}), "newer symfpu"),
     "schema 0": (lambda m, b: b.update(schema=0), "schema"),
     "schema as text": (lambda m, b: b.update(schema="1"), "schema"),

@@ -1,0 +1,32 @@
+"""The chain on the command line: its options, and the chain that they name."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from symfpu.chain.chain import Chain
+from symfpu.cli.terminal import whole
+
+BondsOption = Annotated[
+    str,
+    typer.Option(
+        "-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"
+    ),
+]
+AlphaOption = Annotated[str, typer.Option("--alpha", help="Cubic coupling.")]
+BetaOption = Annotated[str, typer.Option("--beta", help="Quartic coupling.")]
+PotentialOption = Annotated[
+    str | None,
+    typer.Option(
+        "--potential",
+        help="Any other law of a bond, such as toda:0.33, poly:0.33,0,1/5 or lj:12,6.",
+        metavar="V",
+    ),
+]
+
+
+def chain_of(bonds: str, alpha: str, beta: str, potential: str | None) -> Chain:
+    """The chain that these options name; InputError for what is none."""
+    return Chain(whole("N", bonds), alpha, beta, potential=potential)
