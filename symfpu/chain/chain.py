@@ -22,7 +22,7 @@ from symfpu.chain.ends import ENDS, Ends, checked_ends
 from symfpu.chain.length import LENGTH, SymbolicLength
 from symfpu.chain.potentials.polynomial import Polynomial
 from symfpu.chain.potentials.potential import Potential, checked_coupling
-from symfpu.chain.potentials.typed import potential_of_text
+from symfpu.chain.potentials.typed import potential_given
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import (
     DOUBLES,
@@ -95,7 +95,7 @@ class Chain:
             typed = ", ".join(map(decimal, couplings))
             allowed = "couplings or a potential, not both"
             raise InputError("alpha, beta", typed, allowed, f"leave them to {potential}")
-        object.__setattr__(self, "potential", _potential(potential))
+        object.__setattr__(self, "potential", potential_given(potential))
         object.__setattr__(self, "ends", checked_ends(ends))
         if symbolic and self.periodic:
             advice = "put a number for N: series of a ring hold for one N"
@@ -471,13 +471,3 @@ def _squared(values: Numbers) -> Numbers:
     if values.dtype == complex:
         return np.asarray(values.real**2 + values.imag**2)
     return np.asarray(values**2)
-
-
-def _potential(value: object) -> Potential:
-    """A potential as it was given, or as typed."""
-    if isinstance(value, str):
-        value = potential_of_text(value)
-    if not isinstance(value, Potential):
-        allowed = "a potential, or a text such as 'toda:1/2'"
-        raise InputError("potential", value, allowed, "write potential=toda('1/2')")
-    return value

@@ -3,37 +3,45 @@
 The Proposition counts every folded sum of signed seeds. In the beta model that is too many: where
 l + m = N, the sums q - l - m + n = 0 and q + l + m + n = 2N hold together for q = N - n, enter
 C_qlmn with opposite signs, and cancel. The corrected rule follows the couplings B and C
-themselves.
+themselves, and for other potentials those of every power of the stretch that acts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from itertools import combinations_with_replacement, product
+from itertools import product
 
 from symfpu.algebra.selection import fold
+from symfpu.chain.potentials.potential import Potential
+from symfpu.chain.powers import powers_of
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer, seed_modes
 
 LARGEST_ORDER = 10_000
-MODELS = ("alpha", "beta", "alpha+beta")
 
 
 def reachable_modes(
-    N: int, seeds: Iterable[int], order: int, *, model: str = "alpha"
+    N: int,
+    seeds: Iterable[int],
+    order: int,
+    *,
+    model: str | None = None,
+    potential: Potential | str | None = None,
 ) -> list[tuple[int, ...]]:
     """The sets M_0 .. M_order of Eq. app as ascending tuples.
 
     The values 0 and N are left out: they are no modes.
 
     N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
-    model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers.
+    model : 'alpha' (default), 'beta' or 'alpha+beta'. potential : in its place, that of any chain,
+    such as toda("1/2") or "toda:1/2". All are dimensionless.
 
-    M_k holds the folded sums of r signed seeds, r = k + 1 (alpha; alpha and beta together),
-    2k + 1 (beta).
+    M_k holds the folded sums of r signed seeds, r = k + 1 (alpha; alpha and beta together, and
+    potentials that are not even), 2k + 1 (beta, even potentials). It is empty where no powers of
+    the force make terms of the order, as at order 1 where c_3 = 0.
     Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an
-    unknown model.
+    unknown model or potential.
 
     >>> reachable_modes(32, (3, 5), 1)
     [(3, 5), (2, 6, 8, 10)]
@@ -45,15 +53,12 @@ def reachable_modes(
         raise InputError(
             "order", order, f"at most {LARGEST_ORDER}", "the sets repeat long before"
         )
-    if model not in MODELS:
-        raise InputError(
-            "model", model, "'alpha', 'beta' or 'alpha+beta'", "pass one of these"
-        )
+    powers = powers_of(model, potential)
     sums = {fold(q, N) for q in modes}
     reached = []
-    for _k in range(order + 1):
-        reached.append(tuple(sorted(sums - {0, N})))
-        for _ in range(2 if model == "beta" else 1):
+    for there_are_terms in powers.orders_reached(order):
+        reached.append(tuple(sorted(sums - {0, N})) if there_are_terms else ())
+        for _ in range(powers.step):
             # folding is a map of the sums modulo 2N and sign, so it may be done at every step
             sums = {
                 fold(total + sign * q, N)
@@ -65,22 +70,31 @@ def reachable_modes(
 
 
 def excitation_sequence(
-    N: int, seeds: Iterable[int], order: int, *, model: str = "alpha"
+    N: int,
+    seeds: Iterable[int],
+    order: int,
+    *,
+    model: str | None = None,
+    potential: Potential | str | None = None,
 ) -> list[tuple[int, ...]]:
     """The sets D_0 .. D_order of Eq. dk, ascending: the modes the rule excites at each order.
 
     N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
-    model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers.
+    model : 'alpha' (default), 'beta' or 'alpha+beta'. potential : in its place, that of any chain,
+    such as toda("1/2") or "toda:1/2". All are dimensionless.
 
-    This is the rule of the Proposition for the sequence of Definition 2; which modes are excited
-    in fact is a question for exact arithmetic.
+    This is the rule of the Proposition for the sequence of Definition 2, for other potentials as
+    `reachable_modes` reads it (ours); which modes are excited in fact is a question for exact
+    arithmetic.
     Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an
-    unknown model.
+    unknown model or potential.
 
     >>> excitation_sequence(32, (1, 2, 3, 4), 2)
     [(1, 2, 3, 4), (5, 6, 7, 8), (9, 10, 11, 12)]
+    >>> excitation_sequence(32, (3,), 3, potential="poly:0,1,1")
+    [(3,), (), (9,), (6, 12)]
     """
-    return first_orders(reachable_modes(N, seeds, order, model=model))
+    return first_orders(reachable_modes(N, seeds, order, model=model, potential=potential))
 
 
 def first_orders(sets: Iterable[Iterable[int]]) -> list[tuple[int, ...]]:
@@ -97,15 +111,21 @@ def first_orders(sets: Iterable[Iterable[int]]) -> list[tuple[int, ...]]:
 
 
 def coupled_modes(
-    N: int, seeds: Iterable[int], order: int, *, model: str = "alpha"
+    N: int,
+    seeds: Iterable[int],
+    order: int,
+    *,
+    model: str | None = None,
+    potential: Potential | str | None = None,
 ) -> list[tuple[int, ...]]:
     """The modes that the couplings let into each order 0 .. order.
 
     Outside these sets a term is identically zero.
 
-    Order k holds the modes q with B_q m1 m2 != 0 (alpha) or C_q m1 m2 m3 != 0 (beta) for some m_i
-    in the sets of orders l_i with sum l_i = k - 1, and the seeds, which frequency corrections can
-    keep. Raises InputError.
+    Order k holds the modes q with a coupling to some m_1 .. m_n, one from the set of each of n
+    orders with the sum k - (n-1)/step, of a power r^n of the force that acts: B_q m1 m2 != 0 and
+    sum k - 1 (alpha), C_q m1 m2 m3 != 0 and sum k - 1 (beta), C and sum k - 2 where both act. And
+    the seeds, which frequency corrections can keep. Raises InputError.
 
     >>> coupled_modes(6, (2, 3), 2, model="beta")
     [(2, 3), (1, 2, 3, 5), (1, 2, 3, 4, 5)]
@@ -113,54 +133,89 @@ def coupled_modes(
     N = integer(N, "N", 2)
     modes = seed_modes(seeds, N)
     order = integer(order, "order", 0)
-    if model not in MODELS[:2]:
-        raise InputError("model", model, "'alpha' or 'beta'", "pass one of these")
-    factors = 2 if model == "alpha" else 3
+    powers = powers_of(model, potential)
+    adds = list(powers.acting(order))
     sets: list[set[int]] = [set(modes)]
     for k in range(1, order + 1):
         reached = set(modes)
-        for orders in combinations_with_replacement(range(k), factors):
-            if sum(orders) == k - 1:
-                for chosen in {
-                    tuple(sorted(c)) for c in product(*(sets[j] for j in orders))
-                }:
-                    reached |= product_modes(N, chosen)
+        for added in adds:
+            for orders in _orders(k - added, powers.factors(added)):
+                reached |= _products(N, [sets[j] for j in orders], reached)
         sets.append(reached)
     return [tuple(sorted(members)) for members in sets]
 
 
+def _orders(total: int, count: int, most: int | None = None) -> Iterator[tuple[int, ...]]:
+    """So many whole numbers with the sum, descending, none above the most."""
+    if count == 0:
+        if total == 0:
+            yield ()
+        return
+    highest = total if most is None else min(total, most)
+    for first in range(highest, -1, -1):
+        for rest in _orders(total - first, count - 1, first):
+            yield first, *rest
+
+
+def _products(N: int, sets: list[set[int]], known: set[int]) -> set[int]:
+    """The modes, besides the known, to which one mode of each set couples."""
+    sums = sets[0]
+    for others in sets[1:]:
+        signed = {sign * q for q in others for sign in (1, -1)}
+        sums = {fold(total + q, N) for total in sums for q in signed}
+    # no couplings but these: where all are known, their signs do not matter
+    possible = sums - {0, N} - known
+    found: set[int] = set()
+    for chosen in {tuple(sorted(c)) for c in product(*sets)} if possible else ():
+        found |= product_modes(N, chosen) - known
+        if found == possible:
+            break
+    return found
+
+
 def coupling_sequence(
-    N: int, seeds: Iterable[int], order: int, *, model: str = "alpha"
+    N: int,
+    seeds: Iterable[int],
+    order: int,
+    *,
+    model: str | None = None,
+    potential: Potential | str | None = None,
 ) -> list[tuple[int, ...]]:
-    """The corrected rule: modes by the first order at which the couplings B, C let them in.
+    """The corrected rule: modes by the first order at which the couplings let them in.
 
     N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
-    model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers.
+    model : 'alpha' (default), 'beta' or 'alpha+beta'. potential : in its place, that of any chain,
+    such as toda("1/2") or "toda:1/2". All are dimensionless.
 
-    The couplings are those of Eq. transa. Differs from the Proposition in the beta model where
-    two seeds have the sum N: there opposite terms of C cancel.
+    The couplings are those of Eq. transa, and for higher powers their like, of every power of the
+    stretch that acts in the force. Differs from the Proposition in the beta model where two seeds
+    have the sum N: there opposite terms of C cancel.
     Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an
-    unknown model.
+    unknown model or potential.
 
     >>> excitation_sequence(6, (2, 3), 2, model="beta")
     [(2, 3), (1, 4, 5), ()]
     >>> coupling_sequence(6, (2, 3), 2, model="beta")
     [(2, 3), (1, 5), (4,)]
     """
-    return first_orders(coupled_modes(N, seeds, order, model=model))
+    return first_orders(coupled_modes(N, seeds, order, model=model, potential=potential))
 
 
 @lru_cache(maxsize=1 << 18)
 def product_modes(N: int, modes: tuple[int, ...]) -> frozenset[int]:
-    """The modes q whose coupling B or C with these two or three is not zero.
+    """The modes q whose coupling B, C, ... with these two, three, ... is not zero.
 
     For B this is Eq. wg of Appendix B.
     """
-    counts: dict[int, int] = {}
     first, *others = modes
-    for signs in product((1, -1), repeat=len(others)):
-        total = abs(first + sum(s * m for s, m in zip(signs, others, strict=True)))
-        q = fold(total, N)
-        # cos(2N - q) theta = -cos q theta; total < 3N
-        counts[q] = counts.get(q, 0) + (1 if total <= N else -1)
+    counts = {first: 1}  # of cosines of the bonds, by wave number
+    for m in others:
+        longer: dict[int, int] = {}
+        for q, count in counts.items():
+            for total in (q + m, abs(q - m)):
+                # cos (2N - q) theta = -cos q theta on the bonds
+                sign = 1 if total <= N else -1
+                folded = fold(total, N)
+                longer[folded] = longer.get(folded, 0) + sign * count
+        counts = longer
     return frozenset(q for q, count in counts.items() if count and 0 < q < N)

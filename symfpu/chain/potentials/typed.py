@@ -46,3 +46,13 @@ def potential_of_text(text: str) -> Potential:
     except TypeError as error:
         allowed = f"a potential with its numbers, {EXAMPLES}"
         raise InputError("potential", text, allowed, "give the numbers it takes") from error
+
+
+def potential_given(value: object) -> Potential:
+    """A potential as it was given, or as typed; InputError for anything else."""
+    if isinstance(value, str):
+        value = potential_of_text(value)
+    if not isinstance(value, Potential):
+        allowed = "a potential, or a text such as 'toda:1/2'"
+        raise InputError("potential", value, allowed, "write potential=toda('1/2')")
+    return value
