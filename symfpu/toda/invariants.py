@@ -1,0 +1,187 @@
+"""Gaps, actions and frequencies of Toda's chain for a state of any chain with fixed ends.
+
+A chain that is not Toda's is judged by the Toda chain with the same cubic term: a = c_3. Along its
+orbits the gaps drift, and how much they do shows how far the orbit is from an integrable one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from symfpu.chain.chain import Chain, require_chain
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    MULTIPRECISION,
+    Arithmetic,
+    Numbers,
+    with_digits,
+)
+from symfpu.numbers.typed import Number, decimal, exact, integer
+from symfpu.toda.curve import SpectralCurve
+from symfpu.toda.discriminant import Edges
+from symfpu.toda.lax import jacobi_entries, odd_edges
+
+MOST_DIGITS = 10000
+LARGEST_EXPONENT = 300.0  # of e^(a r): beyond it the edges of bands are out of range
+
+
+@dataclass(frozen=True)
+class TodaInvariants:
+    """The gaps of a state, its actions and frequencies in the Toda chain; see `toda_invariants`.
+
+    N, a, digits : as asked, a exact. gaps, actions, frequencies : by mode, shapes (N-1,), doubles
+    or mpf. Dimensionless.
+    """
+
+    N: int
+    a: Fraction
+    digits: int | None
+    gaps: Numbers
+    actions: Numbers
+    frequencies: Numbers
+
+    def __repr__(self) -> str:
+        widest = int(np.argmax(self.gaps)) + 1
+        largest = float(self.gaps[widest - 1])
+        total = float(self.actions.sum())
+        return (
+            f"TodaInvariants(N={self.N}, a={decimal(self.a)}, widest gap {largest:.3g} "
+            f"of mode {widest}, sum of actions {total:.3g})"
+        )
+
+
+def toda_gaps(
+    chain: Chain,
+    Q: ArrayLike,
+    P: ArrayLike,
+    *,
+    a: Number | None = None,
+    digits: int | None = None,
+) -> Numbers:
+    """All gaps of Toda's spectral curve for states of a chain with fixed ends, one a mode.
+
+    A gap is an interval of lambda between two bands of Flaschka's periodic matrix of the ring of 2N
+    particles whose odd states are those of the chain. They are constant along orbits of the Toda
+    chain, and all are zero but those of the seeds on a torus of it. Ring gaps q and 2N - q are
+    equal, that is gap q here, and gap N is closed always. For small amplitudes the gap is
+    sqrt(2/N) |a| Omega_q A_q: the harmonic energy of mode q is N gap^2 / (4 a^2).
+
+    chain : a Chain; Q, P : mode coordinates and momenta, shapes (..., N-1): states, orbits, tori.
+    a : of V = (e^(2ar) - 1 - 2ar)/(4a^2); default: the chain's c_3 (alpha). digits : None for
+        doubles, exact to a few times 1e-16 absolutely; else mpf with so many decimal places.
+
+    Returns an array (..., N-1). Dimensionless. Raises InputError for arguments outside their
+    ranges and states beyond the range of e^(a r). Source: ours, after Flaschka; see
+    `symfpu.toda.lax`.
+
+    >>> toda_gaps(Chain(4, alpha="1/2"), [0.1, 0, 0], [0, 0, 0.02]).round(5)
+    array([0.02706, 0.0009 , 0.00707])
+    """
+    numbers = _arithmetic(digits)
+    coupling = _coupling(chain, a)
+    with numbers.context(digits):
+        _, upper, lower = _edges(chain, Q, P, coupling, numbers)
+        gaps = upper - lower
+    return with_digits(gaps, digits)
+
+
+def toda_invariants(
+    chain: Chain,
+    Q: ArrayLike,
+    P: ArrayLike,
+    *,
+    a: Number | None = None,
+    digits: int | None = None,
+) -> TodaInvariants:
+    """Gaps, actions and frequencies of one state in the Toda chain, from its spectral curve.
+
+    chain, a, digits : as in `toda_gaps`; Q, P : of one state, shapes (N-1,).
+
+    The action of a mode is, for small amplitudes, its harmonic energy divided by its frequency; the
+    frequency is dH/dI, and where a gap is closed that of small oscillations. Dimensionless.
+
+    Returns TodaInvariants. Raises InputError as `toda_gaps` does, and BandsTooNarrow at energies so
+    large that a band cannot be told from a point. Source: ours; see `symfpu.toda.curve`.
+
+    >>> toda_invariants(Chain(4, alpha="1/2"), [0.1, 0, 0], [0, 0, 0.02])
+    TodaInvariants(N=4, a=0.5, widest gap 0.0271 of mode 1, sum of actions 0.00393)
+    """
+    numbers = _arithmetic(digits)
+    coupling = _coupling(chain, a)
+    with numbers.context(digits):
+        top, upper, lower = _edges(chain, Q, P, coupling, numbers)
+        if top.ndim:
+            advice = "pass one state; toda_gaps takes many"
+            raise InputError("Q", upper.shape, f"shape ({chain.N - 1},)", advice)
+        bands = Edges(
+            centres=upper**2 + lower**2 - 1,
+            half_widths=(upper - lower) * (upper + lower),
+            top=2 * top[()] ** 2 - 1,
+            bottom=numbers.number(Fraction(-1)),
+        )
+        curve = SpectralCurve(bands, chain.N, True, coupling, numbers)
+        return TodaInvariants(
+            N=chain.N,
+            a=coupling,
+            digits=digits,
+            gaps=with_digits(upper - lower, digits),
+            actions=with_digits(curve.actions(), digits),
+            frequencies=with_digits(curve.frequencies(), digits),
+        )
+
+
+def _arithmetic(digits: int | None) -> Arithmetic:
+    if digits is None:
+        return DOUBLES
+    if integer(digits, "digits", 1) > MOST_DIGITS:
+        raise InputError("digits", digits, f"at most {MOST_DIGITS}", "ask for fewer digits")
+    return MULTIPRECISION
+
+
+def _coupling(chain: Chain, a: Number | None) -> Fraction:
+    """a as given, or the cubic coupling of the chain."""
+    require_chain(chain)
+    if chain.symbolic:
+        raise InputError(
+            "chain", chain, "a chain of some length", "give N by chain.at(N=...)"
+        )
+    coupling = chain.couplings[0] if a is None else exact(a, "a")
+    if coupling == 0:
+        allowed = "a number other than zero"
+        advice = "name the Toda chain to compare with: a chain without cubic term has none"
+        raise InputError("a", a, allowed, advice)
+    return coupling
+
+
+def _edges(
+    chain: Chain, Q: ArrayLike, P: ArrayLike, a: Fraction, numbers: Arithmetic
+) -> tuple[Numbers, Numbers, Numbers]:
+    """Outer edges (...), upper and lower edges of the gaps (..., N-1)."""
+    stretches = chain.stretches(_read(Q, "Q", numbers))
+    momenta = chain.positions(_read(P, "P", numbers))
+    if stretches.shape[:-1] != momenta.shape[:-1]:
+        shapes = (np.shape(Q), np.shape(P))
+        raise InputError(
+            "Q, P", shapes, "two arrays of one shape", "pass Q and P of a state"
+        )
+    exponents = np.abs(stretches * numbers.number(a))
+    if not numbers.finite(momenta) or not (exponents < LARGEST_EXPONENT).all():
+        largest: Any = exponents.max()
+        allowed = f"|a r| below {LARGEST_EXPONENT} on every bond"
+        raise InputError("a r", float(largest), allowed, "take a smaller state or a")
+    bonds, diagonal = jacobi_entries(stretches, momenta, a, numbers)
+    return odd_edges(bonds, diagonal, numbers)
+
+
+def _read(values: ArrayLike, argument: str, numbers: Arithmetic) -> Numbers:
+    try:
+        return numbers.array(values)
+    except (TypeError, ValueError) as error:
+        allowed = "an array of real numbers"
+        raise InputError(argument, values, allowed, "pass numbers") from error

@@ -1,0 +1,96 @@
+"""Means over a gap: int f(e + x) dx / (pi sqrt(w^2 - x^2)) from -w to w.
+
+With x = w cos(phi) equal weights in phi (Gauss and Chebyshev) converge as rho^(-2m), rho the sum of
+the half axes of the ellipse with foci at the edges of the gap that ends at the next branch point.
+Where a band beside the gap is very narrow, rho is near one and they are too many. Then x = w
+tanh((pi/2) sinh t) with equal steps in t (Takahashi and Mori) converges at a rate that knows the
+width of the band by its logarithm alone. Source: ours.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from symfpu.errors import SymfpuError
+from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
+from symfpu.toda.discriminant import Edges
+
+MOST_NODES = 20000
+DIGITS_OF_DOUBLES = 17
+WIDEST_STRIP = 1.4  # below pi/2, where the map itself is singular
+
+
+class BandsTooNarrow(SymfpuError):
+    """A band is so narrow beside a gap that it cannot be told from a point.
+
+    gap : its number, from 1. Raised by `toda_torus` and `toda_invariants`. Ours.
+    """
+
+    def __init__(self, gap: int) -> None:
+        self.gap = gap
+        super().__init__(
+            f"gap {gap}: the band beside it is too narrow for these digits: ask for more "
+            "digits or for a smaller energy"
+        )
+
+
+def mean_rule(edges: Edges, i: int, numbers: Arithmetic) -> tuple[Numbers, Numbers]:
+    """Offsets x and weights of the mean over gap i, to the precision of the edges.
+
+    The weights sum to one. Raises BandsTooNarrow.
+    """
+    digits = DIGITS_OF_DOUBLES if numbers is DOUBLES else mpmath.mp.dps + 2
+    nepers = digits * np.log(10)
+    excess = _relative_distance(edges, i)
+    if not excess > 0:
+        raise BandsTooNarrow(i + 1)
+    rate = np.log1p(excess + np.sqrt(excess * (2 + excess)))
+    equal = int(np.ceil(nepers / (2 * rate))) + 2
+    half_width = edges.half_widths[i]
+    strip = np.arcsinh(complex(np.log(2 / excess), np.pi) / np.pi).imag
+    step = 2 * np.pi * min(strip, WIDEST_STRIP) / nepers
+    reach = np.arcsinh(2 * nepers / np.pi)
+    graded = int(np.ceil(reach / step))
+    if min(equal, graded) > MOST_NODES:
+        raise BandsTooNarrow(i + 1)
+    if equal <= 2 * graded + 1:
+        return _equal_weights(half_width, equal, numbers)
+    return _graded(half_width, graded, float(step), numbers)
+
+
+def _relative_distance(edges: Edges, i: int) -> float:
+    """From the edge of gap i to the next branch point, in half widths."""
+    e, w = edges.centres, edges.half_widths
+    others = np.nonzero(w)[0]
+    others = others[others != i]
+    distances = [abs(e[l] - e[i]) - w[l] for l in others]
+    nearest = min(edges.top - e[i], e[i] - edges.bottom, *distances)
+    return float((nearest - w[i]) / w[i])
+
+
+def _equal_weights(
+    half_width: Any, count: int, numbers: Arithmetic
+) -> tuple[Numbers, Numbers]:
+    odd = numbers.array(2 * np.arange(count) + 1)
+    cosines = numbers.cos(odd * numbers.pi / (2 * count))
+    return cosines * half_width, cosines * 0 + numbers.array(1) / count
+
+
+def _graded(
+    half_width: Any, count: int, step: float, numbers: Arithmetic
+) -> tuple[Numbers, Numbers]:
+    t = numbers.array(np.arange(-count, count + 1)) * step
+    growth = _exp(t, numbers)
+    bend = _exp((growth - 1 / growth) * (numbers.pi / 4), numbers)
+    offsets = (bend - 1 / bend) / (bend + 1 / bend) * half_width
+    weights = (growth + 1 / growth) / (bend + 1 / bend) * step / 2
+    return offsets, weights
+
+
+def _exp(values: Numbers, numbers: Arithmetic) -> Numbers:
+    if numbers is DOUBLES:
+        return np.asarray(np.exp(values))
+    return np.asarray(np.frompyfunc(mpmath.exp, 1, 1)(values), dtype=object)

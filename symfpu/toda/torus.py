@@ -1,0 +1,249 @@
+"""Tori of the Toda chain on which only the gaps of the seeds are open, with their exact energy.
+
+The heights of the seeds' gaps (`symfpu.toda.discriminant`) are s free numbers, which
+`symfpu.toda.search` finds; all other gaps are closed by construction. The energy needs no integral.
+With the critical points c_j of the discriminant, sum c_j = 0, and its bottom edge
+
+    H = (n/(n-2) sum c_j^2 - n/2) / (2 a^2)    (ring of n),
+    H = -N (1 + bottom) / (4 a^2)              (fixed ends),
+
+by the coefficient of lambda^(n-2), which holds the trace of the squared matrix of Flaschka.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, with_digits
+from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
+from symfpu.toda.curve import SpectralCurve
+from symfpu.toda.inverse import ring_state
+from symfpu.toda.search import Found, Search, guard_digits
+
+MOST_DIGITS = 10000
+
+
+@dataclass(frozen=True)
+class TodaTorus:
+    """A torus of the Toda chain on which only the gaps of the seeds are open; see `toda_torus`.
+
+    N, a, ends, seeds, digits : as asked, a exact. energy : H of the torus. frequencies, actions,
+    gaps, heights : by seed; a gap is an interval of the spectrum of Flaschka's matrix.
+    normal_frequencies : of small oscillations about the torus, by every other mode: the modes turn
+    with e^(i omega t) along it. All numbers are mpf that print `digits` digits and carry some more.
+    Dimensionless.
+    """
+
+    N: int
+    a: Fraction
+    ends: str
+    seeds: tuple[int, ...]
+    digits: int
+    energy: Any
+    frequencies: Mapping[int, Any]
+    actions: Mapping[int, Any]
+    gaps: Mapping[int, Any]
+    heights: Mapping[int, Any]
+    normal_frequencies: Mapping[int, Any]
+    curve: SpectralCurve
+
+    def __repr__(self) -> str:
+        seeds = ",".join(map(str, self.seeds))
+        omega = ", ".join(f"omega_{q} = {self.frequencies[q]}" for q in self.seeds)
+        return (
+            f"TodaTorus(N={self.N}, a={decimal(self.a)}, {self.ends} ends, seeds={seeds}, "
+            f"H = {self.energy}, {omega})"
+        )
+
+    def particles(self, phases: Mapping[int, int] | None = None) -> tuple[Numbers, Numbers]:
+        """Displacements x and momenta p of one state on the torus, as mpf.
+
+        phases : by seed 0 or 1, in half turns; 0 where not named. Phase 0 of a mode is its largest
+            Q_q, 1 its smallest, all at the same time.
+
+        Returns two arrays: fixed ends (N-1,), all momenta zero; ring (N,) with sum x = 0, where the
+        state is even in p and odd in x about particle 0. Raises InputError for other phases.
+        """
+        half_turns = self._half_turns(phases or {})
+        with mpmath.workdps(self._working_digits()):
+            bonds, diagonal = ring_state(self._spectrum(half_turns))
+            a = MULTIPRECISION.number(self.a)
+            stretches = np.array([mpmath.log(2 * b) / a for b in bonds], dtype=object)
+            if self.ends == "fixed":
+                x, p = stretches.cumsum()[: self.N - 1], diagonal[1 : self.N] * 0
+            else:
+                before = np.concatenate([[a * 0], stretches.cumsum()[:-1]])
+                x, p = before - before.sum() / self.N, diagonal / a
+        return with_digits((x, p), self.digits)
+
+    def state(self, phases: Mapping[int, int] | None = None) -> tuple[Numbers, Numbers]:
+        """Mode coordinates Q and momenta P of a state on the torus with fixed ends, shapes (N-1,).
+
+        phases : as in `particles`. Q_q = sqrt(2/N) sum_j x_j sin(q j pi / N); P is zero. Raises
+        InputError for a ring.
+        """
+        if self.ends != "fixed":
+            raise InputError("ends", self.ends, "'fixed'", "take particles() of a ring")
+        x, p = self.particles(phases)
+        with mpmath.workdps(self._working_digits()):
+            j = np.arange(1, self.N)
+            sines = [mpmath.sinpi(mpmath.mpf(k) / self.N) for k in range(2 * self.N)]
+            table = np.array(sines, dtype=object)[np.outer(j, j) % (2 * self.N)]
+            Q = table @ x * mpmath.sqrt(mpmath.mpf(2) / self.N)
+        return with_digits((Q, p), self.digits)
+
+    def _working_digits(self) -> int:
+        return self.digits + guard_digits(list(self.heights.values()))
+
+    def _half_turns(self, phases: Mapping[int, int]) -> dict[int, int]:
+        wrong = set(phases) - set(self.seeds)
+        if wrong:
+            raise InputError(
+                "phases", sorted(wrong), f"seeds {self.seeds}", "name seeds of the torus"
+            )
+        for q, phase in phases.items():
+            if phase not in (0, 1):
+                raise InputError(
+                    f"phases, mode {q}", phase, "0 or 1 half turns", "take 0 or 1"
+                )
+        return {q: int(phases.get(q, 0)) for q in self.seeds}
+
+    def _spectrum(self, half_turns: Mapping[int, int]) -> Numbers:
+        """Eigenvalues without particle 0, each at an edge of its gap."""
+        z = self.curve.edges.centres.copy()
+        sign = -1 if self.a > 0 else 1
+        for q, half_turn in half_turns.items():
+            side = -sign if half_turn else sign
+            z[q - 1] += side * self.curve.edges.half_widths[q - 1]
+        if self.ends == "periodic":
+            return z
+        upper = MULTIPRECISION.sqrt((z + 1) / 2)
+        return np.concatenate([upper, [z[0] * 0], -upper[::-1]])
+
+
+def toda_torus(
+    N: int,
+    a: Number,
+    seeds: Sequence[int],
+    *,
+    frequencies: Sequence[Number] | None = None,
+    actions: Sequence[Number] | None = None,
+    ends: str = "fixed",
+    digits: int = 15,
+) -> TodaTorus:
+    """The torus of the Toda chain with the gaps of the seeds open and all others closed.
+
+    V(r) = (e^(2ar) - 1 - 2ar)/(4a^2), unit masses. It is the exact form of the torus that a series
+    in the seeds' amplitudes begins; its spectral curve gives energy, actions, frequencies of the
+    seeds and of small oscillations to any number of digits.
+
+    N : bonds between fixed ends (modes 1 .. N-1), or particles of the ring. a : not zero, exact
+        (see symfpu.numbers.typed).
+    seeds : distinct gaps, 1 .. N-1. With fixed ends gap q is mode q; on the ring it is the wave
+        cos(2 pi q j / N + omega_q t), N - q its mirror image.
+    frequencies, actions : one of them, by seed in the order of the seeds. In the linear limit an
+        action is the energy of the mode divided by its frequency.
+    ends : "fixed" or "periodic" (momentum and mean stretch zero). digits : of the results.
+
+    Returns TodaTorus. Dimensionless. Raises InputError for arguments outside their ranges and
+    NoTodaTorus where no heights give the frequencies. Source: ours; see `symfpu.toda.curve`.
+
+    >>> toda_torus(8, "1/2", (1,), frequencies=("0.392",), digits=12)
+    TodaTorus(N=8, a=0.5, fixed ends, seeds=1, H = 0.0246829996771, omega_1 = 0.392)
+    """
+    length = integer(N, "N", 2)
+    coupling = exact(a, "a")
+    if coupling == 0:
+        raise InputError("a", a, "a number other than zero", "a = 0 is the harmonic chain")
+    if ends not in ("fixed", "periodic"):
+        raise InputError("ends", ends, "'fixed' or 'periodic'", "choose one of them")
+    if ends == "periodic" and length < 3:
+        raise InputError("N", N, "at least 3 on a ring", "take more particles")
+    listed = seed_modes(seeds, length)
+    places = integer(digits, "digits", 1)
+    if places > MOST_DIGITS:
+        raise InputError("digits", digits, f"at most {MOST_DIGITS}", "ask for fewer digits")
+    given = _given(listed, frequencies, actions)
+    fixed = ends == "fixed"
+    ascending = sorted(zip(listed, given, strict=True))
+    modes, wanted = zip(*ascending, strict=True)
+    search = Search(length, coupling, fixed, modes, wanted, by_action=actions is not None)
+    return _torus(search, search.run(places), places)
+
+
+def _given(
+    seeds: tuple[int, ...],
+    frequencies: Sequence[Number] | None,
+    actions: Sequence[Number] | None,
+) -> tuple[Fraction, ...]:
+    """The numbers asked for, exact and positive."""
+    if (frequencies is None) == (actions is None):
+        both = (frequencies, actions)
+        allowed = "exactly one of the two"
+        raise InputError(
+            "frequencies, actions", both, allowed, "give frequencies= or actions="
+        )
+    name, values = ("frequencies", frequencies) if actions is None else ("actions", actions)
+    assert values is not None
+    if isinstance(values, str) or len(values) != len(seeds):
+        allowed = f"a sequence of {len(seeds)} numbers, one a seed"
+        raise InputError(name, values, allowed, "give one number for every seed")
+    numbers = tuple(exact(value, name) for value in values)
+    for value, number in zip(values, numbers, strict=True):
+        if number <= 0:
+            raise InputError(name, value, "a positive number", "take a larger one")
+    return numbers
+
+
+def _torus(search: Search, found: Found, digits: int) -> TodaTorus:
+    with mpmath.workdps(digits + guard_digits(found.heights[found.heights > 0])):
+        frequencies = found.curve.frequencies()
+        actions = found.curve.actions()
+        gaps = _widths(found.curve)
+        energy = _energy(search, found)
+    seeds = search.seeds
+    others = [q for q in range(1, search.N) if q not in seeds]
+
+    def of(values: Numbers, modes: Sequence[int]) -> dict[int, Any]:
+        return with_digits({q: values[q - 1] for q in modes}, digits)
+
+    return TodaTorus(
+        N=search.N,
+        a=search.a,
+        ends="fixed" if search.fixed else "periodic",
+        seeds=seeds,
+        digits=digits,
+        energy=with_digits(energy, digits),
+        frequencies=of(frequencies, seeds),
+        actions=of(actions, seeds),
+        gaps=of(gaps, seeds),
+        heights=of(found.heights, seeds),
+        normal_frequencies=of(frequencies, others),
+        curve=found.curve,
+    )
+
+
+def _widths(curve: SpectralCurve) -> Numbers:
+    """Gaps in lambda, the spectrum of Flaschka's matrix."""
+    centres, half = curve.edges.centres, curve.edges.half_widths
+    if not curve.fixed:
+        return 2 * half
+    upper = MULTIPRECISION.sqrt((centres + half + 1) / 2)
+    lower = MULTIPRECISION.sqrt((centres - half + 1) / 2)
+    return np.asarray(half / (upper + lower))
+
+
+def _energy(search: Search, found: Found) -> Any:
+    a_square = MULTIPRECISION.number(search.a**2)
+    n = mpmath.mpf(search.N)
+    if search.fixed:
+        return -n * (1 + found.bands.bottom) / (4 * a_square)
+    squares = (found.points**2).sum()
+    return (n / (n - 2) * squares - n / 2) / (2 * a_square)
