@@ -83,6 +83,13 @@ from symfpu.dynamics.alignment import seconds_needed as seconds_needed
 from symfpu.dynamics.orbits import Orbit as Orbit
 from symfpu.dynamics.orbits import integrate as integrate
 
+# the Toda chain, exactly
+from symfpu.integrable.invariants import TodaInvariants as TodaInvariants
+from symfpu.integrable.invariants import toda_gaps as toda_gaps
+from symfpu.integrable.invariants import toda_invariants as toda_invariants
+from symfpu.integrable.torus import TodaTorus as TodaTorus
+from symfpu.integrable.torus import toda_torus as toda_torus
+
 # localization: laws, floors, profiles, growth, recurrence, trials
 from symfpu.localization.floors import coefficient_errors as coefficient_errors
 from symfpu.localization.floors import spectrum_floor as spectrum_floor
@@ -159,6 +166,9 @@ from symfpu.families.family import NotInFamily as NotInFamily
 from symfpu.files.archive import BundleError as BundleError
 from symfpu.localization.recurrence import NoRecurrence as NoRecurrence
 from symfpu.refinement.tori import NoTorus as NoTorus
+from symfpu.integrable.discriminant import NoDiscriminant as NoDiscriminant
+from symfpu.integrable.quadrature import BandsTooNarrow as BandsTooNarrow
+from symfpu.integrable.search import NoTodaTorus as NoTodaTorus
 from symfpu.tori.at_energy import NoTorusAtEnergy as NoTorusAtEnergy
 from symfpu.tori.frequencies import (
     NoSelfConsistentFrequencies as NoSelfConsistentFrequencies,

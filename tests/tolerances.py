@@ -491,3 +491,24 @@ LIMIT_OF_LONG_CHAINS = 1e-9
 
 # A frequency of amplitude 0.2 by its series in the amplitude: the next power is left.
 SMALL_SHIFT_ERROR = 1e-6
+
+# Edges of the bands of Toda's matrices of order ten: eigenvalues of symmetric matrices in doubles.
+GAP = 64 * EPS
+
+# Gaps along orbits of thirty time units, integrated with relative tolerance 1e-13.
+GAP_DRIFT = 1e-11
+
+# The lowest term of an expansion in amplitudes of 1e-6, or actions of 1e-10 and less.
+TODA_LINEAR = 1e-5
+
+# A number printed with twelve decimal places.
+LAST_OF_TWELVE = 0.5001e-12
+
+# What `digits=30` promises of numbers of order ten, one of them a difference of two.
+THIRTY_DIGITS = 1e-28
+
+# A period of a Toda torus, integrated with relative tolerance 1e-13, stretched by the shear of the torus.
+RETURN_OF_TODA = 1e-10
+
+# Eigenvalues of a tangent map over one period that was integrated like that.
+FLOQUET_OF_TODA = 1e-9

@@ -13,6 +13,11 @@ import numpy as np
 TERMS = 24  # of e^x - 1 - x for |x| < 1: enough for long doubles
 
 
+def exp(x: Any) -> Any:
+    """e^x."""
+    return _EXP(x) if _multiprecision(x) else np.exp(x)
+
+
 def expm1(x: Any) -> Any:
     """e^x - 1 without cancellation."""
     return _EXPM1(x) if _multiprecision(x) else np.expm1(x)
@@ -54,6 +59,6 @@ def _expm2(x: Any) -> Any:
     return +value
 
 
-_EXPM1, _LOG1P, _EXPM2 = (
-    np.frompyfunc(f, 1, 1) for f in (mpmath.expm1, mpmath.log1p, _expm2)
+_EXP, _EXPM1, _LOG1P, _EXPM2 = (
+    np.frompyfunc(f, 1, 1) for f in (mpmath.exp, mpmath.expm1, mpmath.log1p, _expm2)
 )

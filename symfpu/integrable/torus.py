@@ -1,7 +1,7 @@
 """Tori of the Toda chain on which only the gaps of the seeds are open, with their exact energy.
 
-The heights of the seeds' gaps (`symfpu.toda.discriminant`) are s free numbers, which
-`symfpu.toda.search` finds; all other gaps are closed by construction. The energy needs no integral.
+The heights of the seeds' gaps (`symfpu.integrable.discriminant`) are s free numbers, which
+`symfpu.integrable.search` finds; all other gaps are closed by construction. The energy needs no integral.
 With the critical points c_j of the discriminant, sum c_j = 0, and its bottom edge
 
     H = (n/(n-2) sum c_j^2 - n/2) / (2 a^2)    (ring of n),
@@ -20,14 +20,17 @@ from typing import Any
 import mpmath
 import numpy as np
 
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, with_digits
 from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
-from symfpu.toda.curve import SpectralCurve
-from symfpu.toda.inverse import ring_state
-from symfpu.toda.search import Found, Search, guard_digits
+from symfpu.integrable.coupling import toda_coupling
+from symfpu.integrable.curve import SpectralCurve
+from symfpu.integrable.inverse import ring_state
+from symfpu.integrable.search import Found, Search, guard_digits
 
 MOST_DIGITS = 10000
+SMALLEST_RING = 3  # particles: of two the mean stretch of both bonds is one number
 
 
 @dataclass(frozen=True)
@@ -65,11 +68,11 @@ class TodaTorus:
     def particles(self, phases: Mapping[int, int] | None = None) -> tuple[Numbers, Numbers]:
         """Displacements x and momenta p of one state on the torus, as mpf.
 
-        phases : by seed 0 or 1, in half turns; 0 where not named. Phase 0 of a mode is its largest
-            Q_q, 1 its smallest, all at the same time.
+        phases : by seed 0 or 1, in half turns; 0 where not named. Phase 0 is that of
+            cos(omega_q t): Q_q is largest; on a ring x_j ~ sin(2 pi q j / N).
 
-        Returns two arrays: fixed ends (N-1,), all momenta zero; ring (N,) with sum x = 0, where the
-        state is even in p and odd in x about particle 0. Raises InputError for other phases.
+        Returns two arrays: fixed ends (N-1,), all momenta zero; ring (N,), where x is odd and p
+        even about particle 0. Raises InputError for other phases.
         """
         half_turns = self._half_turns(phases or {})
         with mpmath.workdps(self._working_digits()):
@@ -79,8 +82,7 @@ class TodaTorus:
             if self.ends == "fixed":
                 x, p = stretches.cumsum()[: self.N - 1], diagonal[1 : self.N] * 0
             else:
-                before = np.concatenate([[a * 0], stretches.cumsum()[:-1]])
-                x, p = before - before.sum() / self.N, diagonal / a
+                x, p = np.append(a * 0, stretches.cumsum()[:-1]), diagonal / a
         return with_digits((x, p), self.digits)
 
     def state(self, phases: Mapping[int, int] | None = None) -> tuple[Numbers, Numbers]:
@@ -129,52 +131,58 @@ class TodaTorus:
 
 
 def toda_torus(
-    N: int,
-    a: Number,
+    chain: Chain,
     seeds: Sequence[int],
     *,
     frequencies: Sequence[Number] | None = None,
     actions: Sequence[Number] | None = None,
+    a: Number | None = None,
     ends: str = "fixed",
     digits: int = 15,
 ) -> TodaTorus:
     """The torus of the Toda chain with the gaps of the seeds open and all others closed.
 
-    V(r) = (e^(2ar) - 1 - 2ar)/(4a^2), unit masses. It is the exact form of the torus that a series
-    in the seeds' amplitudes begins; its spectral curve gives energy, actions, frequencies of the
-    seeds and of small oscillations to any number of digits.
+    It is the exact form of the torus that a series in the seeds' amplitudes begins. Its spectral
+    curve gives energy, actions, and frequencies of the seeds and of small oscillations about it.
 
-    N : bonds between fixed ends (modes 1 .. N-1), or particles of the ring. a : not zero, exact
-        (see symfpu.numbers.typed).
-    seeds : distinct gaps, 1 .. N-1. With fixed ends gap q is mode q; on the ring it is the wave
-        cos(2 pi q j / N + omega_q t), N - q its mirror image.
-    frequencies, actions : one of them, by seed in the order of the seeds. In the linear limit an
-        action is the energy of the mode divided by its frequency.
-    ends : "fixed" or "periodic" (momentum and mean stretch zero). digits : of the results.
+    chain : gives N and, unless given, a = c_3: a Toda chain, or one to compare with Toda's.
+    seeds : distinct modes. With fixed ends gap q of the spectrum is mode q; on a ring of N
+        particles it is the wave cos(2 pi q j / N + omega_q t), and N - q its mirror image.
+    frequencies, actions : one of them, numbers in the order of the seeds. For small amplitudes an
+        action is the harmonic energy of the mode divided by its frequency.
+    a : of V = (e^(2ar) - 1 - 2ar)/(4a^2), not zero. ends : "fixed", or "periodic": a ring of N
+        particles with total momentum and mean stretch zero. digits : of the results.
 
-    Returns TodaTorus. Dimensionless. Raises InputError for arguments outside their ranges and
-    NoTodaTorus where no heights give the frequencies. Source: ours; see `symfpu.toda.curve`.
+    Returns TodaTorus. Dimensionless. Raises InputError for arguments outside their ranges,
+    NoTodaTorus where no torus is found, NoDiscriminant or BandsTooNarrow at energies that are too
+    large. Source: ours; see `symfpu.integrable.curve`.
 
-    >>> toda_torus(8, "1/2", (1,), frequencies=("0.392",), digits=12)
+    >>> from symfpu import Chain, toda, toda_torus
+    >>> chain = Chain(8, potential=toda("1/2"))
+    >>> toda_torus(chain, (1,), frequencies=("0.392",), digits=12)
     TodaTorus(N=8, a=0.5, fixed ends, seeds=1, H = 0.0246829996771, omega_1 = 0.392)
     """
-    length = integer(N, "N", 2)
-    coupling = exact(a, "a")
-    if coupling == 0:
-        raise InputError("a", a, "a number other than zero", "a = 0 is the harmonic chain")
+    coupling = toda_coupling(chain, a)
+    N: int = chain.N
     if ends not in ("fixed", "periodic"):
         raise InputError("ends", ends, "'fixed' or 'periodic'", "choose one of them")
-    if ends == "periodic" and length < 3:
-        raise InputError("N", N, "at least 3 on a ring", "take more particles")
-    listed = seed_modes(seeds, length)
+    if ends == "periodic" and N < SMALLEST_RING:
+        allowed = f"at least {SMALLEST_RING} on a ring"
+        raise InputError("N", N, allowed, "take more particles")
     places = integer(digits, "digits", 1)
     if places > MOST_DIGITS:
         raise InputError("digits", digits, f"at most {MOST_DIGITS}", "ask for fewer digits")
+    listed = seed_modes(seeds, N)
     given = _given(listed, frequencies, actions)
-    fixed = ends == "fixed"
-    ascending = sorted(zip(listed, given, strict=True))
-    modes, wanted = zip(*ascending, strict=True)
-    search = Search(length, coupling, fixed, modes, wanted, by_action=actions is not None)
+    by_seed = sorted(zip(listed, given, strict=True))
+    search = Search(
+        N=N,
+        a=coupling,
+        fixed=ends == "fixed",
+        seeds=tuple(seed for seed, _ in by_seed),
+        given=tuple(number for _, number in by_seed),
+        by_action=actions is not None,
+    )
     return _torus(search, search.run(places), places)
 
 

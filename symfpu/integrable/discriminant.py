@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from symfpu.errors import SymfpuError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
-from symfpu.toda.products import product_of_distances
+from symfpu.integrable.products import product_of_distances
 
 Floats = NDArray[np.float64]
 MOST_STEPS = 200

@@ -37,6 +37,7 @@ import mpmath
 import numpy as np
 
 from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
+from symfpu.numbers.functions import exp
 
 
 def jacobi_entries(
@@ -44,13 +45,7 @@ def jacobi_entries(
 ) -> tuple[Numbers, Numbers]:
     """Flaschka's a_j = e^(a r_j)/2 and b_j = a p_j, shapes as given."""
     scale = numbers.number(a)
-    return _exp(scale * stretches, numbers) / 2, scale * momenta
-
-
-def _exp(values: Numbers, numbers: Arithmetic) -> Numbers:
-    if numbers is DOUBLES:
-        return np.asarray(np.exp(values))
-    return np.asarray(np.frompyfunc(mpmath.exp, 1, 1)(values), dtype=object)
+    return exp(stretches * scale) / 2, momenta * scale
 
 
 def odd_edges(

@@ -16,7 +16,8 @@ import numpy as np
 
 from symfpu.errors import SymfpuError
 from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
-from symfpu.toda.discriminant import Edges
+from symfpu.numbers.functions import exp
+from symfpu.integrable.discriminant import Edges
 
 MOST_NODES = 20000
 DIGITS_OF_DOUBLES = 17
@@ -83,14 +84,8 @@ def _graded(
     half_width: Any, count: int, step: float, numbers: Arithmetic
 ) -> tuple[Numbers, Numbers]:
     t = numbers.array(np.arange(-count, count + 1)) * step
-    growth = _exp(t, numbers)
-    bend = _exp((growth - 1 / growth) * (numbers.pi / 4), numbers)
+    growth = exp(t)
+    bend = exp((growth - 1 / growth) * (numbers.pi / 4))
     offsets = (bend - 1 / bend) / (bend + 1 / bend) * half_width
     weights = (growth + 1 / growth) / (bend + 1 / bend) * step / 2
     return offsets, weights
-
-
-def _exp(values: Numbers, numbers: Arithmetic) -> Numbers:
-    if numbers is DOUBLES:
-        return np.asarray(np.exp(values))
-    return np.asarray(np.frompyfunc(mpmath.exp, 1, 1)(values), dtype=object)

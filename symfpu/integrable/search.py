@@ -18,8 +18,8 @@ import numpy as np
 
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
-from symfpu.toda.curve import SpectralCurve
-from symfpu.toda.discriminant import (
+from symfpu.integrable.curve import SpectralCurve
+from symfpu.integrable.discriminant import (
     Edges,
     Floats,
     critical_points,
@@ -41,7 +41,7 @@ GOOD_REDUCTION = 0.2  # of the residual by one step
 class NoTodaTorus(SymfpuError):
     """No torus with these frequencies or actions was found; raised by `toda_torus`.
 
-    seeds, heights : of the last iterate; residual : relative to what was asked. Ours, dimensionless.
+    seeds, heights : of the last iterate; residual : relative to what was asked. Ours.
     """
 
     def __init__(

@@ -14,9 +14,10 @@ I_k alone is a polynomial f_k of degree n - 2 and, by omega_k = dH/dI_k,
     int_(gap i) F_k / sqrt(Delta^2 - 4) d lambda = 2 pi delta_ik / 2^n.
 
 In the basis prod_(l != m) (lambda - e_l) the integrals form a matrix M, and omega solves
-M^T omega = 2 (1, ..., 1). Substituting lambda = e_i + w_i cos(phi) turns integrals over a gap into means over
-phi (`symfpu.toda.quadrature`). A closed gap has w_i = 0: its row is diagonal, and omega_i is the
-frequency of small oscillations about the torus. No formula asks whether a gap is closed.
+M^T omega = 2 (1, ..., 1). Substituting lambda = e_i + w_i cos(phi) turns integrals over a gap into
+means over phi (`symfpu.integrable.quadrature`). A closed gap has w_i = 0: its row is diagonal, and
+omega_i is the frequency of small oscillations about the torus. No formula asks whether a gap is
+closed.
 
 With C = Delta'/(n 2^n), determined by int_(gap i) C / sqrt(Delta^2 - 4) = 0, (1) becomes
 
@@ -43,8 +44,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
-from symfpu.toda.discriminant import Edges
-from symfpu.toda.quadrature import mean_rule
+from symfpu.integrable.discriminant import Edges
+from symfpu.integrable.quadrature import mean_rule
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ class SpectralCurve:
     def _right(self, columns: NDArray[np.intp]) -> Numbers:
         """2 (1, ..., 1), or sqrt(2) (1, ..., 1) for fixed ends."""
         two = self.numbers.array(np.full(len(columns), 2))
-        return self.numbers.sqrt(two) if self.fixed else np.asarray(two)
+        return np.asarray(self.numbers.sqrt(two) if self.fixed else two)
 
     def _lever(self, i: int, offsets: Numbers) -> Numbers:
         """lambda - lambda(e_i) over z - e_i, at nodes of a gap."""
@@ -112,7 +113,7 @@ class SpectralCurve:
             return offsets * 0 + 1
         above = self.edges.centres[i] + 1
         roots = self.numbers.sqrt(offsets + above) + self.numbers.sqrt(offsets * 0 + above)
-        return 1 / (roots * self.numbers.sqrt(offsets * 0 + 2))
+        return np.asarray(1 / (roots * self.numbers.sqrt(offsets * 0 + 2)))
 
     def _means(self, columns: NDArray[np.intp]) -> Numbers:
         """Rows of M for the open gaps."""

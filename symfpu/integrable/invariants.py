@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from symfpu.chain.chain import Chain, require_chain
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import (
     DOUBLES,
@@ -22,10 +22,11 @@ from symfpu.numbers.arithmetic import (
     Numbers,
     with_digits,
 )
-from symfpu.numbers.typed import Number, decimal, exact, integer
-from symfpu.toda.curve import SpectralCurve
-from symfpu.toda.discriminant import Edges
-from symfpu.toda.lax import jacobi_entries, odd_edges
+from symfpu.numbers.typed import Number, decimal, integer
+from symfpu.integrable.coupling import toda_coupling
+from symfpu.integrable.curve import SpectralCurve
+from symfpu.integrable.discriminant import Edges
+from symfpu.integrable.lax import jacobi_entries, odd_edges
 
 MOST_DIGITS = 10000
 LARGEST_EXPONENT = 300.0  # of e^(a r): beyond it the edges of bands are out of range
@@ -73,18 +74,18 @@ def toda_gaps(
     sqrt(2/N) |a| Omega_q A_q: the harmonic energy of mode q is N gap^2 / (4 a^2).
 
     chain : a Chain; Q, P : mode coordinates and momenta, shapes (..., N-1): states, orbits, tori.
-    a : of V = (e^(2ar) - 1 - 2ar)/(4a^2); default: the chain's c_3 (alpha). digits : None for
+    a : of V = (e^(2ar) - 1 - 2ar)/(4a^2); default: c_3 of the chain. digits : None for
         doubles, exact to a few times 1e-16 absolutely; else mpf with so many decimal places.
 
     Returns an array (..., N-1). Dimensionless. Raises InputError for arguments outside their
     ranges and states beyond the range of e^(a r). Source: ours, after Flaschka; see
-    `symfpu.toda.lax`.
+    `symfpu.integrable.lax`.
 
     >>> toda_gaps(Chain(4, alpha="1/2"), [0.1, 0, 0], [0, 0, 0.02]).round(5)
     array([0.02706, 0.0009 , 0.00707])
     """
     numbers = _arithmetic(digits)
-    coupling = _coupling(chain, a)
+    coupling = toda_coupling(chain, a)
     with numbers.context(digits):
         _, upper, lower = _edges(chain, Q, P, coupling, numbers)
         gaps = upper - lower
@@ -107,13 +108,13 @@ def toda_invariants(
     frequency is dH/dI, and where a gap is closed that of small oscillations. Dimensionless.
 
     Returns TodaInvariants. Raises InputError as `toda_gaps` does, and BandsTooNarrow at energies so
-    large that a band cannot be told from a point. Source: ours; see `symfpu.toda.curve`.
+    large that a band cannot be told from a point. Source: ours; see `symfpu.integrable.curve`.
 
     >>> toda_invariants(Chain(4, alpha="1/2"), [0.1, 0, 0], [0, 0, 0.02])
     TodaInvariants(N=4, a=0.5, widest gap 0.0271 of mode 1, sum of actions 0.00393)
     """
     numbers = _arithmetic(digits)
-    coupling = _coupling(chain, a)
+    coupling = toda_coupling(chain, a)
     with numbers.context(digits):
         top, upper, lower = _edges(chain, Q, P, coupling, numbers)
         if top.ndim:
@@ -142,21 +143,6 @@ def _arithmetic(digits: int | None) -> Arithmetic:
     if integer(digits, "digits", 1) > MOST_DIGITS:
         raise InputError("digits", digits, f"at most {MOST_DIGITS}", "ask for fewer digits")
     return MULTIPRECISION
-
-
-def _coupling(chain: Chain, a: Number | None) -> Fraction:
-    """a as given, or the cubic coupling of the chain."""
-    require_chain(chain)
-    if chain.symbolic:
-        raise InputError(
-            "chain", chain, "a chain of some length", "give N by chain.at(N=...)"
-        )
-    coupling = chain.couplings[0] if a is None else exact(a, "a")
-    if coupling == 0:
-        allowed = "a number other than zero"
-        advice = "name the Toda chain to compare with: a chain without cubic term has none"
-        raise InputError("a", a, allowed, advice)
-    return coupling
 
 
 def _edges(
