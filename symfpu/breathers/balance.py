@@ -3,7 +3,7 @@
 Q_q(t) = sum_n c[n, q-1] cos(n omega t) solves Q'' = chain.accelerations(Q). The unknowns are c
 and sigma = omega^2 - Omega^2 of the seed, so that a small shift loses no digits; one of them,
 sigma or A = c[1, seed-1], is given. Reflection of the chain with a change of sign is half a
-period of the family: only c with q - n seed even (and n odd if alpha = 0) are unknowns.
+period of the family: only c with q - n seed even (and n odd where V is even) are unknowns.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonic
 STEP = 1e-14  # relative Newton step that ends the iteration at once
 ROUNDING_STEP = 1e-9  # the one that ends it when it no longer shrinks
 ITERATIONS = 25
+MOST_POWER = 5  # of the stretches, whose harmonics do not fold
 GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or down
 # change of a coefficient from one guess to its orbit, relative to the largest, that stays on
 # the family
@@ -149,9 +150,21 @@ def unknowns(
     """
     n, q = np.indices((harmonics + 1, chain.N - 1))
     reflected = (q + 1 - n * seed) % 2 == 0
-    in_time = (n % 2 == 1) | (chain.alpha != 0)
+    in_time = (n % 2 == 1) | (not chain.potential.even)
     harmonic, place = np.nonzero(reflected & in_time)
     return harmonic, place
+
+
+def half_period_points(chain: Chain, harmonics: int) -> int:
+    """Into how many parts half a period is cut for the force up to a harmonic.
+
+    Of r^n harmonics from 2 points - harmonics on would fold onto those: (n + 1) harmonics / 2 + 1
+    points are enough for powers up to n. What still folds of powers above MOST_POWER is as small
+    as that power of the last harmonics, which are at TAIL.
+    """
+    degree = chain.potential.degree or MOST_POWER + 1
+    power = min(max(degree - 1, 3), MOST_POWER)
+    return (power + 1) * harmonics // 2 + 1
 
 
 class Balance:
@@ -170,7 +183,7 @@ class Balance:
         self.first = int(np.flatnonzero(is_first)[0])
         # of every bond by a unit of each mode
         self.stretch = chain.stretches(np.eye(chain.N - 1))
-        points = 2 * harmonics + 1  # enough for cubic products
+        points = half_period_points(chain, harmonics)
         k = np.arange(points + 1)
         ends = np.where(k % points == 0, 0.5, 1.0)
         self.table = np.cos(np.pi / points * np.outer(k, k))
@@ -415,7 +428,7 @@ def _cosines(chain: Chain, seed: int, guess: ArrayLike | QuasiPeriodic) -> Float
 
 
 @np.errstate(
-    over="ignore", invalid="ignore"
+    over="ignore", invalid="ignore", divide="ignore"
 )  # iterates that run away are refused by their size
 def orbit_near(
     chain: Chain,

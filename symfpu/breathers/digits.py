@@ -29,7 +29,7 @@ from symfpu.breathers.balance import (
     relative_heights,
     unknowns,
 )
-from symfpu.breathers.fixed_force import FixedForce, Integers
+from symfpu.breathers.fixed_force import FixedForce, Integers, highest_product
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers
 from symfpu.numbers.typed import Number, exact, integer
@@ -39,6 +39,10 @@ Floats = NDArray[np.float64]
 
 MORE_ANGLES = (
     "tori of more angles have many digits as series only: give digits= to lindstedt"
+)
+NO_POLYNOMIAL = (
+    "a closed law has many digits as series only: give digits= to lindstedt, or take as potential "
+    "the polynomial of its first coefficients"
 )
 LARGEST_BLOCK = 2500  # unknowns in the matrix that is factored
 MOST_DIGITS = 1000
@@ -62,8 +66,8 @@ class PreciseOrbit(FourierTorus):
         phases : 0 of the seed, radians.
     digits : of the largest coefficient.
     bound : above |Q'' - force| of every mode at every time, relative to the largest acceleration:
-        the sum of the sizes of all Fourier coefficients of the residual, up to harmonic 3H, taken
-        with 64 bits more than the orbit has.
+        the sum of the sizes of all Fourier coefficients of the residual, up to harmonic 3H, or
+        (n-1)H where V has a degree n above 4, taken with 64 bits more than the orbit has.
     sweeps : corrections made.
 
     >>> from symfpu import Chain, periodic_orbit, periodic_orbit_digits
@@ -97,7 +101,8 @@ def periodic_orbit_digits(
 ) -> PreciseOrbit:
     """A periodic orbit refined to so many digits of its largest coefficient.
 
-    orbit : a solution of one angle, whose phase (radians) is kept; all else is dimensionless.
+    orbit : a solution of one angle of a chain of polynomial potential, whose phase (radians) is
+        kept; all else is dimensionless.
     digits : 1 .. 1000.
     frequency, amplitude : exact numbers, at most one of them; the member with that omega or that
         A near the orbit. Neither: the frequency of the orbit.
@@ -112,6 +117,9 @@ def periodic_orbit_digits(
     0.0512121591740189630941015617011
     """
     near = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
+    if near.chain.potential.degree is None:
+        allowed = "an orbit of a chain of polynomial potential"
+        raise InputError("orbit", f"one of {near.chain!r}", allowed, NO_POLYNOMIAL)
     if integer(digits, "digits", 1) > MOST_DIGITS:
         raise InputError("digits", digits, f"1..{MOST_DIGITS}", "take fewer")
     if frequency is not None and amplitude is not None:
@@ -259,7 +267,8 @@ class Sweeps:
     def _bound(self, c: Integers, omega: Fraction) -> Any:
         finer = FixedForce(self.chain, self.force.bits + CHECK_BITS)
         squared = finer.fixed(omega**2)
-        equations = finer.equations(c << CHECK_BITS, squared, 3 * len(c))
+        highest = highest_product(self.chain) * len(c)
+        equations = finer.equations(c << CHECK_BITS, squared, highest)
         rounding = 1 << CHECK_BITS  # one last place of the orbit
         total = max(np.abs(equations).sum(axis=0)) + rounding
         t = np.linspace(0, np.pi / float(omega), 4 * len(self.orbit.cosines))

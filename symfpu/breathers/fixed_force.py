@@ -1,5 +1,8 @@
 """Forces of cosine series in fixed point: integer polynomials multiplied exactly by FLINT.
 
+For polynomial potentials: their forces have finitely many harmonics, so that the whole residual
+of an orbit is known.
+
 A series sum_n c_n cos(n theta), times two, is the palindromic Laurent polynomial sum_n d_|n| z^n
 with d_0 = 2 c_0, d_n = c_n. Every number is an integer times 2^-bits; a product is rounded down
 once.
@@ -21,6 +24,11 @@ from symfpu.chain.chain import Chain
 Integers = NDArray[np.object_]
 
 SPARE_BITS = 64  # in the cosines before they are rounded
+
+
+def highest_product(chain: Chain) -> int:
+    """The power of r in the force, 3 or more: H harmonics have forces up to so many times H."""
+    return max(3, (chain.potential.degree or 0) - 1)
 
 
 class FixedForce:
@@ -61,7 +69,7 @@ class FixedForce:
         return total
 
     def _nonlinear(self, c: Integers, harmonics: int) -> Integers:
-        """Cosine coefficients of -S (alpha r^2 + beta r^3)."""
+        """Cosine coefficients of -S (c_3 r^2 + c_4 r^3 + ...)."""
         r = self._product(c, self.stretch)
         tension = np.zeros((harmonics + 1, self.chain.N), dtype=object)
         for j in range(self.chain.N):
@@ -71,13 +79,14 @@ class FixedForce:
     def _tension(self, r: Sequence[int], harmonics: int) -> list[int]:
         """Cosine coefficients of the anharmonic tension of one bond, c_3 r^2 and so on.
 
-        They are those of d d / 4 and d d d / 8 with d = 2 r, and twice that for n > 0.
+        They are those of d d / 4, d d d / 8, ... with d = 2 r, and twice that for n > 0.
         """
         degree = len(r) - 1
         total = np.zeros(harmonics + 1, dtype=object)
         twice = flint.fmpz_poly([*r[:0:-1], 2 * r[0], *r[1:]])
         power = twice
-        for k, coupling in enumerate(self.chain.couplings, 2):
+        for k in range(2, highest_product(self.chain) + 1):
+            coupling = self.chain.potential.coefficient(k + 1)
             power = self._lowered(power * twice)
             if coupling:
                 middle = k * degree

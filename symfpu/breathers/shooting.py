@@ -2,9 +2,9 @@
 
 Root finding as in section 6.4. A state at rest, P(0) = 0, that is at rest again at T/2 returns at
 T, since the motion is reversible. The unknowns are the Q_q(0) that the symmetry of the family
-allows: even q for an even seed, q of the seed's parity if alpha = 0, else all. The tangent map is
-the exact derivative of the integrator's map, so that Newton's method converges quadratically down
-to rounding.
+allows: even q for an even seed, q of the seed's parity where V is even, else all. The tangent map
+is the exact derivative of the integrator's map, so that Newton's method converges quadratically
+down to rounding.
 """
 
 from __future__ import annotations
@@ -220,7 +220,7 @@ def shoot(
     else:
         start = _start(chain, seed, guess)
     allowed = np.full(chain.N - 1, True)
-    if chain.alpha == 0 or seed % 2 == 0:
+    if chain.potential.even or seed % 2 == 0:
         allowed = (np.arange(1, chain.N) - seed) % 2 == 0
     start = np.where(allowed, start, 0.0)
     half, rate = np.pi / float(omega), float(omega)

@@ -379,12 +379,15 @@ class Chain:
     def hamiltonian(self) -> Any:
         """H of Eq. fpuham2 as a SymEngine expression with exact numbers.
 
-        In Q1 .. Q(N-1), P1 .. P(N-1).
+        In Q1 .. Q(N-1), P1 .. P(N-1); of other than FPU chains as the sum of V(r_j) over the
+        bonds, with their stretches r_j in the Q.
 
         Raises InputError for N above LARGEST_EXPRESSION, where it would have millions of terms.
         """
         Q, P, Omega = self._symbols()
         modes = range(1, self.N)
+        if not self.fpu:
+            return sum(P[q] ** 2 for q in modes) / 2 + self._potential_energy(Q, Omega)
         H = sum(P[q] ** 2 + Omega[q] ** 2 * Q[q] ** 2 for q in modes) / 2
         u = {q: Omega[q] * Q[q] for q in modes}
         if self.alpha:
@@ -400,6 +403,23 @@ class Chain:
                     quartic += c * u[q] * u[l] * u[m] * u[n]
             H += rational(self.beta) / (8 * self.N) * quartic
         return H
+
+    def _potential_energy(self, Q: dict[int, Any], Omega: dict[int, Any]) -> Any:
+        """The sum of V(r_j), r_j = sqrt(2/N) sum_q Omega_q Q_q cos(q (j + 1/2) pi/N)."""
+        import sympy
+
+        r = sympy.Symbol("r")
+        law = se.sympify(self.potential.expression(r))
+        total = 0
+        for j in range(self.N):
+            stretch = 0
+            for q in Q:
+                half_turns = rational(Fraction(q * (2 * j + 1), 2 * self.N))
+                stretch += Omega[q] * Q[q] * se.cos(se.pi * half_turns)
+            total += law.subs(
+                {se.Symbol("r"): se.sqrt(rational(Fraction(2, self.N))) * stretch}
+            )
+        return total
 
     def equations_of_motion(self) -> dict[int, Any]:
         """Right-hand sides of d^2 Q_q / dt^2 = -dH/dQ_q (Eq. eqmo) by mode.

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.digits import PreciseOrbit
+from symfpu.breathers.fixed_force import highest_product
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.refinement.invariance import OVERSAMPLING, InvarianceEquation, dilated
@@ -119,7 +120,7 @@ def _degrees(chain: Chain, seeds: tuple[int, ...]) -> Ints:
 
     Shape (N-1,).
     """
-    model = "beta" if chain.model == "beta" else "alpha"
+    model = "beta" if chain.potential.even else "alpha"
     degrees = np.full(chain.N - 1, chain.N)
     for order, modes in enumerate(
         excitation_sequence(chain.N, seeds, chain.N, model=model)
@@ -303,13 +304,13 @@ def _of_digits(orbit: PreciseOrbit) -> _Errors:
     cosines, doubles = orbit.cosines.astype(float), orbit.in_doubles()
     half = np.linspace(0, np.pi / omega, 4 * len(cosines))
     largest = float(np.abs(chain.accelerations(doubles.positions(half))).max())
-    n = np.arange(3 * len(cosines))[:, None]
+    n = np.arange(highest_product(chain) * len(cosines))[:, None]
     shift = float(shifts_of(orbit)[0])
     linear = chain.frequencies()
     divisors = np.abs((n * omega - linear) * (n * omega + linear))
     divisors[1, orbit.seed - 1] = abs(shift * (2 * linear[orbit.seed - 1] + shift))
     even = (np.arange(1, chain.N) - n * orbit.seed) % 2 == 0
-    allowed = even & ((n % 2 == 1) | (chain.alpha != 0))
+    allowed = even & ((n % 2 == 1) | (not chain.potential.even))
     with np.errstate(divide="ignore"):
         sizes = np.where(allowed, SAFETY * float(orbit.bound) * largest / divisors, 0.0)
     relative = float(sizes[1, orbit.seed - 1] / abs(float(orbit.amplitude)))

@@ -211,8 +211,8 @@ def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") 
 def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
     """D_0, D_1, ... of seeds 1 .. s: {ks+1 .. (k+1)s} (alpha), {(2k-1)s+1 .. (2k+1)s} (beta).
 
-    chain : alpha, beta or both, which counts as alpha. s : how many seeds, 1 .. N-1. All are
-        dimensionless integers.
+    chain : of any potential; where it is even it counts as beta, else as alpha.
+    s : how many seeds, 1 .. N-1. All are dimensionless integers.
 
     Eq. dk for the packets of section 6.1, as ranges of modes, the last one cut at N-1. Raises
     InputError for s outside 1 .. N-1.
@@ -229,8 +229,8 @@ def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
 def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
     """The middle modes of D_1, D_2, ... of seeds 1 .. s: ks + [s/2] (alpha), 2ks (beta), below N.
 
-    chain : alpha, beta or both, which counts as alpha. s : how many seeds, 1 .. N-1. All are
-        dimensionless integers.
+    chain : of any potential; where it is even it counts as beta, else as alpha.
+    s : how many seeds, 1 .. N-1. All are dimensionless integers.
 
     Differs from section 6.1.1 for s = 1: k + 1, where the paper's formula leaves D_k. Raises
     InputError for s outside 1 .. N-1.
@@ -240,7 +240,7 @@ def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
     """
     require_chain(chain)
     step = packet_width(chain, s) * chain.degree_step
-    offset = (s // 2 or 1) if chain.alpha else 0
+    offset = 0 if chain.potential.even else (s // 2 or 1)
     return tuple(range(step + offset, chain.N, step))
 
 

@@ -1,11 +1,11 @@
 """The invariance equation of a torus in Fourier space: linear part exact, products pseudo-spectral.
 
 Q_q(theta) = sum over nu of c_q[nu] cos(nu.theta) is a torus of the chain if for every mode and
-harmonic ((nu.omega)^2 - Omega_q^2) c_q[nu] = N_q[nu], N the transform of alpha r^2 + beta r^3
-with the stretches r of the bonds on points of all angles. Reflection of the chain shifts the
-angles by half turns: only c with q = nu.seeds (mod 2) are unknowns (for beta alone also nu of odd
-length), and half of the bonds are enough. All sums of one kind run in one precision, doubles or
-the machine's long doubles.
+harmonic ((nu.omega)^2 - Omega_q^2) c_q[nu] = N_q[nu], N the transform of V'(r) - r, which is
+alpha r^2 + beta r^3 in an FPU chain, with the stretches r of the bonds on points of all angles.
+Reflection of the chain shifts the angles by half turns: only c with q = nu.seeds (mod 2) are
+unknowns (where V is even also nu of odd length), and half of the bonds are enough. All sums of
+one kind run in one precision, doubles or the machine's long doubles.
 """
 
 from __future__ import annotations
@@ -219,7 +219,7 @@ class InvarianceEquation:
         modes = np.arange(1, self.chain.N)
         of_harmonic = harmonics @ np.array(self.seeds) % 2
         parity = of_harmonic[:, None] == modes % 2
-        if self.chain.alpha:
+        if not self.chain.potential.even:
             return np.asarray(parity)
         odd = harmonics.sum(axis=1) % 2 == 1
         return np.asarray(parity & odd[:, None])
