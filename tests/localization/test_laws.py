@@ -35,7 +35,7 @@ def test_parameters_by_hand():
     # 0.33^2 * 1.5625e-8 * 8^4 / pi^4 and 0.3 * 1.5625e-6 * 16^2 / pi^2, with pi^4 = 97.40909103400244, pi^2 = 9.869604401089358
     assert packet_parameter(ALPHA, 8, FIG_4A) == pytest.approx(6.9696e-6 / 97.40909103400244, rel=ROUNDING)
     assert packet_parameter(BETA, 4, FIG_4B) == pytest.approx(1.2e-4 / 9.869604401089358, rel=ROUNDING)
-    assert packet_parameter(replace(ALPHA, alpha="-0.33"), 8, FIG_4A) == packet_parameter(ALPHA, 8, FIG_4A)
+    assert packet_parameter(ALPHA.at(alpha="-0.33"), 8, FIG_4A) == packet_parameter(ALPHA, 8, FIG_4A)
 
 
 def test_profile_laws_follow_from_the_group_energies():
