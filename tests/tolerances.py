@@ -512,3 +512,6 @@ RETURN_OF_TODA = 1e-10
 
 # Eigenvalues of a tangent map over one period that was integrated like that.
 FLOQUET_OF_TODA = 1e-9
+
+# Shifts by an action of 1e-12.
+SMALL_ACTION = 1e-11

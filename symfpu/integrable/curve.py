@@ -36,6 +36,7 @@ Source: ours, after Date and Tanaka.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -43,9 +44,9 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
 from symfpu.integrable.discriminant import Edges
 from symfpu.integrable.quadrature import mean_rule
+from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ class SpectralCurve:
         matrix = self._means(everywhere)
         if len(matrix):
             inside = self._solve(matrix[:, self.open].T, right[self.open])
-            right = right - self._dot(inside, matrix)
+            right = right - inside @ matrix
         omega = right / self._closed_diagonal()
         if len(matrix):
             omega[self.open] = inside
@@ -92,12 +93,15 @@ class SpectralCurve:
         actions = self.edges.centres * 0
         if not len(self.open):
             return actions
-        y = self._critical()
-        for i in self.open:
-            offsets, weights = self._rule(i)
-            values = self._basis(i, offsets, self.open, outer_root=True)
-            own = values[:, np.searchsorted(self.open, i)] * offsets
-            density = own + self._dot(values, y)
+        rules = [self._rule(i) for i in self.open]
+        bases = [
+            self._basis(i, offsets, self.open, outer_root=True)
+            for i, (offsets, _) in zip(self.open, rules, strict=True)
+        ]
+        y = self._critical(rules, bases)
+        for k, i in enumerate(self.open):
+            offsets, weights = rules[k]
+            density = bases[k][:, k] * offsets + bases[k] @ y
             actions[i] = (density * offsets * self._lever(i, offsets) * weights).sum()
         scale = self.length / (2 * self.numbers.number(self.a**2))
         return np.asarray(actions * scale)
@@ -121,18 +125,18 @@ class SpectralCurve:
         for i in self.open:
             offsets, weights = self._rule(i)
             values = self._basis(i, offsets, columns, outer_root=not self.fixed)
-            rows.append(self._dot(weights, values))
+            rows.append(weights @ values)
         return np.array(rows)
 
-    def _critical(self) -> Numbers:
+    def _critical(
+        self, rules: Sequence[tuple[Numbers, Numbers]], bases: Sequence[Numbers]
+    ) -> Numbers:
         """y of the open gaps in C = prod (z - e_l) + sum_m y_m prod_(l != m) (z - e_l)."""
         matrix, constants = [], []
-        for k, i in enumerate(self.open):
-            offsets, weights = self._rule(i)
-            values = self._basis(i, offsets, self.open, outer_root=True)
-            matrix.append(self._dot(weights, values))
-            constants.append((values[:, k] * offsets * weights).sum())
-        return self._solve(np.array(matrix), -np.array(constants))
+        for k, (offsets, weights) in enumerate(rules):
+            matrix.append(weights @ bases[k])
+            constants.append(-(bases[k][:, k] * offsets * weights).sum())
+        return self._solve(np.array(matrix), np.array(constants))
 
     def _basis(
         self, i: int, offsets: Numbers, columns: NDArray[np.intp], *, outer_root: bool
@@ -177,10 +181,6 @@ class SpectralCurve:
     def _rule(self, i: int) -> tuple[Numbers, Numbers]:
         """Offsets from the centre of gap i, and weights of the mean over phi; sum of weights 1."""
         return mean_rule(self.edges, i, self.numbers)
-
-    def _dot(self, left: Numbers, right: Numbers) -> Numbers:
-        """A vector with a matrix, or a matrix with a vector; plain sums."""
-        return np.asarray(left @ right)
 
     def _solve(self, matrix: Numbers, right: Numbers) -> Numbers:
         if self.numbers is DOUBLES:

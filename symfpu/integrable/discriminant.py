@@ -28,8 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import SymfpuError
-from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 from symfpu.integrable.products import product_of_distances
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 
 Floats = NDArray[np.float64]
 MOST_STEPS = 200

@@ -15,6 +15,10 @@ from numpy.typing import ArrayLike
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.integrable.coupling import toda_coupling
+from symfpu.integrable.curve import SpectralCurve
+from symfpu.integrable.discriminant import Edges
+from symfpu.integrable.lax import jacobi_entries, odd_edges
 from symfpu.numbers.arithmetic import (
     DOUBLES,
     MULTIPRECISION,
@@ -23,10 +27,6 @@ from symfpu.numbers.arithmetic import (
     with_digits,
 )
 from symfpu.numbers.typed import Number, decimal, integer
-from symfpu.integrable.coupling import toda_coupling
-from symfpu.integrable.curve import SpectralCurve
-from symfpu.integrable.discriminant import Edges
-from symfpu.integrable.lax import jacobi_entries, odd_edges
 
 MOST_DIGITS = 10000
 LARGEST_EXPONENT = 300.0  # of e^(a r): beyond it the edges of bands are out of range
@@ -157,7 +157,9 @@ def _edges(
             "Q, P", shapes, "two arrays of one shape", "pass Q and P of a state"
         )
     exponents = np.abs(stretches * numbers.number(a))
-    if not numbers.finite(momenta) or not (exponents < LARGEST_EXPONENT).all():
+    if not numbers.finite(momenta):
+        raise InputError("P", np.shape(P), "finite numbers", "pass the momenta of a state")
+    if not (exponents < LARGEST_EXPONENT).all():
         largest: Any = exponents.max()
         allowed = f"|a r| below {LARGEST_EXPONENT} on every bond"
         raise InputError("a r", float(largest), allowed, "take a smaller state or a")

@@ -9,15 +9,15 @@ width of the band by its logarithm alone. Source: ours.
 
 from __future__ import annotations
 
-from typing import Any
+from functools import lru_cache
 
 import mpmath
 import numpy as np
 
 from symfpu.errors import SymfpuError
-from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
-from symfpu.numbers.functions import exp
 from symfpu.integrable.discriminant import Edges
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers
+from symfpu.numbers.functions import exp
 
 MOST_NODES = 20000
 DIGITS_OF_DOUBLES = 17
@@ -44,22 +44,32 @@ def mean_rule(edges: Edges, i: int, numbers: Arithmetic) -> tuple[Numbers, Numbe
     The weights sum to one. Raises BandsTooNarrow.
     """
     digits = DIGITS_OF_DOUBLES if numbers is DOUBLES else mpmath.mp.dps + 2
-    nepers = digits * np.log(10)
     excess = _relative_distance(edges, i)
     if not excess > 0:
         raise BandsTooNarrow(i + 1)
-    rate = np.log1p(excess + np.sqrt(excess * (2 + excess)))
-    equal = int(np.ceil(nepers / (2 * rate))) + 2
-    half_width = edges.half_widths[i]
-    strip = np.arcsinh(complex(np.log(2 / excess), np.pi) / np.pi).imag
-    step = 2 * np.pi * min(strip, WIDEST_STRIP) / nepers
-    reach = np.arcsinh(2 * nepers / np.pi)
-    graded = int(np.ceil(reach / step))
+    equal, graded, reach = _counts(excess, digits * np.log(10))
     if min(equal, graded) > MOST_NODES:
         raise BandsTooNarrow(i + 1)
+    precision = 0 if numbers is DOUBLES else mpmath.mp.prec
     if equal <= 2 * graded + 1:
-        return _equal_weights(half_width, equal, numbers)
-    return _graded(half_width, graded, float(step), numbers)
+        places, weights = _equal_weights(equal, precision)
+    else:
+        places, weights = _graded(graded, reach, precision)
+    return places * edges.half_widths[i], weights
+
+
+def _counts(excess: float, nepers: float) -> tuple[int, int, float]:
+    """Nodes of equal weights, graded nodes on each side, and how far these reach in t.
+
+    Rounded up, so that few rules serve many gaps.
+    """
+    rate = np.log1p(excess + np.sqrt(excess * (2 + excess)))
+    equal = int(np.ceil(nepers / (2 * rate))) + 2
+    strip = np.arcsinh(complex(np.log(2 / excess), np.pi) / np.pi).imag
+    step = 2 * np.pi * min(strip, WIDEST_STRIP) / nepers
+    reach = float(np.arcsinh(2 * nepers / np.pi))
+    graded = int(np.ceil(reach / step))
+    return equal + -equal % 8, graded + -graded % 64, reach
 
 
 def _relative_distance(edges: Edges, i: int) -> float:
@@ -72,20 +82,22 @@ def _relative_distance(edges: Edges, i: int) -> float:
     return float((nearest - w[i]) / w[i])
 
 
-def _equal_weights(
-    half_width: Any, count: int, numbers: Arithmetic
-) -> tuple[Numbers, Numbers]:
+@lru_cache(maxsize=64)
+def _equal_weights(count: int, precision: int) -> tuple[Numbers, Numbers]:
+    """Nodes cos((k - 1/2) pi / count) and weights 1/count; precision : in bits, 0 for doubles."""
+    numbers = MULTIPRECISION if precision else DOUBLES
     odd = numbers.array(2 * np.arange(count) + 1)
     cosines = numbers.cos(odd * numbers.pi / (2 * count))
-    return cosines * half_width, cosines * 0 + numbers.array(1) / count
+    return cosines, (cosines * 0 + 1) / count
 
 
-def _graded(
-    half_width: Any, count: int, step: float, numbers: Arithmetic
-) -> tuple[Numbers, Numbers]:
-    t = numbers.array(np.arange(-count, count + 1)) * step
+@lru_cache(maxsize=16)
+def _graded(count: int, reach: float, precision: int) -> tuple[Numbers, Numbers]:
+    """Nodes tanh((pi/2) sinh t) at 2 count + 1 steps of t from -reach to reach, and weights."""
+    numbers = MULTIPRECISION if precision else DOUBLES
+    t = numbers.array(np.arange(-count, count + 1)) * (reach / count)
     growth = exp(t)
     bend = exp((growth - 1 / growth) * (numbers.pi / 4))
-    offsets = (bend - 1 / bend) / (bend + 1 / bend) * half_width
-    weights = (growth + 1 / growth) / (bend + 1 / bend) * step / 2
-    return offsets, weights
+    places = (bend - 1 / bend) / (bend + 1 / bend)
+    weights = (growth + 1 / growth) / (bend + 1 / bend) * (reach / count / 2)
+    return places, weights

@@ -17,7 +17,6 @@ import mpmath
 import numpy as np
 
 from symfpu.errors import InputError, SymfpuError
-from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 from symfpu.integrable.curve import SpectralCurve
 from symfpu.integrable.discriminant import (
     Edges,
@@ -26,6 +25,7 @@ from symfpu.integrable.discriminant import (
     edges,
     free_points,
 )
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 
 START_DIGITS = 12  # of the stage with full Newton steps
 DIFFERENCE = mpmath.mpf(2) ** -33  # of the logarithms, for derivatives
@@ -53,7 +53,7 @@ class NoTodaTorus(SymfpuError):
         last = ", ".join(f"h_{q} = {h:.3g}" for q, h in zip(seeds, heights, strict=True))
         super().__init__(
             f"no Toda torus found: the last iterate {last} leaves a relative residual of "
-            f"{residual:.3g}; ask for frequencies above the linear ones, or for actions"
+            f"{residual:.3g}; raise the frequency of the lowest gap, or ask for actions"
         )
 
 

@@ -1,8 +1,8 @@
 """Tori of the Toda chain on which only the gaps of the seeds are open, with their exact energy.
 
 The heights of the seeds' gaps (`symfpu.integrable.discriminant`) are s free numbers, which
-`symfpu.integrable.search` finds; all other gaps are closed by construction. The energy needs no integral.
-With the critical points c_j of the discriminant, sum c_j = 0, and its bottom edge
+`symfpu.integrable.search` finds; all other gaps are closed by construction. The energy needs no
+integral. With the critical points c_j of the discriminant, sum c_j = 0, and its bottom edge
 
     H = (n/(n-2) sum c_j^2 - n/2) / (2 a^2)    (ring of n),
     H = -N (1 + bottom) / (4 a^2)              (fixed ends),
@@ -22,12 +22,12 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, with_digits
-from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
 from symfpu.integrable.coupling import toda_coupling
 from symfpu.integrable.curve import SpectralCurve
 from symfpu.integrable.inverse import ring_state
 from symfpu.integrable.search import Found, Search, guard_digits
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, with_digits
+from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
 
 MOST_DIGITS = 10000
 SMALLEST_RING = 3  # particles: of two the mean stretch of both bonds is one number

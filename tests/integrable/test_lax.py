@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from symfpu import Chain, InputError, toda, toda_gaps
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION
 from symfpu.integrable.lax import jacobi_entries, ring_edges
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION
 from tests.integrable.chains import orbit, ring_of, ring_stretches
 from tests.tolerances import FORTY_DIGITS, GAP, GAP_DRIFT, TODA_LINEAR
 
