@@ -33,6 +33,7 @@ from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 
 Floats = NDArray[np.float64]
 MOST_STEPS = 200
+ROUNDING = 1e-14  # of critical points, which are of order one
 SMALLEST_STEP = 1e-12  # of a damped step of Newton's method
 NEAR = 1e-9  # critical points so near to the start that the digits of the start are worth keeping
 
@@ -77,12 +78,17 @@ class Edges:
 
 
 @lru_cache(maxsize=16)
+def _gauss_legendre_of_doubles(count: int) -> tuple[Floats, Floats]:
+    return np.polynomial.legendre.leggauss(count)
+
+
+@lru_cache(maxsize=16)
 def gauss_legendre(count: int, precision: int) -> tuple[Numbers, Numbers]:
     """Nodes and weights on -1 .. 1 as mpf of so many bits.
 
     Doubles are the start of Newton's method.
     """
-    start, _ = np.polynomial.legendre.leggauss(count)
+    start, _ = _gauss_legendre_of_doubles(count)
     with mpmath.workprec(precision + 10):
         x = MULTIPRECISION.array(start)
         steps = int(np.ceil(np.log2(precision / 50 + 1))) + 1
@@ -139,6 +145,8 @@ def _in_doubles(targets: Floats, start: Floats, heights: Numbers) -> tuple[Float
     size = float(np.linalg.norm(residual))
     for _ in range(MOST_STEPS):
         step = np.linalg.solve(jacobian, residual)
+        if np.abs(step).max() < ROUNDING:
+            break
         damping = 1.0
         while damping > SMALLEST_STEP:
             trial = c - damping * step
@@ -151,7 +159,7 @@ def _in_doubles(targets: Floats, start: Floats, heights: Numbers) -> tuple[Float
             break
         c = trial
         size = float(np.linalg.norm(residual))
-    # no step makes the residual smaller: it is rounding, or there is no way on
+    # where no step makes the residual smaller it is rounding, or there is no way on
     if not size < 1e-9 * len(c):
         raise NoDiscriminant(tuple(map(float, heights)), size)
     _, jacobian = _equations(c, targets)
@@ -161,7 +169,7 @@ def _in_doubles(targets: Floats, start: Floats, heights: Numbers) -> tuple[Float
 def _equations(c: Floats, targets: Floats) -> tuple[Floats, Floats]:
     """Residuals of the n - 1 equations and their Jacobian, in doubles."""
     n = len(c) + 1
-    nodes, weights = np.polynomial.legendre.leggauss(n // 2 + 1)
+    nodes, weights = _gauss_legendre_of_doubles(n // 2 + 1)
     middle, half = (c[:-1] + c[1:]) / 2, (c[:-1] - c[1:]) / 2
     z = middle[:, None] + half[:, None] * nodes
     differences = z[:, :, None] - c
@@ -232,7 +240,7 @@ def _distance(c: Numbers, k: int, side: int, rise: Any, start: Any) -> Any:
     nodes, weights = gauss_legendre(n // 2 + 1, mpmath.mp.prec)
     distance, last = start, mpmath.inf
     while True:
-        z = side * distance / 2 * (nodes + 1)
+        z = (nodes + 1) * (side * distance / 2)
         change = _change(c, k, z, weights) * distance / 2
         error = mpmath.log(change / rise)
         if error == 0 or (abs(error) >= last / 2 and abs(error) < mpmath.mpf("1e-12")):
