@@ -21,7 +21,7 @@ SOURCES = r"\b(eqs?\. |figs?\. |sections? \d|appendix [a-f]|definition \d|propos
 ARRAYS = ("ArrayLike", "NDArray", "Floats", "Ints", "Numbers")
 SHAPE = r"\(([A-Z]|[ns1]|order|\.\.\.)[^()]*,[^()]*\)"  # such as (N-1,), (H, s), (..., N-1)
 NO_ERRORS = {"init_printing"}  # these raise nothing, and say so
-NO_CLASSES = {"RunInterrupted", "NumPy", "SymEngine", "IntegerTables"}
+NO_CLASSES = {"SymPy", "RunInterrupted", "NumPy", "SymEngine", "IntegerTables"}
 
 PUBLIC = {name: getattr(symfpu, name) for name in symfpu.__all__}
 ERRORS = {name for name, thing in PUBLIC.items() if inspect.isclass(thing) and issubclass(thing, Exception)}

@@ -515,3 +515,5 @@ FLOQUET_OF_TODA = 1e-9
 
 # Shifts by an action of 1e-12.
 SMALL_ACTION = 1e-11
+# Coefficients of 50 digits, rounded to nearest.
+FIFTY_DIGITS = 1e-49

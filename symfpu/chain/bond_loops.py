@@ -2,7 +2,8 @@
 
 Importing this module imports numba, whose overloads have no annotations. A loop that calls
 `tension(law, r)` is compiled for the type of its law: the coefficients of a polynomial, or the
-class of a closed law with its own functions.
+class of a closed law with its own functions; where those are not for the compiler, the class has
+others named after them, `tension_loop`, that make one from the decorator of its parts.
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ def _law_by_type(function: Function, of_polynomials: Function) -> None:
     def choose(law, r):  # type: ignore[no-untyped-def]
         kind = getattr(law, "instance_class", None)
         own = getattr(kind, function.__name__, None)
-        loop = _inlined(own or of_polynomials)
+        of_parts = getattr(kind, f"{function.__name__}_loop", None)
+        loop = of_parts(_inlined) if of_parts else _inlined(own or of_polynomials)
         return lambda law, r: loop(law, r)
 
     overload(function)(choose)

@@ -44,6 +44,7 @@ def fixed_point_series(
     errors are bounded again with the result; if doubles had misled, the work is repeated with
     more places.
     """
+    _require_known(chain, digits)
     chosen = chosen_frequencies(frequencies, "fixed-point")
     check_size(chain, seeds, order, "fixedpoint", digits)
     space = monomial_space(chain, seeds, order)
@@ -77,6 +78,15 @@ def fixed_point_series(
             return replace(result, radii=bounds.radii)
     errors = f"the rounding errors of order {order} stay above 10^-{digits}"
     raise SymfpuError(f"{errors} at {bits} binary places; take a lower order")
+
+
+def _require_known(chain: Chain, digits: int) -> None:
+    """InputError for a potential whose Taylor series is rounded to fewer digits."""
+    known = chain.potential.digits
+    if known is not None and digits > known:
+        allowed = f"at most {known}, the digits of the Taylor series of {chain.potential!r}"
+        advice = f"give the potential more: from_expression(..., digits={digits})"
+        raise InputError("digits", digits, allowed, advice)
 
 
 def _places(digits: int, lost_bits: float) -> int:

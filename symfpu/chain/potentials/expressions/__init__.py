@@ -1,0 +1,1 @@
+"""Expressions as potentials: their text, their Taylor series, the laws of their bonds."""
