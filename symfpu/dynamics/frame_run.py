@@ -13,6 +13,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.dynamics.orbits import integrate
+from symfpu.dynamics.stopping import OrbitStopped
 from symfpu.dynamics.tangent import MovingFrame
 from symfpu.errors import SymfpuError
 from symfpu.files.archive import BundleError, Json
@@ -42,13 +44,15 @@ class OrbitLost(SymfpuError):
 
     Raised by `alignment_indices`. Ours.
 
-    time : before which it was lost; step : of the integrator; both dimensionless.
+    time : before which it was lost; step : of the integrator; both dimensionless. bond : j of the
+        bond r_j = x_(j+1) - x_j that went too far, None where it is not known.
     """
 
-    def __init__(self, time: float, step: float) -> None:
-        self.time, self.step = time, step
+    def __init__(self, time: float, step: float, bond: int | None = None) -> None:
+        self.time, self.step, self.bond = time, step, bond
         lost = f"the orbit is lost before t = {time:.6g} with steps of {step:g}"
-        super().__init__(f"{lost}; take less energy or a shorter step")
+        place = "" if bond is None else f" in bond {bond}"
+        super().__init__(f"{lost}{place}; take less energy or a shorter step")
 
 
 class FrameRun:
@@ -165,16 +169,27 @@ class FrameRun:
                 )
 
     def _move_to(self, end: int) -> None:
-        steps = end - self.done
+        steps, before = end - self.done, self.frame.orbit()
         product = (self.columns, self.diagonal, self.norms)
         self.block = carried(self.frame, steps, self.block, self.longest, *product)
         if not np.isfinite(self.norms).all():
-            raise OrbitLost(float(end * self.step), self.step)
+            raise self._lost(before, end)
         self.done = end
         place = int(np.searchsorted(self.marks, end))
         if self.marks[place] == end:
             self.volumes[place] = self.diagonal - self.norms
             self.growth[place] = self.diagonal[0]
+
+    def _lost(self, before: tuple[Floats, Floats], end: int) -> OrbitLost:
+        """Why, by the orbit alone from the last state that was well."""
+        frame, steps = self.frame, end - self.done
+        T, scheme = steps * self.step, frame.scheme.name
+        try:
+            integrate(frame.chain, *before, T, step=self.step, scheme=scheme, samples=1)
+        except OrbitStopped as stopped:
+            steps = round(stopped.time / self.step) + 1
+            return OrbitLost((self.done + steps) * self.step, self.step, stopped.bond)
+        return OrbitLost(float(end * self.step), self.step)
 
     def _write(self) -> None:
         assert self.path is not None

@@ -368,7 +368,7 @@ class _Run:
         advice = "take a shorter step"
         if escaped:
             kind = EscapedOrbit
-            reason = "a bond passes the barrier of its potential"
+            reason = f"bond {bond} passes the barrier of its potential"
             advice = "start from a state of less energy"
         elif crossed:
             wall = f"the wall r = {self.chain.potential.wall:g} of its potential"

@@ -24,8 +24,11 @@ def expm1(x: Any) -> Any:
 
 
 def log1p(x: Any) -> Any:
-    """log(1 + x) without cancellation."""
-    return _LOG1P(x) if _multiprecision(x) else np.log1p(x)
+    """log(1 + x) without cancellation; not a number for x < -1, minus infinity at -1."""
+    if _multiprecision(x):
+        return _LOG1P(x)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.log1p(x)
 
 
 def expm2(x: Any) -> Any:
@@ -59,6 +62,10 @@ def _expm2(x: Any) -> Any:
     return +value
 
 
+def _log1p(x: Any) -> Any:
+    return mpmath.log1p(x) if x >= -1 else mpmath.nan
+
+
 _EXP, _EXPM1, _LOG1P, _EXPM2 = (
-    np.frompyfunc(f, 1, 1) for f in (mpmath.exp, mpmath.expm1, mpmath.log1p, _expm2)
+    np.frompyfunc(f, 1, 1) for f in (mpmath.exp, mpmath.expm1, _log1p, _expm2)
 )

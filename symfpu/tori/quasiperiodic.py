@@ -5,6 +5,7 @@ They give the orbit, its energies, their averages, and residuals.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -310,6 +311,8 @@ class QuasiPeriodic(Parts):
     def residual(self, points: int | None = None) -> float:
         """Largest residual on a grid of angles, over the largest acceleration.
 
+        Infinite where a bond is beyond the wall of its potential there.
+
         points : grid points for each angle, as for `residuals`.
         """
         return self._residual if points is None else self._residual_of(points)
@@ -321,7 +324,8 @@ class QuasiPeriodic(Parts):
 
     def _residual_of(self, points: int | None) -> float:
         residuals, largest = self._residuals(points)
-        return float(residuals.max() / largest)
+        found = float(residuals.max() / largest)
+        return math.inf if math.isnan(found) else found
 
     def _residuals(self, points: int | None) -> tuple[Numbers, Any]:
         if self.digits is not None and points is None:

@@ -46,7 +46,8 @@ class Potential(ABC):
     kind : its name, in words and as it is typed ("toda:1/2"), that of its file and of the function
         there that makes it; the file may have OTHER_NAMES to type.
     exact : whether the coefficients are known exactly; else they are rounded to `digits`.
-    wall : the stretch where V is infinite, None where there is none.
+    wall : the stretch where V is infinite, None where there is none; beyond it the functions of
+        its law are not numbers.
     """
 
     kind: ClassVar[str]
