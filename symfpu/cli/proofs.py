@@ -9,8 +9,9 @@ from typing import Annotated
 
 import typer
 
+from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import excitation_sequence
-from symfpu.cli.chains import BondsOption
+from symfpu.cli.chains import BondsOption, PotentialOption
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
     JsonOption,
@@ -32,24 +33,31 @@ from symfpu.proofs.verify import CertificateError
 from symfpu.proofs.verify import verify as verify_certificate
 from symfpu.reports.sweep import sweep_markdown
 
+SingleModelOption = Annotated[
+    str | None, typer.Option("--model", help="alpha or beta.  Default: alpha.")
+]
+
 
 @app.command(epilog="Example: symfpu propagate -N 32 --model alpha --seeds 3,5 --order 4")
 def propagate(
     bonds: BondsOption,
     seeds: SeedsOption,
     order: OrderOption,
-    model: Annotated[str, typer.Option(help="alpha, beta or alpha+beta.")] = "alpha",
+    model: Annotated[
+        str | None, typer.Option(help="alpha, beta or alpha+beta.  Default: alpha.")
+    ] = None,
+    potential: PotentialOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Which modes the propagation rule D_k excites at each order."""
     chosen = whole_numbers("seeds", seeds)
     N = whole("N", bonds)
     highest = whole("order", order)
-    sequence = excitation_sequence(N, chosen, highest, model=model)
+    sequence = excitation_sequence(N, chosen, highest, model=model, potential=potential)
     if as_json:
         record = {
             "N": N,
-            "model": model,
+            **_law_entries(model, potential),
             "seeds": sorted(chosen),
             "order": highest,
             "excitation_sequence": [list(modes) for modes in sequence],
@@ -58,6 +66,13 @@ def propagate(
         return
     for k, modes in enumerate(sequence):
         say(f"D_{k} = {_set_of(modes)}")
+
+
+def _law_entries(model: str | None, potential: str | None) -> dict[str, str]:
+    """The model, or the potential as it is written."""
+    if potential is None:
+        return {"model": model or "alpha"}
+    return {"potential": potential_of_text(potential).text}
 
 
 def _set_of(modes: Iterable[int]) -> str:
@@ -72,7 +87,8 @@ def prove(
     bonds: BondsOption,
     seeds: SeedsOption,
     order: OrderOption,
-    model: Annotated[str, typer.Option(help="alpha or beta.")] = "alpha",
+    model: SingleModelOption = None,
+    potential: PotentialOption = None,
     points: Annotated[
         str, typer.Option(help="Independent primes and random frequencies.")
     ] = "1",
@@ -98,6 +114,7 @@ def prove(
             chosen,
             highest,
             model=model,
+            potential=potential,
             points=whole("points", points),
             progress=advance,
         )
@@ -105,7 +122,7 @@ def prove(
             proof.write(file)
     if as_json:
         record = proof.certificate()
-        for evidence in ("excited", "vanishing", "points", "digest"):
+        for evidence in ("excited", "vanishing", "points", "coefficients", "digest"):
             record.pop(evidence, None)
         print_json(record)
     else:
@@ -161,7 +178,8 @@ def verify(
 )
 def sweep(
     order: OrderOption,
-    model: Annotated[str, typer.Option(help="alpha or beta.")] = "alpha",
+    model: SingleModelOption = None,
+    potential: PotentialOption = None,
     longest: Annotated[
         str, typer.Option(help="All chains with 2 up to this many bonds.", metavar="N")
     ] = "12",
@@ -200,6 +218,7 @@ def sweep(
             whole("largest", largest),
             whole("order", order),
             model=model,
+            potential=potential,
             file=log,
             progress=advance,
         )
@@ -207,7 +226,7 @@ def sweep(
             write_text(summary, sweep_markdown(result))
     if as_json:
         record = {
-            "model": model,
+            **_law_entries(model, potential),
             "order": result.order,
             "cases": len(result.cases),
             "exceptions": [asdict(case) for case in result.exceptions],

@@ -148,6 +148,7 @@ def asymptotic_energy(chain: Chain, seeds: Sequence[int], q: int, *, terms: int 
     if not chain.symbolic:
         advice = "leave N open: Chain('N', alpha=...)"
         raise InputError("chain", chain, "a chain whose N is a symbol", advice)
+    squared_mu = _squared_mu(chain)
     labels, count = _low(seeds), integer(terms, "terms", 1)
     mode = integer(q, "q", 1)
     # long enough for signed sums of 2q + 1 seeds
@@ -157,7 +158,8 @@ def asymptotic_energy(chain: Chain, seeds: Sequence[int], q: int, *, terms: int 
         if mode in modes:
             series = lindstedt(chain, labels, order=order, ring="nested")
             assert isinstance(series, SeriesForAllN)
-            return _energy(series, mode, order, count)
+            energy = _energy(series, mode, order, count)
+            return se.expand(energy * squared_mu**order)
     allowed = f"a mode that the seeds {labels} excite"
     raise InputError("q", q, allowed, "other modes stay at rest")
 
@@ -193,7 +195,7 @@ def asymptotic_group_energy(chain: Chain, s: int, k: int, *, terms: int = 2) -> 
 
 
 def _energy(series: SeriesForAllN, q: int, order: int, count: int) -> Any:
-    """E_q of the term of an order, in the energies of the seeds."""
+    """E_q of the term of an order without mu^2k, in the energies of the seeds."""
     degree, seeds = series.degree(order), series.seeds
     nodes = series.coordinates[order].nodes[:, [q - 1]]
     powers = series.grading.powers(degree).tolist()
@@ -221,7 +223,7 @@ def _energy(series: SeriesForAllN, q: int, order: int, count: int) -> Any:
     for value, row in zip(_leading(expanded, count), monomials, strict=True):
         energies = [(se.Symbol(f"E{p}") / 2) ** e for p, e in zip(seeds, row, strict=True)]
         total += value * se.Mul(*energies)
-    return se.expand(total * _squared_mu(series.chain) ** order)
+    return total
 
 
 def _kinetic_and_potential(
@@ -238,7 +240,7 @@ def _kinetic_and_potential(
 
 
 def _squared_mu(chain: Chain) -> Any:
-    """mu^2 in N."""
+    """mu^2 in N, of an FPU chain."""
     length = se.Symbol("N")
     if chain.alpha:
         return rational(chain.alpha**2) / (2 * length)

@@ -21,18 +21,23 @@ import numpy as np
 from symfpu.algebra.grading import monomial_count
 from symfpu.algebra.residue import largest_modulus
 from symfpu.chain.chain import Chain
+from symfpu.chain.potentials.potential import Potential
+from symfpu.chain.powers import powers_of
 from symfpu.chain.propagation import coupled_modes, excitation_sequence
 from symfpu.errors import InputError, SymfpuError, VanishingResidue
 from symfpu.files.progress import Progress
 from symfpu.files.writing import write_text
 from symfpu.numbers.typed import integer, seed_modes
+from symfpu.series.force import force_numbers
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import shared_grading
 from symfpu.series.residues import residue_series
 from symfpu.series.series import LindstedtSeries, ResiduePoint
 
-FORMAT, SCHEMA = "symfpu propagation certificate", 1
+FORMAT = "symfpu propagation certificate"
+SCHEMA, POTENTIALS = 1, 2  # of alpha and beta, of other potentials
+SINGLE = ("alpha", "beta")  # models of one coupling, for which the rule is stated
 ATTEMPTS = 50  # points tried before giving up on vanishing divisors
 IDENTITY_TERMS = 4000  # monomials times modes up to which an identity is tried
 IDENTITY_ORDER = 4
@@ -118,7 +123,9 @@ class PropagationProof:
 
     Made by `prove_propagation`.
 
-    N, model, seeds, order : the case. rule, actual : modes by order, 0 .. order.
+    N, model, seeds, order : the case. potential : None where the model is 'alpha' or 'beta'; of
+    another chain, whose model is the potential as it is typed.
+    rule, actual : modes by order, 0 .. order.
     verdict : 'proved', 'refuted' (some exception is decided) or 'undecided'.
     exceptions : modes whose order is not the predicted one. undecided : modes and orders that
         nothing decides.
@@ -144,6 +151,7 @@ class PropagationProof:
     points: tuple[ResiduePoint, ...] = field(repr=False)
     excited: tuple[Witness, ...] = field(repr=False)
     vanishing: tuple[Vanishing, ...] = field(repr=False)
+    potential: Potential | None = None
 
     def __repr__(self) -> str:
         seeds = ",".join(map(str, self.seeds))
@@ -164,9 +172,9 @@ class PropagationProof:
         actual = [list(modes) for modes in self.actual]
         body: dict[str, Any] = {
             "format": FORMAT,
-            "schema": SCHEMA,
+            "schema": SCHEMA if self.potential is None else POTENTIALS,
             "N": self.N,
-            "model": self.model,
+            **self._law_record(),
             "seeds": list(self.seeds),
             "order": self.order,
             "rule": rule,
@@ -181,6 +189,16 @@ class PropagationProof:
         text = json.dumps(body, sort_keys=True, separators=(",", ":"))
         digest = hashlib.sha256(text.encode()).hexdigest()
         return body | {"digest": digest}
+
+    def _law_record(self) -> dict[str, Any]:
+        """The model, or the potential with the coefficients c_3, c_4, ... up to the last order."""
+        if self.potential is None:
+            return {"model": self.model}
+        step = 2 if self.potential.even else 1
+        degrees = range(3, 3 + step * self.order)
+        coefficients = [str(self.potential.coefficient(n)) for n in degrees]
+        text = self.potential.text
+        return {"potential": text, "step": step, "coefficients": coefficients}
 
     def write(self, path: Path | str) -> None:
         """Write the certificate to a path as JSON, whole or not at all.
@@ -201,7 +219,8 @@ def prove_propagation(
     seeds: Sequence[int],
     order: int,
     *,
-    model: str = "alpha",
+    model: str | None = None,
+    potential: Potential | str | None = None,
     points: int = 1,
     random_seed: int = 0,
     workers: int | None = None,
@@ -210,7 +229,8 @@ def prove_propagation(
     """Prove or refute the Proposition (Eqs. app, dk) for given N, seeds and model, up to an order.
 
     N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k.
-        model : 'alpha', 'beta' or 'alpha+beta'. All are dimensionless integers, exact.
+        model : 'alpha' (default) or 'beta'. potential : in its place, that of any chain with
+        exact coefficients, such as toda("1/2") or "poly:1,2/3". All are dimensionless, exact.
     points : independent primes and random frequencies, each a run of the recursion; with 0
         nothing can be shown excited.
     random_seed : the same seed gives the same points.
@@ -218,27 +238,23 @@ def prove_propagation(
     progress : called as (label, fraction done).
 
     Appendix B proves the Proposition in general; here each case is decided exactly, and some of
-    beta are refuted.
-    Raises InputError for arguments out of range, TooLarge before allocating what does not fit.
+    beta are refuted. For other potentials the rule is that of `excitation_sequence` (ours).
+    Raises InputError for arguments out of range and for a potential whose coefficients are
+    rounded, TooLarge before allocating what does not fit.
 
     >>> prove_propagation(8, (1, 4), 3, model="beta")
     PropagationProof(N=8, beta, seeds=1,4, order 3: refuted; mode 7 predicted at 1, actually 2)
     """
     N = integer(N, "N", 2)
     points = integer(points, "points", 0)
-    if model not in ("alpha", "beta"):
-        raise InputError(
-            "model", model, "'alpha' or 'beta'", "the rule is stated for these"
-        )
+    chain = proved_chain(N, model, potential)
     modes = seed_modes(seeds, N)
     seeds = tuple(sorted(modes))
     order = integer(order, "order", 0)
-    alpha, beta = int(model == "alpha"), int(model == "beta")
-    chain = Chain(N, alpha=alpha, beta=beta)
     check_size(chain, seeds, order, "residue")
     if workers is not None:
         integer(workers, "workers", 1)
-    rule = excitation_sequence(N, seeds, order, model=model)
+    rule = excitation_sequence(N, seeds, order, potential=chain.potential)
     source = random.Random(random_seed)  # noqa: S311 (points need be random, not secret)
     used: list[ResiduePoint] = []
     found: dict[int, Witness] = {}
@@ -253,14 +269,14 @@ def prove_propagation(
     first = dict.fromkeys(seeds, 0)
     for q, witness in found.items():
         first[q] = witness.order
-    vanishing, undecided = _zero_terms(chain, seeds, order, model, first, used)
+    vanishing, undecided = _zero_terms(chain, seeds, order, first, used)
     exceptions = _exceptions(N, rule, first)
     actual = [_modes_of_order(first, k) for k in range(order + 1)]
     verdict = _verdict(exceptions, undecided)
     excited = tuple(found[q] for q in sorted(found))
     return PropagationProof(
         N=N,
-        model=model,
+        model=law_name(chain),
         seeds=seeds,
         order=order,
         rule=tuple(rule),
@@ -271,7 +287,36 @@ def prove_propagation(
         points=tuple(used),
         excited=excited,
         vanishing=vanishing,
+        potential=None if chain.model in SINGLE else chain.potential,
     )
+
+
+def proved_chain(N: int, model: str | None, potential: Potential | str | None) -> Chain:
+    """The chain of one of both models, or of a potential with exact coefficients.
+
+    The strength of a single coupling scales the amplitudes, so that alpha or beta is 1. InputError
+    for others, and where model and potential are both given.
+    """
+    if potential is None:
+        model = model or "alpha"
+        if model not in SINGLE:
+            advice = "of others give the potential, such as potential='poly:1,2/3'"
+            raise InputError("model", model, "'alpha' or 'beta'", advice)
+        return Chain(N, alpha=int(model == "alpha"), beta=int(model == "beta"))
+    powers_of(model, potential)  # refuses both
+    chain = Chain(N, potential=potential)
+    if not chain.potential.exact:
+        allowed = "a potential with exact coefficients"
+        advice = "rounded ones prove nothing: write it with rational numbers"
+        raise InputError("potential", chain.potential, allowed, advice)
+    if chain.model in SINGLE:
+        return proved_chain(N, chain.model, None)
+    return chain
+
+
+def law_name(chain: Chain) -> str:
+    """'alpha', 'beta', or the potential as it is typed."""
+    return chain.model if chain.model in SINGLE else chain.potential.text
 
 
 def _modes_of_order(first: dict[int, int], order: int) -> tuple[int, ...]:
@@ -341,8 +386,11 @@ def _run_at_random_point(
     workers: int | None,
 ) -> tuple[ResiduePoint, LindstedtSeries]:
     degree = 1 + chain.degree_step * order
+    denominators = {number.denominator for number in force_numbers(chain, degree)}
     for _ in range(ATTEMPTS):
         point = random_point(chain.N, len(seeds), degree, source)
+        if not all(n % point.prime for n in denominators):
+            continue
         try:
             series = residue_series(
                 chain, seeds, point, order, workers=workers, progress=progress
@@ -384,12 +432,12 @@ def _zero_terms(
     chain: Chain,
     seeds: tuple[int, ...],
     order: int,
-    model: str,
     actual: dict[int, int],
     points: Sequence[ResiduePoint],
 ) -> tuple[tuple[Vanishing, ...], tuple[Undecided, ...]]:
     """Why every term below the actual order of its mode is zero; what is left is undecided."""
-    coupled = [set(modes) for modes in coupled_modes(chain.N, seeds, order, model=model)]
+    sets = coupled_modes(chain.N, seeds, order, potential=chain.potential)
+    coupled = list(map(set, sets))
     vanishing, undecided = [], []
     for q in range(1, chain.N):
         first = actual.get(q, order + 1)

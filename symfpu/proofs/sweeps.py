@@ -23,11 +23,12 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
+from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.propagation import coupling_sequence
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import integer
-from symfpu.proofs.certificates import prove_propagation
+from symfpu.proofs.certificates import law_name, prove_propagation, proved_chain
 
 HEADER, SCHEMA = "symfpu propagation sweep", 1
 BATCH = 16  # cases in one task
@@ -57,7 +58,8 @@ class SweepCase:
 class Sweep:
     """All cases of a sweep of the Proposition. Made by `sweep_propagation`.
 
-    model, order : of every case. cases : sorted by N, number of seeds and seeds; each with its
+    model, order : of every case, the model of another potential being its text, "toda:0.5".
+    cases : sorted by N, number of seeds and seeds; each with its
         verdict, its exceptions (mode, predicted order, actual order or None) and whether the
         corrected rule holds. Dimensionless integers, exact.
 
@@ -106,7 +108,7 @@ class SweepIncomplete(SymfpuError):
         super().__init__(f"{undecided}; {others}, {advice}")
 
 
-def decide(cases: Sequence[Key], model: str, order: int) -> Decided:
+def decide(cases: Sequence[Key], potential: str, order: int) -> Decided:
     """Decide some seed sets on one core.
 
     Plain data and errors out, so that any executor can carry it.
@@ -114,16 +116,17 @@ def decide(cases: Sequence[Key], model: str, order: int) -> Decided:
     records, failures = [], {}
     for N, seeds in cases:
         try:
-            records.append(asdict(_decided(N, seeds, model, order)))
+            records.append(asdict(_decided(N, seeds, potential, order)))
         # whatever it is, it is reported at the end and costs no other case
         except Exception as error:
             failures[N, seeds] = error
     return records, failures
 
 
-def _decided(N: int, seeds: tuple[int, ...], model: str, order: int) -> SweepCase:
-    proof = prove_propagation(N, seeds, order, model=model, workers=1)
-    corrected = tuple(coupling_sequence(N, seeds, order, model=model)) == proof.actual
+def _decided(N: int, seeds: tuple[int, ...], potential: str, order: int) -> SweepCase:
+    proof = prove_propagation(N, seeds, order, potential=potential, workers=1)
+    sets = coupling_sequence(N, seeds, order, potential=potential)
+    corrected = tuple(sets) == proof.actual
     exceptions = tuple((e.mode, e.predicted, e.actual) for e in proof.exceptions)
     return SweepCase(N, tuple(seeds), proof.verdict, exceptions, corrected)
 
@@ -133,15 +136,17 @@ def sweep_propagation(
     largest_set: int,
     order: int,
     *,
-    model: str = "alpha",
+    model: str | None = None,
+    potential: Potential | str | None = None,
     executor: Executor | None = None,
     file: Path | str | None = None,
     progress: Progress | None = None,
 ) -> Sweep:
     """Decide the Proposition for all seed sets of up to `largest_set` modes, all N in `lengths`.
 
-    lengths : numbers of bonds N. largest_set : most seeds. order : the last k. model : 'alpha',
-        'beta' or 'alpha+beta'. All are dimensionless integers.
+    lengths : numbers of bonds N. largest_set : most seeds. order : the last k. model : 'alpha'
+        (default) or 'beta'. potential : in its place, that of any chain with exact coefficients.
+        All are dimensionless integers.
     executor : any concurrent.futures.Executor, such as dask.distributed's client.get_executor();
         default a pool of processes, which a script must start under `if __name__ == "__main__":`.
     file : JSON lines, one for each decided case; an existing file of the same sweep is continued,
@@ -160,17 +165,15 @@ def sweep_propagation(
     """
     lengths = sorted({integer(N, "N", 2) for N in lengths})
     largest_set, order = integer(largest_set, "largest_set", 1), integer(order, "order", 0)
-    if model not in ("alpha", "beta"):
-        raise InputError(
-            "model", model, "'alpha' or 'beta'", "the rule is stated for these"
-        )
+    chain = proved_chain(2, model, potential)
+    law, name = chain.potential.text, law_name(chain)
     cases = [
         (N, seeds)
         for N in lengths
         for s in range(1, largest_set + 1)
         for seeds in combinations(range(1, N), s)
     ]
-    log = SweepLog(Path(file), model, order) if file is not None else None
+    log = SweepLog(Path(file), name, order) if file is not None else None
     decided = {
         key: case for key, case in (log.read() if log else {}).items() if key in set(cases)
     }
@@ -180,7 +183,7 @@ def sweep_propagation(
         pool = executor or stack.enter_context(
             ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn"))
         )
-        for records, failed in _results(pool, _batches(todo), model, order):
+        for records, failed in _results(pool, _batches(todo), law, order):
             failures |= failed
             for record in records:
                 case = _case(record)
@@ -189,7 +192,7 @@ def sweep_propagation(
                     log.append(record)
             if progress:
                 progress("seed sets", len(decided) / len(cases))
-    sweep = Sweep(model, order, tuple(decided[case] for case in cases if case in decided))
+    sweep = Sweep(name, order, tuple(decided[case] for case in cases if case in decided))
     if failures:
         ordered = {case: failures[case] for case in cases if case in failures}
         raise SweepIncomplete(sweep, ordered) from next(iter(ordered.values()))
@@ -197,13 +200,13 @@ def sweep_propagation(
 
 
 def _results(
-    pool: Executor, batches: Sequence[Sequence[Key]], model: str, order: int
+    pool: Executor, batches: Sequence[Sequence[Key]], potential: str, order: int
 ) -> Iterator[Decided]:
     """What became of every batch, as it ends; the others are cancelled if the caller stops."""
     batch_of: dict[Future[Decided], Sequence[Key]] = {}
     try:
         for batch in batches:
-            batch_of[_submitted(pool, batch, model, order)] = batch
+            batch_of[_submitted(pool, batch, potential, order)] = batch
         for task in as_completed(batch_of):
             error = task.exception()
             if error is None:
@@ -219,14 +222,14 @@ def _results(
 
 
 def _submitted(
-    pool: Executor, batch: Sequence[Key], model: str, order: int
+    pool: Executor, batch: Sequence[Key], potential: str, order: int
 ) -> Future[Decided]:
     """The task of a batch, submitted.
 
     One that has failed already in a pool whose workers died while it was filled.
     """
     try:
-        return pool.submit(decide, batch, model, order)
+        return pool.submit(decide, batch, potential, order)
     except BrokenExecutor as error:
         failed: Future[Decided] = Future()
         failed.set_exception(error)

@@ -6,6 +6,10 @@ Q_q, S = sum B u u or sum C u u u (Eqs. moda, modb):
 
     u_q^(k)[m] = L_q(nu) (sum_n W_q^(n) u_q^(k-n) - S_q^(k))[m],    W_q^(n)[f] = S_q^(n)[f w_q].
 
+Certificates of version 2 are of other potentials, V' = r + c_3 r^2 + c_4 r^3 + ..., whose
+coefficients they name. S then is the sum of g_n T u^n over the powers n, T counting signs as B and
+C do, with the g_n of `read_potential`.
+
 A coefficient that is not 0 modulo p proves a mode excited for generic frequencies; with symbols
 for the L_q(nu), a polynomial that is 0 proves a zero. Written to be audited: one claim a
 function, in the order in which `verify` calls them. The file shares no code with the prover and
@@ -15,8 +19,11 @@ imports nothing but the standard library.
 import hashlib
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from fractions import Fraction
 from itertools import combinations_with_replacement, product
+from math import factorial
 from operator import mul, sub
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -27,6 +34,12 @@ MOST_STEPS = 2 * 10**6
 MOST_SEEDS = 64
 MOST_POINTS = 256
 LARGEST_N = 4096
+LONGEST_COEFFICIENTS = 10**5  # characters, the longest times the order
+MODELS: dict[str, tuple[int, dict[int, Any]]] = {"alpha": (1, {2: 1}), "beta": (2, {3: 1})}
+EXACT = re.compile(r"-?[0-9]+(/[1-9][0-9]*)?")
+NAMED = re.compile(
+    r"([a-z_]+):(-?[0-9.]+(?:/[1-9][0-9]*)?(?:,-?[0-9.]+(?:/[1-9][0-9]*)?)*)"
+)
 # above 0, up to 1
 PROBABILITY = re.compile(
     r"1(\.0+)?(e[+-]?0+)?|0\.0*[1-9][0-9]*|[1-9](\.[0-9]+)?e-0*[1-9][0-9]*"
@@ -40,6 +53,7 @@ READING_ERRORS = (
     TypeError,
     AttributeError,
     RecursionError,
+    ZeroDivisionError,
 )
 
 Json = dict[str, Any]
@@ -103,8 +117,8 @@ def check_header(data: Json) -> None:
     )
     schema = data["schema"]
     need(
-        schema == 1,
-        f"schema version {schema!r:.40} is unknown: this checker supports version 1",
+        schema in (1, 2),
+        f"schema version {schema!r:.40} is unknown: this checker supports versions 1, 2",
     )
 
 
@@ -120,7 +134,7 @@ def check_keys(data: Json, colons: int) -> None:
     """No key is missing, unknown or there twice: those we read are as many as the file has."""
     of_three = data["exceptions"] + data["undecided"] + data["points"] + data["vanishing"]
     of_five = data["excited"]
-    expected = 15 + 3 * len(of_three) + 5 * len(of_five)
+    expected = 13 + 2 * data["schema"] + 3 * len(of_three) + 5 * len(of_five)
     need(colons == expected, "a key is missing, unknown or there twice")
 
 
@@ -128,33 +142,112 @@ def check_keys(data: Json, colons: int) -> None:
 
 
 class Case(NamedTuple):
-    """N, the last order, the seeds, and the number of factors of the force: 2 (alpha) or 3
-    (beta).
+    """N, the last order, the seeds, how much the degree in the amplitudes grows with the order,
+    and the force: g_n by power n, where that is not zero.
     """
 
     N: int
     order: int
     seeds: list[int]
-    factors: int
-
-    @property
-    def step(self) -> int:
-        """How much the degree in the amplitudes grows with the order."""
-        return self.factors - 1
+    step: int
+    force: Mapping[int, Any]
 
     def degree(self, k: int) -> int:
         """Of order k in the amplitudes."""
         return 1 + k * self.step
 
+    def added(self, n: int) -> int:
+        """How much a product of n factors adds to the sum of their orders."""
+        return (n - 1) // self.step
+
 
 def read_case(data: Json) -> Case:
     """The chain and its seeds, their sizes bounded."""
-    N, order, model, seeds = data["N"], data["order"], data["model"], data["seeds"]
+    N, order, seeds = data["N"], data["order"], data["seeds"]
     fits = 1 < N <= LARGEST_N and max(1000, N) * order <= 10**6
-    need(fits and model in ("alpha", "beta"), "wrong N, order or model")
+    need(fits, "wrong N, order or model")
     modes = sorted({q for q in seeds if 0 < q < N})
     need(seeds == modes[:MOST_SEEDS] != [], "seeds are not 1 to 64 ascending modes")
-    return Case(N, order, seeds, 3 if model == "beta" else 2)
+    if data["schema"] == 1:
+        need(data["model"] in MODELS, "wrong N, order or model")
+        return Case(N, order, seeds, *MODELS[data["model"]])
+    return Case(N, order, seeds, *read_potential(data, order))
+
+
+def read_potential(data: Json, order: int) -> tuple[int, dict[int, Any]]:
+    """The step of the degree, and g_n = c_(n+1) / unit^((n-1)/step), the unit being the first of
+    the coefficients c_(2 + step), c_(2 + 2 step), ..., or 1 where that is zero.
+    """
+    step, texts = data["step"], data["coefficients"]
+    need(step in (1, 2) and len(texts) == step * order, "step or number of coefficients")
+    longest = max(map(len, texts), default=0)
+    readable = all(map(EXACT.fullmatch, texts)) and longest * order <= LONGEST_COEFFICIENTS
+    need(readable, "coefficients are no fractions, or too long")
+    coefficients = list(map(Fraction, texts))  # c_3, c_4, ...
+    check_name(data["potential"], coefficients)
+    need(step == 1 or not any(coefficients[::2]), "step 2, and a coefficient of odd n")
+    ordered = coefficients[step - 1 :: step]
+    unit = ordered[0] if ordered and ordered[0] else Fraction(1)
+    force = {1 + step * k: Fraction(c, unit**k) for k, c in enumerate(ordered, 1) if c}
+    return step, force
+
+
+def check_name(name: str, coefficients: list[Fraction]) -> None:
+    """The coefficients are those of the potential named, if it is one of NAMED_POTENTIALS."""
+    need(type(name) is str and "\n" not in name, "the potential has no name")
+    if is_known(name):
+        kind, numbers = parts_of(name)
+        for n, c in enumerate(coefficients, 3):
+            need(
+                c == NAMED_POTENTIALS[kind](n, *numbers), f"c_{n} is not that of {name:.80}"
+            )
+
+
+def is_known(name: str) -> bool:
+    """Whether the checker knows the coefficients of a potential of this name by itself."""
+    return name.partition(":")[0] in NAMED_POTENTIALS
+
+
+def parts_of(name: str) -> tuple[str, list[Fraction]]:
+    """The kind and the numbers of a name such as toda:1/2."""
+    found = NAMED.fullmatch(name)
+    need(
+        found and len(name) <= LONGEST_COEFFICIENTS,
+        "the potential is not named as kind:p,q",
+    )
+    assert found is not None
+    return found[1], [Fraction(number) for number in found[2].split(",")]
+
+
+def of_polynomial(n: int, *coefficients: Fraction) -> Fraction:
+    """c_n as it stands in the name."""
+    return coefficients[n - 3] if n - 3 < len(coefficients) else Fraction(0)
+
+
+def of_toda(n: int, a: Fraction) -> Fraction:
+    """V = (e^(2ar) - 1 - 2ar)/(4a^2)."""
+    return Fraction((2 * a) ** (n - 2), factorial(n - 1))
+
+
+def of_lennard_jones(n: int, p: Fraction, q: Fraction) -> Fraction:
+    """V = [((1+r)^-p - 1)/p - ((1+r)^-q - 1)/q]/(p - q)."""
+    steep, flat = Fraction(binomial(-p, n), p), Fraction(binomial(-q, n), q)
+    return Fraction(n * (steep - flat), p - q)
+
+
+def binomial(power: Fraction, n: int) -> Fraction:
+    """The coefficient of r^n in (1 + r)^power."""
+    value = Fraction(1)
+    for i in range(n):
+        value *= Fraction(power - i, i + 1)
+    return value
+
+
+NAMED_POTENTIALS: dict[str, Any] = {
+    "polynomial": of_polynomial,
+    "toda": of_toda,
+    "lennard_jones": of_lennard_jones,
+}
 
 
 class Budget:
@@ -174,17 +267,28 @@ class Budget:
 
 
 def couplings(N: int, *modes: int) -> list[tuple[int, int]]:
-    """Each q with B_qlm or C_qlmn, where that is not zero: Eq. transa, with the sums -2N that it
-    leaves out.
+    """Each q with B_qlm, C_qlmn or their like, where that is not zero: Eq. transa, with all the
+    signed sums, + for those that make 0 modulo 4N with q and - for those that make 2N.
     """
-    signs = product((1, -1), repeat=len(modes))
-    sums = [sum(map(mul, modes, chosen)) for chosen in signs]
+    sums = signed_sums(N, modes)
     found = []
     for q in {-total % (2 * N) for total in sums}:
-        value = sums.count(-q) - sums.count(2 * N - q) - sums.count(-2 * N - q)
+        value = sums[-q % (4 * N)] - sums[(2 * N - q) % (4 * N)]
         if value and 0 < q < N:
             found.append((q, value))
     return found
+
+
+def signed_sums(N: int, modes: tuple[int, ...]) -> Counter[int]:
+    """How many choices of signs give each sum of the modes, modulo 4N."""
+    sums = Counter({0: 1})
+    for l in modes:
+        longer: Counter[int] = Counter()
+        for total, count in sums.items():
+            longer[(total + l) % (4 * N)] += count
+            longer[(total - l) % (4 * N)] += count
+        sums = longer
+    return sums
 
 
 # --- the recursion
@@ -242,10 +346,22 @@ class Recursion:
             self.add(u, q, self.multiplier(q, nu), bracket[q])
 
     def add_forces(self, m: Monomial, bracket: ByMode) -> None:
-        """- sum B u u, or - sum C u u u."""
-        for modes, value in self.products(self.case.factors, m):
-            for q, coupling in couplings(self.case.N, *modes):
-                self.add(bracket, q, {(): 1}, value, -coupling)
+        """- sum B u u, or - sum C u u u; of other potentials, - g_n sum T u .. u of all n."""
+        for n, g in self.case.force.items():
+            if n > sum(m):
+                continue
+            number = self.number(g)
+            for modes, value in self.products(n, m):
+                for q, coupling in couplings(self.case.N, *modes):
+                    self.add(bracket, q, {(): number}, value, -coupling)
+
+    def number(self, g: Any) -> Any:
+        """A coefficient of the force, as a residue or exactly."""
+        p = self.point.prime
+        if not p:
+            return g
+        need(g.denominator % p, f"a coefficient of the force has no residue modulo {p}")
+        return g.numerator * pow(g.denominator, -1, p) % p
 
     def add_corrections(self, m: Monomial, bracket: ByMode) -> None:
         """+ sum W_q u_q over the monomials f = |w|^(2e) that divide m, neither of them trivial."""
@@ -389,17 +505,31 @@ def check_probabilities(data: Json) -> None:
 
 
 def propagation_rule(case: Case, budget: Budget) -> list[list[int]]:
-    """D_0 .. D_K of the paper's proposition (Eqs. app, dk), folded at every order."""
+    """D_0 .. D_K of the paper's proposition (Eqs. app, dk), folded at every order.
+
+    Of other potentials none at an order which no powers of the force make.
+    """
     signed = [*case.seeds, *(-q for q in case.seeds)]
     shifts = {sum(chosen) for chosen in product(signed, repeat=case.step)}
     reached, rule, seen = set(case.seeds), [], {0, case.N}
+    made = orders_made(case)
     for k in range(case.order + 1):
         if k:
             pairs = budget.counted(product(reached, shifts))
             reached = {folded(q + shift, case.N) for q, shift in pairs}
-        rule.append(sorted(reached - seen))
-        seen |= reached
+        new = reached - seen if k in made else set()
+        rule.append(sorted(new))
+        seen |= new
     return rule
+
+
+def orders_made(case: Case) -> set[int]:
+    """The orders that are sums of what the powers of the force add to the order."""
+    made = {0}
+    for k in range(1, case.order + 1):
+        if any(k - case.added(n) in made for n in case.force):
+            made.add(k)
+    return made
 
 
 def folded(total: int, N: int) -> int:
@@ -460,17 +590,19 @@ def check_zeros_by_couplings(data: Json, case: Case, budget: Budget) -> None:
 
 
 def coupled_sets(case: Case, last: int, budget: Budget) -> list[set[int]]:
-    """M_0 .. M_last: what B or C couples to the sets before.
+    """M_0 .. M_last: what B, C or another power of the force couples to the sets before.
 
     And seeds reached before, kept by frequency corrections.
     """
     sets = [set(case.seeds)]
     for k in range(1, last + 1):
         reached = {q for q in case.seeds if any(q in modes for modes in sets[1:])}
-        orders = combinations_with_replacement(range(k), case.factors)
-        for chosen in budget.counted(orders):
-            if sum(chosen) == k - 1:
-                reached |= coupled_modes(case, [sets[j] for j in chosen], budget)
+        for n in case.force:
+            before = k - case.added(n)  # the sum of the orders of the factors
+            orders = combinations_with_replacement(range(before + 1), n)
+            for chosen in budget.counted(orders):
+                if sum(chosen) == before:
+                    reached |= coupled_modes(case, [sets[j] for j in chosen], budget)
         sets.append(reached)
     return sets
 
@@ -569,12 +701,21 @@ def report(data: Json, case: Case, verdict: str, zeros: int, steps: int) -> list
     """What was checked."""
     unsure = sorted({e["mode"] for e in data["undecided"]})
     primes = [e["prime"] for e in data["points"]]
-    chain = (
-        f"{data['model']} chain, N = {case.N}, seeds {case.seeds}, orders to {case.order}"
-    )
+    chain = f"{law(data)}, N = {case.N}, seeds {case.seeds}, orders to {case.order}"
     excited = f"{len(data['excited'])} modes excited"
     return [
         f"{chain}: rule, orders and exceptions follow; {verdict}",
         f"{excited}: residues computed again, modulo {primes}, in {steps} steps",
         f"{zeros} zeros before: by couplings or identity; undecided, not checked: modes {unsure}",
     ]
+
+
+def law(data: Json) -> str:
+    """What chain it is, and whether the coefficients are known to be those of its potential."""
+    if data["schema"] == 1:
+        return f"{data['model']} chain"
+    name = data["potential"]
+    unknown = (
+        "" if is_known(name) else " (its coefficients as written, the name not checked)"
+    )
+    return f"chain of potential {name:.80}{unknown}"

@@ -12,6 +12,7 @@ where the first term is linear in the unknown r_d and belongs to the linear part
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any, Protocol
 
 from symfpu.algebra.ring import GrowingRing, Parts, Ring
@@ -60,6 +61,13 @@ class GrowthForce:
 def scaled_growths(chain: Chain) -> tuple[Growth, ...]:
     """Those of the chain's tension in units of the small parameter."""
     return tuple(g.scaled(chain.unit_coupling) for g in chain.potential.growths())
+
+
+def force_numbers(chain: Chain, top: int) -> list[Fraction]:
+    """All numbers that the force takes, either way, up to a degree."""
+    growths = [number for growth in scaled_growths(chain) for number in growth]
+    halves = [growth.weight / 2 for growth in scaled_growths(chain)]
+    return [*chain.relative_couplings(top).values(), *growths, *halves]
 
 
 def stored_powers(chain: Chain, top: int, *, grows: bool) -> int:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symfpu.chain.propagation import excitation_sequence, reachable_modes
+from symfpu.chain.propagation import coupling_sequence, excitation_sequence, reachable_modes
 from symfpu.errors import InputError
 
 LENGTH = {"alpha": lambda k: k + 1, "beta": lambda k: 2 * k + 1, "alpha+beta": lambda k: k + 1}
@@ -154,3 +154,38 @@ def test_bad_arguments_are_refused_by_name(arguments, named):
 def test_unknown_models_are_refused():
     with pytest.raises(InputError, match="model"):
         excitation_sequence(8, (1,), 2, model="gamma")
+
+
+@given(chains(), st.sampled_from(["toda:1/2", "lj:12,6", "poly:1,2"]))
+def test_potentials_with_squares_follow_alpha_and_even_ones_beta(chain, potential):
+    assert excitation_sequence(*chain, 4, potential=potential) == excitation_sequence(*chain, 4, model="alpha")
+    assert excitation_sequence(*chain, 2, potential="poly:0,1,0,3") == excitation_sequence(*chain, 2, model="beta")
+
+
+@given(chains(), st.sampled_from(["poly:0,1,1", "poly:0,0,1", "poly:0,0,0,1"]))
+def test_orders_that_no_powers_make_are_empty_and_the_others_those_of_their_degree(chain, potential):
+    """Of c_4 and c_5 orders 2, 3, 4, ..; of c_5 alone 3, 6, ..; of c_6, where V is even, 2, 4, .."""
+    made = {"poly:0,1,1": {0, 2, 3, 4, 5}, "poly:0,0,1": {0, 3}, "poly:0,0,0,1": {0, 2, 4}}[potential]
+    model = "beta" if potential == "poly:0,0,0,1" else "alpha"
+    every = reachable_modes(*chain, 5, model=model)
+    expected = [modes if k in made else () for k, modes in enumerate(every)]
+    assert reachable_modes(*chain, 5, potential=potential) == expected
+
+
+@given(chains(most_bonds=10), st.sampled_from(["toda:1", "poly:0,1,0,1", "poly:0,1,1", "poly:0,0,1", "poly:0,0,0,0,0,1"]))
+def test_couplings_let_a_mode_in_no_earlier_than_sums_do(chain, potential):
+    """With squares neither earlier nor later."""
+    sequences = [rule(*chain, 3, potential=potential) for rule in (excitation_sequence, coupling_sequence)]
+    by_sums, by_couplings = ({q: k for k, modes in enumerate(found) for q in modes} for found in sequences)
+    assert by_couplings.keys() <= by_sums.keys()
+    assert all(by_sums[q] <= k for q, k in by_couplings.items())
+    if potential == "toda:1":
+        assert by_couplings == by_sums
+
+
+def test_model_and_potential_are_not_both_taken():
+    for rule in (excitation_sequence, reachable_modes, coupling_sequence):
+        with pytest.raises(InputError, match=r"^model = "):
+            rule(8, (1,), 2, model="alpha", potential="toda:1")
+        with pytest.raises(InputError, match=r"^potential = "):
+            rule(8, (1,), 2, potential=1)

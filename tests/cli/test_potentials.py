@@ -48,7 +48,7 @@ def test_show_and_gali_name_the_potential(capsys, saved):
     assert json.loads(run(capsys, "show", saved, "--json")[1])["potential"] == "toda:0.5"
 
 
-@pytest.mark.parametrize("verb", ["solve", "breather", "family"])
+@pytest.mark.parametrize("verb", ["solve", "breather", "family", "propagate", "prove", "sweep"])
 def test_verbs_with_couplings_show_how_a_potential_is_typed(capsys, verb):
     code, out, _ = run(capsys, verb, "--help")
     assert code == 0

@@ -118,9 +118,9 @@ def test_what_is_no_certificate_is_refused(text, reason, tmp_path):
 
 
 def test_newer_schema_is_named(tmp_path):
-    certificate = sealed(prove_propagation(6, (1,), 1).certificate() | {"schema": 2})
+    certificate = sealed(prove_propagation(6, (1,), 1).certificate() | {"schema": 3})
     (tmp_path / "c.json").write_text(json.dumps(certificate))
-    with pytest.raises(CertificateError, match=r"schema.* 2 "):
+    with pytest.raises(CertificateError, match=r"schema.* 3 "):
         verify(tmp_path / "c.json")
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from symfpu.proofs.verify import SYMBOLS, Budget, Case, CertificateError, Point, Recursion, couplings, verify
+from symfpu.proofs.verify import MODELS, SYMBOLS, Budget, Case, CertificateError, Point, Recursion, couplings, verify
 
 
 def delta(total, target):
@@ -253,7 +253,7 @@ def test_the_lazy_recursion_gives_the_full_table_modulo_p_and_in_symbols(model, 
     """All coefficients, and the polynomials with the residues of L_q(nu) put in; corrections of frequencies are in both."""
     N, seeds = 5, (1, 2)
     body = certificate(N, model, seeds, order, identity=range(N))
-    at, case = body["points"][0], Case(N, order, list(seeds), 3 if model == "beta" else 2)
+    at, case = body["points"][0], Case(N, order, list(seeds), *MODELS[model])
     p, table = at["prime"], Table(N, model, seeds, order, *at.values())
     in_symbols, modulo = (Recursion(case, point, Budget()) for point in (SYMBOLS, Point(*at.values())))
     seen = 0
@@ -538,10 +538,10 @@ def test_other_files_are_refused_in_one_line(check, content):
     refused(check, content)
 
 
-@pytest.mark.parametrize("version", [0, 2, 999, None, "1"])
+@pytest.mark.parametrize("version", [0, 3, 999, None, "1"])
 def test_the_message_names_an_unknown_schema_version_and_the_known_one(check, version):
     body = signed(CERTIFICATES["refuted"] | {"schema": version, "news": []})
-    refused(check, body, re.escape(f"schema version {version!r} is unknown: this checker supports version 1"))
+    refused(check, body, re.escape(f"schema version {version!r} is unknown: this checker supports versions 1, 2"))
 
 
 def test_missing_files_directories_and_devices_are_refused(tmp_path):
