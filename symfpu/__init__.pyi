@@ -11,6 +11,7 @@ from symfpu.chain.frequency_shift import frequency_shift as frequency_shift
 from symfpu.chain.frequency_shift import frequency_shift_formula as frequency_shift_formula
 from symfpu.chain.potentials.from_expression import from_expression as from_expression
 from symfpu.chain.potentials.lennard_jones import lennard_jones as lennard_jones
+from symfpu.chain.potentials.morse import morse as morse
 from symfpu.chain.potentials.polynomial import polynomial as polynomial
 from symfpu.chain.potentials.toda import toda as toda
 from symfpu.chain.propagation import coupling_sequence as coupling_sequence

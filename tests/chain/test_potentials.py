@@ -10,14 +10,23 @@ import pytest
 import sympy
 from numba import njit
 
-from symfpu import Chain, lennard_jones, polynomial, toda
+from symfpu import Chain, lennard_jones, morse, polynomial, toda
 from symfpu.chain import bond_loops, bonds
 from symfpu.chain.potentials.typed import kinds, potential_of_text
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION
 from tests.tolerances import FORTY_DIGITS, ROUNDING
 
-POTENTIALS = [toda("1/2"), toda("-3"), lennard_jones(12, 6), lennard_jones("5/2", 1), polynomial("1/3", 0, "1/5"), polynomial(0, 0, 1)]
+POTENTIALS = [
+    toda("1/2"),
+    toda("-3"),
+    lennard_jones(12, 6),
+    lennard_jones("5/2", 1),
+    morse("2/3"),
+    morse(-1),
+    polynomial("1/3", 0, "1/5"),
+    polynomial(0, 0, 1),
+]
 STRETCHES = [-0.7, -0.1, -1e-3, -1e-9, 1e-12, 0.02, 0.4, 1.7]
 FUNCTIONS = {
     bonds.potential: lambda V, r: V,
@@ -88,7 +97,7 @@ def test_short_names():
     assert potential_of_text("lj:12,6") == lennard_jones(12, 6)
     assert potential_of_text(" poly: 0.33, 0, 1/5") == polynomial("0.33", 0, "1/5")
     assert Chain(8, potential="poly:0.33,0.1") == Chain(8, alpha="0.33", beta="0.1")
-    assert {"toda", "lj", "lennard_jones", "poly", "polynomial"} <= kinds().keys()
+    assert {"toda", "morse", "lj", "lennard_jones", "poly", "polynomial"} <= kinds().keys()
 
 
 @pytest.mark.parametrize("text", ["", "toda", "toda:", "toda:1,2", "toda:x", "toda:0", "fpu:1", "lj:6,12", "lj:12,12", "poly:", "poly:0,0"])
