@@ -45,6 +45,11 @@ from symfpu.families.continuation import Event
 from symfpu.families.family import NotInFamily, family, member_at_energy
 from symfpu.files.archive import BundleError
 from symfpu.files.checkpoint import Refused
+from symfpu.integrable.discriminant import NoDiscriminant
+from symfpu.integrable.invariants import toda_invariants
+from symfpu.integrable.quadrature import BandsTooNarrow
+from symfpu.integrable.search import NoTodaTorus
+from symfpu.integrable.torus import toda_torus
 from symfpu.localization.growth import growth_exponents
 from symfpu.localization.laws import fit_profile, profile_law
 from symfpu.localization.profiles import fpu_trajectory, profile_distance
@@ -212,6 +217,8 @@ RESULTS = {
     "ShotOrbit": (shot, lambda x: (motion(x), x.iterations)),
     "Sweep": (lambda _: sweep(), lambda x: x.exceptions),
     "TorusDimension": (lambda _: indices().dimension(), lambda x: x.weights),
+    "TodaInvariants": (lambda _: toda_invariants(PAIR, *fpu_trajectory(PAIR, {1: "0.1"})), lambda x: (x.gaps, x.actions, x.frequencies)),
+    "TodaTorus": (lambda _: toda_torus(Chain(4, alpha="1/2"), (1, 3), actions=("0.1", "0.2"), digits=20), lambda x: x.state({3: 1})),
     "Trend": (lambda _: invariance().slope_rate, lambda x: x.rate),
 }
 
@@ -308,6 +315,9 @@ ERRORS = {
     OrbitLost: lambda: OrbitLost(3.0, 0.1),
     BundleError: lambda: BundleError(Path("torus"), "is damaged", "restore it"),
     Refused: lambda: Refused("file", "orbit", "a checkpoint of the same orbit", "name another"),
+    NoDiscriminant: lambda: NoDiscriminant((3.0, 0.5), 0.1),
+    BandsTooNarrow: lambda: BandsTooNarrow(2),
+    NoTodaTorus: lambda: NoTodaTorus((1, 2), (0.1, 3.0), 0.5),
     NoRecurrence: lambda: NoRecurrence(10.0, 0.5),
     NotInFamily: lambda: NotInFamily("H", 1.0, (0.1, 0.5), "ended"),
     NoFurtherMember: lambda: NoFurtherMember("no root", (1,), (0.4,), "a reason"),

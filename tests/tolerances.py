@@ -515,5 +515,12 @@ FLOQUET_OF_TODA = 1e-9
 
 # Shifts by an action of 1e-12.
 SMALL_ACTION = 1e-11
+
 # Coefficients of 50 digits, rounded to nearest.
 FIFTY_DIGITS = 1e-49
+
+# Actions are squares of gaps of order 0.1, whose edges carry GAP.
+ACTIONS_IN_DOUBLES = 1e-12
+
+# Dormand and Prince, relative to the state and absolutely, of one step: what SciPy can do in doubles.
+ORBIT_STEP = 1e-13

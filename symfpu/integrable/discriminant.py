@@ -41,6 +41,8 @@ NEAR = 1e-9  # critical points so near to the start that the digits of the start
 class NoDiscriminant(SymfpuError):
     """Newton's method did not find the polynomial with the given heights.
 
+    Raised by `toda_torus` at energies that are too large.
+
     heights : h_j, dimensionless; residual : of the logarithmic equations. Ours.
     """
 

@@ -37,7 +37,14 @@ class TodaInvariants:
     """The gaps of a state, its actions and frequencies in the Toda chain; see `toda_invariants`.
 
     N, a, digits : as asked, a exact. gaps, actions, frequencies : by mode, shapes (N-1,), doubles
-    or mpf. Dimensionless.
+    or mpf. Dimensionless. Ours.
+
+    >>> from symfpu import Chain, toda_invariants
+    >>> found = toda_invariants(Chain(3, alpha="1/2"), [0.1, 0], [0, 0])
+    >>> found
+    TodaInvariants(N=3, a=0.5, widest gap 0.0408 of mode 1, sum of actions 0.005)
+    >>> found.frequencies.round(6)
+    array([1.000416, 1.732052])
     """
 
     N: int

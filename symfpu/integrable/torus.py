@@ -24,6 +24,7 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.integrable.coupling import toda_coupling
 from symfpu.integrable.curve import SpectralCurve
+from symfpu.integrable.discriminant import Edges
 from symfpu.integrable.inverse import ring_state
 from symfpu.integrable.search import Found, Search, guard_digits
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, with_digits
@@ -38,10 +39,21 @@ class TodaTorus:
     """A torus of the Toda chain on which only the gaps of the seeds are open; see `toda_torus`.
 
     N, a, ends, seeds, digits : as asked, a exact. energy : H of the torus. frequencies, actions,
-    gaps, heights : by seed; a gap is an interval of the spectrum of Flaschka's matrix.
-    normal_frequencies : of small oscillations about the torus, by every other mode: the modes turn
-    with e^(i omega t) along it. All numbers are mpf that print `digits` digits and carry some more.
-    Dimensionless.
+    gaps, heights : by seed; a gap is an interval of the spectrum of Flaschka's matrix, 2 cosh of
+    its height the extremum of the discriminant there.
+    normal_frequencies : of small oscillations about the torus, by every other mode: Floquet
+        exponents where there is one seed.
+    bands : centres and half widths of all gaps and the outer edges; of lambda on a ring, of
+        2 lambda^2 - 1 with fixed ends; arrays (N-1,).
+
+    All numbers are mpf that print `digits` digits and carry some more. Dimensionless. Ours.
+
+    >>> from symfpu import Chain, toda_torus
+    >>> torus = toda_torus(Chain(3, potential="toda:1/2"), (1,), actions=("0.1",), digits=12)
+    >>> torus
+    TodaTorus(N=3, a=0.5, fixed ends, seeds=1, H = 0.100410622492, omega_1 = ...)
+    >>> torus.normal_frequencies
+    {2: mpf('1.7322702939')}
     """
 
     N: int
@@ -55,7 +67,7 @@ class TodaTorus:
     gaps: Mapping[int, Any]
     heights: Mapping[int, Any]
     normal_frequencies: Mapping[int, Any]
-    curve: SpectralCurve
+    bands: Edges
 
     def __repr__(self) -> str:
         seeds = ",".join(map(str, self.seeds))
@@ -119,11 +131,11 @@ class TodaTorus:
 
     def _spectrum(self, half_turns: Mapping[int, int]) -> Numbers:
         """Eigenvalues without particle 0, each at an edge of its gap."""
-        z = self.curve.edges.centres.copy()
+        z = self.bands.centres.copy()
         sign = -1 if self.a > 0 else 1
         for q, half_turn in half_turns.items():
             side = -sign if half_turn else sign
-            z[q - 1] += side * self.curve.edges.half_widths[q - 1]
+            z[q - 1] += side * self.bands.half_widths[q - 1]
         if self.ends == "periodic":
             return z
         upper = MULTIPRECISION.sqrt((z + 1) / 2)
@@ -234,7 +246,7 @@ def _torus(search: Search, found: Found, digits: int) -> TodaTorus:
         gaps=of(gaps, seeds),
         heights=of(found.heights, seeds),
         normal_frequencies=of(frequencies, others),
-        curve=found.curve,
+        bands=found.curve.edges,
     )
 
 

@@ -3,6 +3,8 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from tests.tolerances import ORBIT_STEP
+
 
 def ring_of(x, p):
     """The odd state of the ring of 2N particles, of a state of a chain with fixed ends."""
@@ -32,7 +34,7 @@ def orbit(x, p, a, times):
         return np.concatenate([state[n:], accelerations(state[:n], a)])
 
     start = np.concatenate([x, p])
-    return solve_ivp(motion, (times[0], times[-1]), start, method="DOP853", t_eval=times, rtol=1e-13, atol=1e-15).y.T
+    return solve_ivp(motion, (times[0], times[-1]), start, method="DOP853", t_eval=times, rtol=ORBIT_STEP, atol=ORBIT_STEP).y.T
 
 
 def tangent_map(x, p, a, time):
@@ -47,7 +49,7 @@ def tangent_map(x, p, a, time):
         return np.concatenate([speed, accelerations(place, a), changes.ravel()])
 
     start = np.concatenate([x, p, np.eye(2 * n).ravel()])
-    found = solve_ivp(motion, (0, time), start, method="DOP853", rtol=1e-13, atol=1e-15)
+    found = solve_ivp(motion, (0, time), start, method="DOP853", rtol=ORBIT_STEP, atol=ORBIT_STEP)
     return found.y[2 * n :, -1].reshape(2 * n, 2 * n)
 
 
