@@ -33,6 +33,8 @@ from symfpu.series.sample import FrequencyChanges as FrequencyChanges
 from symfpu.series.sample import SampledSeries as SampledSeries
 from symfpu.series.sample import sample_series as sample_series
 from symfpu.series.series import LindstedtSeries as LindstedtSeries
+from symfpu.series.travelling import TravellingSeries as TravellingSeries
+from symfpu.series.travelling import travelling_waves as travelling_waves
 
 # tori from series
 from symfpu.tori.amplitudes import AmplitudeHistory as AmplitudeHistory
@@ -47,6 +49,9 @@ from symfpu.tori.resummation import pade_amplitudes as pade_amplitudes
 from symfpu.tori.resummation import pade_frequencies as pade_frequencies
 from symfpu.tori.resummation import pade_poles as pade_poles
 from symfpu.tori.resummation import resum as resum
+from symfpu.tori.ring_torus import RingTorus as RingTorus
+from symfpu.tori.ring_torus import travelling_torus as travelling_torus
+from symfpu.tori.ring_torus import unfold as unfold
 from symfpu.tori.torus import QTorus as QTorus
 from symfpu.tori.torus import RootCertificate as RootCertificate
 from symfpu.tori.verdict import Assessment as Assessment

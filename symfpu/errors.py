@@ -116,7 +116,8 @@ class ResonantDivisor(InputError):
     Raised by `lindstedt` at the first one.
 
     mode, harmonic, order : q, nu and k of Eqs. moda, modb. exact : whether it is exactly zero, or
-        too small to tell from zero in the ring at hand. All dimensionless integers.
+        too small to tell from zero in the ring at hand. All dimensionless integers. way_out : what
+        to do where the linear frequencies themselves are resonant, as on a ring; else empty.
     """
 
     def __init__(
@@ -127,11 +128,16 @@ class ResonantDivisor(InputError):
         order: int,
         *,
         exact: bool,
+        way_out: str = "",
     ) -> None:
         self.mode = mode
         self.harmonic = tuple(harmonic)
         self.order = order
         self.exact = exact
+        self.way_out = way_out
+        if way_out:
+            Exception.__init__(self, self._of_linear_frequencies(seeds))
+            return
         present = [(n, q) for n, q in zip(harmonic, seeds, strict=True) if n]
         combination = " ".join(f"{n:+d} omega_{q}" for n, q in present)
         own = "omega" if mode in seeds else "Omega"
@@ -141,6 +147,13 @@ class ResonantDivisor(InputError):
         resonance = f"{own}_{mode}^2 - ({combination})^2 {size} at {place}"
         advice = f"the frequencies are commensurable; change omega_{last}"
         Exception.__init__(self, f"{resonance}: {advice}")
+
+    def _of_linear_frequencies(self, seeds: Sequence[int]) -> str:
+        """A resonance of the chain itself, whatever frequencies are chosen."""
+        present = [(n, q) for n, q in zip(self.harmonic, seeds, strict=True) if n]
+        combination = " ".join(f"{n:+d} Omega_{q}" for n, q in present)
+        place = f"order {self.order}, mode {self.mode}, harmonic {self.harmonic}"
+        return f"Omega_{self.mode}^2 - ({combination})^2 = 0 at {place}: {self.way_out}"
 
 
 class NoRealAmplitude(SymfpuError):

@@ -482,7 +482,9 @@ def require_fixed_ends(chain: Chain) -> None:
     """InputError for a ring, by its name."""
     if chain.periodic:
         allowed = "a chain with fixed ends: this is not known on a ring"
-        advice = "leave ends= out, or see docs/chains.md for what takes ends='periodic'"
+        advice = (
+            "leave ends= out; what takes a ring, as travelling_waves, is in docs/chains.md"
+        )
         raise InputError("chain", chain, allowed, advice)
 
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+import flint
+
 from symfpu.numbers.typed import integer
 
 
@@ -33,3 +37,22 @@ def frequency_rank(N: int) -> int:
         rows.append([QQ(int(remainder.nth(k))) for k in range(degree)])
     matrix = DomainMatrix(rows, (N - 1, degree), QQ)
     return int(matrix.rank())
+
+
+def frequencies_cancel(turn: int, combination: Mapping[int, int]) -> bool:
+    """Whether sum n_q Omega_q = 0 exactly, Omega_q = 2 sin(q pi / turn), |q| below turn.
+
+    Decided by the cyclotomic polynomial of 2 turn.
+
+    >>> frequencies_cancel(8, {4: 1, -4: -1}), frequencies_cancel(6, {1: 2, 3: -1})
+    (True, True)
+    >>> frequencies_cancel(8, {4: 1, 2: -1})
+    False
+    """
+    period = 2 * turn
+    powers = [0] * period
+    for q, count in combination.items():
+        powers[abs(q) % period] += count
+        powers[-abs(q) % period] -= count
+    remainder = flint.fmpz_poly(powers) % flint.fmpz_poly.cyclotomic(period)
+    return not any(remainder.coeffs())

@@ -25,7 +25,7 @@ from symfpu.numbers.typed import Number
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.arguments import frequencies_of
 from symfpu.series.named_parts import NamedParts
-from symfpu.series.series import LindstedtSeries
+from symfpu.series.series import LindstedtSeries, require_series
 from symfpu.series.substitution import leaves_in_balls
 
 MOST_OPENINGS = 30_000  # some ten million characters
@@ -100,6 +100,7 @@ def expandable_term(
     >>> expandable_term(series, 5, 4).meaning("Omega_5")
     Meaning(symbol=Omega_5, stands_for=2*sin((5/2)*pi/N), number=None)
     """
+    require_series(series)
     parts = series.term(q, order, form="cse")  # type: ignore[arg-type]
     omega = None if frequencies is None else frequencies_of(frequencies, series.seeds)
     known = {str(m.symbol): m for m in _meanings(series, parts, omega)}

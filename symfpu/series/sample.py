@@ -19,7 +19,7 @@ from symfpu.algebra.formulas import Coupling, Multiplier
 from symfpu.algebra.program import Program
 from symfpu.algebra.program_values import tabled, tangents_in_doubles, values_in_doubles
 from symfpu.errors import InputError
-from symfpu.series.series import LindstedtSeries
+from symfpu.series.series import LindstedtSeries, require_series
 from symfpu.series.substitution import sampled_leaves
 
 Floats = NDArray[np.float64]
@@ -358,6 +358,7 @@ def sample_series(
     >>> sampled.coordinates[4].shape, sampled.frequencies_at([0.1]).by_frequencies.shape
     ((3, 7, 1000), (1000, 1, 1))
     """
+    require_series(series)
     tables = series.node_tables()
     chosen = np.asarray(frequencies, dtype=np.float64)
     shape = ("P", len(series.seeds))

@@ -628,27 +628,51 @@ class LindstedtSeries:
         return [list(row) for row in zip(*by_seed, strict=True)]
 
     def _frequency_doubles(self, squares: Floats, top: int) -> tuple[Floats, Floats]:
-        s = len(self.seeds)
         linear = self.chain.frequencies()[np.array(self.seeds) - 1]
         slope = self.seed_factors**2
-        y = slope * squares
-        terms = np.zeros((top + 1, s))
-        jacobian = np.zeros((top + 1, s, s))
-        terms[0] = linear
-        for k in range(1, top + 1):
-            e = self.grading.diagonal(self.chain.degree_step * k)
-            if len(e) == 0:
-                continue
-            table = self._sign(k) * self.corrections[k] * linear**2
-            square, square_slope = _polynomial(y, e, table)
-            # [omega^2]^(k) = 2 Omega omega^(k) + sum of omega^(j) omega^(k-j), 0 < j < k
-            earlier = terms[1:k]
-            square -= np.einsum("jq,jq->q", earlier, terms[k - 1 : 0 : -1])
-            products = np.einsum("jq,jqi->qi", earlier, jacobian[k - 1 : 0 : -1])
-            square_slope = square_slope * slope - 2 * products
-            terms[k] = square / (2 * linear)
-            jacobian[k] = square_slope / (2 * linear)[:, None]
-        return terms, jacobian
+        orders = range(1, top + 1)
+        diagonals = [self.grading.diagonal(self.chain.degree_step * k) for k in orders]
+        tables = [self._sign(k) * self.corrections[k] for k in orders]
+        return frequency_sums(linear, slope, squares, diagonals, tables)
+
+
+def frequency_sums(
+    linear: Floats,
+    slope: Floats,
+    squares: Floats,
+    diagonals: Sequence[Ints],
+    tables: Sequence[Floats],
+) -> tuple[Floats, Floats]:
+    """Terms of omega by order at A^2 and their derivatives, from the tables of W by order.
+
+    linear, slope, squares : (s,), Omega of the seeds, the factor of A^2 in the tables' variables,
+    and A^2. diagonals, tables : of orders 1, 2, ..., exponents and coefficients of W.
+    """
+    s, top = len(linear), len(tables)
+    y = slope * squares
+    terms = np.zeros((top + 1, s))
+    jacobian = np.zeros((top + 1, s, s))
+    terms[0] = linear
+    for k, (e, corrections) in enumerate(zip(diagonals, tables, strict=True), 1):
+        if len(e) == 0:
+            continue
+        table = corrections * linear**2
+        square, square_slope = _polynomial(y, e, table)
+        # [omega^2]^(k) = 2 Omega omega^(k) + sum of omega^(j) omega^(k-j), 0 < j < k
+        earlier = terms[1:k]
+        square -= np.einsum("jq,jq->q", earlier, terms[k - 1 : 0 : -1])
+        products = np.einsum("jq,jqi->qi", earlier, jacobian[k - 1 : 0 : -1])
+        square_slope = square_slope * slope - 2 * products
+        terms[k] = square / (2 * linear)
+        jacobian[k] = square_slope / (2 * linear)[:, None]
+    return terms, jacobian
+
+
+def require_series(series: object) -> None:
+    """InputError for what is no LindstedtSeries."""
+    if not isinstance(series, LindstedtSeries):
+        advice = "pass what lindstedt gave; waves of a ring have travelling_torus(series)"
+        raise InputError("series", type(series).__name__, "a LindstedtSeries", advice)
 
 
 def _monomial(variables: list[Any], powers: list[int]) -> Any:

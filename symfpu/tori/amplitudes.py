@@ -8,13 +8,15 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from math import lcm
-from typing import Any
+from typing import Any, Protocol
 
 import mpmath
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from symfpu.chain.chain import Chain
 from symfpu.errors import (
     DidNotConverge,
     InputError,
@@ -22,9 +24,15 @@ from symfpu.errors import (
     SymfpuError,
     UndeterminedAmplitudes,
 )
-from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf, with_digits
+from symfpu.numbers.arithmetic import (
+    GUARD_DIGITS,
+    Arithmetic,
+    Numbers,
+    mpf,
+    with_digits,
+)
 from symfpu.numbers.typed import decimal, exact, integer
-from symfpu.series.series import LindstedtSeries
+from symfpu.series.series import LindstedtSeries, require_series
 from symfpu.tori.root_certificate import certify_root
 from symfpu.tori.torus import QTorus, series_behind
 
@@ -45,6 +53,26 @@ ROUNDING = (
 AGREEMENT = (
     1e-3  # relative change from the neighbouring order above which a root is doubtful
 )
+
+
+class FrequencySeries(Protocol):
+    """A series of frequencies in the squares of amplitudes, of modes or of travelling waves."""
+
+    @property
+    def chain(self) -> Chain: ...
+    @property
+    def seeds(self) -> tuple[int, ...]: ...
+    @property
+    def frequencies(self) -> tuple[Fraction, ...] | None: ...
+    @property
+    def order(self) -> int: ...
+    @property
+    def digits(self) -> int | None: ...
+    @property
+    def numbers(self) -> Arithmetic: ...
+    def frequency_terms(
+        self, squared_amplitudes: ArrayLike, order: int | None = None
+    ) -> tuple[Numbers, Numbers]: ...
 
 
 @dataclass(frozen=True)
@@ -89,7 +117,7 @@ class AmplitudeHistory:
         return found
 
 
-def frequency_orders(series: LindstedtSeries) -> tuple[int, ...]:
+def frequency_orders(series: FrequencySeries) -> tuple[int, ...]:
     """Orders k at which omega^(k) need not vanish: even ones with alpha, all with beta alone."""
     step = 2 // series.chain.degree_step
     return tuple(range(step, series.order + 1, step))
@@ -112,7 +140,11 @@ def amplitude_history(series: LindstedtSeries | QTorus) -> AmplitudeHistory:
     >>> {K: round(A, 9) for K, (A,) in history.amplitudes.items()}
     {2: 0.414689531, 4: 0.405667682, 6: 0.40519105}
     """
-    series = series_behind(series)
+    return history_of(series_behind(series))
+
+
+def history_of(series: FrequencySeries) -> AmplitudeHistory:
+    """The same of anything that has such a series."""
     orders = frequency_orders(series)
     found: dict[int, tuple[Any, ...]] = {}
     failures: dict[int, SymfpuError] = {}
@@ -120,7 +152,7 @@ def amplitude_history(series: LindstedtSeries | QTorus) -> AmplitudeHistory:
     for K in orders:
         try:
             root, _ = root_squares(series, K, squares)
-            found[K] = _square_roots(series, root)
+            found[K] = square_roots(series, root)
             squares = root
         except (NoRealAmplitude, DidNotConverge) as failure:
             failures[K] = failure
@@ -163,6 +195,7 @@ def solve_amplitudes(
     >>> {q: round(A, 7) for q, A in torus.amplitudes.items()}
     {1: 0.5843165, 2: 0.4118684}
     """
+    require_series(series)
     if series.frequencies is None:
         allowed = "a series with chosen frequencies"
         raise InputError(
@@ -182,9 +215,9 @@ def solve_amplitudes(
         )
         raise InputError("frequency_order", K, allowed, advice)
     history = amplitude_history(series)
-    start = _start(series, orders, history, guess)
+    start = start_of(series, orders, history, guess)
     squares, residual = root_squares(series, orders[-1], start)
-    amplitudes = _square_roots(series, squares)
+    amplitudes = square_roots(series, squares)
     certificate = certify_root(series, list(squares), K) if series.digits else None
     torus = QTorus(
         series=series,
@@ -200,7 +233,8 @@ def solve_amplitudes(
     return torus.doubted((*doubts, *residual_doubts(torus)))
 
 
-def _square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:
+def square_roots(series: FrequencySeries, squares: Numbers) -> tuple[Any, ...]:
+    """Amplitudes by their squares."""
     with series.numbers.context(series.digits):
         roots = tuple(series.numbers.sqrt(squares).tolist())
     return with_digits(roots, series.digits)
@@ -232,7 +266,7 @@ def _refuse_commensurable(series: LindstedtSeries) -> None:
                 raise InputError("frequencies", typed, allowed, f"{coincide}: {change}")
 
 
-def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
+def order_argument(name: str, value: int | None, series: FrequencySeries) -> int:
     """An order at which a series is cut, by default its own.
 
     InputError naming the argument if the series ends before.
@@ -246,7 +280,7 @@ def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int
 
 
 def by_seed(
-    name: str, values: Mapping[int, Any] | None, series: LindstedtSeries
+    name: str, values: Mapping[int, Any] | None, series: FrequencySeries
 ) -> dict[int, Any]:
     """Numbers by seed in the arithmetic of the series.
 
@@ -263,12 +297,13 @@ def by_seed(
         return {int(q): series.numbers.number(exact(v, name)) for q, v in given.items()}
 
 
-def _start(
-    series: LindstedtSeries,
+def start_of(
+    series: FrequencySeries,
     orders: list[int],
     history: AmplitudeHistory,
     guess: Mapping[int, float] | None,
 ) -> Numbers:
+    """A^2 to start from: as guessed, or those of the last order that has a root."""
     if guess is not None:
         given = by_seed("guess", guess, series)
         if set(given) != set(series.seeds):
@@ -287,7 +322,7 @@ def _start(
         return np.array(history.amplitudes[earlier[-1]]) ** 2
 
 
-def shifts(series: LindstedtSeries) -> Numbers:
+def shifts(series: FrequencySeries) -> Numbers:
     """omega_q - Omega_q of the seeds, correctly rounded; shape (s,)."""
     assert series.frequencies is not None
     differences = []
@@ -300,7 +335,7 @@ def shifts(series: LindstedtSeries) -> Numbers:
     return np.array(differences, dtype=object)
 
 
-def _lowest_order(series: LindstedtSeries) -> Floats:
+def _lowest_order(series: FrequencySeries) -> Floats:
     """A^2 from the lowest correction, which is linear in A^2; it may be negative."""
     first = frequency_orders(series)[0]
     at_rest = np.zeros(len(series.seeds))
@@ -313,7 +348,7 @@ def _lowest_order(series: LindstedtSeries) -> Floats:
     return np.asarray(np.linalg.solve(matrix, target))
 
 
-def root_squares(series: LindstedtSeries, K: int, start: Numbers) -> tuple[Numbers, float]:
+def root_squares(series: FrequencySeries, K: int, start: Numbers) -> tuple[Numbers, float]:
     """A^2 that solves the equations truncated at order K, and the residual it leaves."""
     from scipy.optimize import root
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
 from symfpu.numbers.arithmetic import Numbers, with_digits
 from symfpu.numbers.typed import integer
-from symfpu.series.series import LindstedtSeries
+from symfpu.series.series import LindstedtSeries, require_series
 from symfpu.tori.amplitudes import frequency_orders, shifts
 from symfpu.tori.quasiperiodic import FourierTorus
 from symfpu.tori.torus import QTorus, require_series_torus
@@ -127,6 +127,7 @@ def pade_frequencies(
     >>> pade_frequencies(series, {1: 0.5}).values.round(6)
     array([0.39068])
     """
+    require_series(series)
     _, orders = _checked(series, frequency_order)
     with series.numbers.context(series.digits):
         given = _by_seed(series, "amplitudes", amplitudes)
@@ -154,6 +155,7 @@ def pade_amplitudes(
     >>> round(pade_amplitudes(series, solve_amplitudes(series).amplitudes)[1], 6)
     0.405162
     """
+    require_series(series)
     guess = _by_seed(series, "guess", guess)
     _, orders = _checked(series, frequency_order)
     K = orders[-1]
@@ -356,6 +358,7 @@ def pade_poles(
     >>> pade_poles(series, 1, {1: 0.405}).round(1)
     array([13.5+0.j, 28.5+0.j])
     """
+    require_series(series)
     _, orders = _checked(series, None)
     if q not in series.seeds:
         allowed = f"a seed, one of {series.seeds}"
