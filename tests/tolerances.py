@@ -524,3 +524,14 @@ ACTIONS_IN_DOUBLES = 1e-12
 
 # Dormand and Prince, relative to the state and absolutely, of one step: what SciPy can do in doubles.
 ORBIT_STEP = 1e-13
+
+# Angles of Floquet multipliers of breathers up to N = 8 over one period, against the normal frequencies of Toda's curve: N EPS
+# of the integration, times the period of 16.
+FLOQUET_PHASE = 1e-12
+
+# Powers of the error of a truncated series between two scales that are not zero: the next term but one adds scale^2, times
+# its coefficient of some ten, relative to the power.
+TODA_RATE = 0.06
+
+# Energies to twenty digits, by series with 35 and curves with 30.
+TWENTY_DIGITS = 1e-20
