@@ -64,10 +64,12 @@ from symfpu.refinement.tori import NoTorus, refine
 from symfpu.series.expandable import expandable_term
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.sample import sample_series
+from symfpu.series.travelling import travelling_waves
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.at_energy import NoTorusAtEnergy, torus_at_energy
 from symfpu.tori.frequencies import NoSelfConsistentFrequencies, torus_at_amplitudes
 from symfpu.tori.resummation import pade_frequencies, resum
+from symfpu.tori.ring_torus import travelling_torus
 from symfpu.tori.verdict import assess
 from tests.bundles.test_bundle import SERIES, same
 from tests.codegen.compilers import program
@@ -134,6 +136,11 @@ def invariance():
     return profile_invariance(Chain(16, alpha="0.33"), "1/8", 1e-4, (16, 32, 48), 50.0)
 
 
+@cache
+def waves():
+    return travelling_waves(Chain(8, alpha="0.3", ends="periodic"), (1,), ("0.766",), 6)
+
+
 def series_of(kind, _):
     return SERIES[kind]()
 
@@ -190,6 +197,8 @@ RESULTS = {
     "GroupGrowth": (lambda _: growth().groups[0], lambda x: x.mean),
     "GrowthExponents": (lambda _: growth(), lambda x: x.groups),
     **{f"LindstedtSeries, {kind}": (partial(series_of, kind), repr) for kind in SERIES},
+    "TravellingSeries": (lambda _: waves(), lambda x: (x.harmonic_terms([0.1], 3), x.frequency_terms([0.1]))),
+    "RingTorus": (lambda _: travelling_torus(waves()), lambda x: (x.positions(TIMES), x.momenta(TIMES), x.average_spectrum())),
     "LeadingTerm": (lambda _: leading_terms(PAIR, (1, 2), 3)[5], lambda x: x.expression()),
     "SampledSeries": (lambda _: sampled(), lambda x: (x.coordinates, x.derivatives_by_frequency(1)[1])),
     "EnergyChanges": (lambda _: sampled().energies_at([0.1]), lambda x: x.by_frequencies),

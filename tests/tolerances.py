@@ -535,3 +535,11 @@ TODA_RATE = 0.06
 
 # Energies to twenty digits, by series with 35 and curves with 30.
 TWENTY_DIGITS = 1e-20
+# Two waves of amplitude 1e-4 on a ring, without the third harmonics: the next order is mu A^2 of them.
+ONLY_THE_SEEDS = 1e-4
+
+# Errors of a series at orders 4, 6, ..., 12: each is the last one times nearly the same number.
+RATE_OF_ORDERS = 0.3
+
+# That number for waves of amplitudes 0.17 and 0.12 on a ring of eight: two orders are (A Omega/2)^2 or so.
+TWO_ORDERS = 0.025

@@ -166,11 +166,11 @@ def travelling_waves(
     order : K of the coordinates and of the frequency corrections, from 0 up.
     progress : called as (label, fraction done).
 
-    Ours: the recursion of Eqs. moda, modb, where a harmonic nu lives in the one mode nu.q modulo
-    N. In doubles. Raises InputError for arguments out of range, a chain with fixed ends, TooLarge,
-    and ResonantDivisor at the first harmonic that is in resonance with its mode: for chosen
-    frequencies, or for the linear ones, as 2 omega_(-q) - omega_q with mode q at q = N/4. What to
-    do then is in the message and in docs/chains.md.
+    Ours: the recursion of Eqs. moda and modb on modes of one wave each: a harmonic nu lives in
+    the mode nu.q modulo N. In doubles. Raises InputError for arguments out of range and a chain
+    with fixed ends, TooLarge, and ResonantDivisor at the first harmonic that is in resonance with
+    its mode: for the chosen frequencies, or for the linear ones, as 2 omega_(-q) - omega_q with
+    mode q at q = N/4. What to do then is in the message and in docs/chains.md.
 
     >>> from symfpu import Chain
     >>> series = travelling_waves(Chain(N=8, beta=1, ends="periodic"), (1,), ("0.8",), 1)

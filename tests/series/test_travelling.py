@@ -1,6 +1,7 @@
 """Travelling waves on a ring: against standing waves of fixed ends, closed forms, and the resonances of a ring."""
 
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -139,6 +140,46 @@ def test_resonances_of_a_ring(N, seeds, degree, mode, harmonic):
     assert frequencies_cancel(N, total)
     direction = np.array(found.harmonic) if found.mode == mode else -np.array(found.harmonic)
     assert tuple(direction) == harmonic or degree > 3
+
+
+PAGE = Path(__file__).parents[2] / "docs/chains.md"
+TABLE = [
+    (4, -4),
+    (2, -2),
+    (1, -1),
+    (3, -3),
+    (1, -1, 7),
+    (2, -2, 6),
+    (1, -1, 2),
+    (1, -1, 2, -2),
+    (1, -1, 3, -3),
+    (1, 2, 3, 4),
+    (1, -2, 3, -4),
+    (8,),
+    (8, 4),
+]
+HIGHEST = {1: 10, 2: 8, 3: 5, 4: 3}  # order of beta, by the number of seeds
+
+
+def resonance_row(seeds):
+    chain, count = ring(16, beta=1), HIGHEST[len(seeds)]
+    linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
+    omega = [Fraction(linear[q]).limit_denominator(10**9) + Fraction(1, 1009 + 4 * k) for k, q in enumerate(seeds)]
+    text = ", ".join(map(str, seeds))
+    try:
+        travelling_waves(chain, seeds, omega, count)
+    except ResonantDivisor as error:
+        found = error
+    else:
+        return f"| {text} | none to {2 * count + 1} | | | | |"
+    assert found.way_out  # one of the ring, not of the chosen frequencies
+    degree = 2 * found.order + 1
+    return f"| {text} | {degree} | {found.mode} | {found.harmonic} | {found.order} | {degree - 1} |"
+
+
+@pytest.mark.parametrize("seeds", TABLE)
+def test_the_table_of_the_page(seeds):
+    assert resonance_row(seeds) in PAGE.read_text().splitlines()
 
 
 def test_chosen_frequencies_that_coincide():
