@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 from symfpu.chain.chain import Chain
 from symfpu.codegen.export import LANGUAGES, export
 from symfpu.files.writing import write_text
-from symfpu.numbers.typed import decimal
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -40,9 +39,9 @@ class Example(NamedTuple):
 
     def solve_command(self, name: str) -> str:
         """The command that writes it as name.symfpu."""
-        couplings = {"alpha": self.chain.alpha, "beta": self.chain.beta}
+        law = self.chain.law_entries()
         words = [f"symfpu solve -N {self.chain.N}"]
-        words += [f"--{key} {decimal(value)}" for key, value in couplings.items() if value]
+        words += [f"--{key} {value}" for key, value in law.items() if value != "0"]
         words.append(f"--seeds {','.join(map(str, self.seeds))}")
         words.append(f"--omega {','.join(self.frequencies)}")
         words.append(f"--order {self.order} --digits {DIGITS} -o {name}.symfpu")
@@ -94,6 +93,12 @@ GALLERY = {
         frequencies=("0.3925", "0.5845"),
         order=4,
         series_orders=SERIES_ORDERS,
+    ),
+    "toda_torus": Example(
+        Chain(16, potential="toda:0.33"),
+        seeds=(1, 2),
+        frequencies=("0.19626", "0.39046"),
+        order=8,
     ),
 }
 

@@ -245,10 +245,10 @@ def _constants(series: LindstedtSeries) -> tuple[Numbers, Numbers, Numbers]:
 def _kappa_expression(chain: Chain) -> str:
     """kappa = |mu|^(1/step) for mpmath."""
     twice = 2 * chain.N
-    if chain.alpha:
-        coupling = abs(chain.alpha)
+    if chain.degree_step == 1:
+        coupling = abs(chain.unit_coupling)
         return f"mp.mpf({coupling.numerator}) / {coupling.denominator} / mp.sqrt({twice})"
-    coupling = abs(chain.beta) / twice
+    coupling = abs(chain.unit_coupling) / twice
     return f"mp.sqrt(mp.mpf({coupling.numerator}) / {coupling.denominator})"
 
 

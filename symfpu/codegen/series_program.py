@@ -66,6 +66,7 @@ class SeriesProgram:
     check: SeriesCheck = field(repr=False)
     operations: Operations | None = field(repr=False, default=None)
     slopes: SlopeCheck | None = field(repr=False, default=None)
+    fpu: bool = True
 
 
 def series_program(
@@ -103,6 +104,7 @@ def series_program(
         check=forms.check,
         operations=forms.operations,
         slopes=forms.slopes,
+        fpu=series.chain.fpu,
     )
 
 

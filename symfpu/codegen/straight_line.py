@@ -395,15 +395,15 @@ class _Multipliers:
         self._known: dict[Any, sympy.Expr] = {}
 
     def _small_parameter(self) -> sympy.Expr:
-        alpha, beta = self.chain.alpha, self.chain.beta
+        unit = self.chain.unit_coupling
         twice = 2 * self.chain.N
-        if alpha == 0:
-            coupling = sympy.Rational(beta.numerator, beta.denominator)
+        if self.chain.degree_step == 2:
+            coupling = sympy.Rational(unit.numerator, unit.denominator)
             return coupling / twice
         with mpmath.workdps(CONSTANT_DIGITS):
-            coupling = mpmath.mpf(alpha.numerator) / alpha.denominator
+            coupling = mpmath.mpf(unit.numerator) / unit.denominator
             value = coupling / mpmath.sqrt(twice)
-        text = f"mp.mpf({alpha.numerator}) / {alpha.denominator} / mp.sqrt({twice})"
+        text = f"mp.mpf({unit.numerator}) / {unit.denominator} / mp.sqrt({twice})"
         self.constants["mu"] = value, text
         return sympy.Symbol("mu")
 

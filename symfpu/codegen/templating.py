@@ -81,12 +81,17 @@ def common_words(program: TorusProgram | SeriesProgram) -> Words:
     """The fields of a program by their names, and what every template needs of them.
 
     modes : N - 1. s : seeds. checks : times of the test vectors. tolerance : of the self-test.
+    fpu, a_chain, a_named_chain : what chain it is.
     """
     words = dict(vars(program))
     words["modes"] = program.N - 1
     words["s"] = len(program.seeds)
     words["checks"] = len(program.check.times)
     words["tolerance"] = TOLERANCE
+    other = "a chain of this potential"
+    words["fpu"] = program.fpu
+    words["a_chain"] = "an FPU chain" if program.fpu else other
+    words["a_named_chain"] = "a Fermi-Pasta-Ulam chain" if program.fpu else other
     return words
 
 

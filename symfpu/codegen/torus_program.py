@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.grading import Ints
+from symfpu.codegen.bond_potential import BondPotential, bond_potential
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text
 from symfpu.numbers.typed import decimal
@@ -57,7 +58,10 @@ class Check:
 
 @dataclass(frozen=True, eq=False)
 class TorusProgram:
-    """A torus as data for a language. facts : what the header says, in order."""
+    """A torus as data for a language. facts : what the header says, in order.
+
+    couplings : alpha and beta of an FPU chain, None for another; bond : V of another, else None.
+    """
 
     name: str
     facts: Mapping[str, str]
@@ -65,11 +69,16 @@ class TorusProgram:
     seeds: tuple[int, ...]
     frequencies: tuple[Fraction, ...]
     phases: tuple[Any, ...]
-    alpha: Fraction
-    beta: Fraction
+    couplings: tuple[Fraction, Fraction] | None
+    bond: BondPotential | None
     digits: int | None
     blocks: tuple[Block, ...] = field(repr=False)
     check: Check = field(repr=False)
+
+    @property
+    def fpu(self) -> bool:
+        """Whether it is a torus of an FPU chain."""
+        return self.couplings is not None
 
     @property
     def highest(self) -> tuple[int, ...]:
@@ -94,8 +103,8 @@ def torus_program(
         seeds=seeds,
         frequencies=torus.frequencies,
         phases=tuple(phases),
-        alpha=chain.alpha,
-        beta=chain.beta,
+        couplings=chain.couplings if chain.fpu else None,
+        bond=bond_potential(chain),
         digits=torus.digits,
         blocks=tuple(blocks),
         check=_check(torus),

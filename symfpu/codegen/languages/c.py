@@ -154,9 +154,15 @@ def _bonds(program: TorusProgram) -> Words:
         "linear": linear_frequencies(N).tolist(),
         "cosines": bond_cosines(N),
         "norm": bond_norm(N),
-        "cubic": float(program.alpha / 3),
-        "quartic": float(program.beta / 4),
+        **_couplings(program),
     }
+
+
+def _couplings(program: TorusProgram) -> Words:
+    if program.couplings is None:
+        return {}
+    alpha, beta = program.couplings
+    return {"cubic": float(alpha / 3), "quartic": float(beta / 4)}
 
 
 def _series(program: SeriesProgram) -> Words:

@@ -195,8 +195,10 @@ class _Printer(FCodePrinter):  # type: ignore[misc]
 
     def _print_Pow(self, power: sympy.Pow) -> str:
         base, exponent = power.as_base_exp()
-        n = int(exponent)
         written = self.parenthesize(base, precedence(power), strict=False)
+        if not exponent.is_Integer:
+            return f"{written}**({self._print(exponent)})"
+        n = int(exponent)
         if abs(n) != 1:
             written = f"{written}**{abs(n)}"
         return written if n > 0 else f"1d0/{written}"

@@ -28,6 +28,13 @@ class _Printer(Waves, MpmathPrinter):  # type: ignore[misc]
         return f"(mp.mpf({value.p}) / {value.q})"
 
 
+class _BondPrinter(_Printer):
+    """With all functions of mpmath."""
+
+    def _module_format(self, fqn: str, register: bool = True) -> str:
+        return f"mp.{fqn.rpartition('.')[2]}"
+
+
 def _torus(program: TorusProgram) -> Words:
     words = _precision(program)
     digits = words["digits"]
@@ -55,7 +62,8 @@ def _precision(program: TorusProgram | SeriesProgram) -> Words:
 MPMATH = Language(
     extension="py",
     templates="mpmath.py",
-    filters=filters(_Printer(), lambda constant: constant[1]) | {"decimal": decimal},
+    filters=filters(_Printer(), lambda constant: constant[1])
+    | {"bond_code": _BondPrinter().doprint, "decimal": decimal},
     torus_words=_torus,
     series_words=_series,
     reserved=frozenset({"mpmath"}),

@@ -103,6 +103,13 @@ class _Printer(Waves, NumPyPrinter):  # type: ignore[misc]
         return f"({product})" if n > 0 else f"(1 / ({product}))"
 
 
+class _BondPrinter(_Printer):
+    """With all functions of NumPy."""
+
+    def _module_format(self, fqn: str, register: bool = True) -> str:
+        return f"np.{fqn.rpartition('.')[2]}"
+
+
 def filters(
     printer: CodePrinter,
     constant: Callable[[tuple[Any, str]], str],
@@ -172,7 +179,8 @@ def _series(program: SeriesProgram) -> Words:
 NUMPY = Language(
     extension="py",
     templates="numpy.py",
-    filters=filters(_Printer(), lambda constant: double(constant[0])),
+    filters=filters(_Printer(), lambda constant: double(constant[0]))
+    | {"bond_code": _BondPrinter().doprint},
     torus_words=_torus,
     series_words=_series,
     reserved=frozenset({"numpy"}),
