@@ -25,6 +25,7 @@ from symfpu.algebra.selection import CosineModes
 Floats = NDArray[np.float64]
 Bonds = TypeVar("Bonds")
 
+EULER = 0  # the name of d c_d among the powers
 PARALLEL_FROM = 500_000  # multiply-adds below which threads cost more than they give
 
 
@@ -105,6 +106,7 @@ class DenseRing(ABC, Generic[Bonds]):
         self._degrees: list[int] = []
         self._power_degrees: dict[int, list[int]] = {}
         self._completed: dict[int, set[int]] = {}
+        self._weighted: Floats | None = None  # place for them, made once
         self._correction_degrees: list[int] = []
         self._modes: list[Floats] = []
         self._diagonal: list[Floats] = []
@@ -389,39 +391,53 @@ class ValuesRing(DenseRing[Floats]):
     def growth(self, number: int, slope: Fraction, rate: Fraction, degree: int) -> Floats:
         """As of `GrowingRing`; g is kept among the powers, under a name of its own."""
         name = -1 - number
-        self._complete(name, rate)
-        splits = [(d, degree - d) for d in self._degrees if degree - d in self._degrees]
-        weighted = self._weighted_bonds(slope, rate, degree)
-        out = self._product(weighted, self._powers[name], degree, splits)
-        divided = self.number(Fraction(1, degree)) * np.ldexp(2.0, -self.exponent)
+        self._complete(name, 2 * rate)
+        if slope:
+            left = self._weighted_bonds(slope, rate, degree)
+            share = Fraction(1, degree)
+        else:
+            self._complete(EULER)
+            left = self._powers[EULER]
+            share = rate / degree
+        known = set(self._degrees)
+        splits = [(d, degree - d) for d in self._degrees if degree - d in known]
+        out = self._product(left, self._powers[name], degree, splits)
+        divided = self.number(share) * np.ldexp(2.0, -self.exponent)
         out = self._times(out, float(divided))
         self._store_power(name, degree, self._canonical_points(degree, out))
         return out
 
-    def _complete(self, name: int, rate: Fraction) -> None:
-        """Add 2 rate c_d to what lower degrees gave to g_d, where it is not there yet."""
+    def _complete(self, name: int, factor: Fraction | None = None) -> None:
+        """Add factor c_d to what is kept under a name, where it is not there yet.
+
+        factor : 2 rate, to what lower degrees gave to g_d; None for d, the derivative of Euler.
+        """
         if name not in self._completed:
             self._completed[name] = set()
             self._powers[name] = np.zeros_like(self._bonds)
             self._power_degrees[name] = list(self._degrees)
-        factor = self.number(2 * rate)
-        for degree in self._degrees:
-            if degree not in self._completed[name]:
-                rows = self._rows(degree)
-                own = self._times(self._bonds[:, rows].copy(), factor)
-                self._powers[name][:, rows] = self._reduced(
-                    self._powers[name][:, rows] + own
-                )
-                self._completed[name].add(degree)
+        missing = [d for d in self._degrees if d not in self._completed[name]]
+        for degree in missing:
+            rows, target = self._rows(degree), self._powers[name]
+            weight = self.number(Fraction(degree) if factor is None else factor)
+            own = self._times(self._bonds[:, rows].copy(), weight)
+            own += target[:, rows]
+            target[:, rows] = self._reduced(own)
+            self._completed[name].add(degree)
 
     def _weighted_bonds(self, slope: Fraction, rate: Fraction, degree: int) -> Floats:
         """(rate j - slope (degree - j)) c_j, all lower degrees j."""
         first_row = self.grading.first_row
-        weights = [self.number(rate * j - slope * (degree - j)) for j in range(degree)]
+        weights = self._times(np.arange(float(degree)), self.number(rate + slope))
+        weights -= self.number(slope * degree)
         counts = np.diff(first_row[: degree + 1])
-        of_rows = np.repeat(np.array(weights), counts)[:, None]
+        of_rows = np.repeat(self._reduced(weights), counts)[:, None]
         end = int(first_row[degree])
-        return self._times(self._bonds[:, :end].copy(), of_rows)
+        if self._weighted is None:
+            self._weighted = np.empty_like(self._bonds)
+        lower = self._weighted[:, :end]
+        np.copyto(lower, self._bonds[:, :end])
+        return self._times(lower, of_rows)
 
     def project(self, degree: int, parts: Sequence[tuple[float, Floats]]) -> Floats:
         canonical = self.grading.canonical(degree)

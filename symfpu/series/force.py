@@ -49,12 +49,13 @@ class GrowthForce:
 
     def __init__(self, ring: GrowingRing, growths: tuple[Growth, ...]) -> None:
         self.ring, self.growths = ring, growths
+        self.weights = [ring.number(growth.weight / 2) for growth in growths]
 
     def parts(self, degree: int) -> Parts:
         found = []
         for number, growth in enumerate(self.growths):
             bonds = self.ring.growth(number, growth.slope, growth.rate, degree)
-            found.append((self.ring.number(growth.weight / 2), bonds))
+            found.append((self.weights[number], bonds))
         return found
 
 

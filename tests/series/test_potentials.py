@@ -1,10 +1,15 @@
 """Series of any potential: every ring gives the same, and differential equations give what powers give."""
 
+import random
+
 import numpy as np
 import pytest
 
 from symfpu import Chain, lindstedt
 from symfpu.algebra.float64 import Float64Ring
+from symfpu.algebra.residue import ResidueRing
+from symfpu.proofs.certificates import random_point
+from symfpu.series.residues import residue_series
 from tests.tolerances import ROUNDING
 
 POTENTIALS = ["toda:1/2", "toda:-2", "lj:12,6", "lj:5/2,1", "morse:2/3", "poly:1/3,0,1/5", "poly:0,0,1", "poly:0,1,0,1", "poly:0,0,0,1"]
@@ -50,6 +55,18 @@ def test_differential_equations_give_what_powers_give(text, case, monkeypatch):
     monkeypatch.setattr(Float64Ring, "grows", False)
     powers = lindstedt(chain, seeds, frequencies, order=12)
     assert_same(grown, powers, 1e3 * ROUNDING)
+
+
+@pytest.mark.parametrize("text", ["toda:1/2", "lj:12,6", "lj:5/2,1", "morse:2/3"])
+def test_differential_equations_give_what_powers_give_modulo_a_prime(text, monkeypatch):
+    chain, seeds, order = Chain(8, potential=text), (1, 2), 7
+    point = random_point(8, len(seeds), order + 1, random.Random(3))
+    grown = residue_series(chain, seeds, point, order)
+    monkeypatch.setattr(ResidueRing, "grows", False)
+    powers = residue_series(chain, seeds, point, order)
+    for table, other in zip(grown.coordinates, powers.coordinates, strict=True):
+        assert np.array_equal((table - other) % point.prime, np.zeros_like(table))
+    assert all(np.any(table) for table in grown.coordinates)
 
 
 def test_the_fpu_chain_is_the_polynomial():
