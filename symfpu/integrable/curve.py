@@ -45,6 +45,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.integrable.discriminant import Edges
+from symfpu.integrable.mpfr import MPFR, in_mpf
 from symfpu.integrable.quadrature import mean_rule
 from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
 
@@ -185,6 +186,8 @@ class SpectralCurve:
     def _solve(self, matrix: Numbers, right: Numbers) -> Numbers:
         if self.numbers is DOUBLES:
             return np.asarray(np.linalg.solve(matrix, right))
+        if self.numbers is MPFR:
+            matrix, right = in_mpf(matrix), in_mpf(right)
         columns = mpmath.matrix([[x] for x in right])
         solution = mpmath.lu_solve(mpmath.matrix(matrix.tolist()), columns)
-        return np.array(list(solution), dtype=object)
+        return self.numbers.array(list(solution))

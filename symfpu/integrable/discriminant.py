@@ -23,18 +23,19 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
-import mpmath
+import gmpy2
 import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import SymfpuError
-from symfpu.integrable.products import product_of_distances
-from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
+from symfpu.integrable.mpfr import MPFR
+from symfpu.numbers.arithmetic import Numbers
 
 Floats = NDArray[np.float64]
 MOST_STEPS = 200
 ROUNDING = 1e-14  # of critical points, which are of order one
 SMALLEST_STEP = 1e-12  # of a damped step of Newton's method
+CLOSE = 1e-12  # logarithms of distances, from where on they are as good as they get
 NEAR = 1e-9  # critical points so near to the start that the digits of the start are worth keeping
 
 
@@ -61,7 +62,7 @@ class Edges:
     """Bands of a discriminant: gaps by centre and half width, and the two outer edges.
 
     centres, half_widths : shape (n-1,), the uppermost gap first; top, bottom : outer edges. All
-    numbers are mpf, or doubles. Dimensionless.
+    numbers are mpf, mpfr or doubles. Dimensionless.
     """
 
     centres: Numbers
@@ -86,13 +87,13 @@ def _gauss_legendre_of_doubles(count: int) -> tuple[Floats, Floats]:
 
 @lru_cache(maxsize=16)
 def gauss_legendre(count: int, precision: int) -> tuple[Numbers, Numbers]:
-    """Nodes and weights on -1 .. 1 as mpf of so many bits.
+    """Nodes and weights on -1 .. 1 as mpfr of so many bits.
 
     Doubles are the start of Newton's method.
     """
     start, _ = _gauss_legendre_of_doubles(count)
-    with mpmath.workprec(precision + 10):
-        x = MULTIPRECISION.array(start)
+    with gmpy2.context(gmpy2.get_context(), precision=precision + 10):
+        x = MPFR.array(start)
         steps = int(np.ceil(np.log2(precision / 50 + 1))) + 1
         for _ in range(steps):
             value, slope = _legendre(count, x)
@@ -119,24 +120,24 @@ def free_points(n: int) -> Floats:
 def critical_points(heights: Numbers, start: Numbers) -> Numbers:
     """Critical points c_1 > ... > c_(n-1) of the discriminant with these heights, sum c_j = 0.
 
-    heights : h_j >= 0 as mpf, shape (n-1,); start : critical points of some discriminant near,
-    doubles or mpf. As mpf at the working precision. Raises NoDiscriminant.
+    heights : h_j >= 0 as mpfr, shape (n-1,); start : critical points of some discriminant near,
+    doubles or mpfr. As mpfr at the working precision. Raises NoDiscriminant.
     """
     n = len(heights) + 1
     if n == 2:
-        return MULTIPRECISION.zeros((1,))
+        return MPFR.zeros((1,))
     targets = _logarithms(heights)
     near = start.astype(float)
     points, inverse = _in_doubles(targets.astype(float), near, heights)
     if np.abs(points - near).max() > NEAR:
-        return _with_digits(targets, MULTIPRECISION.array(points), inverse)
-    return _with_digits(targets, MULTIPRECISION.array(start), inverse)
+        return _with_digits(targets, MPFR.array(points), inverse)
+    return _with_digits(targets, MPFR.array(start), inverse)
 
 
 def _logarithms(heights: Numbers) -> Numbers:
     """log(2 cosh h_j + 2 cosh h_(j+1)), also for heights whose cosh is beyond the doubles."""
-    sums = [mpmath.cosh(h) for h in heights]
-    values = [mpmath.log(2 * (left + right)) for left, right in pairwise(sums)]
+    sums = [gmpy2.cosh(h) for h in heights]
+    values = [gmpy2.log(2 * (left + right)) for left, right in pairwise(sums)]
     return np.array(values, dtype=object)
 
 
@@ -185,43 +186,43 @@ def _equations(c: Floats, targets: Floats) -> tuple[Floats, Floats]:
 
 def _with_digits(targets: Numbers, c: Numbers, inverse: Floats) -> Numbers:
     """Critical points to the working precision, by the inverse Jacobian of doubles."""
-    last = mpmath.inf
+    last = gmpy2.inf()
     while True:
         residual = np.append(_logarithms_of_integrals(c) - targets, c.sum())
         size = max(abs(r) for r in residual)
         if size == 0 or size >= last / 2:
             return c
         scaled = (residual / size).astype(float)
-        c = c - MULTIPRECISION.array(inverse @ scaled) * size
+        c = c - MPFR.array(inverse @ scaled) * size
         last = size
 
 
 def _logarithms_of_integrals(c: Numbers) -> Numbers:
     """log of the integral of |Delta'| between neighbouring critical points; shape (n-2,)."""
     n = len(c) + 1
-    nodes, weights = gauss_legendre(n // 2 + 1, mpmath.mp.prec)
+    nodes, weights = gauss_legendre(n // 2 + 1, gmpy2.get_context().precision)
     half = (c[:-1] - c[1:]) / 2
     z = (c[:-1] + c[1:])[:, None] / 2 + half[:, None] * nodes
     slopes = 2 * n * product_of_distances(c, z)
     integrals = (slopes * weights).sum(axis=1) * half
-    return np.array([mpmath.log(x) for x in integrals], dtype=object)
+    return MPFR.log(integrals)
 
 
 def edges(c: Numbers, heights: Numbers) -> Edges:
     """Edges of the bands, from the critical points and the heights of the gaps."""
     centres, half_widths = c.copy(), c * 0
     for k in np.nonzero(heights)[0]:
-        rise = 4 * mpmath.sinh(heights[k] / 2) ** 2
+        rise = 4 * gmpy2.sinh(heights[k] / 2) ** 2
         curvature = _relative_curvature(c, int(k))
-        start = mpmath.sqrt(2 * rise / curvature)
+        start = gmpy2.sqrt(2 * rise / curvature)
         up = _distance(c, int(k), 1, rise, start)
         down = _distance(c, int(k), -1, rise, start)
         centres[k] = c[k] + (up - down) / 2
         half_widths[k] = (up + down) / 2
-    top = c[0] + _distance(c, 0, 1, 2 * mpmath.cosh(heights[0]) + 2, 1 / mpmath.mpf(len(c)))
+    top = c[0] + _distance(c, 0, 1, 2 * gmpy2.cosh(heights[0]) + 2, gmpy2.mpfr(1) / len(c))
     last = len(c) - 1
-    rise = 2 * mpmath.cosh(heights[last]) + 2
-    bottom = c[last] - _distance(c, last, -1, rise, 1 / mpmath.mpf(len(c)))
+    rise = 2 * gmpy2.cosh(heights[last]) + 2
+    bottom = c[last] - _distance(c, last, -1, rise, gmpy2.mpfr(1) / len(c))
     return Edges(centres, half_widths, top, bottom)
 
 
@@ -239,23 +240,32 @@ def _distance(c: Numbers, k: int, side: int, rise: Any, start: Any) -> Any:
     nearly a straight line for short distances.
     """
     n = len(c) + 1
-    nodes, weights = gauss_legendre(n // 2 + 1, mpmath.mp.prec)
-    distance, last = start, mpmath.inf
+    nodes, weights = gauss_legendre(n // 2 + 1, gmpy2.get_context().precision)
+    distance, last = start, gmpy2.inf()
     while True:
         z = (nodes + 1) * (side * distance / 2)
         change = _change(c, k, z, weights) * distance / 2
-        error = mpmath.log(change / rise)
-        if error == 0 or (abs(error) >= last / 2 and abs(error) < mpmath.mpf("1e-12")):
+        error = gmpy2.log(change / rise)
+        if error == 0 or (abs(error) >= last / 2 and abs(error) < CLOSE):
             return distance
         last = abs(error)
         end = np.array([side * distance], dtype=object)
         growth = _slopes_near(c, k, end)[0] * distance / change
         step = -error / growth
-        distance = distance * mpmath.exp(max(min(step, 1), -1))
+        distance = distance * gmpy2.exp(max(min(step, 1), -1))
 
 
 def _change(c: Numbers, k: int, offsets: Numbers, weights: Numbers) -> Any:
     return (_slopes_near(c, k, offsets) * weights).sum()
+
+
+def product_of_distances(points: Numbers, places: Numbers) -> Numbers:
+    """prod_k 2 |place - point_k|; the shape of places."""
+    doubled = 2 * places
+    product = doubled * 0 + 1
+    for point in 2 * points:
+        product = product * (doubled - point)
+    return np.asarray(abs(product))
 
 
 def _slopes_near(c: Numbers, k: int, offsets: Numbers) -> Numbers:

@@ -52,9 +52,9 @@ def mean_rule(edges: Edges, i: int, numbers: Arithmetic) -> tuple[Numbers, Numbe
         raise BandsTooNarrow(i + 1)
     precision = 0 if numbers is DOUBLES else mpmath.mp.prec
     if equal <= 2 * graded + 1:
-        places, weights = _equal_weights(equal, precision)
+        places, weights = _equal_weights(equal, precision, numbers)
     else:
-        places, weights = _graded(graded, reach, precision)
+        places, weights = _graded(graded, reach, precision, numbers)
     return places * edges.half_widths[i], weights
 
 
@@ -83,21 +83,24 @@ def _relative_distance(edges: Edges, i: int) -> float:
 
 
 @lru_cache(maxsize=64)
-def _equal_weights(count: int, precision: int) -> tuple[Numbers, Numbers]:
+def _equal_weights(
+    count: int, precision: int, numbers: Arithmetic
+) -> tuple[Numbers, Numbers]:
     """Nodes cos((k - 1/2) pi / count) and weights 1/count; precision : in bits, 0 for doubles."""
-    numbers = MULTIPRECISION if precision else DOUBLES
     odd = numbers.array(2 * np.arange(count) + 1)
     cosines = numbers.cos(odd * numbers.pi / (2 * count))
     return cosines, (cosines * 0 + 1) / count
 
 
 @lru_cache(maxsize=16)
-def _graded(count: int, reach: float, precision: int) -> tuple[Numbers, Numbers]:
+def _graded(
+    count: int, reach: float, precision: int, numbers: Arithmetic
+) -> tuple[Numbers, Numbers]:
     """Nodes tanh((pi/2) sinh t) at 2 count + 1 steps of t from -reach to reach, and weights."""
-    numbers = MULTIPRECISION if precision else DOUBLES
-    t = numbers.array(np.arange(-count, count + 1)) * (reach / count)
+    own = MULTIPRECISION if precision else DOUBLES
+    t = own.array(np.arange(-count, count + 1)) * (reach / count)
     growth = exp(t)
-    bend = exp((growth - 1 / growth) * (numbers.pi / 4))
+    bend = exp((growth - 1 / growth) * (own.pi / 4))
     places = (bend - 1 / bend) / (bend + 1 / bend)
     weights = (growth + 1 / growth) / (bend + 1 / bend) * (reach / count / 2)
-    return places, weights
+    return numbers.array(places), numbers.array(weights)

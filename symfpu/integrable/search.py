@@ -8,12 +8,13 @@ differences, then serves with any number of digits. Source: ours.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-import mpmath
+import gmpy2
 import numpy as np
 
 from symfpu.errors import InputError, SymfpuError
@@ -25,10 +26,11 @@ from symfpu.integrable.discriminant import (
     edges,
     free_points,
 )
+from symfpu.integrable.mpfr import MPFR, in_mpf, working_digits
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
 
 START_DIGITS = 12  # of the stage with full Newton steps
-DIFFERENCE = mpmath.mpf(2) ** -33  # of the logarithms, for derivatives
+DIFFERENCE = 2.0**-33  # of the logarithms, for derivatives
 SMALL_STEP = 1e-9  # after it the Jacobian is kept
 LARGEST_CHANGE = 1.0  # of a logarithm in one step
 MOST_STEPS = 60
@@ -84,40 +86,40 @@ class Search:
 
     def run(self, digits: int) -> Found:
         """The torus to so many digits; with guard digits, that the heights say, for its energy."""
-        with mpmath.workdps(START_DIGITS):
-            extra = guard_digits(_heights(self._start()))
-        with mpmath.workdps(START_DIGITS + extra):
+        with working_digits(START_DIGITS):
+            extra = guard_digits(float(min(self._start())))
+        with working_digits(START_DIGITS + extra):
             u, jacobian, points = self._newton(self._start())
-            extra = guard_digits(_heights(u))
-        with mpmath.workdps(digits + extra):
-            return self._chords(u, jacobian, points)
+            extra = guard_digits(float(min(u)))
+        with working_digits(digits + extra):
+            return _in_mpf(self._chords(u, jacobian, points))
 
     def _start(self) -> Numbers:
         """Logarithms of the squared heights from the normal form of fourth order."""
         linear = self._linear()
         wanted = self._wanted()
-        a = MULTIPRECISION.number(self.a)
+        a = MPFR.number(self.a)
         actions = wanted if self.by_action else (wanted - linear) * self.ring / (2 * a**2)
         best = int(np.argmax(actions))
         if actions[best] <= 0:
-            allowed = f"above the linear frequency {mpmath.nstr(linear[best], 12)}"
+            allowed = f"above the linear frequency {float(linear[best]):.12g}"
             argument = f"frequencies, omega_{self.seeds[best]}"
             advice = "the Toda chain hardens: take larger ones"
             raise InputError(argument, float(self.given[best]), allowed, advice)
         least = actions[best] / 1000
         positive = np.array([max(x, least) for x in actions], dtype=object)
         squares = 8 * self.ring * a**2 * positive / linear
-        return np.array([mpmath.log(min(x, LARGEST_START)) for x in squares], dtype=object)
+        return np.array([gmpy2.log(min(x, LARGEST_START)) for x in squares], dtype=object)
 
     def _wanted(self) -> Numbers:
-        return MULTIPRECISION.array(list(self.given))
+        return MPFR.array(list(self.given))
 
     def _largest_shift(self) -> Any:
         return max(abs(self._wanted() - self._linear()))
 
     def _linear(self) -> Numbers:
-        half_turns = [mpmath.mpf(q) / self.ring for q in self.seeds]
-        return np.array([2 * mpmath.sinpi(x) for x in half_turns], dtype=object)
+        angles = MPFR.array(self.seeds) * MPFR.pi / self.ring
+        return 2 * MPFR.sin(angles)
 
     def _newton(self, u: Numbers) -> tuple[Numbers, Floats, Numbers]:
         """The heights up to SMALL_STEP, the Jacobian, the critical points.
@@ -164,7 +166,7 @@ class Search:
 
     def _chords(self, u: Numbers, jacobian: Floats, points: Numbers) -> Found:
         """Steps with the last Jacobian, down to the working precision."""
-        last = mpmath.inf
+        last = gmpy2.inf()
         while True:
             residual, points = self._residual(u, points)
             size = max(abs(r) for r in residual)
@@ -184,12 +186,12 @@ class Search:
         return (values - wanted) / scale, found.points
 
     def _found(self, u: Numbers, near: Numbers) -> Found:
-        heights = MULTIPRECISION.zeros((self.N - 1,))
+        heights = MPFR.zeros((self.N - 1,))
         heights[[q - 1 for q in self.seeds]] = _heights(u)
         points = critical_points(heights, near)
         bands = edges(points, heights)
         placed = bands.shifted(-1 - bands.bottom) if self.fixed else bands
-        curve = SpectralCurve(placed, self.N, self.fixed, self.a, MULTIPRECISION)
+        curve = SpectralCurve(placed, self.N, self.fixed, self.a, MPFR)
         return Found(bands, points, heights, curve)
 
 
@@ -199,7 +201,7 @@ def _solution(jacobian: Floats, residual: Numbers) -> Numbers:
     if size == 0:
         return residual
     scaled = (residual / size).astype(float)
-    direction = MULTIPRECISION.array(np.linalg.solve(jacobian, scaled))
+    direction = MPFR.array(np.linalg.solve(jacobian, scaled))
     return np.asarray(direction * -size)
 
 
@@ -211,15 +213,27 @@ def _broyden(jacobian: Floats, step: Numbers, change: Numbers) -> Floats:
 
 
 def _heights(u: Numbers) -> Numbers:
-    return np.array([mpmath.exp(x / 2) for x in u], dtype=object)
+    return MPFR.exp(u / 2)
 
 
 def _size(values: Numbers) -> float:
     return float(max(abs(x) for x in values))
 
 
-def guard_digits(heights: Sequence[Any] | Numbers) -> int:
-    """Energies and shifts are small as squared heights beside numbers of order one."""
-    least = min(abs(h) for h in heights)
-    lost = -2 * float(mpmath.log10(least))
-    return GUARD_DIGITS + max(0, int(np.ceil(lost)))
+def _in_mpf(found: Found) -> Found:
+    bands, placed = (_edges_in_mpf(e) for e in (found.bands, found.curve.edges))
+    curve = replace(found.curve, edges=placed, numbers=MULTIPRECISION)
+    return Found(bands, in_mpf(found.points), in_mpf(found.heights), curve)
+
+
+def _edges_in_mpf(edges: Edges) -> Edges:
+    outer = in_mpf(np.array([edges.top, edges.bottom], dtype=object))
+    return Edges(in_mpf(edges.centres), in_mpf(edges.half_widths), *outer)
+
+
+def guard_digits(logarithm: float) -> int:
+    """Energies and shifts are small as squared heights beside numbers of order one.
+
+    logarithm : of the least squared height.
+    """
+    return GUARD_DIGITS + max(0, math.ceil(-logarithm / math.log(10)))

@@ -12,7 +12,7 @@ by the coefficient of lambda^(n-2), which holds the trace of the squared matrix 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -114,7 +114,7 @@ class TodaTorus:
         return with_digits((Q, p), self.digits)
 
     def _working_digits(self) -> int:
-        return self.digits + guard_digits(list(self.heights.values()))
+        return self.digits + guard_digits(_least_logarithm(self.heights.values()))
 
     def _half_turns(self, phases: Mapping[int, int]) -> dict[int, int]:
         wrong = set(phases) - set(self.seeds)
@@ -223,7 +223,9 @@ def _given(
 
 
 def _torus(search: Search, found: Found, digits: int) -> TodaTorus:
-    with mpmath.workdps(digits + guard_digits(found.heights[found.heights > 0])):
+    with mpmath.workdps(
+        digits + guard_digits(_least_logarithm(found.heights[found.heights > 0]))
+    ):
         frequencies = found.curve.frequencies()
         actions = found.curve.actions()
         gaps = _widths(found.curve)
@@ -248,6 +250,11 @@ def _torus(search: Search, found: Found, digits: int) -> TodaTorus:
         normal_frequencies=of(frequencies, others),
         bands=found.curve.edges,
     )
+
+
+def _least_logarithm(heights: Iterable[Any]) -> float:
+    """Of the squared heights."""
+    return 2 * float(mpmath.log(min(heights)))
 
 
 def _widths(curve: SpectralCurve) -> Numbers:

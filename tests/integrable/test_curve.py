@@ -9,6 +9,7 @@ import pytest
 from symfpu import BandsTooNarrow, Chain, InputError, NoDiscriminant, NoTodaTorus, toda, toda_invariants, toda_torus
 from symfpu.integrable.discriminant import Edges, critical_points, edges, free_points, gauss_legendre
 from symfpu.integrable.inverse import persymmetric_matrix, ring_state
+from symfpu.integrable.mpfr import MPFR, in_mpf, working_digits
 from symfpu.integrable.quadrature import mean_rule
 from symfpu.numbers.arithmetic import MULTIPRECISION
 from tests.integrable.chains import discriminant
@@ -17,9 +18,12 @@ from tests.tolerances import ACTIONS_IN_DOUBLES, FORTY_DIGITS, GAP, THIRTY_DIGIT
 
 def chebyshev_ring(heights):
     """Critical points and bands of a ring with such gaps."""
-    values = MULTIPRECISION.array(heights)
-    points = critical_points(values, free_points(len(heights) + 1))
-    return points, edges(points, values)
+    with working_digits(mpmath.mp.dps):
+        values = MPFR.array(MULTIPRECISION.array(heights))
+        points = critical_points(values, free_points(len(heights) + 1))
+        bands = edges(points, values)
+    widths, outer = in_mpf(bands.half_widths), in_mpf(np.array([bands.top, bands.bottom], dtype=object))
+    return in_mpf(points), Edges(in_mpf(bands.centres), widths, *outer)
 
 
 @pytest.mark.parametrize("heights", [[0, 0, 0], [1, 0, 0, 2, 0], ["1e-20", 3], [12], [0, 5, 0.5, 0]])
@@ -45,11 +49,11 @@ def test_small_gaps_keep_their_relative_accuracy():
 
 
 def test_gauss_legendre_is_exact_for_powers():
-    nodes, weights = gauss_legendre(6, 200)
-    with mpmath.workprec(200):
+    with working_digits(60):
+        nodes, weights = gauss_legendre(6, 200)
         for power in range(12):
             integral = (nodes**power * weights).sum()
-            assert abs(integral - (mpmath.mpf(2) / (power + 1) if power % 2 == 0 else 0)) < FORTY_DIGITS
+            assert abs(integral - (MPFR.number(Fraction(2, power + 1)) if power % 2 == 0 else 0)) < FORTY_DIGITS
 
 
 @pytest.mark.parametrize("distance", ["1e-1", "1e-4", "1e-9"])
