@@ -33,8 +33,8 @@ class BandsTooNarrow(SymfpuError):
     def __init__(self, gap: int) -> None:
         self.gap = gap
         super().__init__(
-            f"gap {gap}: the band beside it is too narrow for these digits: ask for more "
-            "digits or for a smaller energy"
+            f"gap {gap}: the band beside it is too narrow for these digits: take a smaller "
+            "energy or, for the invariants of a state, more digits"
         )
 
 
