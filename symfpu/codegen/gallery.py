@@ -39,7 +39,7 @@ class Example(NamedTuple):
 
     def solve_command(self, name: str) -> str:
         """The command that writes it as name.symfpu."""
-        law = self.chain.law_entries()
+        law = self.chain.typed_law
         words = [f"symfpu solve -N {self.chain.N}"]
         words += [f"--{key} {value}" for key, value in law.items() if value != "0"]
         words.append(f"--seeds {','.join(map(str, self.seeds))}")
