@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from symfpu.chain.chain import Chain, require_chain
+from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.errors import InputError
 from symfpu.numbers.typed import Number, exact
 
 
 def toda_coupling(chain: Chain, a: Number | None) -> Fraction:
     """a as given, else c_3 of the chain: its own of a Toda chain; InputError where it is zero."""
-    require_chain(chain)
+    require_any_chain(chain)
     if chain.symbolic:
         advice = "give it a length by chain.at(N=...)"
         raise InputError("chain", chain, "a chain of so many bonds", advice)
@@ -20,3 +20,14 @@ def toda_coupling(chain: Chain, a: Number | None) -> Fraction:
         advice = "name the Toda chain to compare with: a = 0 is the harmonic chain"
         raise InputError("a", 0, "a number other than zero", advice)
     return coupling
+
+
+def gap_numbers(chain: Chain) -> tuple[int, ...]:
+    """The gap of every mode, in the order of the modes.
+
+    With fixed ends their numbers are the same. On a ring gap k is the wave cos(2 pi k j/N + omega
+    t), and mode q the wave that moves the other way.
+    """
+    if not chain.periodic:
+        return tuple(chain.mode_numbers)
+    return tuple(-q % chain.N for q in chain.mode_numbers)

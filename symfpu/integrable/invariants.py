@@ -1,4 +1,4 @@
-"""Gaps, actions and frequencies of Toda's chain for a state of any chain with fixed ends.
+"""Gaps, actions and frequencies of Toda's chain for a state of any chain.
 
 A chain that is not Toda's is judged by the Toda chain with the same cubic term: a = c_3. Along its
 orbits the gaps drift, and how much they do shows how far the orbit is from an integrable one.
@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.integrable.coupling import toda_coupling
+from symfpu.integrable.coupling import gap_numbers, toda_coupling
 from symfpu.integrable.curve import SpectralCurve
 from symfpu.integrable.discriminant import Edges
-from symfpu.integrable.lax import jacobi_entries, odd_edges
+from symfpu.integrable.lax import jacobi_entries, odd_edges, ring_edges
 from symfpu.numbers.arithmetic import (
     DOUBLES,
     MULTIPRECISION,
@@ -72,7 +72,7 @@ def toda_gaps(
     a: Number | None = None,
     digits: int | None = None,
 ) -> Numbers:
-    """All gaps of Toda's spectral curve for states of a chain with fixed ends, one a mode.
+    """All gaps of Toda's spectral curve for states of a chain, one a mode.
 
     A gap is an interval of lambda between two bands of Flaschka's periodic matrix of the ring of 2N
     particles whose odd states are those of the chain. They are constant along orbits of the Toda
@@ -81,6 +81,7 @@ def toda_gaps(
     sqrt(2/N) |a| Omega_q A_q: the harmonic energy of mode q is N gap^2 / (4 a^2).
 
     chain : a Chain; Q, P : mode coordinates and momenta, shapes (..., N-1): states, orbits, tori.
+        On a ring gaps are those of its own matrix, mode q that of cos(2 pi q j / N - omega_q t).
     a : of V = (e^(2ar) - 1 - 2ar)/(4a^2); default: c_3 of the chain. digits : None for
         doubles, exact to a few times 1e-16 absolutely; else mpf with so many decimal places.
 
@@ -93,9 +94,10 @@ def toda_gaps(
     """
     numbers = _arithmetic(digits)
     coupling = toda_coupling(chain, a)
+    _require_doubles_on_a_ring(chain, digits)
     with numbers.context(digits):
-        _, upper, lower = _edges(chain, Q, P, coupling, numbers)
-        gaps = upper - lower
+        _, upper, lower, _ = _edges(chain, Q, P, coupling, numbers)
+        gaps = (upper - lower)[..., _order(chain)]
     return with_digits(gaps, digits)
 
 
@@ -122,25 +124,30 @@ def toda_invariants(
     """
     numbers = _arithmetic(digits)
     coupling = toda_coupling(chain, a)
+    _require_doubles_on_a_ring(chain, digits)
     with numbers.context(digits):
-        top, upper, lower = _edges(chain, Q, P, coupling, numbers)
+        top, upper, lower, bottom = _edges(chain, Q, P, coupling, numbers)
         if top.ndim:
             advice = "pass one state; toda_gaps takes many"
             raise InputError("Q", upper.shape, f"shape ({chain.N - 1},)", advice)
-        bands = Edges(
-            centres=upper**2 + lower**2 - 1,
-            half_widths=(upper - lower) * (upper + lower),
-            top=2 * top[()] ** 2 - 1,
-            bottom=numbers.number(Fraction(-1)),
-        )
-        curve = SpectralCurve(bands, chain.N, True, coupling, numbers)
+        if chain.periodic:
+            centres, half_widths = (upper + lower) / 2, (upper - lower) / 2
+            bands = Edges(centres, half_widths, top[()], bottom[()])
+        else:
+            centres, half_widths = (
+                upper**2 + lower**2 - 1,
+                (upper - lower) * (upper + lower),
+            )
+            bands = Edges(centres, half_widths, 2 * top[()] ** 2 - 1, bottom)
+        curve = SpectralCurve(bands, chain.N, not chain.periodic, coupling, numbers)
+        order = _order(chain)
         return TodaInvariants(
             N=chain.N,
             a=coupling,
             digits=digits,
-            gaps=with_digits(upper - lower, digits),
-            actions=with_digits(curve.actions(), digits),
-            frequencies=with_digits(curve.frequencies(), digits),
+            gaps=with_digits((upper - lower)[order], digits),
+            actions=with_digits(curve.actions()[order], digits),
+            frequencies=with_digits(curve.frequencies()[order], digits),
         )
 
 
@@ -154,10 +161,16 @@ def _arithmetic(digits: int | None) -> Arithmetic:
 
 def _edges(
     chain: Chain, Q: ArrayLike, P: ArrayLike, a: Fraction, numbers: Arithmetic
-) -> tuple[Numbers, Numbers, Numbers]:
-    """Outer edges (...), upper and lower edges of the gaps (..., N-1)."""
-    stretches = chain.stretches(_read(Q, "Q", numbers))
-    momenta = chain.positions(_read(P, "P", numbers))
+) -> tuple[Numbers, Numbers, Numbers, Any]:
+    """Top edge (...), upper and lower edges of the gaps (..., N-1), bottom edge.
+
+    Of lambda; with fixed ends the bottom is that of 2 lambda^2 - 1.
+    """
+    if chain.periodic:
+        stretches, momenta = chain.stretches(Q), chain.positions(P)
+    else:
+        stretches = chain.stretches(_read(Q, "Q", numbers))
+        momenta = chain.positions(_read(P, "P", numbers))
     if stretches.shape[:-1] != momenta.shape[:-1]:
         shapes = (np.shape(Q), np.shape(P))
         raise InputError(
@@ -171,7 +184,20 @@ def _edges(
         allowed = f"|a r| below {LARGEST_EXPONENT} on every bond"
         raise InputError("a r", float(largest), allowed, "take a smaller state or a")
     bonds, diagonal = jacobi_entries(stretches, momenta, a, numbers)
-    return odd_edges(bonds, diagonal, numbers)
+    if chain.periodic:
+        return ring_edges(bonds, diagonal, numbers)
+    return *odd_edges(bonds, diagonal, numbers), numbers.number(Fraction(-1))
+
+
+def _order(chain: Chain) -> list[int]:
+    """Where the gap of every mode stands."""
+    return [k - 1 for k in gap_numbers(chain)]
+
+
+def _require_doubles_on_a_ring(chain: Chain, digits: int | None) -> None:
+    if chain.periodic and digits is not None:
+        advice = "leave digits=None: states of a ring are complex doubles"
+        raise InputError("digits", digits, "None on a ring", advice)
 
 
 def _read(values: ArrayLike, argument: str, numbers: Arithmetic) -> Numbers:

@@ -22,13 +22,13 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.integrable.coupling import toda_coupling
+from symfpu.integrable.coupling import gap_numbers, toda_coupling
 from symfpu.integrable.curve import SpectralCurve
 from symfpu.integrable.discriminant import Edges
 from symfpu.integrable.inverse import ring_state
 from symfpu.integrable.search import Found, Search, guard_digits
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, with_digits
-from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
+from symfpu.numbers.typed import Number, decimal, exact, integer
 
 MOST_DIGITS = 10000
 SMALLEST_RING = 3  # particles: of two the mean stretch of both bonds is one number
@@ -44,7 +44,7 @@ class TodaTorus:
     normal_frequencies : of small oscillations about the torus, by every other mode: Floquet
         exponents where there is one seed.
     bands : centres and half widths of all gaps and the outer edges; of lambda on a ring, of
-        2 lambda^2 - 1 with fixed ends; arrays (N-1,).
+        2 lambda^2 - 1 with fixed ends; arrays (N-1,), the uppermost first.
 
     All numbers are mpf that print `digits` digits and carry some more. Dimensionless. Ours.
 
@@ -132,11 +132,13 @@ class TodaTorus:
     def _spectrum(self, half_turns: Mapping[int, int]) -> Numbers:
         """Eigenvalues without particle 0, each at an edge of its gap."""
         z = self.bands.centres.copy()
-        sign = -1 if self.a > 0 else 1
+        ring = self.ends == "periodic"
+        sign = -1 if (self.a > 0) != ring else 1
         for q, half_turn in half_turns.items():
+            k = (-q % self.N if ring else q) - 1
             side = -sign if half_turn else sign
-            z[q - 1] += side * self.bands.half_widths[q - 1]
-        if self.ends == "periodic":
+            z[k] += side * self.bands.half_widths[k]
+        if ring:
             return z
         upper = MULTIPRECISION.sqrt((z + 1) / 2)
         return np.concatenate([upper, [z[0] * 0], -upper[::-1]])
@@ -149,7 +151,6 @@ def toda_torus(
     frequencies: Sequence[Number] | None = None,
     actions: Sequence[Number] | None = None,
     a: Number | None = None,
-    ends: str = "fixed",
     digits: int = 15,
 ) -> TodaTorus:
     """The torus of the Toda chain with the gaps of the seeds open and all others closed.
@@ -157,13 +158,12 @@ def toda_torus(
     It is the exact form of the torus that a series in the seeds' amplitudes begins. Its spectral
     curve gives energy, actions, and frequencies of the seeds and of small oscillations about it.
 
-    chain : gives N and, unless given, a = c_3: a Toda chain, or one to compare with Toda's.
-    seeds : distinct modes. With fixed ends gap q of the spectrum is mode q; on a ring of N
-        particles it is the wave cos(2 pi q j / N + omega_q t), and N - q its mirror image.
+    chain : gives N, ends and, unless given, a = c_3: a Toda chain, or one to compare with Toda's.
+        On a ring total momentum and mean stretch are zero.
+    seeds : distinct modes; on a ring q is the wave cos(2 pi q j / N - omega_q t).
     frequencies, actions : one of them, numbers in the order of the seeds. For small amplitudes an
         action is the harmonic energy of the mode divided by its frequency.
-    a : of V = (e^(2ar) - 1 - 2ar)/(4a^2), not zero. ends : "fixed", or "periodic": a ring of N
-        particles with total momentum and mean stretch zero. digits : of the results.
+    a : of V = (e^(2ar) - 1 - 2ar)/(4a^2), not zero. digits : of the results.
 
     Returns TodaTorus. Dimensionless. Raises InputError for arguments outside their ranges,
     NoTodaTorus where no torus is found, NoDiscriminant or BandsTooNarrow at energies that are too
@@ -176,26 +176,25 @@ def toda_torus(
     """
     coupling = toda_coupling(chain, a)
     N: int = chain.N
-    if ends not in ("fixed", "periodic"):
-        raise InputError("ends", ends, "'fixed' or 'periodic'", "choose one of them")
-    if ends == "periodic" and N < SMALLEST_RING:
+    if chain.periodic and N < SMALLEST_RING:
         allowed = f"at least {SMALLEST_RING} on a ring"
         raise InputError("N", N, allowed, "take more particles")
     places = integer(digits, "digits", 1)
     if places > MOST_DIGITS:
         raise InputError("digits", digits, f"at most {MOST_DIGITS}", "ask for fewer digits")
-    listed = seed_modes(seeds, N)
+    listed = chain.seeds_of(seeds)
     given = _given(listed, frequencies, actions)
-    by_seed = sorted(zip(listed, given, strict=True))
+    gaps = dict(zip(chain.mode_numbers, gap_numbers(chain), strict=True))
+    by_gap = sorted(zip((gaps[seed] for seed in listed), given, strict=True))
     search = Search(
         N=N,
         a=coupling,
-        fixed=ends == "fixed",
-        seeds=tuple(seed for seed, _ in by_seed),
-        given=tuple(number for _, number in by_seed),
+        fixed=not chain.periodic,
+        seeds=tuple(gap for gap, _ in by_gap),
+        given=tuple(number for _, number in by_gap),
         by_action=actions is not None,
     )
-    return _torus(search, search.run(places), places)
+    return _torus(search, search.run(places), gaps, tuple(sorted(listed)), places)
 
 
 def _given(
@@ -222,7 +221,14 @@ def _given(
     return numbers
 
 
-def _torus(search: Search, found: Found, digits: int) -> TodaTorus:
+def _torus(
+    search: Search,
+    found: Found,
+    places: Mapping[int, int],
+    seeds: tuple[int, ...],
+    digits: int,
+) -> TodaTorus:
+    """places : the gap of every mode."""
     with mpmath.workdps(
         digits + guard_digits(_least_logarithm(found.heights[found.heights > 0]))
     ):
@@ -230,11 +236,10 @@ def _torus(search: Search, found: Found, digits: int) -> TodaTorus:
         actions = found.curve.actions()
         gaps = _widths(found.curve)
         energy = _energy(search, found)
-    seeds = search.seeds
-    others = [q for q in range(1, search.N) if q not in seeds]
+    others = [q for q in places if q not in seeds]
 
     def of(values: Numbers, modes: Sequence[int]) -> dict[int, Any]:
-        return with_digits({q: values[q - 1] for q in modes}, digits)
+        return with_digits({q: values[places[q] - 1] for q in modes}, digits)
 
     return TodaTorus(
         N=search.N,
