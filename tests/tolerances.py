@@ -535,6 +535,7 @@ TODA_RATE = 0.06
 
 # Energies to twenty digits, by series with 35 and curves with 30.
 TWENTY_DIGITS = 1e-20
+
 # Two waves of amplitude 1e-4 on a ring, without the third harmonics: the next order is mu A^2 of them.
 ONLY_THE_SEEDS = 1e-4
 
