@@ -20,7 +20,7 @@ from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
 from symfpu.numbers.arithmetic import Numbers, with_digits
 from symfpu.numbers.typed import integer
 from symfpu.series.series import LindstedtSeries, require_series
-from symfpu.tori.amplitudes import frequency_orders, shifts
+from symfpu.tori.amplitudes import FrequencySeries, frequency_orders, shifts
 from symfpu.tori.quasiperiodic import FourierTorus
 from symfpu.tori.torus import QTorus, require_series_torus
 
@@ -187,7 +187,7 @@ def pade_amplitudes(
 
 
 def _checked(
-    series: LindstedtSeries, frequency_order: int | None
+    series: FrequencySeries, frequency_order: int | None
 ) -> tuple[LindstedtSeries, list[int]]:
     """The orders of the frequency series up to one.
 
@@ -212,7 +212,7 @@ def _checked(
 
 
 def _by_seed(
-    series: LindstedtSeries, argument: str, values: Mapping[int, Any]
+    series: FrequencySeries, argument: str, values: Mapping[int, Any]
 ) -> Mapping[int, Any]:
     if any(q not in values for q in series.seeds):
         allowed = f"a mapping with an amplitude for each of the seeds {series.seeds}"
@@ -338,13 +338,13 @@ def _resummed(table: Numbers, torus: QTorus) -> tuple[Numbers, Floats]:
 
 
 def pade_poles(
-    series: LindstedtSeries, q: int, amplitudes: Mapping[int, Any]
+    series: FrequencySeries, q: int, amplitudes: Mapping[int, Any]
 ) -> NDArray[np.complex128]:
     """Poles of the approximant of omega_q, in units of the actual mu, nearest first.
 
     With alpha in units of mu^2.
 
-    series : of numbers. q : a seed. amplitudes : A by seed, dimensionless. Returns complex
+    series : of numbers, that of a ring too. q : a seed. amplitudes : A by seed, dimensionless. Returns complex
         numbers, shape (n,).
 
     The approximant is the diagonal one. A pole beside a zero of the numerator is an artefact of
@@ -358,7 +358,9 @@ def pade_poles(
     >>> pade_poles(series, 1, {1: 0.405}).round(1)
     array([13.5+0.j, 28.5+0.j])
     """
-    require_series(series)
+    if not hasattr(series, "frequency_terms"):
+        advice = "pass what lindstedt or travelling_waves gave"
+        raise InputError("series", type(series).__name__, "a series", advice)
     _, orders = _checked(series, None)
     if q not in series.seeds:
         allowed = f"a seed, one of {series.seeds}"

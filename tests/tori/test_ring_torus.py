@@ -8,7 +8,17 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import symfpu
-from symfpu import Chain, breather_at_amplitude, lindstedt, solve_amplitudes, toda_torus, travelling_torus, travelling_waves, unfold
+from symfpu import (
+    Chain,
+    breather_at_amplitude,
+    lindstedt,
+    pade_poles,
+    solve_amplitudes,
+    toda_torus,
+    travelling_torus,
+    travelling_waves,
+    unfold,
+)
 from symfpu.chain import bonds
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import DOUBLES
@@ -20,6 +30,7 @@ from tests.tolerances import (
     PEER_ABSOLUTE,
     PEER_RELATIVE,
     PERIODIC_ORBIT,
+    POLES,
     RATE_OF_ORDERS,
     RESUMMED,
     ROUNDING,
@@ -154,6 +165,16 @@ def test_breathers_unfold():
     assert unfold(orbit).residual() < PERIODIC_ORBIT
 
 
+def test_poles_of_the_frequencies_of_opposite_waves_are_those_of_the_standing_wave():
+    fixed = lindstedt(Chain(8, alpha="0.3"), (1,), ("0.3903",), 10)
+    waves = travelling_waves(ring(16, alpha="0.3"), (1, -1), ("0.3903", "0.3903"), 10)
+    poles = pade_poles(fixed, 1, {1: 0.3})
+    assert len(poles)
+    assert np.allclose(pade_poles(waves, 1, {1: 0.3, -1: 0.3}), poles, rtol=POLES)
+    with pytest.raises(InputError, match="travelling_waves"):
+        pade_poles(travelling_torus(waves), 1, {1: 0.3})
+
+
 def test_other_objects_are_refused():
     found = torus(5, (1,), (1e-3,), 4, beta=1)
     with pytest.raises(InputError, match="travelling_waves"):
@@ -169,7 +190,7 @@ def test_other_objects_are_refused():
 
 
 SERIES_OR_TORUS = {"series", "torus", "solution", "orbit", "result", "found"}
-TAKE_WAVES = {"travelling_torus"}
+TAKE_WAVES = {"travelling_torus", "pade_poles"}
 OTHERS = {"path": "never_written", "language": "c", "folder": "never_written", "q": 1, "order": 2, "frequencies": ("0.4",)}
 
 
