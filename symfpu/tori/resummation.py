@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import mpmath
 import numpy as np
@@ -25,6 +25,7 @@ from symfpu.tori.quasiperiodic import FourierTorus
 from symfpu.tori.torus import QTorus, require_series_torus
 
 Floats = NDArray[np.float64]
+Series = TypeVar("Series", bound=FrequencySeries)
 
 # distance of a zero, relative to its pole, below which both are noise of doubles
 FROISSART = 1e-4
@@ -186,9 +187,7 @@ def pade_amplitudes(
     return with_digits(amplitudes, series.digits)
 
 
-def _checked(
-    series: FrequencySeries, frequency_order: int | None
-) -> tuple[LindstedtSeries, list[int]]:
+def _checked(series: Series, frequency_order: int | None) -> tuple[Series, list[int]]:
     """The orders of the frequency series up to one.
 
     InputError if there is none, or none chosen frequency.
@@ -344,8 +343,8 @@ def pade_poles(
 
     With alpha in units of mu^2.
 
-    series : of numbers, that of a ring too. q : a seed. amplitudes : A by seed, dimensionless. Returns complex
-        numbers, shape (n,).
+    series : of numbers, that of a ring too. q : a seed. amplitudes : A by seed, dimensionless.
+        Returns complex numbers, shape (n,).
 
     The approximant is the diagonal one. A pole beside a zero of the numerator is an artefact of
     noise (Froissart doublet) and left out. A pole at r suggests a singularity at r times the mu
