@@ -125,6 +125,9 @@ WHOLE_NUMBERS = 1e-9
 # Shifts omega - Omega are some 1e-4 of the frequencies, or less, and differences of them: EPS over that, and what follows from it.
 RELATIVE_SHIFT = 1e-9
 
+# Frequencies a part 1e-9 off the linear ones move divisors, some 1e-3, by a part 1e-6, and shifts by some times that.
+NEARLY_LINEAR = 1e-5
+
 # The same with shifts of some 1e-6.
 SMALL_SHIFT = 1e-8
 

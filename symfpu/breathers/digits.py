@@ -30,6 +30,7 @@ from symfpu.breathers.balance import (
     unknowns,
 )
 from symfpu.breathers.fixed_force import FixedForce, Integers, highest_product
+from symfpu.chain.potentials.polynomial import Polynomial
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers
 from symfpu.numbers.typed import Number, exact, integer
@@ -117,8 +118,8 @@ def periodic_orbit_digits(
     0.0512121591740189630941015617011
     """
     near = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
-    if near.chain.potential.degree is None:
-        allowed = "an orbit of a chain of polynomial potential"
+    if not isinstance(near.chain.potential, Polynomial):
+        allowed = "an orbit of a chain of polynomial potential with exact coefficients"
         raise InputError("orbit", f"one of {near.chain!r}", allowed, NO_POLYNOMIAL)
     if integer(digits, "digits", 1) > MOST_DIGITS:
         raise InputError("digits", digits, f"1..{MOST_DIGITS}", "take fewer")

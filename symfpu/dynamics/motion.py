@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
+from symfpu.chain.potentials.polynomial import Polynomial
 from symfpu.dynamics.scheme import Scheme
+from symfpu.dynamics.wells import beyond_walls
 
 Floats = NDArray[np.float64]
 CLOSED = 16  # a tension by exponentials and logarithms, in those of a polynomial, about
@@ -60,18 +62,14 @@ class Motion:
         if self.scheme.in_modes:
             terms = [place for place, c in enumerate(self.law, 1) if c]
             return int(chain.N**2 * terms[-1])
-        return chain.N if chain.potential.degree else CLOSED * chain.N
+        polynomial = isinstance(chain.potential, Polynomial)
+        return chain.N if polynomial else CLOSED * chain.N
 
     def beyond_wall(self, row: Floats) -> bool:
-        """Whether the coordinates of one orbit have a bond beyond the wall of its potential.
-
-        What is no number has been there.
-        """
-        wall = self.chain.potential.wall
-        if wall is None:
-            return False
-        stretches = np.diff(row[0])
-        return not bool(((stretches - wall) * np.sign(wall) < 0).all())
+        """Whether the coordinates of one orbit have a bond beyond a wall of its potential."""
+        law = self.chain.potential
+        closed = not isinstance(law, Polynomial)
+        return closed and bool(beyond_walls(law, np.diff(row[0])).any())
 
     def advance(self, state: Floats, steps: int, each: Callable[..., Any]) -> list[int]:
         """Moves all orbits; returns the steps done by each of them before it had to stop.

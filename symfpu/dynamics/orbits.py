@@ -30,7 +30,12 @@ from symfpu.dynamics.stopping import (
     UnstableStep,
     require_stable,
 )
-from symfpu.dynamics.wells import leaving_bond, require_within_walls, stretch_bounds
+from symfpu.dynamics.wells import (
+    leaving_bond,
+    require_within_walls,
+    stretch_bounds,
+    wall_of,
+)
 from symfpu.errors import InputError
 from symfpu.files.archive import BundleError
 from symfpu.files.checkpoint import (
@@ -371,7 +376,8 @@ class _Run:
             reason = f"bond {bond} passes the barrier of its potential"
             advice = "start from a state of less energy"
         elif crossed:
-            wall = f"the wall r = {self.chain.potential.wall:g} of its potential"
+            ahead = r[bond] + self.step * speeds[bond]
+            wall = f"the wall r = {wall_of(self.chain, ahead):.12g} of its potential"
             reason = f"a step of {abs(self.step):.6g} takes bond {bond} across {wall}"
         raise kind(
             reason,

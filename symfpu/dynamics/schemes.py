@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symfpu.chain.chain import Chain
+from symfpu.chain.potentials.polynomial import Polynomial
 from symfpu.dynamics.aba864 import ABA864, ABA864_MODES
 from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
@@ -20,7 +21,7 @@ def scheme_of(chain: Chain, name: object) -> Scheme:
 
     In modes kicks are products of modes: of polynomials in the stretches.
     """
-    polynomial = chain.potential.degree is not None
+    polynomial = isinstance(chain.potential, Polynomial)
     known = SCHEMES if polynomial else PARTICLE_SCHEMES
     if isinstance(name, str) and name in known:
         return known[name]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -18,6 +19,7 @@ from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import DOUBLES
 
 Floats = NDArray[np.float64]
+Function = Callable[[bonds.Law, Any], Any]
 
 # by which the energy of one bond may exceed the total: far beyond the error of any step worth
 # taking
@@ -25,124 +27,34 @@ FACTOR = 4.0
 # bond stretches, where nothing else bounds them: fourth powers do not overflow much before
 LARGEST_STRETCH = 1e100
 BISECTIONS = 60
-# stretches at which the turning points of a closed law are looked for
+# distances at which turning points and walls of a closed law are looked for
 SCANNED = (1e-4, 1e4, 4000)
 
 
-def potential(chain: Chain, r: float) -> float:
-    """V(r) of one bond."""
-    return float(bonds.potential(chain.law(), r))
+@dataclass(frozen=True)
+class Side:
+    """One side of a bond at rest; distances from there are positive.
 
-
-def stretch_bounds(chain: Chain, energy: float) -> tuple[float, float, bool]:
-    """Stretches that no bond of an orbit of this energy leaves, and whether it can escape.
-
-    A bond leaves them only if the orbit escapes or the step is too coarse.
-
-    While all bonds are inside their wells each holds no more than the whole energy and what
-    others may lose in deeper wells: it stays where V is below. Where that is beyond a barrier,
-    the bond may pass, and has passed for good where V is below every well. Where V levels off
-    below it, bonds break, but the length of the chain is fixed: sum r_j = 0.
+    end : of the wall, else LARGEST_STRETCH. turns : where V' vanishes, in growing order.
     """
-    with np.errstate(all="ignore"):
-        left, right = _Side(chain.potential, -1), _Side(chain.potential, 1)
-        depth = max(left.depth, right.depth)
-        level = energy + chain.N * depth
-        least, left_escapes = left.limit(level, depth)
-        most, right_escapes = right.limit(level, depth)
-    longest = min((chain.N - 1) * min(least, most), LARGEST_STRETCH)
-    least, most = (longest if d == math.inf else d for d in (least, most))
-    return -least, most, left_escapes or right_escapes
 
+    law: bonds.Law
+    sign: float
+    end: float
+    turns: tuple[float, ...]
 
-def require_within_walls(chain: Chain, Q: Floats) -> None:
-    """InputError for a state with a bond at or beyond the wall of its potential; names it."""
-    wall = chain.potential.wall
-    if wall is None:
-        return
-    stretches = np.asarray(chain.stretches(Q))
-    beyond = (stretches - wall) * math.copysign(1, wall) >= 0
-    if beyond.any():
-        bond = int(np.argwhere(beyond)[0][-1])
-        typed = f"a stretch r_{bond} = {stretches[beyond][0]:.6g} of bond {bond}"
-        side = "above" if wall < 0 else "below"
-        allowed = f"stretches {side} {wall:g}, where {chain.potential} is infinite"
-        raise InputError("Q", typed, allowed, "start from smaller amplitudes")
-
-
-def leaving_bond(stretches: Floats, velocities: Floats, bounds: Floats) -> int:
-    """The bond j that is outside of the bounds, or that will be first if it moves as now.
-
-    Shapes (N,), (N,), (2,).
-    """
-    least, most = bounds
-    outside = (stretches < least) | (stretches > most)
-    if outside.any():
-        return int(np.argmax(outside))
-    ahead = np.where(velocities < 0, least, most)
-    with np.errstate(divide="ignore"):
-        times = (ahead - stretches) / np.abs(velocities)
-    return int(np.argmin(np.abs(times)))
-
-
-@lru_cache(maxsize=64)
-def turning_points(law: Potential) -> tuple[float, ...]:
-    """The stretches r, 0 aside, at which the tension V' vanishes, in growing order."""
-    if isinstance(law, Polynomial):
-        return _roots(law)
-    closed = law.law(DOUBLES)
-    found = []
-    with np.errstate(all="ignore"):
-        for side in (-1.0, 1.0):
-            distances = np.geomspace(*SCANNED)
-            end = _end(law, side)
-            if end < LARGEST_STRETCH:
-                distances = end * distances / (1 + distances)
-            signs = np.sign(bonds.tension(closed, side * distances))
-            turned = np.flatnonzero(signs[1:] * signs[:-1] < 0)
-            for low, high in (distances[i : i + 2] for i in turned):
-                found.append(side * _turn(closed, side, low, high))
-    return tuple(sorted(found))
-
-
-def _roots(law: Polynomial) -> tuple[float, ...]:
-    """The real roots of 1 + c_3 r + c_4 r^2 + ..., isolated by balls."""
-    import flint
-
-    common = math.lcm(*(c.denominator for c in law.coefficients))
-    whole = [common, *(int(c * common) for c in law.coefficients)]
-    balls: Any = flint.fmpz_poly(whole).complex_roots()
-    return tuple(sorted(float(root.real) for root, _ in balls if root.imag == 0))
-
-
-def _turn(law: bonds.Law, side: float, low: float, high: float) -> float:
-    begun = bonds.tension(law, side * low)
-    return _first(lambda r: bonds.tension(law, side * r) * begun <= 0, low, high)
-
-
-def _end(law: Potential, side: float) -> float:
-    """The distance of the wall on one side, or the largest."""
-    if law.wall is not None and law.wall * side > 0:
-        return abs(law.wall)
-    return LARGEST_STRETCH
-
-
-class _Side:
-    """One side of a bond at rest; distances from there are positive."""
-
-    def __init__(self, law: Potential, side: int) -> None:
-        self.side, self.law = float(side), law.law(DOUBLES)
-        self.end = _end(law, self.side)
-        self.turns = [abs(r) for r in turning_points(law) if r * side > 0]
+    @property
+    def wall(self) -> float | None:
+        """The stretch where V is infinite, None where there is none."""
+        return self.sign * self.end if self.end < LARGEST_STRETCH else None
 
     def V(self, distance: float) -> float:
-        return float(bonds.potential(self.law, self.side * distance))
+        return float(bonds.potential(self.law, self.sign * distance))
 
     @cached_property
     def depth(self) -> float:
         """Of the deepest well beside that at rest, below zero."""
-        ends = [0.0, *self.turns]
-        return max(0.0, *(-self.V(turn) for turn in ends))
+        return max(0.0, *(-self.V(turn) for turn in (0.0, *self.turns)))
 
     def limit(self, level: float, depth: float) -> tuple[float, bool]:
         """How far a bond comes that holds no more than a level, and whether it can escape.
@@ -168,6 +80,148 @@ class _Side:
         if height > level:
             return top, False
         return _first(lambda r: self.V(r) < -depth, top, self.end), True
+
+
+def potential(chain: Chain, r: float) -> float:
+    """V(r) of one bond."""
+    return float(bonds.potential(chain.law(), r))
+
+
+def stretch_bounds(chain: Chain, energy: float) -> tuple[float, float, bool]:
+    """Stretches that no bond of an orbit of this energy leaves, and whether it can escape.
+
+    A bond leaves them only if the orbit escapes or the step is too coarse.
+
+    While all bonds are inside their wells each holds no more than the whole energy and what
+    others may lose in deeper wells: it stays where V is below. Where that is beyond a barrier,
+    the bond may pass, and has passed for good where V is below every well. Where V levels off
+    below it, bonds break, but the length of the chain is fixed: sum r_j = 0.
+    """
+    left, right = sides(chain.potential)
+    with np.errstate(all="ignore"):
+        depth = max(left.depth, right.depth)
+        level = energy + chain.N * depth
+        least, left_escapes = left.limit(level, depth)
+        most, right_escapes = right.limit(level, depth)
+    longest = min((chain.N - 1) * min(least, most), LARGEST_STRETCH)
+    least, most = (longest if d == math.inf else d for d in (least, most))
+    return -least, most, left_escapes or right_escapes
+
+
+def beyond_walls(law: Potential, stretches: Floats) -> NDArray[np.bool_]:
+    """Where bonds are at or beyond a wall; what is no number has been there."""
+    left, right = (side.wall for side in sides(law))
+    beyond = np.zeros(stretches.shape, dtype=bool)
+    if left is not None:
+        beyond |= ~(stretches > left)
+    if right is not None:
+        beyond |= ~(stretches < right)
+    return beyond
+
+
+def require_within_walls(chain: Chain, Q: Floats) -> None:
+    """InputError for a state with a bond at or beyond a wall of its potential; names it."""
+    stretches = np.asarray(chain.stretches(Q))
+    beyond = beyond_walls(chain.potential, stretches) & np.isfinite(stretches)
+    if beyond.any():
+        bond = int(np.argwhere(beyond)[0][-1])
+        stretch = float(stretches[beyond][0])
+        typed = f"a stretch r_{bond} = {stretch:.6g} of bond {bond}"
+        where = f"{'above' if stretch < 0 else 'below'} {wall_of(chain, stretch):.12g}"
+        allowed = f"stretches {where}, where {chain.potential} is infinite"
+        raise InputError("Q", typed, allowed, "start from smaller amplitudes")
+
+
+def wall_of(chain: Chain, stretch: float) -> float:
+    """The wall on the side of a stretch; infinite where there is none."""
+    left, right = sides(chain.potential)
+    wall = left.wall if stretch < 0 else right.wall
+    return math.copysign(math.inf, stretch) if wall is None else wall
+
+
+def leaving_bond(stretches: Floats, velocities: Floats, bounds: Floats) -> int:
+    """The bond j that is outside of the bounds, or that will be first if it moves as now.
+
+    Shapes (N,), (N,), (2,).
+    """
+    least, most = bounds
+    outside = (stretches < least) | (stretches > most)
+    if outside.any():
+        return int(np.argmax(outside))
+    ahead = np.where(velocities < 0, least, most)
+    with np.errstate(divide="ignore"):
+        times = (ahead - stretches) / np.abs(velocities)
+    return int(np.argmin(np.abs(times)))
+
+
+@lru_cache(maxsize=64)
+def sides(potential: Potential) -> tuple[Side, Side]:
+    """What is to the left and to the right of rest."""
+    if isinstance(potential, Polynomial):
+        law, roots = potential.law(DOUBLES), _roots(potential)
+        turns = [sorted(abs(r) for r in roots if r * sign > 0) for sign in (-1, 1)]
+        left, right = map(tuple, turns)
+        end = LARGEST_STRETCH
+        return Side(law, -1.0, end, left), Side(law, 1.0, end, right)
+    with np.errstate(all="ignore"):
+        return _scanned(potential, -1.0), _scanned(potential, 1.0)
+
+
+def _roots(potential: Polynomial) -> list[float]:
+    """The real roots of 1 + c_3 r + c_4 r^2 + ..., isolated by balls."""
+    import flint
+
+    common = math.lcm(*(c.denominator for c in potential.coefficients))
+    whole = [common, *(int(c * common) for c in potential.coefficients)]
+    balls: Any = flint.fmpz_poly(whole).complex_roots()
+    return [float(root.real) for root, _ in balls if root.imag == 0]
+
+
+def _scanned(potential: Potential, sign: float) -> Side:
+    """One side of a closed law, up to the wall that it names, else to the first that is met.
+
+    That is a pole of V or V', or where they are no numbers.
+    """
+    law, distances, end = potential.law(DOUBLES), np.geomspace(*SCANNED), LARGEST_STRETCH
+    if potential.wall is not None and potential.wall * sign > 0:
+        end = abs(potential.wall)
+        distances = end * distances / (1 + distances)
+    turns: list[float] = []
+    for function, i in _events(law, sign * distances):
+        there, turned = _crossing(function, law, sign, *map(float, distances[i : i + 2]))
+        if not turned:
+            end = min(end, there)
+            break
+        if function is bonds.tension:
+            turns.append(there)
+    return Side(law, sign, end, tuple(turns))
+
+
+def _events(law: bonds.Law, stretches: Floats) -> list[tuple[Function, int]]:
+    """After which of the stretches V or V' changes its sign or is no number, the nearest first.
+
+    Up to where one of them is zero: there V has levelled off.
+    """
+    found = []
+    for function in (bonds.tension, bonds.potential):
+        signs = np.sign(function(law, stretches))
+        level = int(np.argmax(signs == 0)) if (signs == 0).any() else len(signs)
+        changed = np.flatnonzero(~(signs[1:level] == signs[: level - 1]))
+        found += [(function, int(i)) for i in changed]
+    return sorted(found, key=lambda event: event[1])
+
+
+def _crossing(
+    function: Function, law: bonds.Law, sign: float, low: float, high: float
+) -> tuple[float, bool]:
+    """Where between two distances the sign changes, and whether through zero, not at a pole."""
+    before = float(function(law, sign * low))
+
+    def value(distance: float) -> float:
+        return float(function(law, sign * distance)) / before
+
+    there = _first(lambda distance: not value(distance) > 0, low, high)
+    return there, abs(value(there)) < 1
 
 
 def _first(reached: Callable[[float], bool], low: float, high: float) -> float:

@@ -249,3 +249,16 @@ def test_states_of_another_length_are_refused(shape):
 def test_couplings_of_no_mode_are_refused(modes):
     with pytest.raises(InputError, match="mode"):
         Chain(8, alpha=1).B(*modes)
+
+
+@pytest.mark.parametrize("law", ["toda:1/2", "lj:12,6", "morse:1", "poly:1/3,0,1/5", "expr:cosh(r)-1"])
+@pytest.mark.parametrize("N", [2, 5, 6])
+def test_expressions_of_any_potential_give_the_numbers(N, law):
+    chain, (Q, P) = Chain(N, potential=law), states(N, 1)
+    Q = 0.1 * Q
+    values = {f"Q{q}": float(x) for q, x in enumerate(Q[0], 1)} | {f"P{q}": float(x) for q, x in enumerate(P[0], 1)}
+    H = chain.hamiltonian()
+    assert {symbol.name for symbol in H.free_symbols} == set(values)
+    assert float(H.subs(values).n(real=True)) == pytest.approx(float(chain.energy(Q[0], P[0])), rel=INTEGER)
+    computed = [float(force.subs(values).n(real=True)) for force in chain.equations_of_motion().values()]
+    assert np.allclose(computed, chain.accelerations(Q[0]), rtol=INTEGER, atol=INTEGER)

@@ -11,10 +11,11 @@ import sympy
 from symfpu.algebra.selection import fold
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift, frequency_shift_formula, shift_coefficients
+from symfpu.chain.potentials.toda import toda
 from symfpu.errors import InputError
 from symfpu.series.lindstedt import lindstedt
 from tests.oracles.cyclotomic import Cyclotomic, omega, vanishes
-from tests.tolerances import DISTINCTION, HUNDRED_ROUNDINGS, RELATIVE_SHIFT, THOUSAND_ROUNDINGS
+from tests.tolerances import DISTINCTION, HUNDRED_ROUNDINGS, NEARLY_LINEAR, RELATIVE_SHIFT, THOUSAND_ROUNDINGS
 
 LENGTHS = range(2, 41)
 
@@ -216,3 +217,31 @@ def test_bad_amplitudes_are_named():
         frequency_shift(Chain(N=4, alpha=1), {4: 0.1})
     with pytest.raises(InputError, match="A_2"):
         frequency_shift(Chain(N=4, alpha=1), {2: float("nan")})
+
+
+@pytest.mark.parametrize(("N", "seeds"), [(2, (1,)), (8, (1, 4, 7)), (9, (2, 3, 6))])
+def test_that_of_toda_is_the_square_of_the_own_amplitude(N, seeds):
+    """(a^2/2N) Omega_q A_q^2, exactly: for every mode, special or not, and beside any other seed."""
+    a = Fraction(3, 7)
+    formulas = frequency_shift_formula(Chain(N, potential=toda(a)), seeds)
+    for q in seeds:
+        expected = se.Rational(9, 98 * N) * se.Symbol(f"Omega_{q}") * se.Symbol(f"A{q}") ** 2
+        middle = {se.Symbol(f"Omega_{N // 2}"): se.sqrt(2)} if 2 * q == N else {}
+        assert se.expand((formulas[q] - expected).subs(middle)) == 0
+
+
+@pytest.mark.parametrize("law", ["toda:1/2", "lj:12,6", "morse:1", "poly:1/3,0,1/5", "poly:0,1/2,0,1/3", "poly:0,0,1"])
+@pytest.mark.parametrize(("N", "seeds"), [(2, (1,)), (8, (1, 3)), (9, (4, 5))])
+def test_that_of_any_potential_is_that_of_its_first_two_coefficients(law, N, seeds):
+    """Against the series, at frequencies next to the linear ones: higher coefficients do not enter."""
+    chain = Chain(N, potential=law)
+    linear = chain.frequencies()
+    frequencies = [linear[q - 1] * (1 + 1e-9 * q) for q in seeds]
+    order = 2 // chain.degree_step
+    series = lindstedt(chain, seeds, frequencies, order)
+    amplitudes = {q: 0.1 / q for q in seeds}
+    terms, _ = series.frequency_terms(np.array([a**2 for a in amplitudes.values()]), order)
+    shifts = frequency_shift(chain, amplitudes)
+    assert terms[order] == pytest.approx([shifts[q] for q in seeds], rel=NEARLY_LINEAR, abs=NEARLY_LINEAR * 1e-3)
+    if law == "poly:0,0,1":
+        assert not any(shifts.values())
