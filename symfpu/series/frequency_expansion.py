@@ -53,7 +53,7 @@ def frequency_expansion(
     the amplitudes alone, as Eq. omeser gives it when its divisors are expanded too. For the alpha
     model k = 2 and 4 are the first corrections, for beta k = 1 and 2.
 
-    chain : alpha, beta or both; any N, or "N" for all large ones. seeds : one or two modes D_0.
+    chain : of any potential; any N, or "N" for all large ones. seeds : one or two modes D_0.
     q : one of them. order : k, from 0 up.
 
     Returns a SymEngine expression in A_q and Omega_q of the seeds, a polynomial in the squares of
@@ -84,7 +84,7 @@ def frequency_expansion(
     N, modes = _representative(start, order)
     if not _is_special(N, modes, degree):
         apart = (1, 2 * degree + 1)[: len(modes)]
-        every = Chain("N", chain.alpha, chain.beta)
+        every = Chain("N", potential=chain.potential)
         series = lindstedt(every, apart, order=order, ring="nested")
         return _Closed(series, start.seeds).formula(place, order)
     series = lindstedt(chain, start.seeds, order=order, ring="nested")
