@@ -11,7 +11,7 @@ import symengine as se
 import sympy
 from numba import njit
 
-from symfpu import Chain, from_expression, lennard_jones, lindstedt, polynomial, toda
+from symfpu import Chain, from_expression, integrate, lennard_jones, lindstedt, polynomial, toda
 from symfpu.chain import bond_loops, bonds
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.dynamics import orbit_loops
@@ -119,7 +119,43 @@ def test_functions_are_those_of_the_expression(potential, function):
 def test_loops_compile_the_same_functions(text, name):
     loop, law = getattr(bond_loops, name), from_expression(text).law(DOUBLES)
     compiled = njit(error_model="numpy")(lambda law, r: loop(law, r))
+    assert np.isnan(compiled(law, -1.5)) == (text == LJ)
     assert np.allclose([compiled(law, r) for r in STRETCHES], [loop(law, r) for r in STRETCHES], rtol=ROUNDING, atol=ROUNDING)
+
+
+DOMAINS = {
+    LJ: (-1, np.inf),
+    "-log(1 - r**2)/2": (-1, 1),
+    "(1/((1 - r/2)*(1 + r/3)) - 1 - r/6)*18/7": (-3, 2),
+    "2*r*tan(r/4)": (-2 * np.pi, 2 * np.pi),
+    "r*atanh(r/4)*2": (-4, 4),
+    "r**2/(2 + 4*r + 2*r**2)": (-1, np.inf),
+    "r**2/2 + r**3/(exp(r) - 2)": (-np.inf, np.log(2)),
+    MORSE: (-np.inf, np.inf),
+    "r*sin(r)/2 + r**2*sinh(r)/r/7 - r**2/7": (-np.inf, np.inf),
+}
+
+
+@pytest.mark.parametrize("text", DOMAINS)
+def test_walls_are_the_nearest_singularities(text):
+    """From them on nothing is a number, in arrays, loops and many digits: an orbit ends there."""
+    V, (least, most) = from_expression(text), DOMAINS[text]
+    law = V.law(DOUBLES)
+    assert (law.least, law.most) == pytest.approx((least, most), rel=ROUNDING)
+    nearest = min(least, most, key=abs)
+    assert V.wall == (pytest.approx(nearest, rel=ROUNDING) if np.isfinite(nearest) else None)
+    inside = [x for x in (0.99 * least, 0.99 * most) if np.isfinite(x)]
+    beyond = [x for x in (1.01 * least, 1.01 * most, 5 * least) if np.isfinite(x)]
+    found = bonds.tension(law, np.array([*inside, *beyond]))
+    assert np.array_equal(np.isnan(found), [False] * len(inside) + [True] * len(beyond))
+    many = [bonds.tension(V.law(MULTIPRECISION), mpmath.mpf(x)) for x in beyond]
+    assert all(map(mpmath.isnan, many))
+
+
+def test_a_bond_beyond_the_wall_is_named():
+    Q = np.array([6.0, 0, 0, 0, 0, 0, 0])
+    with pytest.raises(InputError, match=r"of bond 7.*above -1"):
+        integrate(Chain(8, potential=from_expression(LJ)), Q, 0 * Q, 10.0, step=0.01)
 
 
 def test_laws_are_pickled_with_their_class():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -56,6 +57,13 @@ class Expression(Potential):
 
         r, V = stretch(), parsed(self.formula)
         return bool(sympy.expand(V - V.subs(r, -r)) == 0)
+
+    @cached_property
+    def wall(self) -> float | None:  # type: ignore[override]
+        from symfpu.chain.potentials.expressions.domain import domain
+
+        nearest = min(domain(self.formula), key=abs)
+        return nearest if math.isfinite(nearest) else None
 
     def coefficient(self, n: int) -> Fraction:
         if self.even and n % 2:

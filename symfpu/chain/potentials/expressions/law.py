@@ -3,7 +3,7 @@
 V'(r) - r and its like cancel as r goes to zero. Doubles and long doubles take the first TERMS
 coefficients within a radius where what is left out is below their rounding; beyond it the closed
 functions lose the bits of 1/radius^2 at most. Numbers of many digits take the closed functions at
-as many bits more as cancel.
+as many bits more as cancel. From the singularities of V on all are no numbers.
 
 Each expression has a class of laws of its own, since compiled loops know laws by their class. Its
 name holds the expression, so that it is found again where it is pickled and where numba keeps
@@ -23,6 +23,7 @@ import mpmath
 import numpy as np
 
 from symfpu.chain import bonds
+from symfpu.chain.potentials.expressions.domain import domain
 from symfpu.chain.potentials.expressions.text import parsed, stretch
 from symfpu.numbers.arithmetic import Arithmetic
 
@@ -121,7 +122,7 @@ def law_class(formula: str, constants: int) -> type[Any]:
 
 def _fields(constants: int) -> list[str]:
     symbols = [f"k{n}" for n in range(constants)]
-    return ["radius", *symbols, *(f"c{n}" for n in range(3, 3 + TERMS))]
+    return ["radius", "least", "most", *symbols, *(f"c{n}" for n in range(3, 3 + TERMS))]
 
 
 def __getattr__(name: str) -> type[Any]:
@@ -158,7 +159,9 @@ def _of_arrays(law: Any, name: str, r: Any) -> Any:
     coefficients = tuple(law[-TERMS:])
     inside = POLYNOMIALS[name](coefficients, np.where(near, stretches, 0 * stretches))
     closed = _closed(law.formula, name)
-    outside = closed(law, np.where(near, law.radius, stretches))
+    regular = (stretches > law.least) & (stretches < law.most)
+    outside = closed(law, np.where(regular & ~near, stretches, law.radius))
+    outside = np.where(regular, outside, np.nan)
     return np.where(near, inside, outside).reshape(np.shape(r))[()]
 
 
@@ -172,7 +175,9 @@ def _of_loops(formula: str, name: str, compiled: Any) -> Any:
     outside = compiled(_closed(formula, name))
 
     def function(law: Any, r: Any) -> Any:
-        return inside(law, r) if abs(r) < law[0] else outside(law, r)
+        if abs(r) < law[0]:
+            return inside(law, r)
+        return outside(law, r) if law[1] < r < law[2] else np.nan
 
     return compiled(function)
 
@@ -198,8 +203,9 @@ def rounded_law(
     kept = [numbers.number(c) for c in coefficients[:TERMS]]
     rounding = float(np.finfo(type(kept[0])).eps)
     radius = numbers.number(_radius(coefficients, rounding))
+    walls = (type(radius)(wall) for wall in domain(text))
     make: Any = law_class(text, len(constants))
-    return make._make((radius, *constants, *kept))  # type: ignore[no-any-return]
+    return make._make((radius, *walls, *constants, *kept))  # type: ignore[no-any-return]
 
 
 def _fraction(constant: Any) -> Fraction:
@@ -248,10 +254,13 @@ class PreciseLaw(NamedTuple):
     def _values(self, name: str, power: int, r: Any) -> Any:
         """The function that goes to zero as a power of r, number by number."""
         closed = _precise_functions(self.text)[name]
+        least, most = domain(self.text)
 
         def value(x: Any) -> Any:
             if not x:
                 return mpmath.mpf(0 if power else 1)
+            if not least < x < most:
+                return mpmath.nan
             # two powers more for quotients that are regular though they vanish below the line
             lost = max(0, -(power + 2) * int(mpmath.mag(x)))
             with mpmath.workprec(mpmath.mp.prec + lost + SPARE_BITS):
