@@ -123,6 +123,42 @@ def test_loops_compile_the_same_functions(text, name):
     assert np.allclose([compiled(law, r) for r in STRETCHES], [loop(law, r) for r in STRETCHES], rtol=ROUNDING, atol=ROUNDING)
 
 
+GROWTHS = {
+    **{text: len(V.growths()) for text, V in SAME.items()},
+    "r - log(1 + r)": 1,
+    "4*(1 + r/2 - sqrt(1 + r))": 1,
+    "(exp(r) - 1 - r)/2 + (r - log(1 + r))/2": 2,
+    "((2 - r)**(-3)*8 - 1)/3 - r/2": 1,
+    "sinh(2*r)/2 - r + (exp(r) - 1 - r)": 3,
+    "cosh(r) - 1": 0,
+    MORSE: 0,
+    "r**2/2 + (exp(r) - 1 - r - r**2/2)": 1,
+    "r**2/2 + (exp(2*r) - 1 - 2*r - 2*r**2)": 0,
+    "1/(1 + r**2/2) - 1 + r**2": 0,
+}
+
+
+@pytest.mark.parametrize("text", GROWTHS)
+def test_exponentials_and_powers_are_found(text):
+    V = from_expression(text)
+    growths = V.growths()
+    assert len(growths) == GROWTHS[text]
+    tension = [Fraction(0)] * 20
+    for growth in growths:
+        g = Fraction(1)
+        for n in range(1, 20):
+            g *= (growth.rate - growth.slope * (n - 1)) / n
+            tension[n] += growth.weight * g
+    expected = [0, 1, *(V.coefficient(n + 1) for n in range(2, 20))]
+    assert not growths or tension == expected
+
+
+def test_series_by_differential_equations_of_an_expression():
+    a, b = (lindstedt(Chain(8, potential=V), (1, 2), ("0.392", "0.768"), 10) for V in (from_expression(LJ), lennard_jones(12, 6)))
+    assert a.multiply_adds == b.multiply_adds
+    assert_same(a, b, ROUNDING)
+
+
 DOMAINS = {
     LJ: (-1, np.inf),
     "-log(1 - r**2)/2": (-1, 1),

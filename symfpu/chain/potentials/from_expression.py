@@ -12,7 +12,7 @@ from typing import Any
 from symfpu.chain.bonds import Law
 from symfpu.chain.potentials.expressions.text import parsed, refused, stretch, text_of
 from symfpu.chain.potentials.polynomial import HIGHEST_DEGREE, polynomial
-from symfpu.chain.potentials.potential import Potential
+from symfpu.chain.potentials.potential import Growth, Potential
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Arithmetic
 
@@ -86,6 +86,18 @@ class Expression(Potential):
         from symfpu.chain.potentials.expressions.series import rational_tension
 
         return rational_tension(self.formula, terms)
+
+    def growths(self) -> tuple[Growth, ...]:
+        return self._growths
+
+    @cached_property
+    def _growths(self) -> tuple[Growth, ...]:
+        """Of exponentials and powers; none of an even V, whose unit has a square root."""
+        from symfpu.chain.potentials.expressions.growth import parts_of_tension
+
+        if self.even:
+            return ()
+        return tuple(Growth(*part) for part in parts_of_tension(self.formula))
 
     def law(self, numbers: Arithmetic) -> Law:
         from symfpu.chain.potentials.expressions import law as laws
