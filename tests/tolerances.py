@@ -401,6 +401,9 @@ SERIES_RESIDUAL, LONG_SERIES_RESIDUAL = 1e-20, 1e-24
 # Issue 5: of the largest coordinate, momentum or energy; rounded sums leave some 1e-15.
 OF_LARGEST = 1e-13
 
+# V at 45 digits: the closed form adds the digits that it loses, and the last one is rounded.
+BOND_OF_FORTY_FIVE = 1e-44
+
 # Issue 5: of a mode's own largest value; cancelling terms cost a digit or two.
 OF_TAIL = 1e-12
 

@@ -38,11 +38,12 @@ class Operations:
     """The operations that make the coefficients of a universal series out of its frequencies.
 
     Node 0 is the number zero and node 1 the number one. After them come the multipliers L_q(nu),
-    the coupling if there is one, and the sums; a sum is factor left right added over its terms,
+    the couplings if there are any, and the sums; a sum is factor left right added over its terms,
     which are those of earlier nodes.
 
-    modes, harmonics : of the multipliers, (L,), (L, s). coupling : of the higher power relative to
-    the lower, for a chain with both. starts : sum i has the terms starts[i] to starts[i+1], (S+1,).
+    modes, harmonics : of the multipliers, (L,), (L, s). couplings : of powers of the stretch,
+    where they are not one in units of mu, (C,).
+    starts : sum i has the terms starts[i] to starts[i+1], (S+1,).
     left, right, factor : of the terms, (T,). levels : sums levels[v] to levels[v+1] need sums of
     earlier levels only, (V+1,). signs, frequency_signs : of mu^k for every row of powers and of
     powers of the frequencies. order_starts : order k of the frequencies has the rows
@@ -54,7 +55,7 @@ class Operations:
 
     modes: Ints
     harmonics: Ints = field(repr=False)
-    coupling: Fraction | None
+    couplings: tuple[Fraction, ...]
     starts: Ints = field(repr=False)
     left: Ints = field(repr=False)
     right: Ints = field(repr=False)
@@ -70,7 +71,7 @@ class Operations:
     @property
     def first_sum(self) -> int:
         """The node of the first sum."""
-        return FIRST_LEAF + len(self.modes) + (self.coupling is not None)
+        return FIRST_LEAF + len(self.modes) + len(self.couplings)
 
     @property
     def nodes(self) -> int:
@@ -106,7 +107,7 @@ def operation_tables(
     operations = Operations(
         modes=modes,
         harmonics=harmonics,
-        coupling=numbering.coupling,
+        couplings=numbering.couplings,
         starts=starts,
         left=terms.left,
         right=terms.right,
@@ -144,7 +145,7 @@ class _Numbering:
         symbols = {leaf: program.symbols[program.leaf_number(leaf)] for leaf in leaves}
         self._multipliers = {i: x for i, x in symbols.items() if isinstance(x, Multiplier)}
         couplings = {i: x for i, x in symbols.items() if isinstance(x, Coupling)}
-        self.coupling = next((x.value for x in couplings.values()), None)
+        self.couplings = tuple(x.value for x in couplings.values())
         self._numbers = np.full(program.size + 1, NODE_OF_ZERO)  # the last for ZERO = -1
         self._numbers[ONE] = NODE_OF_ONE
         first = FIRST_LEAF
@@ -152,7 +153,7 @@ class _Numbering:
         self._padded = not nodes  # files have no empty tables
         self._numbers[nodes] = first + np.arange(len(nodes))
         first += max(1, len(nodes))
-        self._numbers[[*couplings]] = first
+        self._numbers[[*couplings]] = first + np.arange(len(couplings))
         first += len(couplings)
         self._numbers[self.chosen] = first + np.arange(len(self.chosen))
 
@@ -305,8 +306,10 @@ def described(tables: SeriesTables, operations: Operations) -> str:
 
 
 def operations_digest(tables: SeriesTables, operations: Operations) -> str:
-    """SHA-256 of all integers of a file, and of the coupling."""
-    digest = hashlib.sha256(repr(operations.coupling).encode())
+    """SHA-256 of all integers of a file, and of the couplings."""
+    couplings = operations.couplings
+    single = couplings[0] if len(couplings) == 1 else None
+    digest = hashlib.sha256(repr(couplings if len(couplings) > 1 else single).encode())
     for array in _arrays(tables, operations):
         digest.update(repr(array.shape).encode())
         digest.update(array.astype("<i8").tobytes())

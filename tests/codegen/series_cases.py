@@ -33,6 +33,8 @@ CASES = {
     "one parity only": (Chain(9, beta="0.6"), (5,), ("1.546875",), 5, 3),
     "order 0": (Chain(6, alpha="0.25"), (2, 3), ("1.0078125", "1.4296875"), 0, 0),
     "high order": (Chain(8, alpha="0.25"), (3,), ("1.109375",), 60, 60),
+    "toda, two seeds": (Chain(8, potential="toda:0.3"), (1, 2), ("0.390625", "0.765625"), 4, 3),
+    "even polynomial": (Chain(6, potential="poly:0,-1/3,0,1/5"), (1, 4), ("0.515625", "1.734375"), 2, 2),
 }
 UNIVERSAL = {
     "alpha, two seeds": (Chain(8, alpha="0.3"), (1, 2), ("0.390625", "0.765625"), 3, 2),
@@ -40,6 +42,8 @@ UNIVERSAL = {
     "mixed, one mode": (Chain(2, alpha="0.2", beta="0.3"), (1,), ("1.421875",), 4, 4),
     "wrapped, order 1": (Chain(4, alpha="-0.3"), (2, 3), ("1.421875", "1.859375"), 1, 0),
     "order 0": (Chain(5, alpha="0.25"), (2,), ("1.1796875",), 0, 0),
+    "lennard-jones, one seed": (Chain(6, potential="lj:3,1"), (2,), ("1.0078125",), 3, 2),
+    "even polynomial": (Chain(5, potential="poly:0,-1/3,0,1/5"), (1,), ("0.625",), 2, 2),
 }
 
 

@@ -31,6 +31,9 @@ CASES = {
     "wrapped modes": (Chain(4, alpha="0.3"), (2, 3), ("1.42", "1.86"), 6),
     "one parity only": (Chain(9, beta="0.6"), (5,), ("1.54",), 5),
     "order 0": (Chain(6, alpha="0.25"), (2, 3), ("1.01", "1.43"), 0),
+    "toda, two seeds": (Chain(8, potential="toda:0.3"), (1, 2), ("0.39", "0.7663"), 4),
+    "lennard-jones": (Chain(6, potential="lj:13/2,6"), (2,), ("1.01",), 3),
+    "polynomial": (Chain(6, potential="poly:0,1/3,0,1/5"), (1, 4), ("0.52", "1.75"), 2),
 }
 
 

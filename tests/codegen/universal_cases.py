@@ -19,6 +19,8 @@ CASES = {
     "one seed": (Chain(8, alpha="0.3"), (1,), (0.3984375,), 6, 5, True),
     "one mode": (Chain(2, alpha="0.2", beta="0.3"), (1,), (1.421875,), 5, 4, True),
     "wrapped, cut": (Chain(4, alpha="-0.3"), (2, 3), (1.421875, 1.859375), 1, 0, True),
+    "toda": (Chain(6, potential="toda:-1/3"), (1, 2), (0.515625, 1.0078125), 3, 2, True),
+    "even polynomial": (Chain(6, potential="poly:0,1/3,0,1/5"), (2,), (1.0078125,), 2, 2, True),
     "nothing but the seeds": (Chain(5, alpha="0.25"), (2,), (1.1796875,), 0, 0, True),
 }
 TIMES = np.array([0.0, 2.5, -13.0625])

@@ -204,3 +204,26 @@ def test_a_sweep_of_a_potential_goes_on_from_its_file_and_from_no_other(tmp_path
     assert (first.model, len(first.cases)) == ("toda:1", 7)
     assert set(first.cases) <= set(longer.cases)
     assert all(case.verdict == "proved" and case.corrected_rule_holds for case in longer.cases)
+
+
+SWEPT = {
+    "toda:1/2": (5, 0),
+    "lj:12,6": (5, 0),
+    "poly:1,2/3": (5, 0),
+    "poly:1,2": (5, 0),
+    "poly:0,1,1": (4, 40),
+    "poly:0,1,0,1/2": (3, 40),
+    "poly:0,0,1": (6, 13),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("potential", SWEPT)
+def test_sweeps_of_the_page(potential):
+    """docs/propagation.md: exceptions where no squares act, and none of the corrected rule."""
+    order, exceptions = SWEPT[potential]
+    with ThreadPoolExecutor(2) as pool:
+        sweep = sweep_propagation(range(2, 11), 3, order, potential=potential, executor=pool)
+    assert len(sweep.cases) == 375
+    assert (len(sweep.exceptions), {case.verdict for case in sweep.cases} - {"proved", "refuted"}) == (exceptions, set())
+    assert all(case.corrected_rule_holds for case in sweep.cases)
