@@ -5,7 +5,7 @@ OUT ?= out
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 # workers of pytest share the cores
 OLD := -W ignore::DeprecationWarning -W ignore::PendingDeprecationWarning # old releases call newer ones of each other
 
-.PHONY: install reproduce test lowest bench sweeps long generated equations clean
+.PHONY: install reproduce test lowest bench sweeps long generated equations doors clean
 
 install: .venv/installed
 
@@ -49,6 +49,9 @@ generated: install  ## the gallery of exported evaluators, byte for byte
 
 equations: install  ## docs/equations.md from the docstrings
 	$(BIN)/python docs/make_equations.py
+
+doors: install  ## the table of docs/chains.md, by calling every door
+	$(BIN)/python docs/make_doors.py
 
 clean:
 	rm -rf .venv .venv-lowest out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

@@ -31,6 +31,10 @@ BREATHERS = [
     (Chain(7, beta="0.5"), 3, 3, 0.2),
     (Chain(6, beta="0.5"), 4, 2, 0.2),
     (Chain(8, alpha="0.5", beta="0.3"), 2, 4, 0.2),
+    (Chain(8, potential="toda:1/2"), 1, 4, 0.2),
+    (Chain(6, potential="lj:12,6"), 4, 4, 0.01),  # 3 q = 2 N
+    (Chain(7, potential="poly:1/3,0,1/5"), 3, 4, 0.2),
+    (Chain(9, potential="expr:cosh(r)-1"), 3, 2, 0.8),  # 3 q = N
 ]
 
 
@@ -49,6 +53,8 @@ TORI = [
     (Chain(16, alpha="0.1"), (1, 15), 4),
     (Chain(16, beta="0.1"), (3, 4), 2),
     (Chain(16, beta="0.1"), (3, 13), 2),
+    (Chain(16, potential="toda:1/10"), (1, 2), 4),
+    (Chain(16, potential="toda:1/10"), (2, 7), 4),
 ]
 
 
