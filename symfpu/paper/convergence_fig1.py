@@ -107,9 +107,9 @@ def cancellation_study(progress: Progress = unheard) -> CancellationStudy:
     return CancellationStudy(
         variants=variants,
         coincidence=_coincidence(series),
-        ratios=_ratios(torus),
+        ratios=growth_ratios(torus),
         divisor=divisor(chain, seeds, rates, RESONANT_MODE, RESONANT_HARMONIC),
-        pole=_pole(torus),
+        pole=resonant_pole(torus),
         residuals=assessment.residuals,
         resummed=resummed,
         amplitudes=amplitudes,
@@ -173,25 +173,30 @@ def _coincidence(series: LindstedtSeries) -> tuple[int, int]:
     return b // shared, -a // shared
 
 
-def _ratios(torus: QTorus) -> dict[int, float]:
+def growth_ratios(torus: QTorus) -> dict[int, float]:
     """By order, the coefficient of the resonant harmonic over that two orders before."""
+    values = resonant_coefficients(torus)
+    return {k: values[k] / values[k - 2] for k in values if k - 2 in values}
+
+
+def resonant_coefficients(torus: QTorus) -> dict[int, float]:
+    """By order, the coefficient of the resonant harmonic in the resonant mode of a 2-torus."""
     series = torus.series
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     first = sum(map(abs, RESONANT_HARMONIC)) - 1
     values: dict[int, float] = {}
-    ratios = {}
     for k in range(first, series.order + 1, 2):
         nu, terms = series.harmonic_terms(amplitudes, k)
         resonant = (nu == RESONANT_HARMONIC).all(axis=1)
         row = int(np.flatnonzero(resonant)[0])
         values[k] = float(terms[row, RESONANT_MODE - 1])
-        if k > first:
-            ratios[k] = values[k] / values[k - 2]
-    return ratios
+    return values
 
 
-def _pole(torus: QTorus) -> float:
+def resonant_pole(torus: QTorus) -> float:
     """mu^2, in units of the actual one, at which mode 3 is in resonance with the harmonic.
+
+    The nearest real one: a negative one too keeps the series from converging.
 
     Its frequency of small oscillations on the torus, a series in mu^2, equals |nu.omega| there.
     The mode is made a third seed of amplitude zero with a frequency ever closer to the
@@ -216,9 +221,5 @@ def _probed_pole(torus: QTorus, drive: Fraction, shift: str) -> float:
     coefficients = terms[[0, *frequency_orders(probe)], 2].copy()
     coefficients[0] -= float(drive)
     roots = np.polynomial.Polynomial(coefficients).roots()
-    positive = []
-    for root in roots:
-        size = float(root.real)
-        if abs(float(root.imag)) < REAL_ROOT and size > 0:
-            positive.append(size)
-    return min(positive)
+    real = [float(root.real) for root in roots if abs(float(root.imag)) < REAL_ROOT]
+    return min(real, key=abs)

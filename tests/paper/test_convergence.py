@@ -14,9 +14,9 @@ from symfpu.paper.convergence_fig1 import (
     INCOMMENSURABLE_FREQUENCIES,
     SHOWN_ORDERS,
     _coincidence,
-    _pole,
-    _ratios,
     cancellation_study,
+    growth_ratios,
+    resonant_pole,
 )
 from symfpu.paper.convergence_fig9 import _singularity, breather_study, scheme_limit, series_end
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, FIG9_BREATHER, TWO_TORUS
@@ -75,7 +75,7 @@ def heights(sums):
 
 
 def test_one_harmonic_grows_by_a_constant_ratio(torus):
-    ratios = _ratios(torus)
+    ratios = growth_ratios(torus)
     assert list(ratios) == list(range(10, 31, 2))
     errors = [abs(ratios[k] / RATIO - 1) for k in range(24, 31, 2)]
     assert errors == sorted(errors, reverse=True)
@@ -90,16 +90,16 @@ def test_one_harmonic_grows_by_a_constant_ratio(torus):
 
 def test_the_growth_is_the_pole_where_mode_3_meets_the_harmonic(torus):
     """Mode 3 as a third seed of amplitude zero, with divisors of the harmonic: two routes to one number."""
-    pole = _pole(torus)
+    pole = resonant_pole(torus)
     assert 1 / pole == pytest.approx(RATIO, rel=TERM_RATIO)
-    assert 1 / pole == pytest.approx(_ratios(torus)[30], rel=TERM_RATIO)
+    assert 1 / pole == pytest.approx(growth_ratios(torus)[30], rel=TERM_RATIO)
 
 
 def test_at_the_pole_the_frequency_of_mode_3_is_that_of_the_harmonic(torus):
     """With amplitudes shrunk by sqrt(pole) the probe's own series sums to 4 omega_2 - 5 omega_1; its lowest term is Omega_3."""
     drive = 4 * torus.frequencies[1] - 5 * torus.frequencies[0]
     probe = lindstedt(torus.chain, (1, 2, 3), (*torus.frequencies, drive + Fraction("1e-8")), 14)
-    squares = [_pole(torus) * float(a) ** 2 for a in torus.amplitudes.values()]
+    squares = [resonant_pole(torus) * float(a) ** 2 for a in torus.amplitudes.values()]
     terms, _ = probe.frequency_terms([*squares, 0.0])
     shift = float(drive) - 2 * math.sin(3 * math.pi / 32)
     assert terms[0, 2] == pytest.approx(2 * math.sin(3 * math.pi / 32), rel=ROUNDING)
