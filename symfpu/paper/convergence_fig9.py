@@ -127,7 +127,7 @@ def scheme_limit(
         advice = "take the first smaller or the second larger"
         raise InputError("energies", energies, allowed, advice)
     beyond = next(k for k, gap in enumerate(gaps) if gap < 0)
-    omega = _limit_frequency(chain, seed, rates[beyond - 1], rates[beyond])
+    omega = limit_frequency(chain, seed, rates[beyond - 1], rates[beyond])
     last = chosen[beyond - 1].torus
     by_harmonic = np.argsort(last.harmonics[:, 0])
     orbit = periodic_orbit(chain, seed, omega, last.cosines[by_harmonic])
@@ -142,8 +142,8 @@ def _spread_members(found: Family) -> list[Member]:
     return [found.members[k] for k in np.unique(places)]
 
 
-def _limit_frequency(chain: Chain, seed: int, low: float, high: float) -> float:
-    """The frequency between two others that its series reaches at its end."""
+def limit_frequency(chain: Chain, seed: int, low: float, high: float) -> float:
+    """The frequency between two others that its series just reaches at its end."""
     from scipy.optimize import brentq
 
     def gap(omega: float) -> float:

@@ -21,6 +21,7 @@ from symfpu.paper.fig8 import figure8
 from symfpu.paper.fig9 import figure9
 from symfpu.paper.section5 import section5
 from symfpu.paper.table_page import table
+from symfpu.paper.toda import toda_page
 
 
 class Maker(Protocol):
@@ -47,6 +48,7 @@ TARGETS: dict[str, Maker] = {
     "fig8": figure8,
     "fig9": figure9,
     "convergence": convergence,
+    "toda": toda_page,
 }
 # with a part that takes many minutes, or hours
 LONG_TARGETS = ("table", "fig1", "fig2", "fig9")

@@ -20,7 +20,7 @@ from symfpu.localization.profiles import (
     packet_amplitudes,
 )
 from symfpu.localization.recurrence import Recurrence, recurrence
-from symfpu.paper.convergence_fig9 import series_end
+from symfpu.paper.convergence_fig9 import limit_frequency, series_end
 from symfpu.paper.printed import FIG9_BREATHER
 from symfpu.paper.starts import integrated_orbit, printed_amplitudes, printed_row
 from symfpu.paper.toda_fig1 import chains_of
@@ -28,10 +28,10 @@ from symfpu.paper.toda_fig1 import chains_of
 Floats = NDArray[np.float64]
 
 # the scheme in bond space: that in mode space, whose tails are not rounded, knows polynomials only
-ORBIT_SCHEME = "aba864"
-TIME, STEP, LOOKS = 1e5, 0.2, 500  # of Fig. 3
-RECURRENCE_TIME, RECURRENCE_STEP, RECURRENCE_LOOKS = 5e4, 0.1, 5001  # of Fig. 9
-ROUNDED_SHARE = 1e-24  # of the energy: averages below it are rounding
+ORBIT_SCHEME = "kahan_li8"
+TIME, STEP, LOOKS = 1e5, 0.2, 501  # of Fig. 3
+# of Fig. 9; a return is known to some hundredths where looks are this near each other
+RECURRENCE_TIME, RECURRENCE_STEP, RECURRENCE_LOOKS = 2.5e4, 0.1, 50001
 GROUPS = 7
 # of breathers of Fig. 9's chain, from near the linear one to the printed one
 BREATHER_FREQUENCIES = (
@@ -43,6 +43,7 @@ BREATHER_FREQUENCIES = (
     "0.0984",
     FIG9_BREATHER.frequencies[0],
 )
+LIMIT_BRACKET = (0.09832, 0.0984)  # frequencies on both sides of the last that is reached
 EXACT_DIGITS = 15
 
 
@@ -78,14 +79,16 @@ class RecurrenceStudy:
 class FoldStudy:
     """Breathers of seed 1 in one chain, and where the series of the same frequency ends.
 
-    frequencies, amplitudes, ends, reached : (F,); reached is the frequency at the end. energy : of
-    the breather with the printed frequency.
+    frequencies, amplitudes, ends, reached : (F,); reached is the frequency at the end. limit : of
+    the amplitudes, to which the series reach their breathers. energy : of the breather with the
+    printed frequency.
     """
 
     frequencies: Floats = field(repr=False)
     amplitudes: Floats = field(repr=False)
     ends: Floats = field(repr=False)
     reached: Floats = field(repr=False)
+    limit: float
     energy: float
 
 
@@ -166,8 +169,9 @@ def _orbit(
     looks: int,
     progress: Progress,
 ) -> Orbit:
+    times = np.linspace(0, T, looks)
     return integrated_orbit(
-        label, chain, start, T, progress, scheme=ORBIT_SCHEME, step=step, samples=looks
+        label, chain, start, T, progress, scheme=ORBIT_SCHEME, step=step, samples=times
     )
 
 
@@ -176,10 +180,14 @@ def fold_study(chain: Chain) -> FoldStudy:
     (seed,) = FIG9_BREATHER.seeds
     orbits = [periodic_orbit(chain, seed, omega) for omega in BREATHER_FREQUENCIES]
     ends = [series_end(chain, seed, omega) for omega in BREATHER_FREQUENCIES]
+    low, high = LIMIT_BRACKET
+    omega = limit_frequency(chain, seed, low, high)
+    touching = periodic_orbit(chain, seed, omega)
     return FoldStudy(
         frequencies=np.array([float(orbit.frequency) for orbit in orbits]),
         amplitudes=np.array([orbit.amplitude for orbit in orbits]),
         ends=np.array([end for end, _ in ends]),
         reached=np.array([frequency for _, frequency in ends]),
+        limit=touching.amplitude,
         energy=float(orbits[-1].energy()),
     )

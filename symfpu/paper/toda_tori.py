@@ -105,9 +105,7 @@ def torus_study(row: PrintedTorus) -> TorusStudy:
     same_amplitudes = refine_at_amplitudes(
         same_frequencies, amplitudes, tolerance=tolerance
     )
-    exact = toda_torus(
-        chain, row.seeds, frequencies=row.frequencies, digits=EXACT_DIGITS
-    )
+    exact = toda_torus(chain, row.seeds, frequencies=row.frequencies, digits=EXACT_DIGITS)
     gaps = {
         "alpha": gaps_over(alpha),
         "Toda, same frequencies": gaps_over(same_frequencies),
@@ -212,7 +210,10 @@ def _cross_terms() -> dict[str, float]:
     """Shifts of the seeds of Fig. 2 at equal amplitudes, with and without the other seeds."""
     row = printed_row("Fig. 2")
     amplitudes = dict.fromkeys(row.seeds, 1.0)
-    chains = {"alpha": row.chain, "Toda": Chain(row.chain.N, potential=toda(row.chain.alpha))}
+    chains = {
+        "alpha": row.chain,
+        "Toda": Chain(row.chain.N, potential=toda(row.chain.alpha)),
+    }
     parts = {}
     for name, chain in chains.items():
         together = frequency_shift(chain, amplitudes)
