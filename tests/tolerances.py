@@ -550,3 +550,22 @@ RATE_OF_ORDERS = 0.3
 
 # That number for waves of amplitudes 0.17 and 0.12 on a ring of eight: two orders are (A Omega/2)^2 or so.
 TWO_ORDERS = 0.025
+
+# The coefficient of a Toda torus 2e-6 of omega_2 further: its slope of 0.66, relative to 1.2e-5, is a tenth.
+SMOOTH_SCAN = 0.15
+
+# A fitted pole whose coefficients are exact to EPS, from points some 1e-6 away: the background of second degree is exact too.
+SCAN_FIT = 1e-12
+
+# Tori of some thousand coefficients, each rounded relative to the seeds'; their states have gaps of rounding at the seeds' gaps' size
+# (1e-2), times the 2N edges.
+CLOSED_GAP_OF_A_TORUS = 1e-12
+
+# Decades between tails of Toda and alpha tori of Fig. 1, modes 3 to 13: measured 0.15 at most, the bump at 14 has 1.4.
+SAME_TAIL = 0.2
+
+# Gaps along orbits of 1e4 steps of Toda's chain: rounding of the edges of the bands, of order 1.
+DRIFT_OF_TODA = 1e-14
+
+# Times of returns from energies every 0.5 beside those from every 0.2.
+RETURN_TIME = 0.02
