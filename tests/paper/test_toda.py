@@ -32,6 +32,7 @@ from tests.tolerances import (
     DRIFT_OF_TODA,
     FIVE_DIGITS,
     FOUR_DIGITS,
+    NO_RESIDUE,
     RETURN_TIME,
     ROUNDING,
     SAME_TAIL,
@@ -169,7 +170,7 @@ def test_residues_at_the_resonance(chains):
     both = resonance_scan(chains["alpha and beta"], SCANS["alpha and beta"], None)
     exact = resonance_scan(chains["Toda"], SCANS["Toda"], toda_resonance(chains["Toda"]))
     assert alpha.residue > -4 * both.residue > 0
-    assert abs(exact.residue) < 1e-5 * alpha.residue
+    assert abs(exact.residue) < NO_RESIDUE * alpha.residue
     assert both.resonance == pytest.approx(exact.resonance, rel=SIX_PLACES)
 
 
