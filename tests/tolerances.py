@@ -568,7 +568,7 @@ SAME_TAIL = 0.2
 DRIFT_OF_TODA = 1e-14
 
 # Times of returns from energies every 0.5 beside those from every 0.2.
-RETURN_TIME = 0.02
+RECURRENCE_TIME = 0.02
 
 # Coefficients of 1.2e-5 on tori of residual 1e-13, fitted 3e-7 and more from the pole: beside alpha's residue of 3e-11.
 NO_RESIDUE = 1e-5

@@ -33,7 +33,7 @@ from tests.tolerances import (
     FIVE_DIGITS,
     FOUR_DIGITS,
     NO_RESIDUE,
-    RETURN_TIME,
+    RECURRENCE_TIME,
     ROUNDING,
     SAME_TAIL,
     SCAN_FIT,
@@ -182,7 +182,7 @@ def test_reproduce_toda(tmp_path):
     assert [panel.name for panel in figure.panels] == [f"toda-{letter}" for letter in "abcdefghi"]
     record = json.loads(json.dumps(figure_record(figure), allow_nan=False))
     for name, time in RETURNS.items():
-        assert record["returns"][name][0] == pytest.approx(time, abs=RETURN_TIME)
+        assert record["returns"][name][0] == pytest.approx(time, abs=RECURRENCE_TIME)
     assert record["series_ends"]["Toda"] == pytest.approx(TODA_END, abs=SERIES_END)
     page = figure_markdown(figure)
     assert "| Toda | 12171.30 | 98.5143 % |" in page
