@@ -124,13 +124,14 @@ class Chain:
         return self.ends == "periodic"
 
     @cached_property
-    def _ends(self) -> Ends:
+    def kind_of_ends(self) -> Ends:
+        """What its ends decide: particles, modes and the transform between them."""
         return ENDS[self.ends](self.N)
 
     @property
     def mode_numbers(self) -> tuple[int, ...]:
         """The modes q in the order of every axis of modes, ascending; N - 1 of them."""
-        return self._ends.modes
+        return self.kind_of_ends.modes
 
     def seeds_of(self, seeds: Iterable[object]) -> tuple[int, ...]:
         """Distinct modes of the chain, in the given order; InputError for what is none.
@@ -140,7 +141,7 @@ class Chain:
         >>> Chain(N=8, beta=1, ends="periodic").seeds_of((1, -1, 4))
         (1, -1, 4)
         """
-        return self._ends.seeds(seeds)
+        return self.kind_of_ends.seeds(seeds)
 
     @property
     def turn(self) -> int:
@@ -189,6 +190,12 @@ class Chain:
             return {"potential": self.potential.text}
         names = zip(("alpha", "beta"), self.couplings, strict=True)
         return {name: decimal(coupling) for name, coupling in names}
+
+    @property
+    def typed(self) -> dict[str, Any]:
+        """N and the law as files name them, and the ends of a ring."""
+        ends = {"ends": self.ends} if self.periodic else {}
+        return {"N": self.N, **self.typed_law, **ends}
 
     @property
     def alpha(self) -> Fraction:
@@ -290,8 +297,8 @@ class Chain:
         positions to modes. Here and below arrays of mpf give arrays of mpf at mpmath's working
         precision; a ring has doubles.
         """
-        state, numbers = self._ends.state(Q, "Q")
-        return self._ends.positions(state, numbers)
+        state, numbers = self.kind_of_ends.state(Q, "Q")
+        return self.kind_of_ends.positions(state, numbers)
 
     def modes(self, x: ArrayLike) -> Numbers:
         """Mode coordinates Q_1 .. Q_(N-1) of displacements x (Eq. lintra inverted).
@@ -299,14 +306,14 @@ class Chain:
         Shapes (..., N-1). On a ring (..., N) to complex (..., N-1): Q_q of `mode_numbers`; the
         mean, which is no mode, is left out.
         """
-        return self._ends.coordinates(*self._ends.displacements(x, "x"))
+        return self.kind_of_ends.coordinates(*self.kind_of_ends.displacements(x, "x"))
 
     def stretches(self, Q: ArrayLike) -> Numbers:
         """Bond stretches r_j = x_(j+1) - x_j, j = 0 .. N-1, of modes Q.
 
         Shape (..., N-1) to (..., N).
         """
-        return self._ends.stretches(self.positions(Q))
+        return self.kind_of_ends.stretches(self.positions(Q))
 
     def energy(self, Q: ArrayLike, P: ArrayLike) -> Numbers:
         """Total energy H (Eq. fpuham) of mode coordinates Q and momenta P.
@@ -314,7 +321,7 @@ class Chain:
         Shapes (..., N-1) to (...).
         """
         r = self.stretches(Q)
-        P, numbers = self._ends.state(P, "P")
+        P, numbers = self.kind_of_ends.state(P, "P")
         potential = bonds.potential(self.law(numbers), r)
         twice_kinetic = np.sum(_squared(P), axis=-1)
         return np.asarray(0.5 * twice_kinetic + np.sum(potential, axis=-1))
@@ -325,8 +332,8 @@ class Chain:
         Q, P : mode coordinates and momenta, shapes (..., N-1), as that of the result. On a ring
         |P_q|^2 and |Q_q|^2.
         """
-        Q, numbers = self._ends.state(Q, "Q")
-        P, _ = self._ends.state(P, "P")
+        Q, numbers = self.kind_of_ends.state(Q, "Q")
+        P, _ = self.kind_of_ends.state(P, "P")
         velocities = self.frequencies(numbers) * Q
         return np.asarray(0.5 * (_squared(P) + _squared(velocities)))
 
@@ -335,7 +342,7 @@ class Chain:
         r = self.stretches(Q)
         numbers = arithmetic_of(r)
         tension = bonds.tension(self.law(numbers), r)
-        return self._ends.coordinates(self._ends.forces(tension), numbers)
+        return self.kind_of_ends.coordinates(self.kind_of_ends.forces(tension), numbers)
 
     def B(self, q: int, l: int, m: int) -> int:
         """Coupling of three modes q, l, m (Eq. transa), by selection rule.

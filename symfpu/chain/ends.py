@@ -32,6 +32,7 @@ class Ends(ABC):
     """N bonds with ends of one kind. Arrays end in the axis of particles or of modes."""
 
     name: ClassVar[str]
+    mode_type: ClassVar[type]  # of the coordinates of a mode, in doubles
 
     def __init__(self, N: int) -> None:
         self.N = N
@@ -60,8 +61,16 @@ class Ends(ABC):
         """Mode coordinates Q of displacements x."""
 
     @abstractmethod
+    def sites(self, x: Numbers) -> Numbers:
+        """Displacements of the sites 0 .. N, from those of the particles that move."""
+
+    @abstractmethod
+    def moving(self, sites: Numbers) -> Numbers:
+        """Displacements of the particles that move, from those of the sites 0 .. N."""
+
     def stretches(self, x: Numbers) -> Numbers:
         """Stretches r_j = x_(j+1) - x_j of all N bonds."""
+        return np.diff(self.sites(x), axis=-1)
 
     @abstractmethod
     def forces(self, tension: Numbers) -> Numbers:
@@ -111,6 +120,7 @@ class FixedEnds(Ends):
     """x_0 = x_N = 0."""
 
     name = "fixed"
+    mode_type = float
 
     @property
     def turn(self) -> int:
@@ -138,10 +148,13 @@ class FixedEnds(Ends):
     def coordinates(self, x: Numbers, numbers: Arithmetic) -> Numbers:
         return self.positions(x, numbers)
 
-    def stretches(self, x: Numbers) -> Numbers:
-        fixed_end = np.zeros_like(x[..., :1])
-        with_ends = np.concatenate([fixed_end, x, fixed_end], axis=-1)
-        return np.diff(with_ends, axis=-1)
+    def sites(self, x: Numbers) -> Numbers:
+        """The walls stand at both ends."""
+        wall = np.zeros_like(x[..., :1])
+        return np.concatenate([wall, x, wall], axis=-1)
+
+    def moving(self, sites: Numbers) -> Numbers:
+        return sites[..., 1:-1]
 
     def forces(self, tension: Numbers) -> Numbers:
         return np.diff(tension, axis=-1)
@@ -154,6 +167,7 @@ class PeriodicEnds(Ends):
     """x_(j+N) = x_j: x_j = N^(-1/2) sum_q Q_q e^(2 pi i q j / N), Q_(-q) = conj Q_q; in doubles."""
 
     name = "periodic"
+    mode_type = complex
 
     @property
     def turn(self) -> int:
@@ -185,8 +199,12 @@ class PeriodicEnds(Ends):
         whole = np.fft.fft(x, norm="ortho", axis=-1)
         return np.asarray(whole[..., np.array(self.modes)])
 
-    def stretches(self, x: Numbers) -> Numbers:
-        return np.asarray(np.roll(x, -1, axis=-1) - x)
+    def sites(self, x: Numbers) -> Numbers:
+        """Site N is site 0 again."""
+        return np.concatenate([x, x[..., :1]], axis=-1)
+
+    def moving(self, sites: Numbers) -> Numbers:
+        return sites[..., :-1]
 
     def forces(self, tension: Numbers) -> Numbers:
         return np.asarray(tension - np.roll(tension, 1, axis=-1))

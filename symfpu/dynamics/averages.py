@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
+from symfpu.numbers.arithmetic import Numbers
 
 Floats = NDArray[np.float64]
 
@@ -29,11 +30,11 @@ class RunningAverages:
     total (M, N-1) : of E_q of M orbits, E_q(0) among them. start (M, N-1) : E_q(0).
     """
 
-    def __init__(self, chain: Chain, Q: Floats, P: Floats) -> None:
+    def __init__(self, chain: Chain, Q: Numbers, P: Numbers) -> None:
         self.chain, self.start = chain, chain.harmonic_energies(Q, P)
         self.total, self.last, self.looks = self.start.copy(), self.start, 0
 
-    def add(self, Q: Floats, P: Floats) -> None:
+    def add(self, Q: Numbers, P: Numbers) -> None:
         """Looks at M orbits; shapes (M, looks, N-1)."""
         energies = self.chain.harmonic_energies(Q, P)
         self.total += energies.sum(axis=1)

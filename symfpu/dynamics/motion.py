@@ -15,6 +15,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.polynomial import Polynomial
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.wells import beyond_walls
+from symfpu.numbers.arithmetic import Numbers
 
 Floats = NDArray[np.float64]
 CLOSED = 16  # a tension by exponentials and logarithms, in those of a polynomial, about
@@ -32,8 +33,9 @@ class Motion:
         self.law = chain.law()
         self.Omega = np.concatenate([[0.0], chain.frequencies()])
         self.unit = (2 * chain.N) ** 0.5
+        self.ends = chain.kind_of_ends
 
-    def coordinates(self, Q: Floats, P: Floats) -> Floats:
+    def coordinates(self, Q: Numbers, P: Numbers) -> Floats:
         """Of mode coordinates and momenta (M, N-1)."""
         if self.scheme.in_modes:
             state = np.zeros((len(Q), 2, self.chain.N))
@@ -41,18 +43,18 @@ class Motion:
             state[:, 1, 1:] = P / self.unit
         else:
             state = np.zeros((len(Q), 2, self.chain.N + 1))
-            state[:, 0, 1:-1] = self.chain.positions(Q)
-            state[:, 1, 1:-1] = self.chain.positions(P)
+            state[:, 0] = self.ends.sites(self.chain.positions(Q))
+            state[:, 1] = self.ends.sites(self.chain.positions(P))
         return state
 
-    def modes(self, state: Floats) -> tuple[Floats, Floats]:
+    def modes(self, state: Floats) -> tuple[Numbers, Numbers]:
         """Mode coordinates and momenta (M, N-1)."""
         if self.scheme.in_modes:
             Q = state[:, 0, 1:] * self.unit / self.Omega[1:]
             P = state[:, 1, 1:] * self.unit
         else:
-            Q = np.asarray(self.chain.modes(state[:, 0, 1:-1]))
-            P = np.asarray(self.chain.modes(state[:, 1, 1:-1]))
+            Q = np.asarray(self.chain.modes(self.ends.moving(state[:, 0])))
+            P = np.asarray(self.chain.modes(self.ends.moving(state[:, 1])))
         return Q, P
 
     @property
@@ -84,22 +86,17 @@ class Motion:
 
     def move(self, row: Floats, bounds: Floats, steps: int) -> int:
         """Moves one orbit."""
-        # lazy: numba takes longer to import than all the rest
-        from symfpu.dynamics.orbit_loops import move_modes, move_particles
-
-        loop: Any = move_modes if self.scheme.in_modes else move_particles
+        loop, _ = self._loops()
         return int(loop(*self._arguments(row, bounds, steps)))
 
     def look(
         self, state: Floats, looks: int, stride: int, each: Callable[..., Any]
-    ) -> tuple[list[int], Floats, Floats]:
+    ) -> tuple[list[int], Numbers, Numbers]:
         """Moves all orbits and looks at them every `stride` steps.
 
         Returns the steps done, and the Q and P seen, shapes (M, looks, N-1).
         """
-        from symfpu.dynamics.orbit_loops import look_at_modes, look_at_particles
-
-        loop: Any = look_at_modes if self.scheme.in_modes else look_at_particles
+        _, loop = self._loops()
         orbits, *one = state.shape
         seen = np.zeros((orbits, looks, *one))
 
@@ -109,6 +106,19 @@ class Motion:
         done = list(each(looked, state, self.bounds, seen))
         Q, P = self.modes(seen.reshape(-1, *one))
         return done, Q.reshape(orbits, looks, -1), P.reshape(orbits, looks, -1)
+
+    def _loops(self) -> tuple[Any, Any]:
+        """The loop that moves one orbit, and the one that looks at it."""
+        # lazy: numba takes longer to import than all the rest
+        if self.chain.periodic:
+            from symfpu.dynamics.ring_loops import look_at_ring, move_ring
+
+            return move_ring, look_at_ring
+        from symfpu.dynamics import orbit_loops as fixed
+
+        if self.scheme.in_modes:
+            return fixed.move_modes, fixed.look_at_modes
+        return fixed.move_particles, fixed.look_at_particles
 
     def _arguments(self, row: Floats, bounds: Floats, steps: int) -> tuple[Any, ...]:
         rates = (row[0], row[1], self.law, steps, self.entry, self.kicks, self.drifts)

@@ -19,7 +19,7 @@ from typing import Any, TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain.chain import Chain, require_chain
+from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.dynamics.averages import LOOKS, RunningAverages, steps_between_looks
 from symfpu.dynamics.motion import Motion
 from symfpu.dynamics.scheme import Scheme
@@ -49,6 +49,7 @@ from symfpu.files.checkpoint import (
 )
 from symfpu.files.interruption import kept_run
 from symfpu.files.progress import Progress, unheard
+from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -66,7 +67,7 @@ class Orbit:
 
     chain : the model. scheme : of the integrator, its coefficients. step : signed, as taken.
     times : (S,), multiples of the step, from 0. Q, P : mode coordinates and momenta (Eq. lintra),
-        shape (S, ..., N-1).
+        shape (S, ..., N-1); of a ring complex, of chain.mode_numbers, as `Chain` has them.
     energies : total energy H (Eq. fpuham2), shape (S, ...).
     averages : time averages of the E_q (Eq. harmonicene) from 0 to each sample, shape
         (S, ..., N-1), if asked for.
@@ -82,8 +83,8 @@ class Orbit:
     scheme: Scheme
     step: float
     times: Floats = field(repr=False)
-    Q: Floats = field(repr=False)
-    P: Floats = field(repr=False)
+    Q: Numbers = field(repr=False)
+    P: Numbers = field(repr=False)
     energies: Floats = field(repr=False)
     averages: Floats | None = field(repr=False, default=None)
     seconds: float = field(repr=False, default=0.0)
@@ -134,12 +135,13 @@ def integrate(
 
     It is sampled at multiples of the step.
 
-    chain : the model; Q, P, T and step are dimensionless.
-    Q, P : shapes (..., N-1), many orbits at once.
+    chain : the model, with either ends; Q, P, T and step are dimensionless.
+    Q, P : shapes (..., N-1), many orbits at once; on a ring complex, Q_(-q) = conj Q_q, of total
+        momentum 0, which particles keep to rounding.
     T : a time, negative for the past.
     step : its length is cut to a whole number of steps.
     scheme : of symfpu.dynamics.schemes; aba864_modes splits harmonic + anharmonic and is for
-        polynomial potentials, others split T + V.
+        polynomial potentials with fixed ends, others split T + V.
     samples : about how many, log-spaced from one step to T and 0; or times between 0 and T, shape
         (S,), each moved to the nearest step.
     averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if
@@ -196,8 +198,8 @@ class _Run:
         T: float,
         steps: int,
         sampled: Ints,
-        Q: Floats,
-        P: Floats,
+        Q: Numbers,
+        P: Numbers,
     ) -> None:
         self.chain, self.scheme = chain, scheme
         self.T, self.steps, self.step = T, steps, T / steps
@@ -230,7 +232,10 @@ class _Run:
     def _sample_at(self, sampled: Ints) -> None:
         self.sampled = sampled
         shape = (len(sampled), self.orbits, self.chain.N - 1)
-        self.Q, self.P, self.averages = (np.zeros(shape) for _ in range(3))
+        kind = self.chain.kind_of_ends.mode_type
+        self.Q: Numbers = np.zeros(shape, kind)
+        self.P: Numbers = np.zeros(shape, kind)
+        self.averages = np.zeros(shape)
 
     def take_averages(self, stride: int) -> None:
         """Looks at the orbits every so many steps."""
@@ -248,8 +253,7 @@ class _Run:
         self.path, self.every = path, every
         chain, scheme = self.chain, self.scheme
         self.parameters = {
-            "N": chain.N,
-            **chain.typed_law,
+            **chain.typed,
             "scheme": scheme.name,
             "step": repr(self.step),
             "steps": self.steps,
@@ -281,13 +285,16 @@ class _Run:
         return self.sampled[self.sampled <= self.done].astype(np.float64)
 
     def _kept(self) -> dict[str, Floats]:
-        """What a checkpoint holds, but for its first array as views of it."""
+        """What a checkpoint holds, but for its first array as views of it.
+
+        A complex number is two numbers there.
+        """
         marks = self._known_marks()
         known = len(marks)
         kept = {
             "sampled": marks,
-            "Q": self.Q[:known],
-            "P": self.P[:known],
+            "Q": self.Q[:known].view(np.float64),
+            "P": self.P[:known].view(np.float64),
             "state": self.state,
         }
         if self.stride:
@@ -383,7 +390,7 @@ class _Run:
             reason,
             advice,
             time=self.T * (steps / self.steps),
-            mode=int(np.argmax(growth)) + 1,
+            mode=self.chain.mode_numbers[int(np.argmax(growth))],
             energy=float(self.chain.energy(Q, P)),
             orbit=place,
             bond=bond,
@@ -404,11 +411,11 @@ class _Run:
 
 def _start(
     chain: Chain, Q: ArrayLike, P: ArrayLike, T: float, step: float
-) -> tuple[Floats, Floats, float, float]:
+) -> tuple[Numbers, Numbers, float, float]:
     """The arguments as numbers; raises InputError."""
-    require_chain(chain)
+    kind = require_any_chain(chain).kind_of_ends.mode_type
     chain.positions(Q), chain.positions(P)  # refuses other shapes
-    Q, P = np.array(Q, dtype=np.float64), np.array(P, dtype=np.float64)
+    Q, P = np.array(Q, dtype=kind), np.array(P, dtype=kind)
     require_within_walls(chain, Q)
     if Q.shape != P.shape:
         advice = "pass one momentum for each coordinate"

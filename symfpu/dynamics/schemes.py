@@ -19,15 +19,18 @@ PARTICLE_SCHEMES = {name: scheme for name, scheme in SCHEMES.items() if not sche
 def scheme_of(chain: Chain, name: object) -> Scheme:
     """Any scheme that moves such a chain; raises InputError.
 
-    In modes kicks are products of modes: of polynomials in the stretches.
+    In modes kicks are products of standing waves: of polynomials in the stretches, between walls.
     """
     polynomial = isinstance(chain.potential, Polynomial)
-    known = SCHEMES if polynomial else PARTICLE_SCHEMES
+    in_modes = polynomial and not chain.periodic
+    known = SCHEMES if in_modes else PARTICLE_SCHEMES
     if isinstance(name, str) and name in known:
         return known[name]
     advice = "choose one of them"
     if isinstance(name, str) and name in SCHEMES:
-        advice += f": {name} is for polynomial potentials, not for {chain.potential}"
+        other = "a ring" if polynomial else str(chain.potential)
+        served = "fixed ends" if polynomial else "polynomial potentials"
+        advice += f": {name} is for {served}, not for {other}"
     raise InputError("scheme", name, ", ".join(known), advice)
 
 

@@ -67,12 +67,12 @@ def require_stable(chain: Chain, scheme: Scheme, step: float, energy: float) -> 
     Omega = chain.frequencies()
     unstable = abs(step) * Omega > scheme.stable_phase
     if unstable[-1]:
-        mode = int(np.argmax(unstable)) + 1
+        slowest = int(np.argmin(np.where(unstable, Omega, np.inf)))
         largest = scheme.stable_phase / Omega[-1]
         raise UnstableStep(
             f"a step of {abs(step):.6g} of {scheme.name} is unstable",
             f"take a step below {largest:.4g}, and a fraction of it for accuracy",
             time=0.0,
-            mode=mode,
+            mode=chain.mode_numbers[slowest],
             energy=energy,
         )

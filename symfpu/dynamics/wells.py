@@ -16,7 +16,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.polynomial import Polynomial
 from symfpu.chain.potentials.potential import Potential
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import DOUBLES
+from symfpu.numbers.arithmetic import DOUBLES, Numbers
 
 Floats = NDArray[np.float64]
 Function = Callable[[bonds.Law, Any], Any]
@@ -119,7 +119,7 @@ def beyond_walls(law: Potential, stretches: Floats) -> NDArray[np.bool_]:
     return beyond
 
 
-def require_within_walls(chain: Chain, Q: Floats) -> None:
+def require_within_walls(chain: Chain, Q: Numbers) -> None:
     """InputError for a state with a bond at or beyond a wall of its potential; names it."""
     stretches = np.asarray(chain.stretches(Q))
     beyond = beyond_walls(chain.potential, stretches) & np.isfinite(stretches)

@@ -33,6 +33,9 @@ CHECKPOINT_SCHEMA = 1
 ADVICE = "name another file, or remove this one"
 # parameters that a longer run, which goes on from a shorter one, has otherwise
 LENGTH = ("steps", "sampled steps")
+ENDS_LEFT_OUT = {
+    "ends": "fixed"
+}  # what runs are of that do not name the ends of their chain
 
 
 class Kind(NamedTuple):
@@ -193,9 +196,9 @@ def _require_same(
     path: Path, found: Json, parameters: Json, kind: Kind, before: Json | None
 ) -> None:
     longer = integer(found["steps"], "steps", 0) < parameters["steps"]
-    known = dict(kind.implied) | found
+    known = ENDS_LEFT_OUT | dict(kind.implied) | found
     asked = parameters if before is None or parameters.keys() <= known.keys() else before
-    for name, value in asked.items():
+    for name, value in (ENDS_LEFT_OUT | asked).items():
         goes_on = longer and name in LENGTH
         if known.get(name) != value and not goes_on:
             was = str(known.get(name))[:40]
