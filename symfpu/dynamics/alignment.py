@@ -23,7 +23,7 @@ from os import PathLike
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain.chain import Chain, require_chain
+from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.dimension import (
     DECADES,
@@ -41,6 +41,7 @@ from symfpu.dynamics.wells import require_within_walls
 from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path, digest, seconds_between
 from symfpu.files.progress import Progress, unheard
+from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -165,8 +166,9 @@ def alignment_indices(
 ) -> AlignmentIndices:
     """GALI_2 .. GALI_vectors and the maximal Lyapunov exponent of an orbit (sections 3.2 and 4).
 
-    chain : the model; Q, P, T and step are dimensionless.
-    Q, P : the state, mode coordinates and momenta, (N-1,).
+    chain : the model, with either ends; Q, P, T and step are dimensionless.
+    Q, P : the state, mode coordinates and momenta, (N-1,); on a ring complex, Q_(-q) = conj Q_q.
+        Deviations do not move the ring as a whole either: n = N - 1 degrees of freedom.
     T : the last time.
     vectors : 2 to 2(N-1), default VECTORS or as many as there are, orthonormal at random at t = 0.
     step : of the integrator. Its orbit lies on tori of the integrator, off those of the chain by
@@ -205,14 +207,15 @@ def alignment_indices(
     >>> bool(found.lyapunov[-1] < 1e-3)
     True
     """
-    require_chain(chain)
-    n, h, integrator = chain.N - 1, abs(step_length(step)), particle_scheme(scheme)
+    n = require_any_chain(chain).N - 1
+    h, integrator = abs(step_length(step)), particle_scheme(scheme)
     count, last = _vectors(n, vectors), _steps(T, h)
     longest = integer(block, "block", 1)
     marks = _marks(last, h, _samples(samples))
     drawn = integer(seed, "seed", 0)
-    frame = moving_frame(chain, Q, P, *_random_frame(count, n, drawn), h, scheme=integrator)
-    require_within_walls(chain, np.asarray(Q, dtype=np.float64))
+    vectors_drawn = _first_frame(chain, count, drawn)
+    frame = moving_frame(chain, Q, P, *vectors_drawn, h, scheme=integrator)
+    require_within_walls(chain, np.asarray(Q, dtype=chain.kind_of_ends.mode_type))
     if not np.any(frame.x) and not np.any(frame.p):
         raise InputError(
             "Q, P", 0.0, "a state other than the equilibrium", "start from an orbit"
@@ -220,7 +223,7 @@ def alignment_indices(
     before = float(chain.energy(*frame.orbit()))
     run = FrameRun(frame, marks, h, longest, seconds_between(every))
     if file is not None:
-        state = digest(np.array([Q, P], dtype=float))
+        state = digest(np.array([Q, P], dtype=chain.kind_of_ends.mode_type))
         run.keep_in(checkpoint_path(file), {"start": state, "seed": drawn})
     run.go(progress or unheard)
     times = np.asarray(run.marks * h, dtype=np.float64)
@@ -251,13 +254,13 @@ def seconds_needed(
     >>> 0 < seconds_needed(Chain(N=4, alpha=1), 1e4, vectors=2) < 60
     True
     """
-    require_chain(chain)
-    n, h, integrator = chain.N - 1, abs(step_length(step)), particle_scheme(scheme)
+    n = require_any_chain(chain).N - 1
+    h, integrator = abs(step_length(step)), particle_scheme(scheme)
     count, last = _vectors(n, vectors), _steps(T, h)
-    small = np.where(np.arange(n) == 0, 1e-3, 0.0)
-    frame = moving_frame(
-        chain, small, small, *_random_frame(count, n, 0), h, scheme=integrator
-    )
+    slowest = np.abs(chain.mode_numbers) == 1
+    small = np.where(slowest, 1e-3, 0.0)
+    vectors_drawn = _first_frame(chain, count, 0)
+    frame = moving_frame(chain, small, small, *vectors_drawn, h, scheme=integrator)
     return last * seconds_a_step(frame, BLOCK)
 
 
@@ -291,12 +294,28 @@ def _steps(T: float, h: float) -> int:
     return math.ceil(steps - 1e-9)
 
 
+def _first_frame(chain: Chain, vectors: int, seed: int) -> tuple[Numbers, Numbers]:
+    """Orthonormal vectors in modes, (vectors, N-1) each."""
+    if chain.periodic:
+        x, p = _random_ring_frame(vectors, chain.N, seed)
+        return chain.modes(x), chain.modes(p)
+    return _random_frame(vectors, chain.N - 1, seed)
+
+
 def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
     """Orthonormal vectors of a phase space of dimension 2n as rows."""
     random = np.random.default_rng(seed)
     columns = random.normal(size=(2 * n, vectors))
     rows = np.linalg.qr(columns)[0].T
     return rows[:, :n], rows[:, n:]
+
+
+def _random_ring_frame(vectors: int, N: int, seed: int) -> tuple[Floats, Floats]:
+    """The same of the N particles of a ring that does not move as a whole."""
+    x, p = np.random.default_rng(seed).normal(size=(2, N, vectors))
+    columns = np.vstack([x - x.mean(axis=0), p - p.mean(axis=0)])
+    rows = np.linalg.qr(columns)[0].T
+    return rows[:, :N], rows[:, N:]
 
 
 def _marks(last: int, h: float, samples: int) -> Ints:

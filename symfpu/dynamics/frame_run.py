@@ -28,6 +28,7 @@ from symfpu.files.checkpoint import (
 )
 from symfpu.files.interruption import kept_run
 from symfpu.files.progress import Progress
+from symfpu.numbers.arithmetic import Numbers
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -90,8 +91,7 @@ class FrameRun:
         self.path, frame = path, self.frame
         chain = frame.chain
         known = {
-            "N": chain.N,
-            **chain.typed_law,
+            **chain.typed,
             "vectors": frame.vectors,
             "scheme": frame.scheme.name,
             "step": repr(self.step),
@@ -180,7 +180,7 @@ class FrameRun:
             self.volumes[place] = self.diagonal - self.norms
             self.growth[place] = self.diagonal[0]
 
-    def _lost(self, before: tuple[Floats, Floats], end: int) -> OrbitLost:
+    def _lost(self, before: tuple[Numbers, Numbers], end: int) -> OrbitLost:
         """Why, by the orbit alone from the last state that was well."""
         frame, steps = self.frame, end - self.done
         T, scheme = steps * self.step, frame.scheme.name
@@ -211,8 +211,8 @@ def carried(
     # lazy: numba takes longer to import than all the rest
     from symfpu.dynamics.tangent_loops import carry_frame
 
-    state = (frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts)
-    return int(carry_frame(*state, steps, block, longest, columns, diagonal, norms))
+    product = columns, diagonal, norms
+    return int(carry_frame(*frame.arguments(), steps, block, longest, *product))
 
 
 def seconds_a_step(frame: MovingFrame, block: int) -> float:

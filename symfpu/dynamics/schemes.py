@@ -28,7 +28,7 @@ def scheme_of(chain: Chain, name: object) -> Scheme:
         return known[name]
     advice = "choose one of them"
     if isinstance(name, str) and name in SCHEMES:
-        other = "a ring" if polynomial else str(chain.potential)
+        other = "ends='periodic'" if polynomial else str(chain.potential)
         served = "fixed ends" if polynomial else "polynomial potentials"
         advice += f": {name} is for {served}, not for {other}"
     raise InputError("scheme", name, ", ".join(known), advice)

@@ -11,17 +11,19 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import bonds
 from symfpu.chain.bonds import Law
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
 from symfpu.dynamics.scheme import Scheme
 from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -32,8 +34,8 @@ TABLE = 4_000_000  # entries of a table of stretches held at once
 class MovingFrame:
     """An orbit and its deviation vectors as the compiled loops want them.
 
-    Made by `moving_frame`; the arrays are moved in place. x, p : (N+1,) with the walls; dx, dp :
-    (blocks, N+1, LANES). vectors : how many lanes are used. kicks, drifts : of one step of the
+    Made by `moving_frame`; the arrays are moved in place. x, p : of the sites 0 .. N, (N+1,); dx,
+    dp : (blocks, N+1, LANES). vectors : how many lanes are used. kicks, drifts : of one step of the
     scheme, as lengths of time.
     """
 
@@ -52,13 +54,19 @@ class MovingFrame:
         """Of the bonds, in doubles."""
         return self.chain.law()
 
-    def orbit(self) -> tuple[Floats, Floats]:
+    def arguments(self) -> tuple[Any, ...]:
+        """What the loops take first."""
+        state = self.x, self.p, self.dx, self.dp
+        return *state, self.law, self.kicks, self.drifts, self.chain.periodic
+
+    def orbit(self) -> tuple[Numbers, Numbers]:
         """Mode coordinates and momenta of the orbit, (N-1,) each."""
-        Q = np.asarray(self.chain.modes(self.x[1:-1]))
-        P = np.asarray(self.chain.modes(self.p[1:-1]))
+        moving = self.chain.kind_of_ends.moving
+        Q = np.asarray(self.chain.modes(moving(self.x)))
+        P = np.asarray(self.chain.modes(moving(self.p)))
         return Q, P
 
-    def deviations(self) -> tuple[Floats, Floats]:
+    def deviations(self) -> tuple[Numbers, Numbers]:
         """Mode coordinates and momenta of the deviations, (vectors, N-1) each."""
         dQ = _out_of_lanes(self.chain, self.dx, self.vectors)
         dP = _out_of_lanes(self.chain, self.dp, self.vectors)
@@ -75,10 +83,11 @@ def tangent_steps(
     steps: int,
     *,
     scheme: Scheme = BLANES_MOAN6,
-) -> tuple[Floats, Floats, Floats, Floats]:
+) -> tuple[Numbers, Numbers, Numbers, Numbers]:
     """A state some steps later, and its deviations moved by the exact derivative of the step.
 
-    Q, P : one state, (N-1,). dQ, dP : m deviations, (m, N-1), m = 0 allowed. Returns all four.
+    Q, P : one state, (N-1,). dQ, dP : m deviations, (m, N-1), m = 0 allowed. Returns all four. On a
+    ring complex, Q_(-q) = conj Q_q, and so are the deviations: none moves the ring as a whole.
     step : length in time, negative for the past. scheme : on T + V. The derivative is that of the
     map in exact arithmetic: it is symplectic to rounding at every step length. Raises InputError.
 
@@ -92,9 +101,7 @@ def tangent_steps(
 
     frame = moving_frame(chain, Q, P, dQ, dP, step, scheme=scheme)
     count = integer(steps, "steps", 0)
-    advance(
-        frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts, count
-    )
+    advance(*frame.arguments(), count)
     return *frame.orbit(), *frame.deviations()
 
 
@@ -110,13 +117,14 @@ def tangent_map_along(
 
     stretches : bond stretches r_j of the orbit at times (T,), shape (T, N), as often as wanted.
     scheme : on T + V; time runs with its drifts, so that forces given as functions of time keep
-        the order.
+        the order. chain : with fixed ends.
 
     Returns shape (2(N-1), 2(N-1)); rows and columns are Q_1 .. Q_(N-1), P_1 .. P_(N-1).
     Raises InputError.
     """
     from symfpu.dynamics.tangent_loops import carry_along
 
+    require_fixed_ends(chain)
     n = chain.N - 1
     count = integer(steps, "steps", 1)
     h = step_length(duration, "duration") / count
@@ -162,8 +170,8 @@ def moving_frame(
         chain=chain,
         scheme=scheme,
         vectors=vectors,
-        x=np.pad(x, 1),
-        p=np.pad(p, 1),
+        x=chain.kind_of_ends.sites(x),
+        p=chain.kind_of_ends.sites(p),
         dx=_in_lanes(chain, dx),
         dp=_in_lanes(chain, dp),
         kicks=kicks,
@@ -184,29 +192,31 @@ def step_length(step: float, name: str = "step") -> float:
 def _particles(
     chain: Chain, name: str, values: ArrayLike, shape: tuple[int, ...]
 ) -> Floats:
-    """Of modes to particles, both of this shape; raises InputError."""
+    """Of modes of this shape to particles; raises InputError."""
     given = np.shape(values)
     if given != shape:
         advice = "pass one state and as many deviations dQ as dP"
         raise InputError(name, given, f"the shape {shape}", advice)
-    particles = np.asarray(chain.positions(np.asarray(values, dtype=float)))
+    modes: Numbers = np.asarray(values, dtype=chain.kind_of_ends.mode_type)
+    particles = np.asarray(chain.positions(modes))
     if not np.isfinite(particles).all():
         raise InputError(name, values, "finite numbers", "start from a finite state")
     return particles
 
 
 def _in_lanes(chain: Chain, rows: Floats) -> Floats:
-    """Deviations of particles, (m, N-1), as blocks of lanes between walls."""
+    """Deviations of particles, a row each, as blocks of lanes at the sites."""
     from symfpu.dynamics.tangent_loops import LANES
 
     blocks = -(-len(rows) // LANES)
     lanes = np.zeros((blocks, chain.N + 1, LANES))
-    for i, row in enumerate(rows):
-        lanes[i // LANES, 1:-1, i % LANES] = row
+    for i, row in enumerate(chain.kind_of_ends.sites(rows)):
+        lanes[i // LANES, :, i % LANES] = row
     return lanes
 
 
-def _out_of_lanes(chain: Chain, lanes: Floats, vectors: int) -> Floats:
+def _out_of_lanes(chain: Chain, lanes: Floats, vectors: int) -> Numbers:
     """The first deviations of blocks of lanes in mode coordinates, (vectors, N-1)."""
-    rows = lanes[:, 1:-1].transpose(0, 2, 1).reshape(-1, chain.N - 1)
-    return np.asarray(chain.modes(rows[:vectors]))
+    rows = lanes.transpose(0, 2, 1).reshape(-1, chain.N + 1)
+    moving = chain.kind_of_ends.moving(rows[:vectors])
+    return np.asarray(chain.modes(moving))

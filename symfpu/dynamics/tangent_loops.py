@@ -1,9 +1,10 @@
 """The compiled loops of orbits with deviation vectors: plain arrays, moved in place.
 
-Importing this module imports numba. x, p : displacements and momenta of one orbit with its two
-walls, (N+1,), zero at the walls. dx, dp : deviations from it, blocks of LANES vectors, (blocks,
+Importing this module imports numba. x, p : displacements and momenta of one orbit at the sites 0
+.. N, (N+1,), zero at the walls. dx, dp : deviations from it, blocks of LANES vectors, (blocks,
 N+1, LANES), zero at the walls and in lanes that are not used. The lanes are the last axis and
-their number is fixed, so that the loop over them is one or two machine instructions.
+their number is fixed, so that the loop over them is one or two machine instructions. ring : whether
+site N is site 0 again, and moves.
 """
 
 from __future__ import annotations
@@ -26,7 +27,13 @@ _always_inlined = compiled(error_model="numpy", forceinline=True)
 
 @_always_inlined
 def move_lanes(
-    dx: Any, dp: Any, stiffness: Any, drift: float, pull: Any, slope: Any
+    dx: Any,
+    dp: Any,
+    stiffness: Any,
+    drift: float,
+    pull: Any,
+    slope: Any,
+    ring: bool,
 ) -> None:
     """A kick of all deviations by bonds of this stiffness times the kick, (N,), and a drift.
 
@@ -45,11 +52,25 @@ def move_lanes(
         for i in range(last):
             momenta[i] += behind[i] - pull[i]
             positions[i] += drift * momenta[i]
+        if ring:
+            for c in range(LANES):
+                dp[b, c] += pull[c] - pull[last + c]
+                dx[b, c] += drift * dp[b, c]
+                dp[b, last + LANES + c] = dp[b, c]
+                dx[b, last + LANES + c] = dx[b, c]
 
 
 @_compiled
 def kick_and_drift(
-    x: Any, p: Any, dx: Any, dp: Any, law: Any, kick: float, drift: float, forces: Any
+    x: Any,
+    p: Any,
+    dx: Any,
+    dp: Any,
+    law: Any,
+    kick: float,
+    drift: float,
+    forces: Any,
+    ring: bool,
 ) -> None:
     """One kick, one drift, and their derivatives.
 
@@ -69,12 +90,25 @@ def kick_and_drift(
     for j in range(bonds - 1):
         inner_p[j] += after[j] - tension[j]
         inner_x[j] += drift * inner_p[j]
-    move_lanes(dx, dp, stiffness, drift, pull, slope)
+    if ring:
+        p[0] += tension[0] - tension[bonds - 1]
+        x[0] += drift * p[0]
+        p[bonds] = p[0]
+        x[bonds] = x[0]
+    move_lanes(dx, dp, stiffness, drift, pull, slope, ring)
 
 
 @_compiled
 def advance(
-    x: Any, p: Any, dx: Any, dp: Any, law: Any, kicks: Any, drifts: Any, steps: int
+    x: Any,
+    p: Any,
+    dx: Any,
+    dp: Any,
+    law: Any,
+    kicks: Any,
+    drifts: Any,
+    ring: bool,
+    steps: int,
 ) -> None:
     """So many steps of a splitting, of an orbit and its deviations.
 
@@ -96,12 +130,14 @@ def advance(
             drift = drifts[i + 1]
             if i == len(kicks) - 1 and step < steps - 1:
                 drift += drifts[0]
-            kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces)
+            kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces, ring)
 
 
 @_compiled
 def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any) -> None:
     """Deviations under bonds of stiffness slopes[i, j] at the i-th kick, slopes (kicks in all, N).
+
+    Between walls.
 
     kicks : of one step, drifts : after each of them, as lengths of time.
     """
@@ -111,24 +147,31 @@ def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any) -> None:
     flat_dp = dp.reshape(blocks, (bonds + 1) * LANES)
     for i in range(slopes.shape[0]):
         stage = i % len(kicks)
-        move_lanes(flat_dx, flat_dp, kicks[stage] * slopes[i], drifts[stage], pull, slope)
+        stiffness, drift = kicks[stage] * slopes[i], drifts[stage]
+        move_lanes(flat_dx, flat_dp, stiffness, drift, pull, slope, False)
 
 
 @_compiled
-def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any) -> float:
+def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any, ring: bool) -> float:
     """Replace the first m vectors by their orthonormal basis, V = basis R.
 
     Returns the least R_jj / |column j of R|.
 
-    rows : room for the vectors, (m, 2(N-1)). R : upper triangular, positive diagonal, (m, m).
-    Gram-Schmidt with a second pass, after which the basis is orthonormal to rounding.
+    rows : room for the vectors, (m, 2n), n = N-1, or N on a ring. R : upper triangular, positive
+    diagonal, (m, m). Gram-Schmidt with a second pass, after which the basis is orthonormal to
+    rounding. On a ring the mean is taken out first: it does not shrink where a vector does, so
+    that its rounding would grow.
     """
-    n, least = dx.shape[1] - 2, 1.0
+    n, least = rows.shape[1] // 2, 1.0
+    first = 0 if ring else 1
     for j in range(len(rows)):
         v = rows[j]
         for k in range(n):
-            v[k] = dx[j // LANES, k + 1, j % LANES]
-            v[n + k] = dp[j // LANES, k + 1, j % LANES]
+            v[k] = dx[j // LANES, k + first, j % LANES]
+            v[n + k] = dp[j // LANES, k + first, j % LANES]
+        if ring:
+            v[:n] -= np.sum(v[:n]) / n
+            v[n:] -= np.sum(v[n:]) / n
         R[:, j] = 0.0
         for _ in range(2):
             for i in range(j):
@@ -142,8 +185,11 @@ def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any) -> float:
         least = min(least, R[j, j] / np.sqrt(np.sum(R[: j + 1, j] ** 2)))
         v /= R[j, j]
         for k in range(n):
-            dx[j // LANES, k + 1, j % LANES] = v[k]
-            dp[j // LANES, k + 1, j % LANES] = v[n + k]
+            dx[j // LANES, k + first, j % LANES] = v[k]
+            dp[j // LANES, k + first, j % LANES] = v[n + k]
+        if ring:
+            dx[j // LANES, n, j % LANES] = v[0]
+            dp[j // LANES, n, j % LANES] = v[n]
     return least
 
 
@@ -177,6 +223,7 @@ def carry_frame(
     law: Any,
     kicks: Any,
     drifts: Any,
+    ring: bool,
     steps: int,
     block: int,
     longest: int,
@@ -191,11 +238,12 @@ def carry_frame(
     Returns the block to go on with.
     """
     m = len(diagonal)
-    rows, R = np.empty((m, 2 * (len(x) - 2))), np.zeros((m, m))
+    moving = len(x) - 1 if ring else len(x) - 2
+    rows, R = np.empty((m, 2 * moving)), np.zeros((m, m))
     while steps > 0:
         now = min(block, steps)
-        advance(x, p, dx, dp, law, kicks, drifts, now)
-        least = orthonormalise(dx, dp, rows, R)
+        advance(x, p, dx, dp, law, kicks, drifts, ring, now)
+        least = orthonormalise(dx, dp, rows, R, ring)
         accumulate(R, columns, diagonal, norms)
         steps -= now
         if least < SHORTER_BLOCK and block > 1:

@@ -29,7 +29,8 @@ ARGUMENTS = {
 # results: the functions that make them are tested instead
 RESULTS = {"AlignmentIndices", "Family", "LindstedtSeries", "Orbit", "ProfileInvariance", "RefinedTorus", "ShotOrbit"}
 RESULTS |= {"RingTorus", "TravellingSeries"}
-TAKE_RINGS = {"travelling_waves", "integrate", "toda_gaps", "toda_invariants", "toda_torus"}
+TAKE_RINGS = {"travelling_waves", "integrate", "alignment_indices", "seconds_needed"}
+TAKE_RINGS |= {"toda_gaps", "toda_invariants", "toda_torus"}
 
 
 def takes_a_chain(name):

@@ -150,7 +150,7 @@ def test_gaps_of_toda_do_not_change_along_its_orbits():
 
 def test_kicks_in_modes_refuse_a_ring_by_name():
     chain = ring(4, alpha=1)
-    with pytest.raises(InputError, match="aba864_modes is for fixed ends, not for a ring"):
+    with pytest.raises(InputError, match="aba864_modes is for fixed ends, not for ends='periodic'"):
         integrate(chain, *state(chain, 0.1), 1.0, step=0.1, scheme="aba864_modes")
 
 

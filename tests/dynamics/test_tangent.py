@@ -169,7 +169,7 @@ def test_the_work_grows_as_the_chain():
         spent = []
         for _ in range(15):
             start = time.process_time()
-            advance(frame.x, frame.p, frame.dx, frame.dp, frame.law, frame.kicks, frame.drifts, 40)
+            advance(*frame.arguments(), 40)
             spent.append(time.process_time() - start)
         seconds.append(min(spent))
     assert np.polyfit(np.log(lengths), np.log(seconds), 1)[0] == pytest.approx(1, abs=LINEAR)
