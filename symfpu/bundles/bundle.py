@@ -15,10 +15,11 @@ import contextlib
 import json
 import os
 import platform
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from fractions import Fraction
+from functools import partial
 from math import comb, pi, prod
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -37,6 +38,7 @@ from symfpu.bundles.entries import (
 from symfpu.bundles.refined import refined_entries, refined_from
 from symfpu.bundles.solutions import FOURIER, solution_entries, solution_from
 from symfpu.chain.chain import Chain
+from symfpu.chain.length import label_entry, seed_labels
 from symfpu.errors import InputError
 from symfpu.files.archive import (
     FORMAT,
@@ -51,7 +53,9 @@ from symfpu.files.checkpoint import KINDS
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
+from symfpu.series.all_lengths import SeriesForAllN, ends_reached, in_order
 from symfpu.series.divisors import SmallDivisor
+from symfpu.series.lindstedt import UNIVERSAL
 from symfpu.series.monomials import shared_grading
 from symfpu.series.rings import FIXED_POINT, RINGS, RingKind
 from symfpu.series.series import LindstedtSeries, ResiduePoint
@@ -72,8 +76,9 @@ PACKAGES = (
     "numba",
     "llvmlite",
 )
+Labels = tuple[int, ...]  # of seeds
 RADII = "<f8"
-SOLUTIONS, POTENTIALS = 2, 3  # schemas that began with these
+SOLUTIONS, POTENTIALS, ALL_LENGTHS = 2, 3, 4  # schemas that began with these
 REFINED_KIND = "refined"  # kind of a torus without a series
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
@@ -193,6 +198,8 @@ def _parts(result: LindstedtSeries | QuasiPeriodic) -> tuple[Json, dict[str, Arr
 
 def _schema(result: LindstedtSeries | QuasiPeriodic) -> int:
     """The least that a reader has to know: what the first version wrote, it still reads."""
+    if result.chain.symbolic:
+        return ALL_LENGTHS
     if not result.chain.fpu:
         return POTENTIALS
     return 1 if isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)) else SOLUTIONS
@@ -314,7 +321,7 @@ def _series_entries(series: LindstedtSeries) -> Json:
     divisors = [asdict(d) | {"size": repr(d.size)} for d in series.smallest_divisors]
     return {
         **chain_entries(series.chain),
-        "seeds": list(series.seeds),
+        "seeds": list(map(label_entry, series.seeds)),
         "frequencies": frequencies,
         "order": series.order,
         "ring": series.ring,
@@ -334,26 +341,35 @@ def _point_entries(point: ResiduePoint | None) -> Json | None:
     return {"prime": str(point.prime), "root": str(point.root), "frequencies": frequencies}
 
 
-def _shapes(chain: Chain, seeds: int, order: int, most: int) -> tuple[Shapes, Shapes]:
+def _shapes(chain: Chain, seeds: Labels, order: int, most: int) -> tuple[Shapes, Shapes]:
     """The shapes of the tables of coordinates, and of corrections from order 1 on.
 
     ValueError as soon as they need more than `most` rows, so that no count grows without bound.
     """
     coordinates: Shapes = []
     corrections: Shapes = []
+    s, columns = len(seeds), _columns(chain, seeds, order)
     for k in range(order + 1):
         degree = chain.degree_step * k
-        rows = canonical_count(seeds, degree + 1)
+        rows = canonical_count(s, degree + 1)
         most -= rows
         if most < 0:
             raise ValueError(
-                f"order {order} of {seeds} seeds needs more rows than the file holds"
+                f"order {order} of {s} seeds needs more rows than the file holds"
             )
-        coordinates.append((rows, chain.N - 1))
+        coordinates.append((rows, columns))
         if k:
-            diagonal = 0 if degree % 2 else comb(degree // 2 + seeds - 1, seeds - 1)
-            corrections.append((diagonal, seeds))
+            diagonal = 0 if degree % 2 else comb(degree // 2 + s - 1, s - 1)
+            corrections.append((diagonal, s))
     return coordinates, corrections
+
+
+def _columns(chain: Chain, seeds: Labels, order: int) -> int:
+    """Modes of a table of coordinates: all of a chain, or those that are excited for every N."""
+    if not chain.symbolic:
+        return chain.N - 1
+    ends = ends_reached(chain, seeds, order)
+    return ends.low + ends.high
 
 
 def _split(flat: Array, shapes: Iterable[tuple[int, ...]]) -> list[Array]:
@@ -368,9 +384,10 @@ class _Reader:
     """Tables of a series out of the flat arrays of a file."""
 
     def __init__(
-        self, archive: Archive, body: Json, chain: Chain, seeds: int, order: int
+        self, archive: Archive, body: Json, chain: Chain, seeds: Labels, order: int
     ) -> None:
-        self.archive, self.body, self.seeds, self.order = archive, body, seeds, order
+        self.archive, self.body, self.order = archive, body, order
+        self.seeds = len(seeds)
         self.shapes = _shapes(chain, seeds, order, archive.entries("coordinates"))
         self.tables = _kind(body).tables(None, 0)
 
@@ -416,7 +433,7 @@ def _kind(body: Json) -> RingKind:
 
 def _series(archive: Archive, body: Json) -> LindstedtSeries:
     chain = chain_from(body)
-    seeds = seed_modes(body["seeds"], chain.N)
+    seeds = _seeds(chain, body["seeds"])
     order = integer(body["order"], "order", 0)
     frequencies = _chosen_frequencies(body, seeds)
     point, digits = body["point"], body["digits"]
@@ -427,8 +444,14 @@ def _series(archive: Archive, body: Json) -> LindstedtSeries:
         raise ValueError(
             f"frequencies, digits and point do not fit the ring {body['ring']!r:.40}"
         )
-    parts = _Reader(archive, body, chain, len(seeds), order).parts()
-    return LindstedtSeries(
+    if chain.symbolic and kind.name not in UNIVERSAL:
+        raise ValueError(f"no series of the ring {kind.name!r} is one for all N")
+    parts = _Reader(archive, body, chain, seeds, order).parts()
+    series: Callable[..., LindstedtSeries] = LindstedtSeries
+    if chain.symbolic:
+        ends = ends_reached(chain, seeds, order)._asdict()
+        series = partial(SeriesForAllN, **ends)
+    return series(
         chain=chain,
         seeds=seeds,
         frequencies=frequencies,
@@ -445,11 +468,16 @@ def _series(archive: Archive, body: Json) -> LindstedtSeries:
     )
 
 
+def _seeds(chain: Chain, entries: Sequence[int | str]) -> Labels:
+    """Seeds as the series has them; InputError for others."""
+    return seed_labels(entries) if chain.symbolic else seed_modes(entries, chain.N)
+
+
 def _chosen_frequencies(body: Json, seeds: tuple[int, ...]) -> tuple[Fraction, ...] | None:
     """None if none are chosen; ValueError where seeds and frequencies do not go together."""
     chosen = body["frequencies"]
     frequencies = None if chosen is None else tuple(fraction(w) for w in chosen)
-    fit = list(seeds) == sorted(seeds)
+    fit = seeds == in_order(seeds)
     if frequencies is not None:
         fit = fit and len(frequencies) == len(seeds) and min(frequencies) > 0
     if not fit:

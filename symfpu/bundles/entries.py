@@ -16,6 +16,8 @@ from symfpu.files.archive import Json
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import fraction, fraction_text, integer
 
+SYMBOL = "N"  # of a chain whose length is no number
+
 
 class UnknownPotential(ValueError):
     """The potential of a file that this symfpu cannot make."""
@@ -59,7 +61,7 @@ def number(entry: Any) -> Any:
 def chain_entries(chain: Chain) -> Json:
     """A chain as exact text: alpha and beta of an FPU chain, the potential of any other."""
     require_fixed_ends(chain)
-    N = int(chain.N)
+    N = SYMBOL if chain.symbolic else int(chain.N)
     if chain.fpu:
         alpha, beta = map(fraction_text, chain.couplings)
         return {"N": N, "alpha": alpha, "beta": beta}
@@ -81,7 +83,7 @@ def potential_entry(potential: Potential) -> str:
 
 def chain_from(body: Json) -> Chain:
     """The chain of such entries; UnknownPotential where its potential is no known one."""
-    N = integer(body["N"], "N", 2)
+    N = SYMBOL if body["N"] == SYMBOL else integer(body["N"], "N", 2)
     if "potential" not in body:
         return Chain(N, fraction(body["alpha"]), fraction(body["beta"]))
     written = str(body["potential"])

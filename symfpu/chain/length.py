@@ -87,6 +87,15 @@ def mode_label(value: Any, argument: str) -> int:
     raise InputError(argument, value, allowed, "count it from one of the ends")
 
 
+def label_entry(label: int) -> int | str:
+    """A label as files keep it: a number, or "N-b". `mode_label` reads it.
+
+    >>> label_entry(3), label_entry(HighMode(-2))
+    (3, 'N-2')
+    """
+    return str(label) if isinstance(label, HighMode) else int(label)
+
+
 def mode_of(label: int, N: int) -> int:
     """The mode that a label means in a chain of N bonds.
 

@@ -27,6 +27,17 @@ PotentialOption = Annotated[
 ]
 
 
-def chain_of(bonds: str, alpha: str, beta: str, potential: str | None) -> Chain:
-    """The chain that these options name; InputError for what is none."""
-    return Chain(whole("N", bonds), alpha, beta, potential=potential)
+def chain_of(
+    bonds: str,
+    alpha: str,
+    beta: str,
+    potential: str | None,
+    *,
+    symbolic: bool = False,
+) -> Chain:
+    """The chain that these options name; InputError for what is none.
+
+    symbolic : whether -N N may leave its length open.
+    """
+    N = "N" if symbolic and bonds == "N" else whole("N", bonds)
+    return Chain(N, alpha, beta, potential=potential)

@@ -94,6 +94,12 @@ def whole_numbers(argument: str, text: str) -> list[int]:
     return [whole(argument, part) for part in text.split(",")]
 
 
+def mode_named(argument: str, text: str) -> int | str:
+    """A mode of the command line: its number, or as N-1 counted from the end of all chains."""
+    name = text.strip()
+    return name if name.startswith("N") else whole(argument, name)
+
+
 def optional(argument: str, text: str | None) -> int | None:
     """A whole number, or None where the option is not given."""
     return None if text is None else whole(argument, text)

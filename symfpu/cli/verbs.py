@@ -20,6 +20,7 @@ VERBS = {
     "prove": "proofs",
     "verify": "proofs",
     "sweep": "proofs",
+    "term": "term",
     "solve": "tori",
     "show": "tori",
     "breather": "breather",

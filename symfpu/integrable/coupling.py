@@ -13,7 +13,7 @@ def toda_coupling(chain: Chain, a: Number | None) -> Fraction:
     """a as given, else c_3 of the chain: its own of a Toda chain; InputError where it is zero."""
     require_any_chain(chain)
     if chain.symbolic:
-        advice = "give it a length by chain.at(N=...)"
+        advice = "put a number for N: chain.at(N=32)"
         raise InputError("chain", chain, "a chain of so many bonds", advice)
     coupling = chain.potential.coefficient(3) if a is None else exact(a, "a")
     if coupling == 0:

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
@@ -147,10 +147,9 @@ def series_for_all_lengths(
     for rings of numbers.
     """
     order = integer(order, "order", 0)
-    labels = seed_labels(seeds)
-    low, high = reach(chain.degree_step, labels, order)
-    N = low + high + 1
-    labels = tuple(sorted(labels, key=lambda q: mode_of(q, N)))
+    labels = in_order(seed_labels(seeds))
+    ends = ends_reached(chain, labels, order)
+    N, low = ends.valid_from, ends.low
     representative, modes = chain.at(N=N), tuple(mode_of(q, N) for q in labels)
     check_size(representative, modes, order, ring)
     space = monomial_space(representative, modes, order)
@@ -163,10 +162,31 @@ def series_for_all_lengths(
         seeds=labels,
         coordinates=tuple(_table(program, t.nodes, ring) for t in series.coordinates),
         corrections=_corrections(series.corrections, program, ring),
-        low=low,
-        high=high,
-        valid_from=N,
+        **ends._asdict(),
     )
+
+
+class Ends(NamedTuple):
+    """Modes 1 .. low and N-high .. N-1, which a series excites from N = valid_from on."""
+
+    low: int
+    high: int
+    valid_from: int
+
+
+def in_order(labels: Sequence[int]) -> tuple[int, ...]:
+    """Labels as their modes ascend.
+
+    >>> in_order((HighMode(-1), 2, HighMode(-3), 1))
+    (1, 2, N-3, N-1)
+    """
+    return tuple(sorted(labels, key=lambda q: (q < 0, q)))
+
+
+def ends_reached(chain: Chain, labels: Sequence[int], order: int) -> Ends:
+    """The modes that the series of these seeds excites up to an order, for every large N."""
+    low, high = reach(chain.degree_step, labels, order)
+    return Ends(low, high, low + high + 1)
 
 
 def reach(degree_step: int, labels: Sequence[int], order: int) -> tuple[int, int]:
@@ -181,8 +201,10 @@ def reach(degree_step: int, labels: Sequence[int], order: int) -> tuple[int, int
     largest = [max((q for q in labels if q > 0), default=0)]
     largest.append(max((-q for q in labels if q < 0), default=0))
     reached = [0, 0]
-    for degree in range(1, 2 + degree_step * order, degree_step):
-        for high in range(degree + 1):
+    # one more seed adds its label: the last degrees reach farthest, by one kind of seeds but one
+    last = 1 + degree_step * order
+    for degree in {max(1, last - degree_step), last}:
+        for high in {0, 1, degree - 1, degree}:
             counts = degree - high, high
             if all(q or not count for q, count in zip(largest, counts, strict=True)):
                 m = sum(q * count for q, count in zip(largest, counts, strict=True))

@@ -30,7 +30,8 @@ class NamedParts:
         lines = [f"&{line}" for line in latex_lines(self.expression)]
         for name, value in self.names:
             first, *others = latex_lines(value)
-            lines.append(f"{name} &= {first}")
+            [symbol] = latex_lines(name)
+            lines.append(f"{symbol} &= {first}")
             lines += [rf"&\quad {line}" for line in others]
         rows = " \\\\\n".join(lines)
         return f"\\begin{{aligned}}\n{rows}\n\\end{{aligned}}"

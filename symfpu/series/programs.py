@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.formulas import Coupling, Multiplier
 from symfpu.algebra.program import Program, Terms
+from symfpu.chain.length import label_entry, mode_label
 from symfpu.errors import InputError
 from symfpu.numbers.typed import fraction, fraction_text, integer
 
@@ -64,7 +65,7 @@ def program_from(body: Json, members: Mapping[str, Array]) -> Program:
 
 def _symbol_entry(symbol: Any) -> list[Any]:
     if isinstance(symbol, Multiplier):
-        return ["L", symbol.mode, *symbol.harmonic]
+        return ["L", label_entry(symbol.mode), *symbol.harmonic]
     if isinstance(symbol, Coupling):
         return ["coupling", symbol.power, fraction_text(symbol.value)]
     if isinstance(symbol, str):
@@ -77,8 +78,9 @@ def _symbol_entry(symbol: Any) -> list[Any]:
 def _symbol(entry: Any) -> Any:
     kind, *parts = entry
     if kind == "L":
-        mode, *harmonic = (integer(part, "symbol", -MOST) for part in parts)
-        return Multiplier(mode, tuple(harmonic))
+        mode, *harmonic = parts
+        numbers = (integer(part, "symbol", -MOST) for part in harmonic)
+        return Multiplier(mode_label(mode, "symbol"), tuple(numbers))
     if kind == "coupling":
         power, value = parts
         return Coupling(integer(power, "power", 2), fraction(value))

@@ -54,6 +54,13 @@ SERIES = {
     "nested": lambda: lindstedt(BOTH, (1, 2), order=4, ring="nested"),
     "nested, beta": lambda: lindstedt(BETA, (1, 2, 5), order=2, ring="nested"),
 }
+ALL_LENGTHS = {
+    "all N": lambda: lindstedt(Chain("N", alpha=1, beta="1/3"), (1, 2), order=3),
+    "all N, both ends": lambda: lindstedt(Chain("N", alpha=1), ("N-2", 1), order=4, ring="nested"),
+    "all N, high, beta": lambda: lindstedt(Chain("N", beta="-1/3"), ("N-1",), order=2),
+    "all N, Toda": lambda: lindstedt(Chain("N", potential="toda:1/2"), (1,), order=3, ring="nested"),
+    "all N, order 0": lambda: lindstedt(Chain("N", beta=1), ("N-1", 3), order=0),
+}
 
 
 @pytest.fixture(scope="module", params=["doubles", "digits"])
@@ -94,9 +101,9 @@ def same(a, b):
     return repr(a._mpf_) == repr(b._mpf_) if isinstance(a, mpmath.mpf) else repr(a) == repr(b) if isinstance(a, float) else bool(a == b)
 
 
-@pytest.mark.parametrize("case", SERIES)
+@pytest.mark.parametrize("case", SERIES | ALL_LENGTHS)
 def test_a_series_comes_back_exactly(case, tmp_path):
-    series = SERIES[case]()
+    series = (SERIES | ALL_LENGTHS)[case]()
     bundle = load(save(tmp_path / "series", series))
     assert same(bundle.series, series)
     assert bundle.torus is None

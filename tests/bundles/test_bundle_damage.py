@@ -16,6 +16,7 @@ import pytest
 import symengine as se
 
 from symfpu.bundles.bundle import BundleError, load, save
+from symfpu.chain.chain import Chain
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.series.lindstedt import lindstedt
 from tests.bundles.test_bundle import ALPHA, digest, healthy, opened, same  # noqa: F401 (a fixture)
@@ -118,7 +119,7 @@ class Bomb:
 
 
 CHANGES = {
-    "newer": (lambda m, b: b.update(schema=4), r"newer symfpu \(schema 4; this one reads 3\); update symfpu"),
+    "newer": (lambda m, b: b.update(schema=5), r"newer symfpu \(schema 5; this one reads 4\); update symfpu"),
     "newer without a digest": (lambda m, b: b.update(schema=7, arrays={}), "newer symfpu"),
     "schema 0": (lambda m, b: b.update(schema=0), "schema"),
     "schema as text": (lambda m, b: b.update(schema="1"), "schema"),
@@ -242,6 +243,25 @@ def test_forged_programs_are_refused(forge, message, tmp_path):
     path = save(tmp_path / "symbolic", lindstedt(ALPHA, (1, 2), order=2))
     with pytest.raises(BundleError, match=message):
         load(forged(path, forge))
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ({"N": 16}, "seeds = 'N-1'"),
+        ({"N": "M"}, "N = 'M'"),
+        ({"seeds": ["N-1", 1]}, "do not go together"),
+        ({"seeds": [1, "N-2"]}, "holds .* bytes where"),
+        ({"seeds": [1, "N+1"]}, "seeds = 'N\\+1'"),
+        ({"ring": "float64", "frequencies": ["0.1", "1.9"]}, "no series of the ring 'float64' is one for all N"),
+        ({"order": 10**18}, "more rows than the file holds"),
+    ],
+    ids=str,
+)
+def test_forged_series_for_all_lengths_are_refused(entries, message, tmp_path):
+    path = save(tmp_path / "all", lindstedt(Chain("N", alpha=1), (1, "N-1"), order=2))
+    with pytest.raises(BundleError, match=message):
+        load(forged(path, lambda m, b: b["series"].update(entries)))
 
 
 def test_compressions_that_inflate_without_a_bound_are_refused(healthy, tmp_path):

@@ -257,7 +257,7 @@ def test_honest_failures_are_one_line_and_code_1(capsys, argv):
         assert len(err.splitlines()) == 1
 
 
-VERBS = ("propagate", "prove", "verify", "sweep", "solve", "show", "reproduce")
+VERBS = ("propagate", "prove", "verify", "sweep", "term", "solve", "show", "reproduce")
 
 
 @pytest.mark.parametrize("verb", VERBS)
