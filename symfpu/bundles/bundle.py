@@ -78,7 +78,7 @@ PACKAGES = (
 )
 Labels = tuple[int, ...]  # of seeds
 RADII = "<f8"
-SOLUTIONS, POTENTIALS, ALL_LENGTHS = 2, 3, 4  # schemas that began with these
+SOLUTIONS, POTENTIALS, PROGRAMS = 2, 3, 4  # schemas that began with these
 REFINED_KIND = "refined"  # kind of a torus without a series
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
@@ -198,8 +198,8 @@ def _parts(result: LindstedtSeries | QuasiPeriodic) -> tuple[Json, dict[str, Arr
 
 def _schema(result: LindstedtSeries | QuasiPeriodic) -> int:
     """The least that a reader has to know: what the first version wrote, it still reads."""
-    if result.chain.symbolic:
-        return ALL_LENGTHS
+    if isinstance(result, LindstedtSeries) and result.symbolic:
+        return PROGRAMS
     if not result.chain.fpu:
         return POTENTIALS
     return 1 if isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)) else SOLUTIONS

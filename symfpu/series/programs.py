@@ -17,7 +17,7 @@ from symfpu.numbers.typed import fraction, fraction_text, integer
 Array = NDArray[Any]
 Json = dict[str, Any]
 MOST = 2**40  # nodes, and terms
-SHORT, LONG = "<i4", "<i8"
+INTEGERS = "|i1", "<i2", "<i4", "<i8"
 
 
 class Member(NamedTuple):
@@ -28,31 +28,41 @@ class Member(NamedTuple):
 
 
 def program_entries(program: Program) -> tuple[dict[str, Array], Json]:
-    """Its arrays by name; its symbols as text, the lengths, and the integers' type."""
+    """Its arrays by name; its symbols as text, the lengths, and the integers' types by array."""
     terms = program.terms
-    largest = max(program.size, len(terms.left), int(np.abs(terms.factor).max(initial=0)))
-    dtype = SHORT if largest < 2**31 else LONG
-    arrays = {"program_start": program.start.astype(dtype)}
+    arrays = {"program_start": _narrowed(program.start)}
     for name, values in zip(Terms._fields, terms, strict=True):
-        arrays[f"program_{name}"] = values.astype(dtype)
+        arrays[f"program_{name}"] = _narrowed(values)
     symbols = list(map(_symbol_entry, program.symbols))
-    sizes = {"nodes": program.size, "terms": len(terms.left), "integers": dtype}
+    types = {name: values.dtype.str for name, values in arrays.items()}
+    sizes = {"nodes": program.size, "terms": len(terms.left), "integers": types}
     return arrays, {"program": sizes | {"symbols": symbols}}
+
+
+def _narrowed(values: Array) -> Array:
+    """In the shortest integers that hold all values: there is less to read, check and inflate."""
+    least, largest = int(values.min(initial=0)), int(values.max(initial=0))
+    fits = (t for t in INTEGERS if np.iinfo(t).min <= least <= largest <= np.iinfo(t).max)
+    return values.astype(next(fits))
 
 
 def program_members(body: Json) -> dict[str, Member]:
     """The types and lengths of the arrays by name. Raises ValueError."""
     layout = body["program"]
-    dtype = layout["integers"]
-    if dtype not in (SHORT, LONG):
-        raise ValueError(f"no kind of integers: {dtype!r:.40}")
     nodes, terms = (
         integer(layout[name], name, least) for name, least in (("nodes", 1), ("terms", 0))
     )
     if max(nodes, terms) > MOST:
         raise ValueError(f"a program of {nodes} nodes and {terms} terms")
-    members = {"program_start": Member(dtype, nodes + 1)}
-    return members | {f"program_{name}": Member(dtype, terms) for name in Terms._fields}
+    lengths = {"program_start": nodes + 1}
+    lengths |= {f"program_{name}": terms for name in Terms._fields}
+    types = layout["integers"]
+    if isinstance(types, str):  # of files before schema 4: the same for all
+        types = dict.fromkeys(lengths, types)
+    for dtype in types.values():
+        if dtype not in INTEGERS:
+            raise ValueError(f"no kind of integers: {dtype!r:.40}")
+    return {name: Member(types[name], length) for name, length in lengths.items()}
 
 
 def program_from(body: Json, members: Mapping[str, Array]) -> Program:
@@ -79,8 +89,10 @@ def _symbol(entry: Any) -> Any:
     kind, *parts = entry
     if kind == "L":
         mode, *harmonic = parts
-        numbers = (integer(part, "symbol", -MOST) for part in harmonic)
-        return Multiplier(mode_label(mode, "symbol"), tuple(numbers))
+        if any(type(n) is not int or abs(n) > MOST for n in harmonic):
+            raise ValueError(f"no harmonic: {harmonic!r:.40}")
+        label = mode if type(mode) is int and mode > 0 else mode_label(mode, "symbol")
+        return Multiplier(label, tuple(harmonic))
     if kind == "coupling":
         power, value = parts
         return Coupling(integer(power, "power", 2), fraction(value))

@@ -178,6 +178,19 @@ def test_the_format_is_open(torus, tmp_path):
         assert float(entry["decimal"] if torus.digits else entry) == float(amplitude)
 
 
+def test_a_program_has_the_shortest_integers(tmp_path):
+    """And says so to readers that know one type for all."""
+    series = SERIES["nested"]()
+    members, body = opened(save(tmp_path / "program", series))
+    program = series.coordinates[0].program
+    for name, values in zip(("start", "left", "right", "factor"), (program.start, *program.terms), strict=True):
+        kept = np.load(io.BytesIO(members[f"program_{name}.npy"]))
+        assert np.array_equal(kept, values)
+        bits = int(max(values.max(), -1 - values.min())).bit_length() + 1
+        assert bits <= 8 * kept.dtype.itemsize < 2 * max(bits, 8)
+    assert body["schema"] == 4
+
+
 def digest(body):
     return hashlib.sha256(json.dumps(body, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 

@@ -228,15 +228,22 @@ def forged_integers(name, change):
 @pytest.mark.parametrize(
     ("forge", "message"),
     [
-        (forged_integers("program_right.npy", lambda a: a.__setitem__(0, 10**6)), "comes before its parts"),
+        (forged_integers("program_right.npy", lambda a: a.__setitem__(0, 100)), "comes before its parts"),
         (forged_integers("program_left.npy", lambda a: a.__setitem__(0, -1)), "comes before its parts"),
-        (forged_integers("program_start.npy", lambda a: a.__setitem__(-2, 10**6)), "are in no order"),
+        (forged_integers("program_start.npy", lambda a: a.__setitem__(-2, 100)), "are in no order"),
         (forged_integers("program_start.npy", lambda a: a.__setitem__(0, 1)), "are in no order"),
         (forged_integers("coordinates.npy", lambda a: a.__setitem__(0, 10**6)), "is no node of the program"),
         (forged_integers("coordinates.npy", lambda a: a.__setitem__(0, -2)), "is no node of the program"),
         (lambda m, b: b["series"]["program"]["symbols"].pop(), "other leaves than symbols"),
         (lambda m, b: b["series"]["program"]["symbols"].__setitem__(0, ["eval", "exit()"]), "no kind of symbol"),
         (lambda m, b: b["series"]["program"].update(terms=2**50), "a program of"),
+        (lambda m, b: b["series"]["program"]["integers"].update(program_left="|O"), r"no kind of integers: '\|O'"),
+        (lambda m, b: b["series"]["program"]["integers"].update(program_left="<i8"), "bytes where"),
+        (lambda m, b: b["series"]["program"]["integers"].pop("program_left"), "KeyError 'program_left'"),
+        (lambda m, b: b["series"]["program"].update(integers="<f8"), "no kind of integers"),
+        (lambda m, b: b["series"]["program"]["symbols"][0].append("0"), "no harmonic"),
+        (lambda m, b: b["series"]["program"]["symbols"][0].append(True), "no harmonic"),
+        (lambda m, b: b["series"]["program"]["symbols"][0].__setitem__(1, 0), "symbol = 0"),
     ],
 )
 def test_forged_programs_are_refused(forge, message, tmp_path):

@@ -14,6 +14,7 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import text
 from symfpu.proofs.verify import verify
+from symfpu.series.lindstedt import lindstedt
 from tests.tolerances import AMPLITUDE, COEFFICIENT
 
 DATA = Path(__file__).parents[1] / "data" / "version-0.1"
@@ -42,6 +43,18 @@ def test_digits_and_verdicts_are_kept():
 
 def test_a_universal_series_keeps_its_formulas():
     assert str(load(DATA / "universal.symfpu").series.term(3, 2)) == FACTS["universal.symfpu"]["term"]
+
+
+def test_a_program_whose_integers_have_one_type_is_read():
+    """A file of schema 1, as it was before every array had the shortest integers."""
+    kept = load(DATA.parent / "program-schema-1.symfpu").series
+    made = lindstedt(kept.chain, kept.seeds, order=kept.order, ring="nested")
+    tables = zip(kept.node_tables(), made.node_tables(), strict=True)
+    assert all(np.array_equal(a.nodes, b.nodes) for a, b in tables)
+    programs = [series.coordinates[0].program for series in (kept, made)]
+    assert programs[0].symbols == programs[1].symbols
+    parts = zip(*((program.start, *program.terms) for program in programs), strict=True)
+    assert all(a.dtype == b.dtype == np.int64 and np.array_equal(a, b) for a, b in parts)
 
 
 @pytest.mark.parametrize("name", ["alpha.json", "beta.json"])
