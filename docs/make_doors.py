@@ -374,6 +374,9 @@ VERBS: dict[str, Door] = {
     "symfpu sweep": lambda c: c.verb(
         "sweep", "--order", 1, "--longest", 3, "--largest", 1, *c.rule_words
     ),
+    "symfpu term": lambda c: c.verb(
+        "term", "-N", N, "--seeds", 1, "-q", 2, "--order", 1, *c.words
+    ),
 }
 DOORS = {
     "The chain": METHODS,

@@ -76,6 +76,7 @@ def homeless(installed):
     )
 
 
+@pytest.mark.long
 def test_a_read_only_installation_without_a_home_keeps_its_code_in_a_temporary_folder(installed):
     first = homeless(installed)
     assert (first.returncode, first.stderr) == (0, "")
@@ -87,6 +88,7 @@ def test_a_read_only_installation_without_a_home_keeps_its_code_in_a_temporary_f
     assert {path: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")} == made
 
 
+@pytest.mark.long
 def test_a_temporary_folder_that_others_can_write_to_is_not_used(installed):
     planted = installed / "tmp" / f"symfpu-{os.getuid()}"
     planted.mkdir()

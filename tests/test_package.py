@@ -59,6 +59,7 @@ def test_the_stub_is_part_of_the_package():
     assert "py.typed" in data["symfpu"]
 
 
+@pytest.mark.long
 def test_type_checkers_know_the_types_of_public_names(tmp_path):
     script = tmp_path / "user.py"
     calls = "reveal_type(lindstedt(Chain(8, alpha=1), (1,)))"

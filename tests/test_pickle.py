@@ -383,6 +383,7 @@ def amplitude_of(case):
     return solve_amplitudes(lindstedt(PAIR, (1,), (frequency,), 4, digits=30))
 
 
+@pytest.mark.long
 def test_one_failing_case_costs_a_pool_of_processes_no_other():
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
         tasks = [pool.submit(amplitude_of, case) for case in (0, FAILING, 1)]

@@ -73,6 +73,7 @@ def test_bad_input_is_one_line_and_code_two(capsys, arguments, named):
     assert err.startswith(f"symfpu: {named} = ")
 
 
+@pytest.mark.long
 def test_sweep_prints_exceptions_and_writes_its_summary(capsys, tmp_path):
     file, summary = tmp_path / "s.jsonl", tmp_path / "s.md"
     arguments = ["sweep", "--model", "beta", "--longest", "6", "--largest", "2", "--order", "2", "--file", str(file), "-o", str(summary)]

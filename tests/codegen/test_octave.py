@@ -70,6 +70,7 @@ def source(torus, name="sample"):
     return LANGUAGE.torus(torus_program(torus, name, torus_facts(torus)))
 
 
+@pytest.mark.long
 def test_values_shapes_and_self_tests_of_all_cases(tmp_path):
     t = random_times(np.random.default_rng(5), BLOCK + 3)
     picked = [0, 1, BLOCK - 1, BLOCK, BLOCK + 2]

@@ -71,6 +71,7 @@ def test_numeric_series_agree_with_forty_digits(names, tmp_path, monkeypatch):
         agree(results, CASES[name], given, universal=False)
 
 
+@pytest.mark.long
 def test_universal_series_agree_with_forty_digits(tmp_path):
     script, draws = [], []
     for n, case in enumerate(UNIVERSAL.values()):

@@ -52,6 +52,7 @@ def test_the_error_of_orbits_falls_as_the_order_of_the_scheme(law):
         assert runs[1].energy_error < max(runs[0].energy_error / 2 ** (SCHEMES[name].order - 1), ENERGY_WALK), name
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("law", ["poly:1/3,0,1/5,-1/4", "poly:0,1/2,0,1/3"])
 def test_kicks_in_modes_serve_polynomials_of_any_degree(law):
     chain, state = Chain(7, potential=law), small_state(law)

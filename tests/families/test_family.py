@@ -450,6 +450,7 @@ def test_a_frequency_beyond_reach_is_not_in_the_family():
         member_at_frequency(breathers(), 5, 1)
 
 
+@pytest.mark.long
 def test_appendix_a_gives_series_of_growing_energy():
     found = whole("appendix-a")
     assert found.ending == "reached the energy asked for"

@@ -47,7 +47,7 @@ def test_average_energy_needs_one_half():
 
 
 ORDERS = {"Fig. 2": 4, "Fig. 5a": 6, "Fig. 5b": 6, "Fig. 5d": 4, "Fig. 9": 242}
-SLOW = ("Fig. 2", "Fig. 5d", "Fig. 9")
+SLOW = ("Fig. 2", "Fig. 5a", "Fig. 5d", "Fig. 9")
 
 
 @pytest.mark.parametrize("label", [pytest.param(label, marks=[pytest.mark.long] * (label in SLOW)) for label in ORDERS])

@@ -83,7 +83,7 @@ def test_the_law_s_own_dependence_on_the_size(exponents, verdict):
 def test_laws_are_unaltered_in_slope_alone(line):
     assert fig4.unaltered_claim(line).verdict == PARTLY
     assert fig4.unaltered_claim(replace(line, chains=line.chains[:1] * 2)).verdict == HOLDS
-    other = replace(line, chains=(line.chains[0], replace(line.chains[1], **({"alpha": "0.5"} if line is ALPHA else {"beta": "0.5"}))))
+    other = replace(line, chains=(line.chains[0], line.chains[1].at(**({"alpha": "0.5"} if line is ALPHA else {"beta": "0.5"}))))
     assert fig4.unaltered_claim(other).verdict == FAILS
 
 

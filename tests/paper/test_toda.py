@@ -87,6 +87,7 @@ def test_toda_s_torus_passes_its_resonance(chains):
     assert upper == pytest.approx(lower, rel=SMOOTH_SCAN)
 
 
+@pytest.mark.long
 def test_alpha_s_torus_is_torn_at_its_resonance(chains):
     lower, upper = (resonant_coefficient(refined_two_torus(chains["alpha"], omega)) for omega in ("0.390450", "0.390453"))
     assert lower < 0
@@ -120,6 +121,7 @@ def test_groups_of_toda_are_those_of_alpha(N, seeds):
     assert excited_groups(Chain(N, potential=toda(1)), seeds, 3) == excited_groups(Chain(N, alpha=1), seeds, 3)
 
 
+@pytest.mark.long
 def test_the_series_of_toda_s_breather_ends_before_it():
     (omega,) = FIG9_BREATHER.frequencies
     chain = Chain(FIG9_BREATHER.chain.N, potential=toda(FIG9_BREATHER.chain.alpha))
