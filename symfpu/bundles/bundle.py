@@ -36,6 +36,14 @@ from symfpu.bundles.entries import (
     number_entry,
 )
 from symfpu.bundles.refined import refined_entries, refined_from
+from symfpu.bundles.rings import (
+    TRAVELLING,
+    WAVES,
+    ring_torus_entries,
+    ring_torus_from,
+    travelling_entries,
+    travelling_from,
+)
 from symfpu.bundles.solutions import FOURIER, solution_entries, solution_from
 from symfpu.chain.chain import Chain
 from symfpu.chain.length import label_entry, seed_labels
@@ -60,7 +68,9 @@ from symfpu.series.monomials import shared_grading
 from symfpu.series.rings import FIXED_POINT, RINGS, RingKind
 from symfpu.series.series import LindstedtSeries, ResiduePoint
 from symfpu.series.tables import Shapes
+from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus, RootCertificate
 
 Array = NDArray[Any]
@@ -78,8 +88,16 @@ PACKAGES = (
 )
 Labels = tuple[int, ...]  # of seeds
 RADII = "<f8"
-SOLUTIONS, POTENTIALS, PROGRAMS = 2, 3, 4  # schemas that began with these
+# schemas that began with these
+SOLUTIONS, POTENTIALS, PROGRAMS, RINGS_OF_PARTICLES = 2, 3, 4, 5
 REFINED_KIND = "refined"  # kind of a torus without a series
+READERS: dict[str, Callable[[Archive, Json], QuasiPeriodic | RingTorus]] = {
+    REFINED_KIND: refined_from,
+    FOURIER: solution_from,
+    WAVES: ring_torus_from,
+}
+SERIES = LindstedtSeries, TravellingSeries
+Result = LindstedtSeries | TravellingSeries | QuasiPeriodic | RingTorus
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
 
@@ -87,7 +105,8 @@ LONG_RUN = 100  # periods of the slowest seed at which the last test vector is t
 class OrbitPoint(NamedTuple):
     """A point of the torus for tests of other programs, as decimals.
 
-    t : the time. Q, P : Q_1 .. Q_(N-1) and P_1 .. P_(N-1) at t.
+    t : the time. Q, P : Q_1 .. Q_(N-1) and P_1 .. P_(N-1) at t; of a ring displacements and momenta
+    of its N particles.
     """
 
     t: str
@@ -101,8 +120,8 @@ class Bundle:
 
     All is dimensionless; the format is ours.
 
-    series : None for a solution without one. torus : any solution, of the class that was saved,
-        or None.
+    series : None for a solution without one, as every torus of a ring. torus : any solution, of the
+        class that was saved, or None.
     verdict : None if none was saved.
     provenance : created (UTC), command, versions by package.
     test_vectors : a few points of the torus as it was when it was saved: t, Q and P, (N-1,), as
@@ -115,8 +134,8 @@ class Bundle:
     Bundle(LindstedtSeries(N=8, beta=0.1, ...), no torus, no verdict, saved ... by symfpu ...)
     """
 
-    series: LindstedtSeries | None
-    torus: QuasiPeriodic | None
+    series: LindstedtSeries | TravellingSeries | None
+    torus: QuasiPeriodic | RingTorus | None
     verdict: Json | None
     provenance: Json
     test_vectors: tuple[OrbitPoint, ...] = field(repr=False, default=())
@@ -137,7 +156,7 @@ class Bundle:
 
 def save(
     path: Path | str,
-    result: LindstedtSeries | QuasiPeriodic,
+    result: Result,
     *,
     verdict: Json | None = None,
     command: str | None = None,
@@ -165,7 +184,7 @@ def save(
     _require_arguments(result, verdict, command, created)
     parts, members = _parts(result)
     moment = (created or datetime.now(UTC)).astimezone(UTC)
-    points = [] if isinstance(result, LindstedtSeries) else _test_vectors(result)
+    points = [] if isinstance(result, SERIES) else _test_vectors(result)
     digests = {name: member_digest(values) for name, values in members.items()}
     body: Json = {
         "format": FORMAT,
@@ -182,8 +201,14 @@ def save(
     return path
 
 
-def _parts(result: LindstedtSeries | QuasiPeriodic) -> tuple[Json, dict[str, Array]]:
+def _parts(result: Result) -> tuple[Json, dict[str, Array]]:
     """The entries of series and torus, and their arrays."""
+    if isinstance(result, TravellingSeries):
+        entries, members = travelling_entries(result)
+        return {"series": entries, "torus": None}, members
+    if isinstance(result, RingTorus):
+        entries, members = ring_torus_entries(result)
+        return {"series": None, "torus": entries}, members
     if isinstance(result, RefinedTorus):
         entries, members = refined_entries(result)
         return {"series": None, "torus": entries | {"kind": REFINED_KIND}}, members
@@ -196,10 +221,12 @@ def _parts(result: LindstedtSeries | QuasiPeriodic) -> tuple[Json, dict[str, Arr
     return {"series": _series_entries(series) | layout, "torus": torus}, members
 
 
-def _schema(result: LindstedtSeries | QuasiPeriodic) -> int:
+def _schema(result: Result) -> int:
     """The least that a reader has to know: what the first version wrote, it still reads."""
     if isinstance(result, LindstedtSeries) and result.symbolic:
         return PROGRAMS
+    if result.chain.periodic:
+        return RINGS_OF_PARTICLES
     if not result.chain.fpu:
         return POTENTIALS
     return 1 if isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)) else SOLUTIONS
@@ -252,7 +279,7 @@ def _path(path: object) -> Path:
 def _require_arguments(
     result: object, verdict: object, command: object, created: object
 ) -> None:
-    if not isinstance(result, LindstedtSeries):
+    if not isinstance(result, (*SERIES, RingTorus)):
         require_solution(result, "result")
     if command is not None and not isinstance(command, str):
         raise InputError("command", command, "a string or None", "join its words")
@@ -431,6 +458,11 @@ def _kind(body: Json) -> RingKind:
     return RINGS[body["ring"]]
 
 
+def _any_series(archive: Archive, body: Json) -> LindstedtSeries | TravellingSeries:
+    of_waves = body["ring"] == TRAVELLING
+    return travelling_from(archive, body) if of_waves else _series(archive, body)
+
+
 def _series(archive: Archive, body: Json) -> LindstedtSeries:
     chain = chain_from(body)
     seeds = _seeds(chain, body["seeds"])
@@ -545,7 +577,7 @@ def _certificate(proof: Json, seeds: tuple[int, ...]) -> RootCertificate:
     return RootCertificate(proof["certified"] is True, radius, str(proof["reason"]))
 
 
-def _test_vectors(torus: QuasiPeriodic) -> list[OrbitPoint]:
+def _test_vectors(torus: QuasiPeriodic | RingTorus) -> list[OrbitPoint]:
     """The torus at the start, after a period of the slowest seed, about, and after many."""
     period = 2 * pi / float(min(torus.frequencies))
     times = [0.0, float(f"{period:.4g}"), float(f"{LONG_RUN * period:.4g}")]
@@ -565,7 +597,7 @@ def _bundle(path: Path, archive: Archive) -> Bundle:
         kind = KINDS[body["kind"]]
         problem = f"is a checkpoint of {kind.of}, which holds no torus"
         raise BundleError(path, problem, f"go on from it with {kind.resume}")
-    series = None if body["series"] is None else _series(archive, body["series"])
+    series = None if body["series"] is None else _any_series(archive, body["series"])
     return Bundle(
         series=series,
         torus=_solution(archive, body["torus"], series),
@@ -581,12 +613,15 @@ def _orbit_point(entry: Json) -> OrbitPoint:
 
 
 def _solution(
-    archive: Archive, body: Json | None, series: LindstedtSeries | None
-) -> QuasiPeriodic | None:
+    archive: Archive, body: Json | None, series: LindstedtSeries | TravellingSeries | None
+) -> QuasiPeriodic | RingTorus | None:
+    if isinstance(series, TravellingSeries):
+        if body is not None:
+            raise ValueError("a torus beside a series of waves")
+        return None
     if series is not None:
         return None if body is None else _torus(body, series)
-    readers = {REFINED_KIND: refined_from, FOURIER: solution_from}
-    if body is None or body["kind"] not in readers:
+    if body is None or body["kind"] not in READERS:
         kind = None if body is None else body["kind"]
         raise ValueError(f"a torus of kind {kind!r:.40} without a series")
-    return readers[body["kind"]](archive, body)
+    return READERS[body["kind"]](archive, body)

@@ -8,7 +8,7 @@ from typing import Any
 import mpmath
 from mpmath import libmp
 
-from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.errors import InputError
@@ -17,6 +17,7 @@ from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import fraction, fraction_text, integer
 
 SYMBOL = "N"  # of a chain whose length is no number
+FIXED = "fixed"  # the ends of chains that name none
 
 
 class UnknownPotential(ValueError):
@@ -59,13 +60,16 @@ def number(entry: Any) -> Any:
 
 
 def chain_entries(chain: Chain) -> Json:
-    """A chain as exact text: alpha and beta of an FPU chain, the potential of any other."""
-    require_fixed_ends(chain)
+    """A chain as exact text: alpha and beta of an FPU chain, the potential of any other.
+
+    The ends of a ring are named.
+    """
     N = SYMBOL if chain.symbolic else int(chain.N)
+    ends = {"ends": chain.ends} if chain.periodic else {}
     if chain.fpu:
         alpha, beta = map(fraction_text, chain.couplings)
-        return {"N": N, "alpha": alpha, "beta": beta}
-    return {"N": N, "potential": potential_entry(chain.potential)}
+        return {"N": N, "alpha": alpha, "beta": beta, **ends}
+    return {"N": N, "potential": potential_entry(chain.potential), **ends}
 
 
 def potential_entry(potential: Potential) -> str:
@@ -81,13 +85,19 @@ def potential_entry(potential: Potential) -> str:
     return potential.text
 
 
-def chain_from(body: Json) -> Chain:
-    """The chain of such entries; UnknownPotential where its potential is no known one."""
+def chain_from(body: Json, ends: str = FIXED) -> Chain:
+    """The chain of such entries; UnknownPotential where its potential is no known one.
+
+    ends : those that it must have; ValueError for others.
+    """
     N = SYMBOL if body["N"] == SYMBOL else integer(body["N"], "N", 2)
+    if body.get("ends", FIXED) != ends:
+        raise ValueError(f"a chain with {body.get('ends')!r:.40} ends, not {ends}")
     if "potential" not in body:
-        return Chain(N, fraction(body["alpha"]), fraction(body["beta"]))
+        couplings = fraction(body["alpha"]), fraction(body["beta"])
+        return Chain(N, *couplings, ends=ends)
     written = str(body["potential"])
     try:
-        return Chain(N, potential=potential_of_text(written))
+        return Chain(N, potential=potential_of_text(written), ends=ends)
     except InputError as error:
         raise UnknownPotential(written) from error

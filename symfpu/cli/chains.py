@@ -6,8 +6,11 @@ from typing import Annotated
 
 import typer
 
-from symfpu.chain.chain import Chain
-from symfpu.cli.terminal import whole
+from symfpu.bundles.bundle import Bundle
+from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.cli.terminal import held, whole
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 BondsOption = Annotated[
     str,
@@ -25,6 +28,14 @@ PotentialOption = Annotated[
         metavar="V",
     ),
 ]
+EndsOption = Annotated[
+    str,
+    typer.Option(
+        "--ends",
+        help="fixed, or periodic for a ring of N particles with seeds such as --seeds=1,-3.",
+        metavar="ENDS",
+    ),
+]
 
 
 def chain_of(
@@ -32,6 +43,7 @@ def chain_of(
     alpha: str,
     beta: str,
     potential: str | None,
+    ends: str = "fixed",
     *,
     symbolic: bool = False,
 ) -> Chain:
@@ -40,4 +52,19 @@ def chain_of(
     symbolic : whether -N N may leave its length open.
     """
     N = "N" if symbolic and bonds == "N" else whole("N", bonds)
-    return Chain(N, alpha, beta, potential=potential)
+    return Chain(N, alpha, beta, potential=potential, ends=ends)
+
+
+def solution_of(bundle: Bundle, file: str) -> QuasiPeriodic | RingTorus:
+    """The solution of a file; InputError where there is none."""
+    held(bundle.torus, file)
+    assert bundle.torus is not None
+    return bundle.torus
+
+
+def with_fixed_ends(bundle: Bundle, file: str) -> QuasiPeriodic:
+    """The same; InputError for one of a ring, too."""
+    solution = solution_of(bundle, file)
+    require_fixed_ends(solution.chain)
+    assert isinstance(solution, QuasiPeriodic)
+    return solution

@@ -8,10 +8,13 @@ from typing import Annotated
 import typer
 
 from symfpu.bundles.bundle import load
+from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.terminal import FileArgument, optional, path_named, progress_bar
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file
+from symfpu.series.travelling import TravellingSeries
+from symfpu.tori.ring_torus import RingTorus
 
 LANGUAGES = "c, fortran, numpy, mpmath, octave"  # known to the help without importing them
 
@@ -75,6 +78,8 @@ def export(
         if series:
             advice = "leave out --series"
         raise InputError("FILE", file, f"a file with a {wanted} in it", advice)
+    require_fixed_ends(solution.chain)
+    assert not isinstance(solution, (RingTorus, TravellingSeries))
     with progress_bar("source code"):
         written = export_source(
             solution,

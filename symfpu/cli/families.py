@@ -16,13 +16,13 @@ from symfpu.cli.chains import (
     BondsOption,
     PotentialOption,
     chain_of,
+    with_fixed_ends,
 )
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
     FileArgument,
     JsonOption,
     SeedsOption,
-    held,
     optional,
     path_named,
     print_json,
@@ -91,7 +91,7 @@ def refine_file(
 
     It has the same frequencies, or a given energy or amplitudes.
     """
-    torus = held(load(path_named("FILE", file)).torus, file)
+    torus = with_fixed_ends(load(path_named("FILE", file)), file)
     if energy is not None and amplitudes is not None:
         raise InputError(
             "amplitudes",

@@ -9,10 +9,10 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.bundles.bundle import load
+from symfpu.cli.chains import solution_of
 from symfpu.cli.terminal import (
     FileArgument,
     JsonOption,
-    held,
     kept_run,
     number,
     optional,
@@ -87,7 +87,7 @@ def gali(
 
     With the Lyapunov exponent of that orbit.
     """
-    torus = held(load(path_named("FILE", file)).torus, file)
+    torus = solution_of(load(path_named("FILE", file)), file)
     T = number("time", time)
     h = number("step", step)
     count = optional("vectors", vectors)
@@ -97,10 +97,12 @@ def gali(
         return
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     folder = None if output is None else output_folder(path_named("output", output))
+    Q, P = torus.state()
     with progress_bar("alignment indices", lambda: kept_run(kept)) as advance:
         found = alignment_indices(
             torus.chain,
-            *torus.state(),
+            Q,
+            P,
             T,
             vectors=count,
             step=h,

@@ -12,10 +12,10 @@ import typer
 from numpy.typing import NDArray
 
 from symfpu.bundles.bundle import load
+from symfpu.cli.chains import solution_of
 from symfpu.cli.terminal import (
     FileArgument,
     JsonOption,
-    held,
     kept_run,
     number,
     path_named,
@@ -29,8 +29,10 @@ from symfpu.dynamics.orbits import Orbit, integrate
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
+from symfpu.numbers.arithmetic import Numbers
 from symfpu.reports.tables import fifteen_digits
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 Floats = NDArray[np.float64]
 LOST_ENERGY = 1e-3  # relative
@@ -74,12 +76,14 @@ def orbit(
     T = number("time", time)
     h = number("step", step)
     count = whole("samples", samples)
-    torus = held(load(path_named("FILE", file)).torus, file)
-    exact = torus.in_doubles()
+    torus = solution_of(load(path_named("FILE", file)), file)
+    exact = torus if isinstance(torus, RingTorus) else torus.in_doubles()
+    Q, P = exact.state()
     with progress_bar("orbit", lambda: kept_run(kept)) as advance:
         made = integrate(
             exact.chain,
-            *exact.state(),
+            Q,
+            P,
             T,
             step=h,
             scheme=scheme,
@@ -111,12 +115,12 @@ def _output(path: Path) -> Path:
     return output_file(path)
 
 
-def _record(made: Orbit, torus: QuasiPeriodic) -> dict[str, Any]:
+def _record(made: Orbit, torus: QuasiPeriodic | RingTorus) -> dict[str, Any]:
     """What the verb prints.
 
     Deviations relative to the largest coordinate of the torus at the samples.
     """
-    there = torus.positions(made.times)
+    there = _modes_of(torus, made.times)
     largest = np.max(np.abs(there))
     distances = np.max(np.abs(made.Q - there), axis=1) / largest
     worst = int(np.argmax(distances))
@@ -125,6 +129,7 @@ def _record(made: Orbit, torus: QuasiPeriodic) -> dict[str, Any]:
     expected = [fifteen_digits(value) for value in torus.average_spectrum()]
     return {
         "N": made.chain.N,
+        **_mode_entries(made),
         "scheme": made.scheme.name,
         "step": fifteen_digits(made.step),
         "time": fifteen_digits(made.times[-1]),
@@ -137,6 +142,19 @@ def _record(made: Orbit, torus: QuasiPeriodic) -> dict[str, Any]:
         "torus_average_spectrum": expected,
         "seconds": round(made.seconds, 3),
     }
+
+
+def _modes_of(torus: QuasiPeriodic | RingTorus, times: Floats) -> Numbers:
+    if isinstance(torus, RingTorus):
+        return torus.mode_coordinates(times)
+    return torus.positions(times)
+
+
+def _mode_entries(made: Orbit) -> dict[str, Any]:
+    """The ends of a ring and its modes, in the order of its spectra."""
+    if not made.chain.periodic:
+        return {}
+    return {"ends": made.chain.ends, "modes": list(made.chain.mode_numbers)}
 
 
 def _print(record: dict[str, Any]) -> None:
@@ -152,9 +170,10 @@ def _print(record: dict[str, Any]) -> None:
     say("mode  time average of E_q      on the torus, for ever")
     average = record["average_spectrum"]
     expected = record["torus_average_spectrum"]
+    modes = record.get("modes", range(1, record["N"]))
     by_energy = sorted(range(len(average)), key=lambda place: -average[place])
     for place in by_energy[:SHOWN_MODES]:
-        say(f"{place + 1:<5} {average[place]:<24.6g} {expected[place]:.6g}")
+        say(f"{modes[place]:<5} {average[place]:<24.6g} {expected[place]:.6g}")
 
 
 def _write(path: Path, made: Orbit) -> None:
@@ -182,7 +201,7 @@ def _table(made: Orbit, spectrum: Floats) -> str:
     """t, H and E_q of the samples, with commas between them."""
     text = io.StringIO()
     rows = csv.writer(text)
-    modes = [f"E{q}" for q in range(1, made.chain.N)]
+    modes = [f"E{q}" for q in made.chain.mode_numbers]
     rows.writerow(["t", "H", *modes])
     for t, H, E in zip(made.times, made.energies, spectrum, strict=True):
         rows.writerow([repr(float(v)) for v in (t, H, *E)])

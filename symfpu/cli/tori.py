@@ -42,6 +42,7 @@ from symfpu.reports.torus import assessment_text, torus_record
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import assess
 
@@ -185,7 +186,7 @@ def show(
         say(f"{key:<18} {value}")
 
 
-def _record(solution: QuasiPeriodic) -> dict[str, Any]:
+def _record(solution: QuasiPeriodic | RingTorus) -> dict[str, Any]:
     """A solution for JSON, with what only its kind has."""
     if isinstance(solution, RefinedTorus):
         return refined_record(solution)

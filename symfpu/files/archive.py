@@ -27,7 +27,7 @@ Array = NDArray[Any]
 Json = dict[str, Any]
 
 FORMAT = "symfpu bundle"
-SCHEMA = 4  # the newest that is read; files say the oldest that reads them
+SCHEMA = 5  # the newest that is read; files say the oldest that reads them
 DOCUMENT = "bundle.json"
 COMPRESSION = 1  # mantissas are noise; the zeros between them are gone at the first level
 CHUNK = 1 << 22

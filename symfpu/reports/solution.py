@@ -8,6 +8,7 @@ from symfpu.breathers.floquet import Floquet
 from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import fifteen_digits, number_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 SHOWN_FREQUENCY = (
     40  # characters of an exact frequency in the terminal; all of them are in the JSON
@@ -15,7 +16,9 @@ SHOWN_FREQUENCY = (
 
 
 def solution_record(
-    solution: QuasiPeriodic, found: Floquet | None = None, warnings: tuple[str, ...] = ()
+    solution: QuasiPeriodic | RingTorus,
+    found: Floquet | None = None,
+    warnings: tuple[str, ...] = (),
 ) -> dict[str, Any]:
     """A solution for JSON: keys of the command line, numbers of more than 15 digits as strings.
 
@@ -31,8 +34,7 @@ def solution_record(
     stability = {} if found is None else multipliers_record(found)
     return {
         "kind": type(solution).__name__,
-        "N": chain.N,
-        **chain.typed_law,
+        **chain.typed,
         "seeds": list(solution.seeds),
         "frequencies": {str(q): decimal(omega) for q, omega in frequencies},
         "digits": digits,
@@ -62,7 +64,7 @@ def solution_text(record: dict[str, Any]) -> str:
     """The same for a reader, from the record."""
     average = record["average_harmonic_energy"]
     digits = "doubles" if record["digits"] is None else f"{record['digits']} digits"
-    names = [name for name in ("alpha", "beta", "potential") if name in record]
+    names = [name for name in ("alpha", "beta", "potential", "ends") if name in record]
     law = ", ".join(f"{name}={record[name]}" for name in names)
     lines = [f"{record['kind']}, N={record['N']}, {law}"]
     for q, amplitude in record["amplitudes"].items():

@@ -47,7 +47,7 @@ def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[st
 
 def chain_record(chain: Chain, seeds: tuple[int, ...]) -> dict[str, Any]:
     """What every record of a solution begins with: the chain, exact, and the seeds."""
-    return {"N": chain.N, **chain.typed_law, "seeds": list(seeds)}
+    return {**chain.typed, "seeds": list(seeds)}
 
 
 def _frequencies(series: LindstedtSeries) -> dict[str, str]:

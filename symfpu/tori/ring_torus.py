@@ -71,6 +71,8 @@ class RingTorus:
     order: int | None = None
     warnings: tuple[str, ...] = ()
 
+    digits = None
+
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
         found = ", ".join(f"A_{q}={a:.12g}" for q, a in self.amplitudes.items())
@@ -127,6 +129,10 @@ class RingTorus:
     def mode_momenta(self, t: ArrayLike) -> Waves:
         """P_q(t) = dQ_q/dt; t a number or (T,), result (N-1,) or (T, N-1), complex."""
         return self._along(t, -1j * self._rates)
+
+    def state(self) -> tuple[Waves, Waves]:
+        """Q and P of its modes at t = 0, (N-1,) each and complex, as `integrate` takes them."""
+        return self.mode_coordinates(0.0), self.mode_momenta(0.0)
 
     def positions(self, t: ArrayLike) -> Floats:
         """Displacements x_0 .. x_(N-1); t a number or (T,), result (N,) or (T, N)."""

@@ -119,7 +119,7 @@ class Bomb:
 
 
 CHANGES = {
-    "newer": (lambda m, b: b.update(schema=5), r"newer symfpu \(schema 5; this one reads 4\); update symfpu"),
+    "newer": (lambda m, b: b.update(schema=6), r"newer symfpu \(schema 6; this one reads 5\); update symfpu"),
     "newer without a digest": (lambda m, b: b.update(schema=7, arrays={}), "newer symfpu"),
     "schema 0": (lambda m, b: b.update(schema=0), "schema"),
     "schema as text": (lambda m, b: b.update(schema="1"), "schema"),
