@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from symfpu.algebra.dense import Floats, ValuesRing
 from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.grading import Grading, Ints
-from symfpu.algebra.residue import ResidueRing
 
 NO_SEED = -1
 
@@ -123,7 +122,3 @@ class TravellingRing(ValuesRing):
 
 class TravellingDoubles(TravellingRing, Float64Ring):
     """In doubles."""
-
-
-class TravellingResidues(TravellingRing, ResidueRing):
-    """Modulo a prime; root is an element of order 4N."""

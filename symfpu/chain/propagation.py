@@ -13,6 +13,7 @@ from functools import lru_cache
 from itertools import product
 
 from symfpu.algebra.selection import fold
+from symfpu.chain.ends import ENDS, checked_ends
 from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.powers import powers_of
 from symfpu.errors import InputError
@@ -28,6 +29,7 @@ def reachable_modes(
     *,
     model: str | None = None,
     potential: Potential | str | None = None,
+    ends: str = "fixed",
 ) -> list[tuple[int, ...]]:
     """The sets M_0 .. M_order of Eq. app as ascending tuples.
 
@@ -35,38 +37,48 @@ def reachable_modes(
 
     N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
     model : 'alpha' (default), 'beta' or 'alpha+beta'. potential : in its place, that of any chain,
-    such as toda("1/2") or "toda:1/2". All are dimensionless.
+    such as toda("1/2") or "toda:1/2". ends : "periodic" for a ring, whose seeds are signed.
+    All are dimensionless.
 
     M_k holds the folded sums of r signed seeds, r = k + 1 (alpha; alpha and beta together, and
     potentials that are not even), 2k + 1 (beta, even potentials). It is empty where no powers of
     the force make terms of the order, as at order 1 where c_3 = 0.
-    Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an
-    unknown model or potential.
+    On a ring sums are taken modulo N, not 2N, and q stands for the modes q and -q, since
+    Q_(-q) = conj Q_q: those of the harmonics nu with nu.q_seeds = +-q (ours).
+    Raises InputError for N below 2, seeds that are no modes or repeated, a negative order, an
+    unknown model, potential or ends.
 
     >>> reachable_modes(32, (3, 5), 1)
     [(3, 5), (2, 6, 8, 10)]
     """
-    N = integer(N, "N", 2)
-    modes = seed_modes(seeds, N)
+    kind = ENDS[checked_ends(ends)](integer(N, "N", 2))
+    modes = {abs(q) for q in kind.modes}
+    waves = kind.seeds(seeds)
     order = integer(order, "order", 0)
     if order > LARGEST_ORDER:
         raise InputError(
             "order", order, f"at most {LARGEST_ORDER}", "the sets repeat long before"
         )
     powers = powers_of(model, potential)
-    sums = {fold(q, N) for q in modes}
+    sums = {_folded(q, kind.turn) for q in waves}
     reached = []
     for there_are_terms in powers.orders_reached(order):
-        reached.append(tuple(sorted(sums - {0, N})) if there_are_terms else ())
+        reached.append(tuple(sorted(sums & modes)) if there_are_terms else ())
         for _ in range(powers.step):
-            # folding is a map of the sums modulo 2N and sign, so it may be done at every step
+            # folding is a map of the sums modulo the turn and sign: it may be done at every step
             sums = {
-                fold(total + sign * q, N)
+                _folded(total + sign * q, kind.turn)
                 for total in sums
-                for q in modes
+                for q in waves
                 for sign in (1, -1)
             }
     return reached
+
+
+def _folded(total: int, turn: int) -> int:
+    """A wave number up to sign and whole turns."""
+    wave = total % turn
+    return min(wave, turn - wave)
 
 
 def excitation_sequence(
@@ -76,25 +88,32 @@ def excitation_sequence(
     *,
     model: str | None = None,
     potential: Potential | str | None = None,
+    ends: str = "fixed",
 ) -> list[tuple[int, ...]]:
     """The sets D_0 .. D_order of Eq. dk, ascending: the modes the rule excites at each order.
 
     N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k, from 0 up.
     model : 'alpha' (default), 'beta' or 'alpha+beta'. potential : in its place, that of any chain,
-    such as toda("1/2") or "toda:1/2". All are dimensionless.
+    such as toda("1/2") or "toda:1/2". ends : "periodic" for a ring, whose seeds are signed.
+    All are dimensionless.
 
     This is the rule of the Proposition for the sequence of Definition 2, for other potentials as
     `reachable_modes` reads it (ours); which modes are excited in fact is a question for exact
     arithmetic.
-    Raises InputError for N below 2, seeds outside 1..N-1 or repeated, a negative order, an
-    unknown model or potential.
+    Raises InputError for N below 2, seeds that are no modes or repeated, a negative order, an
+    unknown model, potential or ends.
 
     >>> excitation_sequence(32, (1, 2, 3, 4), 2)
     [(1, 2, 3, 4), (5, 6, 7, 8), (9, 10, 11, 12)]
     >>> excitation_sequence(32, (3,), 3, potential="poly:0,1,1")
     [(3,), (), (9,), (6, 12)]
+    >>> excitation_sequence(16, (1, -3), 2, ends="periodic")
+    [(1, 3), (2, 4, 6), (5, 7)]
     """
-    return first_orders(reachable_modes(N, seeds, order, model=model, potential=potential))
+    sets = reachable_modes(
+        N, seeds, order, model=model, potential=potential, ends=ends
+    )
+    return first_orders(sets)
 
 
 def first_orders(sets: Iterable[Iterable[int]]) -> list[tuple[int, ...]]:

@@ -8,6 +8,7 @@ import pytest
 
 from symfpu import Chain, lindstedt, travelling_waves
 from symfpu.chain.commensurability import frequencies_cancel
+from symfpu.chain.propagation import excitation_sequence, first_orders, reachable_modes
 from symfpu.errors import InputError, ResonantDivisor
 from tests.tolerances import COEFFICIENT, ROUNDING
 
@@ -228,3 +229,45 @@ def test_a_long_ring_is_fast():
     omega = ("0.0061365", "0.0122735", "0.01841101", "0.02454907")
     series = travelling_waves(chain, (1, 2, 3, 4), omega, 8)
     assert series.multiply_adds < 1e8
+
+
+RULES = [
+    ({"alpha": "0.3"}, 16, (1, -3), 4),
+    ({"alpha": "0.3"}, 13, (2,), 7),
+    ({"alpha": "0.3", "beta": "0.2"}, 12, (1, 5), 3),
+    ({"beta": "-0.3"}, 16, (1, 3), 3),
+    ({"beta": "-0.3"}, 11, (-2, 3), 3),
+    ({"beta": 1}, 8, (4,), 3),
+    ({"potential": "poly:0,1/3,1/5"}, 15, (3, -4), 4),
+]
+
+
+@pytest.mark.parametrize(("law", "N", "seeds", "order"), RULES)
+def test_the_rule_of_a_ring_is_the_first_order_of_its_series(law, N, seeds, order):
+    """Every mode at the order at which a sum of signed seeds reaches it, and none before."""
+    chain = ring(N, **law)
+    linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
+    series = travelling_waves(chain, seeds, [f"{linear[q] * 1.00137:.9f}" for q in seeds], order)
+    excited = []
+    for k in range(order + 1):
+        harmonics, stretches = series.harmonic_terms([0.3] * len(seeds), k)
+        waves = harmonics[stretches != 0] @ np.array(seeds) % N
+        excited.append({min(q, N - q) for q in waves.tolist()} - {0})
+    assert first_orders(excited) == excitation_sequence(N, seeds, order, potential=chain.potential, ends="periodic")
+
+
+def test_the_rule_of_a_ring_of_twice_the_length_is_that_of_fixed_ends():
+    for seeds in ((1,), (3, 5), (2, 7)):
+        for model in ("alpha", "beta"):
+            pairs = [sign * q for q in seeds for sign in (1, -1)]
+            around = reachable_modes(18, pairs, 5, model=model, ends="periodic")
+            walls = reachable_modes(9, seeds, 5, model=model)
+            assert [tuple(q for q in modes if q != 9) for modes in around] == walls
+
+
+@pytest.mark.parametrize("seeds", [(0,), (9,), (-8,), (1, 1)])
+def test_the_rule_of_a_ring_refuses_what_is_no_seed_of_it(seeds):
+    with pytest.raises(InputError, match=r"-7\.\.8 without 0"):
+        excitation_sequence(16, seeds, 2, ends="periodic")
+    with pytest.raises(InputError, match="'fixed' or 'periodic'"):
+        excitation_sequence(16, (1,), 2, ends="round")
