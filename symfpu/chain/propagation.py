@@ -110,9 +110,7 @@ def excitation_sequence(
     >>> excitation_sequence(16, (1, -3), 2, ends="periodic")
     [(1, 3), (2, 4, 6), (5, 7)]
     """
-    sets = reachable_modes(
-        N, seeds, order, model=model, potential=potential, ends=ends
-    )
+    sets = reachable_modes(N, seeds, order, model=model, potential=potential, ends=ends)
     return first_orders(sets)
 
 
