@@ -1,6 +1,7 @@
 """Poincare-Lindstedt series of q-tori and q-breathers in Fermi-Pasta-Ulam chains, symbolic first.
 
 The public names are those of __init__.pyi; each is loaded from its module when it is first used.
+So is the room of pictures, symfpu.plots.
 """
 
 import ast
@@ -17,7 +18,8 @@ def _homes() -> dict[str, str]:
         f"{__path__[0]}/__init__.pyi"
     )  # wherever it is, an archive too
     imports = [line for line in ast.parse(stub).body if isinstance(line, ast.ImportFrom)]
-    return {alias.name: str(line.module) for line in imports for alias in line.names}
+    named = [line for line in imports if line.module != __name__]  # rooms are no names
+    return {alias.name: str(line.module) for line in named for alias in line.names}
 
 
 _HOMES = _homes()
@@ -25,6 +27,8 @@ __all__ = sorted(_HOMES)
 
 
 def __getattr__(name: str) -> Any:
+    if name == "plots":
+        return import_module("symfpu.plots")
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = globals()[name] = getattr(import_module(_HOMES[name]), name)

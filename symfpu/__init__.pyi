@@ -150,6 +150,9 @@ from symfpu.codegen.evaluator import Evaluator as Evaluator
 from symfpu.codegen.evaluator import compile_evaluator as compile_evaluator
 from symfpu.codegen.export import export as export
 
+# pictures: a room of functions, symfpu.plots.spectrum(torus)
+from symfpu import plots as plots
+
 # notebooks
 from symfpu.notebook import init_printing as init_printing
 

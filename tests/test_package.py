@@ -41,7 +41,8 @@ def test_importing_the_package_changes_how_terms_print_only_inside_ipython():
 
 def test_every_public_name_stands_once_in_the_stub_and_is_what_it_says():
     stub = ast.parse((ROOT / "__init__.pyi").read_text())
-    lines = [line for line in stub.body if isinstance(line, ast.ImportFrom)]
+    imports = [line for line in stub.body if isinstance(line, ast.ImportFrom)]
+    lines = [line for line in imports if line.module != "symfpu"]
     names = [alias.name for line in lines for alias in line.names]
     assert sorted(names) == symfpu.__all__ == sorted(set(names))
     reexported = [alias.asname == alias.name for line in lines for alias in line.names]
@@ -51,6 +52,15 @@ def test_every_public_name_stands_once_in_the_stub_and_is_what_it_says():
             thing = getattr(symfpu, alias.name)
             assert thing is getattr(importlib.import_module(line.module), alias.name)
             assert thing.__module__ == line.module
+
+
+def test_the_room_of_pictures_is_there_without_an_import_of_its_own():
+    known = "'symfpu.plots' in sys.modules, 'matplotlib' in sys.modules"
+    code = f"import sys, symfpu; print({known}); symfpu.plots.spectrum; print({known})"
+    assert _run(code).splitlines() == ["False False", "True False"]
+    stub = ast.parse((ROOT / "__init__.pyi").read_text())
+    (rooms,) = [line for line in stub.body if isinstance(line, ast.ImportFrom) and line.module == "symfpu"]
+    assert [(room.name, room.asname) for room in rooms.names] == [("plots", "plots")]
 
 
 def test_the_stub_is_part_of_the_package():

@@ -572,3 +572,7 @@ RECURRENCE_TIME = 0.02
 
 # Coefficients of 1.2e-5 on tori of residual 1e-13, fitted 3e-7 and more from the pole: beside alpha's residue of 3e-11.
 NO_RESIDUE = 1e-5
+
+# Pictures without words, averaged over squares of four pixels, from 0 to 1: fonts do not count, other edges of the same curves
+# differ by up to 0.002 between releases of matplotlib, one marker at another place by some 0.01.
+DRAWING = 0.004

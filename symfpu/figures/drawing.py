@@ -1,13 +1,9 @@
-"""Pictures from results: functions take axes and return them; nothing is computed here.
-
-Matplotlib is loaded when needed.
-"""
+"""Panels drawn into axes, and as files; nothing is computed here."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.figures.panels import Curve, Panel
+from symfpu.plots.style import COLOURS, MARKERS, write_picture
 
-Floats = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 Axes = Any
-STYLE_COLOURS = 5  # of the style file; then they come round
 # with more of them, or of lines among them, the legend goes beside the picture
 INSIDE_CURVES, INSIDE_LINES = 5, 3
-OPEN_MARKERS = "osD^v<>*P"
 SPAN_COLOUR = "0.92"
 
 # a marker of several letters is one for each curve
@@ -34,34 +28,13 @@ CURVE_STYLES: Mapping[str, dict[str, Any]] = {
     "dots": {"marker": ".", "ls": "none", "ms": 4},
     "triangles": {"marker": "^", "ls": "none", "ms": 7},
     "rings": {"marker": "o", "ls": "none", "ms": 9, "mfc": "none"},
-    "marks": {"marker": OPEN_MARKERS, "ls": "none", "ms": 5},
-    "joined": {"marker": OPEN_MARKERS, "ms": 9, "mfc": "none"},
-    "beads": {"marker": OPEN_MARKERS, "ms": 4, "lw": 1, "mfc": "none"},
+    "marks": {"marker": MARKERS, "ls": "none", "ms": 5},
+    "joined": {"marker": MARKERS, "ms": 9, "mfc": "none"},
+    "beads": {"marker": MARKERS, "ms": 4, "lw": 1, "mfc": "none"},
     "crosses": {"marker": "x", "ls": ":", "ms": 5},
 }
 # of which the sixth and later ones are dashed, as their colours are those of the first
 DASHED_STYLES = ("line", "beads")
-
-
-def plot_spectrum(
-    spectrum: Floats,
-    ax: Axes,
-    *,
-    label: str = "",
-    marker: str = "o",
-    floor: Floats | float = 0.0,
-) -> Axes:
-    """Normalised average energies of the modes against q, on a logarithmic scale.
-
-    spectrum : (N-1,). floor : in the unit of the spectrum, (N-1,) or one for all, as from
-    `spectrum_floor`; modes at or below it are not drawn.
-    """
-    q = np.arange(1, len(spectrum) + 1)
-    known = spectrum > floor
-    ax.semilogy(q[known], spectrum[known], marker=marker, label=label)
-    ax.set_xlabel(r"$q$")
-    ax.set_ylabel(r"$\overline{E}_q / E$")
-    return ax
 
 
 def plot_panel(panel: Panel, ax: Axes) -> Axes:
@@ -103,9 +76,9 @@ def _look(panel: Panel, i: int) -> dict[str, Any]:
     if markers and curve.style != "beads":
         look["ms"] *= 1 - 0.5 * i / len(panel.curves)
     dashed = curve.style in DASHED_STYLES and curve.group is None
-    if dashed and i >= STYLE_COLOURS:
+    if dashed and i >= COLOURS:
         look["ls"] = "--"
-    own_colour = f"C{place % STYLE_COLOURS}"
+    own_colour = f"C{place % COLOURS}"
     look["color"] = "black" if curve.style == "law" else own_colour
     return look
 
@@ -157,17 +130,5 @@ def draw_panel(panel: Panel, folder: Path) -> list[Path]:
 
 def save_panel(panel: Callable[[Axes], Axes], title: str, stem: Path) -> list[Path]:
     """Draw one panel with the project's style and write it as PNG and PDF."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
-
-    png = stem.with_suffix(".png")
-    pdf = stem.with_suffix(".pdf")
-    with as_file(files("symfpu.figures") / "symfpu.mplstyle") as style:
-        parameters = mpl.rc_params_from_file(style, use_default_template=False)
-    with mpl.rc_context(parameters):
-        figure = Figure()
-        ax = panel(figure.add_subplot())
-        ax.set_title(title)
-        figure.savefig(png)
-        figure.savefig(pdf, metadata={"CreationDate": None})
-    return [png, pdf]
+    paths = [stem.with_suffix(suffix) for suffix in (".png", ".pdf")]
+    return [write_picture(panel, path, title=title) for path in paths]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from symfpu.errors import InputError
@@ -10,11 +11,20 @@ from symfpu.errors import InputError
 
 def write_text(path: Path, text: str) -> None:
     """Write a file through a temporary one beside it, so that it is never half written."""
+    _write(path, lambda draft: draft.write_text(text))
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """The same for a file that is no text."""
+    _write(path, lambda draft: draft.write_bytes(content))
+
+
+def _write(path: Path, write: Callable[[Path], object]) -> None:
     if not path.name:
         raise InputError("output", str(path), "the name of a file", "name one")
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        draft.write_text(text)
+        write(draft)
         draft.replace(path)
     except OSError as error:
         draft.unlink(missing_ok=True)

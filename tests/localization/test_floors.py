@@ -13,9 +13,9 @@ from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.family import family
-from symfpu.figures.family import plot_spectra
 from symfpu.localization.floors import coefficient_errors, spectrum_floor
 from symfpu.localization.laws import fit_profile
+from symfpu.plots.families import family_spectra
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -188,7 +188,7 @@ def test_what_has_no_spectrum_has_no_floor():
 
 def test_pictures_of_spectra_end_at_the_floor():
     found = family(STATED[0], (1,), "1e-4", from_energy="5e-5")
-    ax = plot_spectra(found, Figure().add_subplot())
+    ax = family_spectra(found, Figure().add_subplot())
     for line, m in zip((ax.get_lines()[0], ax.get_lines()[-1]), (found.members[0], found.members[-1]), strict=True):
         E, floor = m.torus.average_spectrum(), spectrum_floor(m.torus)
         assert line.get_xdata().tolist() == (np.flatnonzero(floor < E) + 1).tolist()

@@ -1,0 +1,81 @@
+"""Alignment indices with their fitted slopes, and the Lyapunov exponent."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from symfpu.dynamics.alignment import AlignmentIndices
+from symfpu.dynamics.dimension import DECADES
+from symfpu.plots.style import Axes, axes_for, look, require
+
+LEAST_HEIGHT_DECADES = 0.5  # of the picture, for indices that stay where they are
+WORDS, ADVICE = "alignment indices", "pass what alignment_indices gave"
+
+
+def alignment(result: Any, ax: Axes | None = None) -> Axes:
+    """log10 G_k against log10 t, k = 2, 3, ..., with fitted slopes (Figs. 1(e), 2(b), 9(d)).
+
+    result : what `alignment_indices` gave; dimensionless (section 3.2). ax : axes of matplotlib;
+        default new ones.
+
+    A dashed line over the last decades has the fitted slope, which is in the legend with its
+    uncertainty; the verdict is the title. Returns the axes. Raises InputError.
+
+    >>> from matplotlib.figure import Figure
+    >>> from symfpu import Chain, alignment_indices
+    >>> found = alignment_indices(Chain(N=4, alpha=1), [0.1, 0, 0], [0, 0, 0], 1e3, vectors=2)
+    >>> alignment(found, Figure().add_subplot()).get_xlabel()
+    '$\\\\log_{10}\\\\, t$'
+    """
+    found = require(result, AlignmentIndices, WORDS, ADVICE)
+    x = np.log10(found.times)
+    late = x >= x[-1] - DECADES
+    with axes_for(ax) as axes:
+        for i, slope in enumerate(found.slopes()):
+            y = found.log10_gali[:, i]
+            style = look(i) | {"marker": None}
+            fitted = rf"{slope.value:.2f} \pm {slope.error:.2f}"
+            axes.plot(x, y, label=rf"$G_{{{slope.k}}}$: ${fitted}$", **style)
+            line = y[late].mean() + slope.value * (x[late] - x[late].mean())
+            axes.plot(x[late], line, color="black", ls=(0, (4, 3)), lw=0.9)
+        bottom, top = axes.get_ylim()
+        axes.set_ylim(min(bottom, top - LEAST_HEIGHT_DECADES), top)
+        axes.set_xlabel(r"$\log_{10}\, t$")
+        axes.set_ylabel(r"$\log_{10}\, G_k$")
+        axes.set_title(found.dimension().verdict)
+        legend = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
+        axes.legend(title="slopes, last decades", title_fontsize="small", **legend)
+    return axes
+
+
+def lyapunov(result: Any, ax: Axes | None = None) -> Axes:
+    """The estimate log|v(t)| / t of the maximal Lyapunov exponent against t.
+
+    result : what `alignment_indices` gave; dimensionless (section 3.2). ax : axes of matplotlib;
+        default new ones.
+
+    On a torus it falls as log(t)/t, the dashed line through the last value. Returns the axes.
+    Raises InputError.
+
+    >>> from matplotlib.figure import Figure
+    >>> from symfpu import Chain, alignment_indices
+    >>> found = alignment_indices(Chain(N=4, alpha=1), [0.1, 0, 0], [0, 0, 0], 1e3, vectors=2)
+    >>> lyapunov(found, Figure().add_subplot()).get_xscale()
+    'log'
+    """
+    found = require(result, AlignmentIndices, WORDS, ADVICE)
+    positive = found.lyapunov > 0
+    times, estimates = found.times[positive], found.lyapunov[positive]
+    with axes_for(ax) as axes:
+        axes.loglog(times, estimates, color="C0", label="estimate")
+        late = times > np.e
+        if late.any():
+            law = np.log(times[late]) / times[late]
+            through = law * estimates[-1] / law[-1]
+            axes.loglog(times[late], through, "k--", lw=0.9, label=r"$\propto \log(t)/t$")
+        axes.set_xlabel("$t$")
+        axes.set_ylabel(r"$\log |v(t)| \,/\, t$")
+        axes.legend()
+    return axes

@@ -1,0 +1,111 @@
+"""Gaps of Toda's spectral curve: of a state, and along an orbit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from symfpu.errors import InputError
+from symfpu.integrable.invariants import TodaInvariants
+from symfpu.plots.style import (
+    EPS,
+    MARKERS,
+    Axes,
+    Floats,
+    axes_for,
+    even,
+    rounding_below,
+    whole_numbers,
+)
+
+ROUNDING = 8 * EPS  # of a gap in doubles, absolute
+FEW = 6  # modes that stand in a legend; of more the colour is the mode
+ADVICE = "pass what toda_gaps or toda_invariants gave"
+
+
+def toda_gaps(
+    result: Any, ax: Axes | None = None, *, times: ArrayLike | None = None
+) -> Axes:
+    """Gaps of Toda's spectral curve by mode, or along an orbit: constant if it is Toda's.
+
+    result : what `toda_gaps` gave, (N-1,) of a state or (T, N-1) of an orbit, or what
+        `toda_invariants` gave. Dimensionless. Ours, after Flaschka.
+    ax : axes of matplotlib; default new ones. times : (T,), of the states of an orbit.
+
+    In doubles gaps below some 1e-15 are rounding, and shaded. Returns the axes. Raises InputError.
+
+    >>> from matplotlib.figure import Figure
+    >>> from symfpu import Chain, toda_invariants
+    >>> found = toda_invariants(Chain(4, alpha="1/2"), [0.1, 0, 0], [0, 0, 0.02])
+    >>> toda_gaps(found, Figure().add_subplot()).get_xlabel()
+    '$q$'
+    """
+    gaps, doubles = _gaps(result)
+    if (gaps.ndim == 2) != (times is not None):
+        given = f"gaps of shape {gaps.shape}"
+        allowed = "(N-1,) without times, or (T, N-1) with T times"
+        raise InputError("times", given, allowed, ADVICE)
+    with axes_for(ax) as axes:
+        if times is None:
+            _draw_state(axes, gaps)
+        else:
+            _draw_orbit(axes, gaps, _checked(times, len(gaps)))
+        axes.set_ylabel("gap")
+        if doubles:
+            rounding_below(axes, ROUNDING)
+    return axes
+
+
+def _gaps(result: Any) -> tuple[Floats, bool]:
+    """Gaps as doubles, and whether they were."""
+    values = result.gaps if isinstance(result, TodaInvariants) else result
+    if not isinstance(values, np.ndarray) or values.ndim not in (1, 2) or not values.size:
+        given = type(result).__name__
+        raise InputError("result", given, "gaps by mode, (N-1,) or (T, N-1)", ADVICE)
+    return values.astype(float), values.dtype != object
+
+
+def _checked(times: ArrayLike, count: int) -> Floats:
+    t = np.asarray(times, dtype=float)
+    if t.shape != (count,):
+        raise InputError("times", t.shape, f"shape ({count},)", "one for each state")
+    return t
+
+
+def _draw_state(axes: Axes, gaps: Floats) -> None:
+    q = np.arange(1, len(gaps) + 1)
+    seen = gaps > 0
+    axes.plot(q[seen], gaps[seen], "o", color="C0")
+    axes.set_yscale("log")
+    bottom = axes.get_ylim()[0]
+    axes.vlines(q[seen], bottom, gaps[seen], color="C0", lw=0.8, alpha=0.6)
+    axes.set_ylim(bottom, 4 * gaps.max())
+    axes.set_xlim(0.5, len(gaps) + 0.5)
+    whole_numbers(axes.xaxis)
+    axes.set_xlabel("$q$")
+
+
+def _draw_orbit(axes: Axes, gaps: Floats, times: Floats) -> None:
+    import matplotlib as mpl
+
+    count = gaps.shape[1]
+    positive = times > 0
+    uneven = not even(times)
+    shown = positive if uneven else slice(None)
+    colours = mpl.colormaps["viridis"]
+    for i in range(count):
+        few = {"color": f"C{i % 5}", "label": f"$q = {i + 1}$", "marker": MARKERS[i % 9]}
+        many = {"color": colours(i / max(1, count - 1))}
+        style = few | {"markevery": max(1, len(times) // 10)} if count <= FEW else many
+        axes.plot(times[shown], gaps[shown, i], **style)
+    axes.set_yscale("log")
+    if uneven:
+        axes.set_xscale("log")
+    axes.set_xlabel("$t$")
+    if count <= FEW:
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        return
+    scale = mpl.cm.ScalarMappable(mpl.colors.Normalize(1, count), colours)
+    axes.figure.colorbar(scale, ax=axes, label="$q$")

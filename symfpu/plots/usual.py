@@ -1,0 +1,246 @@
+"""The picture that one expects of a result, and its answer as HTML.
+
+One entry for each kind of result: what `plot` and `_repr_html_` of `symfpu.notebook.Shown` look up.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Iterator
+from functools import partial
+from html import escape
+from typing import Any, NamedTuple
+
+from symfpu.breathers.floquet import Floquet
+from symfpu.dynamics.alignment import AlignmentIndices
+from symfpu.dynamics.orbits import Orbit
+from symfpu.errors import InputError
+from symfpu.families.family import Family
+from symfpu.integrable.invariants import TodaInvariants
+from symfpu.numbers.arithmetic import text
+from symfpu.numbers.typed import decimal
+from symfpu.plots.families import family_frequencies
+from symfpu.plots.indices import alignment
+from symfpu.plots.motion import time_series
+from symfpu.plots.rule import propagation
+from symfpu.plots.series import amplitudes, residuals, small_divisors
+from symfpu.plots.spectra import spectrum
+from symfpu.plots.stability import multipliers
+from symfpu.plots.style import Axes, picture_bytes
+from symfpu.plots.toda import toda_gaps
+from symfpu.proofs.certificates import PropagationProof
+from symfpu.series.series import LindstedtSeries
+from symfpu.tori.amplitudes import AmplitudeHistory
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.verdict import Assessment
+
+SIZE, DPI = (4.2, 2.9), 75  # of the picture beside an answer
+PLACES = 12  # digits of numbers in doubles
+LONGEST = 44  # characters of a number; longer ones are cut
+Rows = Iterator[tuple[str, str]]
+PAGE = """<div class="symfpu-answer" style="display: flex; flex-wrap: wrap; gap: 1.5em">
+<div><div style="margin-bottom: 0.4em"><b>{head}</b></div>
+<table>{rows}</table></div>
+{picture}</div>"""
+ROW = '<tr><td style="text-align: left">{}</td><td style="text-align: left">{}</td></tr>'
+
+
+class Usual(NamedTuple):
+    """What is shown of a kind of result: the verdict in a line, numbers, and a picture."""
+
+    kind: type
+    picture: Callable[..., Axes]
+    verdict: Callable[[Any], str]
+    rows: Callable[[Any], Rows]
+    has_picture: Callable[[Any], bool] = lambda result: True
+
+
+def picture(result: Any, ax: Axes | None = None) -> Axes:
+    """The picture that one expects of a result; returns the axes. Raises InputError."""
+    return _usual(result).picture(result, ax)
+
+
+def html(result: Any) -> str:
+    """The answer of a result as HTML: verdict, numbers, and a small picture within the text."""
+    usual = _usual(result)
+    head = f"{type(result).__name__}: {usual.verdict(result)}"
+    rows = [ROW.format(escape(name), escape(value)) for name, value in usual.rows(result)]
+    shown = _inline(result, usual) if usual.has_picture(result) else ""
+    return PAGE.format(head=escape(head), rows="".join(rows), picture=shown)
+
+
+def _inline(result: Any, usual: Usual) -> str:
+    draw = partial(usual.picture, result)
+    content = picture_bytes(draw, ".png", size=SIZE, dpi=DPI)
+    data = base64.b64encode(content).decode()
+    words = f"{usual.picture.__name__} of this {type(result).__name__}".replace("_", " ")
+    return f'<img alt="{words}" src="data:image/png;base64,{data}">'
+
+
+def _usual(result: Any) -> Usual:
+    for usual in USUAL:
+        if isinstance(result, usual.kind):
+            return usual
+    allowed = "a result with a usual picture"
+    raise InputError("result", type(result).__name__, allowed, "see symfpu.plots")
+
+
+def _model(chain: Any) -> str:
+    return repr(chain).removeprefix("Chain(").removesuffix(")")
+
+
+def _number(value: Any, digits: int | None = None) -> str:
+    written = text(value, digits or PLACES)
+    return written if len(written) <= LONGEST else f"{written[:LONGEST]}..."
+
+
+def _listed(values: Any) -> str:
+    return ", ".join(map(str, values))
+
+
+def _torus_verdict(result: Any) -> str:
+    return "; ".join(result.warnings) or f"residual {result.residual():.2g}"
+
+
+def _torus_rows(result: Any) -> Rows:
+    digits = getattr(result, "digits", None)
+    yield "chain", _model(result.chain)
+    for q, omega in zip(result.seeds, result.frequencies, strict=True):
+        frequency = decimal(omega)
+        short = frequency if len(frequency) <= LONGEST else f"{float(omega):.15g}"
+        size = _number(result.amplitudes[q], digits)
+        yield f"seed {q}", f"\N{GREEK SMALL LETTER OMEGA} = {short}, A = {size}"
+    yield "energy H", _number(result.energy(), digits)
+    yield "harmonics", f"{len(result.harmonics)}"
+
+
+def _series_verdict(series: LindstedtSeries) -> str:
+    return f"order {series.order}, {series.coefficient_count:,} coefficients"
+
+
+def _series_rows(series: LindstedtSeries) -> Rows:
+    yield "chain", _model(series.chain)
+    yield "seeds", _listed(series.seeds)
+    if series.frequencies is not None:
+        yield "frequencies", _listed(decimal(w) for w in series.frequencies)
+    yield "ring", series.precision
+    if series.smallest_divisors:
+        yield "smallest divisor", repr(series.smallest_divisors[0])
+
+
+def _history_verdict(history: AmplitudeHistory) -> str:
+    return f"{len(history.amplitudes)} of {len(history.orders)} orders have a root"
+
+
+def _history_rows(history: AmplitudeHistory) -> Rows:
+    yield "seeds", _listed(history.seeds)
+    if history.amplitudes:
+        last = max(history.amplitudes)
+        sizes = ", ".join(_number(A) for A in history.amplitudes[last])
+        yield f"amplitudes at order {last}", sizes
+
+
+def _assessment_rows(found: Assessment) -> Rows:
+    yield "best order", f"{found.best_order} of {found.order}"
+    yield "least residual", f"{found.residuals[found.best_order]:.2g}"
+    yield "radius in mu, by ratio", f"{found.radius:.3g}"
+    for reason in found.reasons:
+        yield "", reason
+
+
+def _orbit_rows(orbit: Orbit) -> Rows:
+    yield "chain", _model(orbit.chain)
+    yield "to t", f"{orbit.times[-1]:.10g}, {len(orbit.times)} samples"
+    yield "scheme", f"{orbit.scheme.name}, step {abs(orbit.step):.6g}"
+    energies = orbit.energies[0].reshape(-1)
+    yield "energy H", ", ".join(_number(H) for H in energies[:3])
+
+
+def _index_rows(found: AlignmentIndices) -> Rows:
+    yield "chain", _model(found.chain)
+    yield "to t", f"{found.times[-1]:.10g}"
+    for slope in found.slopes():
+        yield f"slope of G_{slope.k}", f"{slope.value:.2f} \u00b1 {slope.error:.2f}"
+    yield "Lyapunov exponent", f"{found.lyapunov[-1]:.2g}"
+    yield "energy error", f"{found.energy_error:.1g}"
+
+
+def _floquet_rows(found: Floquet) -> Rows:
+    yield "chain", _model(found.orbit.chain)
+    yield "seed", str(found.orbit.seed)
+    yield "largest |multiplier|", _number(found.largest)
+    for kind, count in found.instabilities.items():
+        yield "unstable", f"{count} {kind}"
+
+
+def _family_rows(found: Family) -> Rows:
+    energies = [m.energy for m in found.members]
+    yield "chain", _model(found.chain)
+    yield "seeds", _listed(found.seeds)
+    yield "members", f"{len(found.members)}, H = {min(energies):.6g} .. {max(energies):.6g}"
+    for kind in ("fold", "resonance", "stability"):
+        count = sum(event.kind == kind for event in found.events)
+        if count:
+            yield f"events: {kind}", str(count)
+
+
+def _proof_rows(proof: PropagationProof) -> Rows:
+    yield "chain", f"N={proof.N}, {proof.model}"
+    yield "seeds", _listed(proof.seeds)
+    for k, modes in enumerate(proof.actual):
+        yield f"D_{k}", _listed(modes) or "none"
+    for odd in proof.exceptions:
+        yield f"mode {odd.mode}", f"predicted {odd.predicted}, actually {odd.actual}"
+
+
+def _toda_rows(found: TodaInvariants) -> Rows:
+    yield "chain", f"N={found.N}, a={decimal(found.a)}"
+    yield "widest gap", _number(max(found.gaps), found.digits)
+    yield "sum of actions", _number(sum(found.actions), found.digits)
+
+
+def _energy_series(orbit: Orbit, ax: Axes | None = None) -> Axes:
+    return time_series(orbit, ax, quantity="E")
+
+
+_energy_series.__name__ = "time_series"
+
+USUAL = (
+    Usual(QuasiPeriodic, spectrum, _torus_verdict, _torus_rows),
+    Usual(RingTorus, spectrum, _torus_verdict, _torus_rows),
+    Usual(
+        LindstedtSeries,
+        small_divisors,
+        _series_verdict,
+        _series_rows,
+        lambda series: bool(series.smallest_divisors),
+    ),
+    Usual(
+        AmplitudeHistory,
+        amplitudes,
+        _history_verdict,
+        _history_rows,
+        lambda history: bool(history.differences()),
+    ),
+    Usual(Assessment, residuals, lambda found: found.headline, _assessment_rows),
+    Usual(
+        Orbit,
+        _energy_series,
+        lambda orbit: f"energy error {orbit.energy_error:.2g}",
+        _orbit_rows,
+        lambda orbit: orbit.Q.ndim == 2,
+    ),
+    Usual(
+        AlignmentIndices, alignment, lambda found: found.dimension().verdict, _index_rows
+    ),
+    Usual(
+        Floquet,
+        multipliers,
+        lambda found: "stable" if found.stable else "unstable",
+        _floquet_rows,
+    ),
+    Usual(Family, family_frequencies, lambda found: f"it {found.ending}", _family_rows),
+    Usual(PropagationProof, propagation, lambda proof: proof.verdict, _proof_rows),
+    Usual(TodaInvariants, toda_gaps, lambda found: "gaps and actions", _toda_rows),
+)

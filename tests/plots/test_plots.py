@@ -1,0 +1,479 @@
+"""Functions of symfpu.plots: what they draw, of which results, and what they refuse."""
+
+import inspect
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from symfpu import plots
+from symfpu.breathers.balance import breather_at_amplitude
+from symfpu.breathers.floquet import floquet
+from symfpu.chain.chain import Chain
+from symfpu.chain.propagation import excitation_sequence
+from symfpu.dynamics.orbits import integrate
+from symfpu.errors import InputError
+from symfpu.integrable.invariants import toda_gaps
+from symfpu.localization.floors import spectrum_floor
+from symfpu.plots.style import COLOURS, EPS, MARKERS, look, parameters
+from symfpu.series.lindstedt import lindstedt
+from tests.plots import cases
+from tests.tolerances import LAST_DIGIT, ROUNDING
+
+PUBLIC = {name: getattr(plots, name) for name in vars(plots) if inspect.isfunction(getattr(plots, name))}
+
+
+@pytest.fixture
+def ax():
+    return Figure().add_subplot()
+
+
+@pytest.fixture
+def ax3():
+    return Figure().add_subplot(projection="3d")
+
+
+def labelled(ax):
+    """The lines of the legend, by label."""
+    return {line.get_label(): line for line in ax.get_lines() if not line.get_label().startswith("_")}
+
+
+# what holds for all
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_a_wrong_result_is_refused_with_what_would_be_right(name):
+    with pytest.raises(InputError) as refused:
+        PUBLIC[name]("torus")
+    assert refused.value.argument in ("result", "results")
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_docstrings_say_arguments_units_sources_errors_and_have_an_example(name):
+    doc = " ".join(PUBLIC[name].__doc__.split())
+    for argument in inspect.signature(PUBLIC[name]).parameters:
+        assert re.search(rf"\b{argument}\b[^.]* : ", doc), argument
+    assert "imensionless" in doc
+    assert "Raises InputError" in doc
+    assert re.search(r"\b(Ours|Eqs?\. |Figs?\. |section \d|Appendix [A-F])", doc)
+    assert f">>> {name}(" in doc or f" {name}(" in doc.split(">>>", 1)[1]
+
+
+@pytest.mark.parametrize("wrong", ["axes", 3, Figure()])
+def test_what_are_no_axes_is_refused(wrong):
+    with pytest.raises(InputError, match="ax ="):
+        plots.spectrum(cases.torus(), wrong)
+
+
+def test_axes_have_the_dimensions_of_the_picture(ax, ax3):
+    with pytest.raises(InputError, match="two dimensions"):
+        plots.spectrum(cases.torus(), ax3)
+    with pytest.raises(InputError, match="three dimensions"):
+        plots.torus(cases.torus(), ax)
+
+
+def test_new_axes_have_our_style_and_others_keep_theirs():
+    import matplotlib as mpl
+    from matplotlib import pyplot as plt
+
+    before = dict(mpl.rcParams)
+    ax = plots.spectrum(cases.torus())
+    assert dict(mpl.rcParams) == before
+    assert list(ax.figure.get_size_inches()) == [6.0, 4.2]
+    assert plt.fignum_exists(ax.figure.number)
+    plt.close(ax.figure)
+
+
+def test_every_picture_labels_its_axes(ax):
+    plots.residuals(cases.assessment(), ax)
+    assert ax.get_xlabel()
+    assert ax.get_ylabel()
+
+
+# colours
+
+
+def linear(colour):
+    value = np.array([int(colour.strip("#")[i : i + 2], 16) / 255 for i in (0, 2, 4)])
+    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+
+
+def lab(rgb):
+    to_xyz = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+    xyz = to_xyz @ rgb / np.array([0.9505, 1, 1.089])
+    x, y, z = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116)
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+
+
+# full loss of the red, green and blue receptors: Machado, Oliveira, Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009) 1291
+SEEN = {
+    "all": np.eye(3),
+    "no red": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+    "no green": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+    "no blue": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+}
+CLEARLY = 20  # distance of colours in CIE L*a*b*; 2.3 is just seen
+
+
+@pytest.mark.parametrize("eyes", SEEN)
+def test_colours_differ_for_all_eyes(eyes):
+    colours = parameters()["axes.prop_cycle"].by_key()["color"]
+    assert len(colours) == COLOURS
+    places = [lab(np.clip(np.array(SEEN[eyes]) @ linear(colour), 0, 1)) for colour in colours]
+    apart = [np.linalg.norm(a - b) for i, a in enumerate(places) for b in places[:i]]
+    assert min(apart) > CLEARLY
+
+
+def test_curves_differ_without_colours():
+    assert len({(look(i)["marker"], look(i)["ls"]) for i in range(len(MARKERS))}) == len(MARKERS)
+
+
+# spectra
+
+
+def test_a_spectrum_is_normalised_and_leaves_out_rounding(ax):
+    breather = cases.breather()
+    assert plots.spectrum(breather, ax) is ax
+    line, limits = ax.get_lines()[:2]
+    energies = breather.average_spectrum()
+    known = np.flatnonzero(energies > spectrum_floor(breather))
+    assert line.get_xdata().tolist() == (known + 1).tolist()
+    assert line.get_ydata() == pytest.approx(energies[known] / energies.sum(), rel=LAST_DIGIT)
+    assert not set(limits.get_xdata()) & set(line.get_xdata())
+    assert (ax.get_yscale(), ax.get_xlabel()) == ("log", "$q$")
+
+
+def test_orbits_of_particles_have_a_floor_and_those_of_modes_none(ax):
+    plots.spectrum([cases.orbit(), cases.orbit("aba864_modes")], ax, labels=("particles", "modes"))
+    particles, modes = labelled(ax).values()
+    orbit = cases.orbit()
+    floor = EPS**2 * orbit.scheme.stages * orbit.times[-1] / orbit.step
+    assert min(particles.get_ydata()) > floor
+    assert len(particles.get_ydata()) < len(modes.get_ydata()) == 15
+
+
+def test_groups_are_those_of_the_rule(ax):
+    plots.spectrum(cases.torus(), ax)
+    sequence = excitation_sequence(16, (1, 2), 16)
+    named = [text.get_text() for text in ax.texts]
+    assert named == [f"$D_{{{k}}}$" for k, modes in enumerate(sequence) if modes]
+    assert len(ax.patches) == len(named)
+    bare = Figure().add_subplot()
+    plots.spectrum(cases.torus(), bare, groups=0)
+    assert not bare.patches
+
+
+@pytest.mark.parametrize("result", [cases.one_mode, cases.toda_torus, cases.ring, cases.three_seeds, cases.refined])
+def test_spectra_of_all_kinds_of_chains(result, ax):
+    found = result()
+    plots.spectrum(found, ax)
+    line = ax.get_lines()[0]
+    assert set(line.get_xdata()) <= set(found.chain.mode_numbers)
+    assert sum(line.get_ydata()) == pytest.approx(1, rel=ROUNDING)
+
+
+def test_labels_and_results_fit(ax):
+    for labels in (["one"], "ab"):
+        with pytest.raises(InputError, match="labels"):
+            plots.spectrum([cases.torus(), cases.torus()], ax, labels=labels)
+    with pytest.raises(InputError, match="one length"):
+        plots.spectrum([cases.torus(), cases.breather()], ax)
+    with pytest.raises(InputError, match="at least one"):
+        plots.spectrum([], ax)
+    with pytest.raises(InputError, match="averages=True"):
+        plots.spectrum(cases.even_orbit(), ax)
+    with pytest.raises(InputError, match="groups"):
+        plots.spectrum(cases.torus(), ax, groups=-1)
+
+
+# motion
+
+
+def test_time_series_are_those_of_the_result(ax):
+    times = np.linspace(0, 9, 40)
+    plots.time_series(cases.toda_torus(), ax, modes=(3, 1), times=times)
+    found = labelled(ax)
+    assert list(found) == ["$q = 3$", "$q = 1$"]
+    assert found["$q = 3$"].get_ydata() == pytest.approx(cases.toda_torus().positions(times)[:, 2], rel=LAST_DIGIT)
+
+
+def test_samples_of_growing_distances_get_a_logarithmic_axis(ax):
+    plots.time_series(cases.orbit(), ax, quantity="E", modes=(1, 2))
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
+    assert labelled(ax)["$q = 2$"].get_ydata().tolist() == cases.orbit().harmonic_energies()[1:, 1].tolist()
+    linear_axes = Figure().add_subplot()
+    plots.time_series(cases.even_orbit(), linear_axes)
+    assert linear_axes.get_xscale() == "linear"
+
+
+@pytest.mark.parametrize("result", [cases.one_mode, cases.breather, cases.ring])
+@pytest.mark.parametrize("quantity", ["Q", "E"])
+def test_time_series_of_small_and_odd_chains(result, quantity, ax):
+    plots.time_series(result(), ax, quantity=quantity)
+    assert len(labelled(ax)) == min(4, result().chain.N - 1)
+    assert all(np.isfinite(line.get_ydata()).all() for line in ax.get_lines())
+
+
+@pytest.mark.parametrize(
+    ("options", "argument"),
+    [
+        ({"quantity": "P"}, "quantity"),
+        ({"modes": (16,)}, "modes"),
+        ({"modes": (1, 1)}, "modes"),
+        ({"modes": ()}, "modes"),
+        ({"modes": 3}, "modes"),
+        ({"modes": (1.5,)}, "modes"),
+        ({"times": 3.0}, "times"),
+        ({"times": [1.0]}, "times"),
+    ],
+)
+def test_wrong_arguments_of_time_series_are_named(options, argument, ax):
+    with pytest.raises(InputError, match=f"{argument} ="):
+        plots.time_series(cases.torus(), ax, **options)
+
+
+def test_an_orbit_has_times_of_its_own_and_is_one(ax):
+    with pytest.raises(InputError, match="samples=times"):
+        plots.time_series(cases.orbit(), ax, times=[0, 1])
+    two = integrate(Chain(4, beta=1), [[0.1, 0, 0], [0.2, 0, 0]], np.zeros((2, 3)), 10, step=0.1, averages=True)
+    for draw in (plots.time_series, plots.spectrum, plots.space_time):
+        with pytest.raises(InputError, match="one by one"):
+            draw(two, ax)
+
+
+@pytest.mark.parametrize(("result", "columns"), [(cases.one_mode, 3), (cases.breather, 10), (cases.ring, 9)])
+def test_space_and_time_have_every_particle_and_both_ends(result, columns, ax):
+    times = np.linspace(0, 5, 7)
+    plots.space_time(result(), ax, times=times)
+    (mesh,) = ax.collections
+    values = np.asarray(mesh.get_array()).reshape(7, -1)
+    assert values.shape == (7, columns)
+    if not result().chain.periodic:
+        assert not values[:, [0, -1]].any()
+        x = result().chain.positions(result().positions(times))
+        assert values[:, 1:-1] == pytest.approx(x, rel=LAST_DIGIT)
+    low, high = mesh.get_clim()
+    assert low == -high
+
+
+def test_space_and_time_ask_for_even_times(ax):
+    for draw in (plots.space_time, plots.animation):
+        with pytest.raises(InputError, match="evenly spaced"):
+            draw(cases.orbit(), ax)
+    plots.space_time(cases.even_orbit(), ax)
+
+
+def test_an_animation_moves_and_is_written(tmp_path, ax):
+    breather = cases.breather()
+    times = np.linspace(0, 4, 3)
+    moving = plots.animation(breather, ax, times=times)
+    file = tmp_path / "chain.gif"
+    moving.save(file, writer="pillow", dpi=30)
+    assert file.read_bytes().startswith(b"GIF89a")
+    line = ax.get_lines()[0]
+    last = breather.chain.positions(breather.positions(times[-1]))
+    assert line.get_ydata()[1:-1] == pytest.approx(last, rel=LAST_DIGIT)
+
+
+# tori
+
+
+def test_a_section_is_taken_once_a_period(ax):
+    plots.section(cases.torus(), ax, modes=(3,), seed=2, points=5)
+    (line,) = ax.get_lines()
+    times = 2 * np.pi / 0.39046 * np.arange(5)
+    assert line.get_xdata() == pytest.approx(cases.torus().positions(times)[:, 2], rel=LAST_DIGIT)
+    assert line.get_ydata() == pytest.approx(cases.torus().momenta(times)[:, 2], rel=LAST_DIGIT)
+
+
+def test_rounding_does_not_draw_the_point_of_a_breather_apart(ax):
+    plots.section(cases.breather(), ax)
+    bottom, top = ax.get_ylim()
+    spread = np.ptp(ax.get_lines()[0].get_ydata())
+    assert spread < (top - bottom) / 1000
+    alone = Figure().add_subplot()
+    plots.section(cases.one_mode(), alone)
+    assert list(labelled(alone)) == ["$q = 1$"]
+
+
+@pytest.mark.parametrize(("options", "argument"), [({"seed": 3}, "seed"), ({"points": 0}, "points"), ({"modes": (0,)}, "modes")])
+def test_wrong_arguments_of_a_section_are_named(options, argument, ax):
+    with pytest.raises(InputError, match=f"{argument} ="):
+        plots.section(cases.torus(), ax, **options)
+
+
+@pytest.mark.parametrize("result", [cases.torus, cases.breather, cases.three_seeds, cases.toda_torus])
+@pytest.mark.parametrize(("modes", "names"), [((1, 2), ["$Q_{1}$", "$P_{1}$", "$Q_{2}$"]), ((1, 2, 3), ["$Q_{1}$", "$Q_{2}$", "$Q_{3}$"])])
+def test_a_torus_has_three_coordinates(result, modes, names, ax3):
+    plots.torus(result(), ax3, modes=modes)
+    assert [ax3.get_xlabel(), ax3.get_ylabel(), ax3.get_zlabel()] == names
+
+
+def test_a_chain_of_one_mode_has_no_three_coordinates(ax3):
+    with pytest.raises(InputError, match="section"):
+        plots.torus(cases.one_mode(), ax3)
+    with pytest.raises(InputError, match="two modes or three"):
+        plots.torus(cases.torus(), ax3, modes=(1,))
+
+
+# series
+
+
+def test_colours_are_the_largest_coefficients(ax):
+    plots.coefficients(cases.torus(), ax, mode=3)
+    table = np.ma.filled(ax.collections[0].get_array(), np.nan).reshape(-1, 13)
+    torus = cases.torus()
+    nu, values = torus.series.harmonic_terms(list(torus.amplitudes.values()), 5)
+    sizes = np.abs(values[:, 2]) * torus.chain.frequencies()[2]
+    for length in range(7):
+        of_length = sizes[np.abs(nu).sum(axis=1) == length]
+        largest = of_length.max(initial=0)
+        if largest:
+            assert table[length, 5] == pytest.approx(np.log10(largest), rel=LAST_DIGIT)
+        else:
+            assert np.isnan(table[length, 5])
+
+
+def test_coefficients_of_one_seed_and_of_other_chains(ax):
+    for result in (cases.toda_torus, cases.three_seeds):
+        plots.coefficients(result(), Figure().add_subplot())
+    for mode in (0, 16):
+        with pytest.raises(InputError, match="mode ="):
+            plots.coefficients(cases.torus(), ax, mode=mode)
+    with pytest.raises(InputError, match="excites"):
+        plots.coefficients(cases.single_beta(), ax, mode=2)
+
+
+def test_small_divisors_are_those_of_the_series_or_of_newtons_method(ax):
+    plots.small_divisors(cases.torus(), ax)
+    assert list(ax.get_lines()[0].get_xdata()) == [d.size for d in cases.series().smallest_divisors]
+    other = Figure().add_subplot()
+    plots.small_divisors(cases.refined(), other)
+    assert list(other.get_lines()[0].get_xdata()) == [abs(r.divisor) for r in cases.refined().near_resonances]
+
+
+def test_a_series_without_frequencies_has_no_divisors(ax):
+    with pytest.raises(InputError, match="frequencies="):
+        plots.small_divisors(lindstedt(Chain(8, alpha=1), (1,), order=2), ax)
+
+
+def test_amplitudes_are_differences_by_order(ax):
+    plots.amplitudes(cases.history(), ax)
+    expected = cases.history().differences()
+    line = ax.get_lines()[0]
+    assert line.get_xdata().tolist() == list(expected)
+    assert line.get_ydata().tolist() == [first for first, _ in expected.values()]
+    for same in (cases.torus(), cases.assessment()):
+        other = Figure().add_subplot()
+        plots.amplitudes(same, other)
+        assert other.get_lines()[0].get_ydata().tolist() == line.get_ydata().tolist()
+
+
+def test_orders_without_a_root_are_shaded(ax):
+    failed = sorted(cases.lost().failures)
+    assert failed
+    plots.amplitudes(cases.lost(), ax)
+    assert len(ax.patches) == len(failed)
+    assert [text.get_text() for text in ax.get_legend().get_texts()][-1] == "no real root"
+
+
+def test_one_order_has_no_differences(ax):
+    with pytest.raises(InputError, match="longer series"):
+        plots.amplitudes(cases.history(2), ax)
+
+
+def test_residuals_by_order_with_the_best_and_the_rounding_of_doubles(ax):
+    plots.residuals(cases.converged(), ax)
+    line = ax.get_lines()[0]
+    assert line.get_ydata().tolist() == cases.converged().residuals.tolist()
+    assert "rounding" in [text.get_text() for text in ax.texts]
+    other = Figure().add_subplot()
+    plots.residuals(cases.assessment(), other)
+    assert f"best order, $k = {cases.assessment().best_order}$" in labelled(other)
+
+
+# stability and indices
+
+
+def test_multipliers_lie_where_they_are_and_are_counted(ax):
+    found = cases.stable_floquet()
+    plots.multipliers(found, ax)
+    drawn = {complex(x, y) for line in labelled(ax).values() for x, y in zip(*line.get_data(), strict=True)}
+    assert drawn == set(found.multipliers.tolist())
+    assert ax.get_title() == "stable"
+    assert ax.get_aspect() == 1
+
+
+def test_large_multipliers_stand_at_the_edge_with_their_number(ax):
+    found = floquet(breather_at_amplitude(Chain(16, beta=1), 8, "8"))
+    assert found.largest > 3
+    plots.multipliers(found, ax)
+    assert any(f"{found.largest:.3g}" in text.get_text() for text in ax.texts)
+    assert max(ax.get_xlim()) < 4
+
+
+def test_indices_have_their_slopes(ax):
+    plots.alignment(cases.indices(), ax)
+    assert list(labelled(ax)) == [f"$G_{{{s.k}}}$: ${s.value:.2f} \\pm {s.error:.2f}$" for s in cases.indices().slopes()]
+    assert ax.get_title() == cases.indices().dimension().verdict
+    short = Figure().add_subplot()
+    plots.alignment(cases.short_indices(), short)
+    assert len(labelled(short)) == 1
+
+
+def test_a_stay_of_the_indices_is_not_drawn_large(ax):
+    found = cases.indices()
+    flat = type(found)(found.chain, found.times, found.log10_gali[:, :1], found.lyapunov, 0.4, 0.0)
+    plots.alignment(flat, ax)
+    assert np.ptp(ax.get_ylim()) == pytest.approx(0.5)
+
+
+# propagation and Toda
+
+
+def test_the_map_has_every_mode_of_every_order(ax):
+    plots.propagation(cases.sequence(), ax)
+    points = set(zip(*ax.get_lines()[0].get_data(), strict=True))
+    assert points == {(k, q) for k, modes in enumerate(cases.sequence()) for q in modes}
+
+
+def test_exceptions_of_a_proof_stand_out(ax):
+    plots.propagation(cases.proof(), ax)
+    found = labelled(ax)
+    odd = {(e.actual, e.mode) for e in cases.proof().exceptions}
+    assert set(zip(*found["against the rule"].get_data(), strict=True)) == odd == {(2, 7)}
+
+
+@pytest.mark.parametrize("wrong", [[], [3], [("a",)], ["ab"], 3, None])
+def test_what_is_no_sequence_is_refused(wrong, ax):
+    with pytest.raises(InputError, match="result ="):
+        plots.propagation(wrong, ax)
+    with pytest.raises(InputError, match="N ="):
+        plots.propagation(cases.sequence(), ax, N=8)
+
+
+def test_gaps_of_states_and_orbits(ax):
+    plots.toda_gaps(cases.invariants(), ax)
+    assert ax.get_lines()[0].get_ydata().tolist() == cases.invariants().gaps.tolist()
+    orbit = Figure().add_subplot()
+    plots.toda_gaps(cases.gaps(), orbit, times=cases.even_orbit().times)
+    lines = list(labelled(orbit).values())
+    assert len(lines) == 6
+    for line in lines:
+        assert np.ptp(line.get_ydata()) < ROUNDING  # Toda's chain keeps them
+    alone = Figure().add_subplot()
+    plots.toda_gaps(toda_gaps(Chain(2, alpha=1), [0.1], [0.0]), alone)
+    assert len(alone.get_lines()[0].get_ydata()) == 1
+
+
+def test_gaps_and_times_fit(ax):
+    with pytest.raises(InputError, match="times ="):
+        plots.toda_gaps(cases.gaps(), ax)
+    with pytest.raises(InputError, match="times ="):
+        plots.toda_gaps(cases.invariants(), ax, times=[0.0])
+    with pytest.raises(InputError, match="one for each state"):
+        plots.toda_gaps(cases.gaps(), ax, times=[0.0, 1.0])
+    with pytest.raises(InputError, match="result ="):
+        plots.toda_gaps(SimpleNamespace(gaps=1), ax)
