@@ -21,6 +21,7 @@ from symfpu.chain import bonds
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import particle_scheme
 from symfpu.dynamics.tangent import tangent_map_along
+from symfpu.notebook import Shown
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
@@ -39,7 +40,7 @@ TANGENT, DOUBLING, QUADRUPLE = "real > 0", "real < 0", "complex quadruple"
 
 
 @dataclass(frozen=True, eq=False)
-class Floquet:
+class Floquet(Shown):
     """Multipliers of a periodic orbit; dimensionless.
 
     Made by `floquet`. Ours.

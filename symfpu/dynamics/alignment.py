@@ -41,6 +41,7 @@ from symfpu.dynamics.wells import require_within_walls
 from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path, digest, seconds_between
 from symfpu.files.progress import Progress, unheard
+from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import integer
 
@@ -68,7 +69,7 @@ class Slope:
 
 
 @dataclass(frozen=True, eq=False)
-class AlignmentIndices:
+class AlignmentIndices(Shown):
     """log10 GALI_k and Lyapunov exponent of an orbit in time (section 3.2, Fig. 1(e)).
 
     Made by `alignment_indices`; times are dimensionless, in units of the chain.

@@ -49,6 +49,7 @@ from symfpu.files.checkpoint import (
 )
 from symfpu.files.interruption import kept_run
 from symfpu.files.progress import Progress, unheard
+from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import integer
 
@@ -62,7 +63,7 @@ STEP_ROUNDING = 1e-9  # of a step: a time that is a multiple of the step but for
 
 
 @dataclass(frozen=True, eq=False)
-class Orbit:
+class Orbit(Shown):
     """An orbit, or several, at sampled times. Made by `integrate`; dimensionless.
 
     chain : the model. scheme : of the integrator, its coefficients. step : signed, as taken.

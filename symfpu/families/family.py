@@ -38,6 +38,7 @@ from symfpu.families.continuation import (
 from symfpu.families.events import continued, events_between
 from symfpu.families.folder import BEGINNING, Kept, Plan, checked_family
 from symfpu.files.progress import Progress, unheard
+from symfpu.notebook import Shown
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
@@ -85,7 +86,7 @@ class NotInFamily(SymfpuError):
 
 
 @dataclass(frozen=True, eq=False)
-class Family:
+class Family(Shown):
     """Tori of growing energy with one ratio of amplitudes or mode energies.
 
     Events tell what happens on the way. Made by `family`; dimensionless. Ours, or Appendix A.

@@ -19,6 +19,7 @@ from symfpu.integrable.coupling import gap_numbers, toda_coupling
 from symfpu.integrable.curve import SpectralCurve
 from symfpu.integrable.discriminant import Edges
 from symfpu.integrable.lax import jacobi_entries, odd_edges, ring_edges
+from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     DOUBLES,
     MULTIPRECISION,
@@ -33,7 +34,7 @@ LARGEST_EXPONENT = 300.0  # of e^(a r): beyond it the edges of bands are out of 
 
 
 @dataclass(frozen=True)
-class TodaInvariants:
+class TodaInvariants(Shown):
     """The gaps of a state, its actions and frequencies in the Toda chain; see `toda_invariants`.
 
     N, a, digits : as asked, a exact. gaps, actions, frequencies : by mode, shapes (N-1,), doubles

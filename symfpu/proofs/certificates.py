@@ -27,6 +27,7 @@ from symfpu.chain.propagation import coupled_modes, excitation_sequence
 from symfpu.errors import InputError, SymfpuError, VanishingResidue
 from symfpu.files.progress import Progress
 from symfpu.files.writing import write_text
+from symfpu.notebook import Shown
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.series.force import force_numbers
 from symfpu.series.lindstedt import lindstedt
@@ -118,7 +119,7 @@ class RuleException:
 
 
 @dataclass(frozen=True)
-class PropagationProof:
+class PropagationProof(Shown):
     """The Proposition's D_k beside the actual ones up to an order, and everything that shows it.
 
     Made by `prove_propagation`.

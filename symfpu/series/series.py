@@ -24,6 +24,7 @@ from symfpu.algebra.polynomials import (
 )
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     DOUBLES,
     MULTIPRECISION,
@@ -63,7 +64,7 @@ class ResiduePoint:
 
 
 @dataclass(frozen=True, eq=False)
-class LindstedtSeries:
+class LindstedtSeries(Shown):
     """The series Q_q = sum mu^k Q_q^(k) and omega_q = Omega_q + sum mu^k omega_q^(k).
 
     The amplitudes are free.

@@ -24,6 +24,7 @@ from symfpu.errors import (
     SymfpuError,
     UndeterminedAmplitudes,
 )
+from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     GUARD_DIGITS,
     Arithmetic,
@@ -76,7 +77,7 @@ class FrequencySeries(Protocol):
 
 
 @dataclass(frozen=True)
-class AmplitudeHistory:
+class AmplitudeHistory(Shown):
     """Amplitudes A(K) by frequency order K, and why orders without a root have none.
 
     Made by `amplitude_history`; dimensionless. Fig. 1(b) shows the differences |A(K+2) - A(K)| of

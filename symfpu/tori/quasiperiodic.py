@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError
+from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     DOUBLES,
     MULTIPRECISION,
@@ -65,7 +66,7 @@ else:
     Parts = object
 
 
-class QuasiPeriodic(Parts):
+class QuasiPeriodic(Shown, Parts):
     """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
 
     This is what every torus and breather can do.

@@ -18,6 +18,7 @@ from scipy.sparse import csr_matrix
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import integer
 from symfpu.series.travelling import TravellingSeries
@@ -40,7 +41,7 @@ CHUNK = 256  # angles held at once
 
 
 @dataclass(frozen=True, eq=False)
-class RingTorus:
+class RingTorus(Shown):
     """A torus of a ring of N particles, as a sum of waves; doubles, dimensionless.
 
     x_j(t) = N^(-1/2) sum b sin(2 pi m j / N - nu.theta), theta = omega t + phi. Ours; made by

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
+from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, text
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
@@ -81,7 +82,7 @@ class LargestTerm:
 
 
 @dataclass(frozen=True, eq=False)
-class Assessment:
+class Assessment(Shown):
     """What `assess` found; dimensionless numbers.
 
     word : 'converged', 'asymptotic', 'not a torus', or 'undecided' where too few orders are known.
