@@ -20,6 +20,7 @@ from symfpu.cli.chains import (
     PotentialOption,
     chain_of,
 )
+from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     JsonOption,
     optional,
@@ -69,6 +70,7 @@ def breather(
         str | None,
         typer.Option("-o", "--output", help="Keep the orbit in this file.", metavar="FILE"),
     ] = None,
+    plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """A q-breather, found from exactly one of --omega, --amplitude and --energy."""
@@ -76,6 +78,7 @@ def breather(
     mode, places = whole("seed", seed), optional("digits", digits)
     _require_one(omega, amplitude, energy)
     file = None if output is None else output_file(path_named("output", output))
+    picture = picture_named(plot)
     doubts = (DOUBLE_ENERGY,) if energy is not None and places is not None else ()
     with progress_bar("harmonic balance") as advance:
         orbit: FourierTorus = _found(chain, mode, omega, amplitude, energy)
@@ -89,6 +92,7 @@ def breather(
         if file:
             verdict = {"verdict": "periodic orbit", "reasons": list(doubts)}
             save(file, orbit, verdict=verdict, command=shlex.join(["symfpu", *context.obj]))
+        draw(orbit.plot, picture)
     record = solution_record(orbit, stability, doubts)
     if as_json:
         print_json(record)
@@ -96,6 +100,7 @@ def breather(
     say(solution_text(record))
     if file:
         print(f"written: {file}")
+    say_drawn(picture)
 
 
 def _require_one(omega: str | None, amplitude: str | None, energy: str | None) -> None:

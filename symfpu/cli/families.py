@@ -18,6 +18,7 @@ from symfpu.cli.chains import (
     chain_of,
     with_fixed_ends,
 )
+from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
     FileArgument,
@@ -85,6 +86,7 @@ def refine_file(
             help="Relative residual of the equations of motion to be reached.", metavar="X"
         ),
     ] = "1e-13",
+    plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """The torus that solves the equations of motion, by Newton's method.
@@ -92,6 +94,7 @@ def refine_file(
     It has the same frequencies, or a given energy or amplitudes.
     """
     torus = with_fixed_ends(load(path_named("FILE", file)), file)
+    picture = picture_named(plot)
     if energy is not None and amplitudes is not None:
         raise InputError(
             "amplitudes",
@@ -118,12 +121,14 @@ def refine_file(
         if kept:
             command = shlex.join(["symfpu", *context.obj])
             save(kept, refined, verdict=verdict_of(refined), command=command)
+        draw(refined.plot, picture)
     if as_json:
         print_json(refined_record(refined))
     else:
         say(refined_text(refined))
         if kept:
             print(f"written: {kept}")
+        say_drawn(picture)
 
 
 def verdict_of(torus: RefinedTorus) -> dict[str, Any]:
@@ -208,11 +213,13 @@ def follow_family(
             metavar="FOLDER",
         ),
     ] = None,
+    plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """A family of tori from small energy on, past folds and past the end of its series."""
     chain = chain_of(bonds, alpha, beta, potential)
     chosen = tuple(whole_numbers("seeds", seeds))
+    picture = picture_named(plot)
     folder = None if output is None else output_folder(path_named("output", output))
     with progress_bar("first member", lambda: _kept(folder)) as advance:
         found = family(
@@ -233,6 +240,7 @@ def follow_family(
         pictures = [] if folder is None else draw_family(found, folder)
         if folder is not None:
             _write_table(found, folder / "family.csv")
+        draw(found.plot, picture)
     if as_json:
         print_json(family_record(found))
     else:
@@ -240,6 +248,7 @@ def follow_family(
         if folder is not None:
             counts = f"{len(found.members)} members, {len(pictures)} pictures"
             print(f"written: {folder}: family.csv, {counts}")
+        say_drawn(picture)
     raise typer.Exit(0 if found.ending.startswith("reached") else 1)
 
 

@@ -10,6 +10,7 @@ import typer
 
 from symfpu.bundles.bundle import load
 from symfpu.cli.chains import solution_of
+from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     FileArgument,
     JsonOption,
@@ -81,6 +82,7 @@ def gali(
             "--estimate", help="Only say how long it would take, from a trial of a second."
         ),
     ] = False,
+    plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Alignment indices of the orbit that starts on a torus, and the dimension they show.
@@ -88,6 +90,7 @@ def gali(
     With the Lyapunov exponent of that orbit.
     """
     torus = solution_of(load(path_named("FILE", file)), file)
+    picture = picture_named(plot)
     T = number("time", time)
     h = number("step", step)
     count = optional("vectors", vectors)
@@ -115,6 +118,7 @@ def gali(
         if folder is not None:
             _write_table(found, folder / "gali.csv")
             draw_alignment(found, folder)
+        draw(found.plot, picture)
     if as_json:
         print_json(_record(found, torus.seeds))
     else:
@@ -122,6 +126,7 @@ def gali(
         if folder is not None:
             pictures = "gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf"
             print(f"written: {folder}: gali.csv, {pictures}")
+        say_drawn(picture)
 
 
 def _print_estimate(seconds: float, as_json: bool) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from symfpu.bundles.bundle import load
 from symfpu.cli.chains import solution_of
+from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     FileArgument,
     JsonOption,
@@ -68,10 +69,12 @@ def orbit(
             metavar="FILE",
         ),
     ] = None,
+    plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Integrates the orbit of a torus from t = 0 on, and says how far it stays from the torus."""
     target = None if output is None else _output(path_named("output", output))
+    picture = picture_named(plot)
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     T = number("time", time)
     h = number("step", step)
@@ -94,6 +97,7 @@ def orbit(
         )
         if target is not None:
             _write(target, made)
+        draw(made.plot, picture)
     record = _record(made, exact)
     if as_json:
         print_json(record)
@@ -102,6 +106,7 @@ def orbit(
     _print(record)
     if target is not None:
         print(f"written: {target}")
+    say_drawn(picture)
 
 
 def _output(path: Path) -> Path:

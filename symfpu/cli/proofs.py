@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,7 @@ import typer
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.cli.chains import BondsOption, PotentialOption
+from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
     JsonOption,
@@ -27,6 +29,7 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
+from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
 from symfpu.proofs.sweeps import sweep_propagation
 from symfpu.proofs.verify import CertificateError
@@ -47,13 +50,16 @@ def propagate(
         str | None, typer.Option(help="alpha, beta or alpha+beta.  Default: alpha.")
     ] = None,
     potential: PotentialOption = None,
+    plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Which modes the propagation rule D_k excites at each order."""
     chosen = whole_numbers("seeds", seeds)
     N = whole("N", bonds)
     highest = whole("order", order)
+    picture = picture_named(plot)
     sequence = excitation_sequence(N, chosen, highest, model=model, potential=potential)
+    draw(partial(propagation, sequence, N=N), picture)
     if as_json:
         record = {
             "N": N,
@@ -66,6 +72,7 @@ def propagate(
         return
     for k, modes in enumerate(sequence):
         say(f"D_{k} = {_set_of(modes)}")
+    say_drawn(picture)
 
 
 def _law_entries(model: str | None, potential: str | None) -> dict[str, str]:

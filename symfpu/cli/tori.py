@@ -16,6 +16,7 @@ from symfpu.cli.chains import (
     PotentialOption,
     chain_of,
 )
+from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     FileArgument,
     JsonOption,
@@ -92,6 +93,7 @@ def solve(
             metavar="FILE",
         ),
     ] = None,
+    plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Amplitudes and energies of the q-torus with the given frequencies.
@@ -104,6 +106,7 @@ def solve(
     cut = optional("coordinate-order", coordinate_order)
     places = optional("digits", digits)
     file = None if output is None else output_file(path_named("output", output))
+    picture = picture_named(plot)
     with progress_bar("series") as advance:
         series = lindstedt(
             chain,
@@ -125,6 +128,7 @@ def solve(
                 verdict=assessment.record(),
                 command=shlex.join(["symfpu", *context.obj]),
             )
+        draw(torus.plot, picture)
     if as_json:
         print_json(record)
     else:
@@ -133,6 +137,7 @@ def solve(
         say(assessment_text(assessment, width_of(sys.stdout)))
         if file:
             print(f"written: {file}")
+        say_drawn(picture)
 
 
 def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:

@@ -1,0 +1,85 @@
+"""The option --plot of the verbs: a picture in the format of its suffix, and what is refused before anything is computed."""
+
+import json
+
+import pytest
+
+from symfpu.bundles.bundle import save
+from symfpu.cli.main import main
+from tests.plots import cases
+
+BEGINNINGS = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
+FREE = {
+    "solve": ["solve", "-N", "8", "--alpha", "0.3", "--seeds", "1", "--omega", "0.3905", "--order", "4"],
+    "breather": ["breather", "-N", "9", "--beta", "1", "--seed", "2", "--amplitude", "0.3"],
+    "family": ["family", "-N", "8", "--alpha", "0.3", "--seeds", "1", "--to-energy", "0.001", "--from-energy", "0.0005"],
+    "propagate": ["propagate", "-N", "32", "--seeds", "3,5", "--order", "4"],
+}
+SAVED = {
+    "refine": ["refine"],
+    "orbit": ["orbit", "--time", "50", "--samples", "20"],
+    "gali": ["gali", "--time", "100", "--vectors", "2"],
+}
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory):
+    return str(save(tmp_path_factory.mktemp("plot") / "torus.symfpu", cases.breather()))
+
+
+def words(verb, saved):
+    if verb in FREE:
+        return FREE[verb]
+    name, *options = SAVED[verb]
+    return [name, saved, *options]
+
+
+@pytest.mark.parametrize(
+    ("verb", "suffix"),
+    [
+        ("solve", ".png"),
+        ("breather", ".svg"),
+        ("family", ".pdf"),
+        ("propagate", ".PNG"),
+        ("propagate", ".svg"),
+        ("refine", ".png"),
+        ("orbit", ".svg"),
+        ("gali", ".pdf"),
+    ],
+)
+def test_a_verb_draws_what_it_found(verb, suffix, saved, tmp_path, capsys):
+    file = tmp_path / f"picture{suffix}"
+    assert main([*words(verb, saved), "--plot", str(file)]) == 0
+    assert file.read_bytes().startswith(BEGINNINGS[suffix.lower()])
+    assert capsys.readouterr().out.splitlines()[-1] == f"drawn: {file}"
+    assert [path.name for path in tmp_path.iterdir()] == [file.name]
+
+
+WRONG = ["picture.jpg", "picture", "png", "folder.png/", "nowhere/picture.png", ""]
+
+
+@pytest.mark.parametrize(("verb", "name"), [*(("propagate", name) for name in WRONG), *((verb, "a.jpg") for verb in [*FREE, *SAVED])])
+def test_a_wrong_file_is_refused_before_anything_is_computed(verb, name, saved, tmp_path, capsys):
+    (tmp_path / "folder.png").mkdir()
+    target = f"{tmp_path}/{name}" if name else ""
+    assert main([*words(verb, saved), "--plot", target]) == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert error.startswith("symfpu: plot = ")
+    assert len(error.splitlines()) == 1
+
+
+def test_json_stays_alone_on_standard_output(tmp_path, capsys):
+    file = tmp_path / "map.png"
+    assert main([*FREE["propagate"], "--json", "--plot", str(file)]) == 0
+    assert json.loads(capsys.readouterr().out)["order"] == 4
+    assert file.exists()
+
+
+def test_the_same_picture_has_the_same_bytes(tmp_path):
+    for suffix in (".pdf", ".svg"):
+        files = [tmp_path / f"{name}{suffix}" for name in "ab"]
+        for file in files:
+            assert main([*FREE["propagate"], "--plot", str(file)]) == 0
+        first, second = (file.read_bytes() for file in files)
+        assert first == second
