@@ -21,6 +21,9 @@ from symfpu.chain import bonds
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import particle_scheme
 from symfpu.dynamics.tangent import tangent_map_along
+from symfpu.frames.attributes import attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import QuasiPeriodic
@@ -40,7 +43,7 @@ TANGENT, DOUBLING, QUADRUPLE = "real > 0", "real < 0", "complex quadruple"
 
 
 @dataclass(frozen=True, eq=False)
-class Floquet(Shown):
+class Floquet(Shown, Gridded):
     """Multipliers of a periodic orbit; dimensionless.
 
     Made by `floquet`. Ours.
@@ -62,6 +65,11 @@ class Floquet(Shown):
     >>> floquet(periodic_orbit(Chain(N=4, beta=1), 2, "1.4168"))
     Floquet(N=4, beta=1, seed 2, omega=1.4168, stable, largest |multiplier| 1,
     symplecticity error ...)
+    >>> floquet(periodic_orbit(Chain(N=4, beta=1), 2, "1.4168")).to_frame()[["pair", "kind"]]
+       pair           kind
+    0     0        trivial
+    1     1  on the circle
+    2     2  on the circle
     """
 
     orbit: QuasiPeriodic
@@ -105,6 +113,35 @@ class Floquet(Shown):
     def largest(self) -> float:
         """Largest |multiplier|; exactly 1 if stable."""
         return 1.0 if self.stable else float(np.max(np.abs(self.pairs)))
+
+    def _grid(self) -> Grid:
+        orbit, rows = self.orbit, ("pair",)
+        each = [f"{letter}_{q}" for letter in "QP" for q in orbit.chain.mode_numbers]
+        return Grid(
+            axes={"pair": range(len(self.pairs)), "after": each, "before": each},
+            variables={
+                "multiplier": Variable(
+                    rows, self.pairs[:, 0], "lambda, of modulus 1 or more"
+                ),
+                "reciprocal": Variable(rows, self.pairs[:, 1], "1 / lambda"),
+                "kind": Variable(rows, self.kinds, "where the pair lies"),
+                "kappa": Variable(rows, self.kappa, "(lambda + 1/lambda - 2)/4"),
+                "tolerance": Variable(rows, self.tolerance, "error that kappa may have"),
+                "monodromy": Variable(
+                    ("after", "before"), self.monodromy, "map of a period"
+                ),
+            },
+            attributes=attributes(
+                self,
+                orbit.chain,
+                seeds=orbit.seeds,
+                frequencies=orbit.frequencies,
+                stable=self.stable,
+                largest=self.largest,
+                map_error=self.map_error,
+            ),
+            rows=rows,
+        )
 
 
 def monodromy(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floats:

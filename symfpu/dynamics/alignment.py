@@ -41,6 +41,9 @@ from symfpu.dynamics.wells import require_within_walls
 from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path, digest, seconds_between
 from symfpu.files.progress import Progress, unheard
+from symfpu.frames.attributes import attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import integer
@@ -69,7 +72,7 @@ class Slope:
 
 
 @dataclass(frozen=True, eq=False)
-class AlignmentIndices(Shown):
+class AlignmentIndices(Shown, Gridded):
     """log10 GALI_k and Lyapunov exponent of an orbit in time (section 3.2, Fig. 1(e)).
 
     Made by `alignment_indices`; times are dimensionless, in units of the chain.
@@ -88,6 +91,8 @@ class AlignmentIndices(Shown):
     ((274,), (274, 1), (274,))
     >>> found
     AlignmentIndices(N=4, alpha=1, t = 1e+03, ... energy error ...)
+    >>> found.to_xarray().log10_gali.dims
+    ('time', 'k')
     """
 
     chain: Chain
@@ -146,6 +151,30 @@ class AlignmentIndices(Shown):
         growth = self.lyapunov * self.times
         return torus_dimension(
             Evidence(self.times, growth, self.log10_gali, self.chain.N - 1, decades)
+        )
+
+    def _grid(self) -> Grid:
+        slopes = self.slopes()
+        found = "slope of log GALI_k with log t over the last decades"
+        return Grid(
+            axes={"time": self.times, "k": range(2, self.vectors + 1)},
+            variables={
+                "log10_gali": Variable(("time", "k"), self.log10_gali, "log10 of GALI_k"),
+                "lyapunov": Variable(("time",), self.lyapunov, "log |v_1| / t"),
+                "slope": Variable(("k",), [slope.value for slope in slopes], found),
+                "slope_error": Variable(
+                    ("k",), [slope.error for slope in slopes], "of the slope"
+                ),
+            },
+            attributes=attributes(
+                self,
+                self.chain,
+                scheme=self.scheme.name,
+                step=self.step,
+                energy_error=self.energy_error,
+                verdict=self.dimension().verdict,
+            ),
+            rows=("time", "k"),
         )
 
 

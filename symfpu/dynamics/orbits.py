@@ -49,6 +49,9 @@ from symfpu.files.checkpoint import (
 )
 from symfpu.files.interruption import kept_run
 from symfpu.files.progress import Progress, unheard
+from symfpu.frames.attributes import attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import integer
@@ -63,7 +66,7 @@ STEP_ROUNDING = 1e-9  # of a step: a time that is a multiple of the step but for
 
 
 @dataclass(frozen=True, eq=False)
-class Orbit(Shown):
+class Orbit(Shown, Gridded):
     """An orbit, or several, at sampled times. Made by `integrate`; dimensionless.
 
     chain : the model. scheme : of the integrator, its coefficients. step : signed, as taken.
@@ -78,6 +81,9 @@ class Orbit(Shown):
     >>> integrate(Chain(N=4, beta=1), [0.1, 0, 0], [0, 0, 0], 100, step=0.125)
     Orbit(N=4, beta=1, T=100, kahan_li8, step 0.125, 129 samples, H=0.00293214917955,
     energy error ...)
+    >>> orbit = integrate(Chain(N=4, beta=1), [0.1, 0, 0], [0, 0, 0], 100, step=0.125)
+    >>> dict(orbit.to_xarray().sizes), list(orbit.to_frame())
+    ({'time': 129, 'mode': 3}, ['time', 'mode', 'Q', 'P', 'harmonic_energy', 'energy'])
     """
 
     chain: Chain
@@ -115,6 +121,36 @@ class Orbit(Shown):
     def harmonic_energies(self) -> Floats:
         """E_q of every sample; shape (S, ..., N-1)."""
         return np.asarray(self.chain.harmonic_energies(self.Q, self.P))
+
+    def _grid(self) -> Grid:
+        several = self.Q.ndim - 2
+        names = ["orbit"] if several == 1 else [f"orbit_{i + 1}" for i in range(several)]
+        axes: dict[str, ArrayLike] = {"time": self.times}
+        axes |= {name: range(n) for name, n in zip(names, self.Q.shape[1:-1], strict=True)}
+        each = (*axes, "mode")
+        variables = {
+            "Q": Variable(each, self.Q, "coordinate of a mode"),
+            "P": Variable(each, self.P, "momentum of a mode"),
+            "harmonic_energy": Variable(
+                each, self.harmonic_energies(), "harmonic energy E_q"
+            ),
+            "energy": Variable(each[:-1], self.energies, "total energy H"),
+        }
+        if self.averages is not None:
+            average = "average of the harmonic energy E_q from 0 to this time"
+            variables["average_energy"] = Variable(each, self.averages, average)
+        return Grid(
+            axes=axes | {"mode": self.chain.mode_numbers},
+            variables=variables,
+            attributes=attributes(
+                self,
+                self.chain,
+                scheme=self.scheme.name,
+                step=self.step,
+                energy_error=self.energy_error,
+            ),
+            rows=each,
+        )
 
 
 def integrate(

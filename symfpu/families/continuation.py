@@ -8,9 +8,11 @@ it, so that a turn of the energy or of a frequency is passed like any other poin
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -20,6 +22,10 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress
+from symfpu.frames.attributes import attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import (
     Amplitude,
@@ -98,7 +104,7 @@ class Level:
 
 
 @dataclass(frozen=True, eq=False)
-class Member:
+class Member(Tabled):
     """One torus of a family; dimensionless.
 
     torus : the solution. amplitudes : by seed. energy : H, harmonic_energy : sum E_q, both at the
@@ -111,6 +117,10 @@ class Member:
     >>> from symfpu import Chain, family
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").members[0]
     Member(torus, H=0.0005, omega_1=..., A_1=..., residual ...)
+    >>> found = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
+    >>> found.members[0].to_frame()[["member", "energy", "verdict"]]
+       member  energy verdict
+    0       0  0.0005   torus
     """
 
     torus: QuasiPeriodic
@@ -136,6 +146,45 @@ class Member:
         doubts = "".join(f"; {w}" for w in self.warnings)
         where = f"H={self.energy:.10g}, {rates}, {amplitudes}, residual {self.residual:.2g}"
         return f"Member({self.verdict}, {where}{stability}{doubts})"
+
+    def _table(self) -> Table:
+        """One row."""
+        return members_grid(self, (self,)).table()
+
+
+def members_grid(result: object, members: Sequence[Member]) -> Grid:
+    """Members of one family, for a result that has them."""
+    torus = members[0].torus
+    seeds, each = torus.seeds, ("member", "seed")
+    frequencies = [[float(w) for w in one.torus.frequencies] for one in members]
+    amplitudes = [[float(one.amplitudes[q]) for q in seeds] for one in members]
+    spectra = [one.torus.average_spectrum().astype(float) for one in members]
+    known = [one.multipliers for one in members]
+    largest = [math.nan if found is None else found.largest for found in known]
+    plain: dict[str, tuple[Sequence[Any], str]] = {
+        "energy": ([one.energy for one in members], "total energy H"),
+        "harmonic_energy": ([one.harmonic_energy for one in members], "sum of E_q"),
+        "residual": ([one.residual for one in members], "of the equations of motion"),
+        "verdict": ([one.verdict for one in members], "torus or doubtful"),
+        "warnings": (["; ".join(one.warnings) for one in members], "reasons to doubt it"),
+        "largest_multiplier": (largest, "modulus of the largest Floquet multiplier"),
+    }
+    average = "infinite-time average of the harmonic energy E_q"
+    variables = {name: Variable(each[:1], *pair) for name, pair in plain.items()}
+    variables["frequency"] = Variable(each, frequencies, "frequency omega_q of a seed")
+    variables["amplitude"] = Variable(each, amplitudes, "amplitude A_q of a seed")
+    variables["average_energy"] = Variable(("member", "mode"), spectra, average)
+    return Grid(
+        axes={
+            "member": range(len(members)),
+            "seed": seeds,
+            "mode": torus.chain.mode_numbers,
+        },
+        variables=variables,
+        attributes=attributes(result, torus.chain, seeds=seeds),
+        rows=("member",),
+        across="seed",
+    )
 
 
 @dataclass(frozen=True)

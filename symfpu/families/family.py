@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -32,12 +33,17 @@ from symfpu.families.continuation import (
     extrapolated,
     first_at,
     member,
+    members_grid,
     returned,
     series_member,
 )
 from symfpu.families.events import continued, events_between
 from symfpu.families.folder import BEGINNING, Kept, Plan, checked_family
 from symfpu.files.progress import Progress, unheard
+from symfpu.frames.attributes import attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.table import joined
+from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
@@ -86,7 +92,7 @@ class NotInFamily(SymfpuError):
 
 
 @dataclass(frozen=True, eq=False)
-class Family(Shown):
+class Family(Shown, Gridded):
     """Tori of growing energy with one ratio of amplitudes or mode energies.
 
     Events tell what happens on the way. Made by `family`; dimensionless. Ours, or Appendix A.
@@ -101,6 +107,9 @@ class Family(Shown):
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     Family(N=8, alpha=0.3, seeds=1, 4 members, H = 0.0005 .. 0.001, no events; it reached the
     energy asked for)
+    >>> found = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").to_xarray()
+    >>> dict(found.sizes), found.amplitude.dims
+    ({'member': 4, 'seed': 1, 'mode': 7}, ('member', 'seed'))
     """
 
     chain: Chain
@@ -123,6 +132,37 @@ class Family(Shown):
         kinds = [kind for kind in ("fold", "resonance", "stability") if counts[kind]]
         events = ", ".join(_counted(counts[kind], kind) for kind in kinds) or "no events"
         return f"Family({chain}, seeds={seeds}, {members}, {H}, {events}; it {self.ending})"
+
+    def _grid(self) -> Grid:
+        grid = members_grid(self, self.members)
+        known = attributes(
+            self,
+            self.chain,
+            seeds=self.seeds,
+            ending=self.ending,
+            energy_ratio=self.energy_ratio,
+        )
+        if not self.events:
+            return replace(grid, attributes=known)
+        variables = {**grid.variables, **self._event_variables()}
+        axes = {**grid.axes, "event": range(len(self.events))}
+        return replace(grid, axes=axes, variables=variables, attributes=known)
+
+    def _event_variables(self) -> dict[str, Variable]:
+        events = self.events
+        columns: dict[str, tuple[list[Any], str]] = {
+            "event_kind": ([e.kind for e in events], "fold, resonance or stability"),
+            "event_what": ([e.what for e in events], "what turns, begins or ends"),
+            "event_after": ([e.after for e in events], "the member before it"),
+            "event_energy": ([e.energy for e in events], "total energy H there"),
+            "event_value": (
+                [e.value for e in events],
+                "what turns, or the divisor's coefficient",
+            ),
+            "event_mode": ([e.mode for e in events], "mode of a resonance, or 0"),
+            "event_harmonic": ([joined(e.harmonic) for e in events], "nu of a resonance"),
+        }
+        return {name: Variable(("event",), *pair) for name, pair in columns.items()}
 
 
 def _counted(n: int, kind: str) -> str:

@@ -15,6 +15,9 @@ from numpy.typing import ArrayLike
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Columns, Table
+from symfpu.frames.tabled import Tabled
 from symfpu.integrable.coupling import gap_numbers, toda_coupling
 from symfpu.integrable.curve import SpectralCurve
 from symfpu.integrable.discriminant import Edges
@@ -34,11 +37,11 @@ LARGEST_EXPONENT = 300.0  # of e^(a r): beyond it the edges of bands are out of 
 
 
 @dataclass(frozen=True)
-class TodaInvariants(Shown):
+class TodaInvariants(Shown, Tabled):
     """The gaps of a state, its actions and frequencies in the Toda chain; see `toda_invariants`.
 
-    N, a, digits : as asked, a exact. gaps, actions, frequencies : by mode, shapes (N-1,), doubles
-    or mpf. Dimensionless. Ours.
+    N, a, digits : as asked, a exact. modes : q in the order of the arrays. gaps, actions,
+    frequencies : by mode, shapes (N-1,), doubles or mpf. Dimensionless. Ours.
 
     >>> from symfpu import Chain, toda_invariants
     >>> found = toda_invariants(Chain(3, alpha="1/2"), [0.1, 0], [0, 0])
@@ -46,23 +49,37 @@ class TodaInvariants(Shown):
     TodaInvariants(N=3, a=0.5, widest gap 0.0408 of mode 1, sum of actions 0.005)
     >>> found.frequencies.round(6)
     array([1.000416, 1.732052])
+    >>> found.to_frame().round(4)
+       mode     gap  action  frequency
+    0     1  0.0408   0.005     1.0004
+    1     2  0.0008   0.000     1.7321
     """
 
     N: int
     a: Fraction
     digits: int | None
+    modes: tuple[int, ...]
     gaps: Numbers
     actions: Numbers
     frequencies: Numbers
 
     def __repr__(self) -> str:
-        widest = int(np.argmax(self.gaps)) + 1
-        largest = float(self.gaps[widest - 1])
+        place = int(np.argmax(self.gaps))
+        widest, largest = self.modes[place], float(self.gaps[place])
         total = float(self.actions.sum())
         return (
             f"TodaInvariants(N={self.N}, a={decimal(self.a)}, widest gap {largest:.3g} "
             f"of mode {widest}, sum of actions {total:.3g})"
         )
+
+    def _table(self) -> Table:
+        columns: Columns = {
+            "mode": self.modes,
+            "gap": self.gaps,
+            "action": self.actions,
+            "frequency": self.frequencies,
+        }
+        return Table(columns, attributes(self, N=self.N, a=self.a, digits=self.digits))
 
 
 def toda_gaps(
@@ -146,6 +163,7 @@ def toda_invariants(
             N=chain.N,
             a=coupling,
             digits=digits,
+            modes=chain.mode_numbers,
             gaps=with_digits((upper - lower)[order], digits),
             actions=with_digits(curve.actions()[order], digits),
             frequencies=with_digits(curve.frequencies()[order], digits),

@@ -22,6 +22,9 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Columns, Table
+from symfpu.frames.tabled import Tabled
 from symfpu.integrable.coupling import gap_numbers, toda_coupling
 from symfpu.integrable.curve import SpectralCurve
 from symfpu.integrable.discriminant import Edges
@@ -35,7 +38,7 @@ SMALLEST_RING = 3  # particles: of two the mean stretch of both bonds is one num
 
 
 @dataclass(frozen=True)
-class TodaTorus:
+class TodaTorus(Tabled):
     """A torus of the Toda chain on which only the gaps of the seeds are open; see `toda_torus`.
 
     N, a, ends, seeds, digits : as asked, a exact. energy : H of the torus. frequencies, actions,
@@ -54,6 +57,10 @@ class TodaTorus:
     TodaTorus(N=3, a=0.5, fixed ends, seeds=1, H = 0.100410622492, omega_1 = ...)
     >>> torus.normal_frequencies
     {2: mpf('1.7322702939')}
+    >>> torus.to_frame()[["mode", "seed", "action"]]
+       mode   seed action
+    0     1   True    0.1
+    1     2  False    0.0
     """
 
     N: int
@@ -142,6 +149,30 @@ class TodaTorus:
             return z
         upper = MULTIPRECISION.sqrt((z + 1) / 2)
         return np.concatenate([upper, [z[0] * 0], -upper[::-1]])
+
+    def _table(self) -> Table:
+        """One row for each mode; gaps of modes that are no seeds are closed."""
+        modes = sorted([*self.seeds, *self.normal_frequencies])
+        rates = {**self.frequencies, **self.normal_frequencies}
+        closed = 0 * self.energy
+        columns: Columns = {
+            "mode": modes,
+            "seed": [q in self.seeds for q in modes],
+            "frequency": [rates[q] for q in modes],
+            "action": [self.actions.get(q, closed) for q in modes],
+            "gap": [self.gaps.get(q, closed) for q in modes],
+            "height": [self.heights.get(q, closed) for q in modes],
+        }
+        known = attributes(
+            self,
+            N=self.N,
+            a=self.a,
+            ends=self.ends,
+            seeds=self.seeds,
+            energy=self.energy,
+            digits=self.digits,
+        )
+        return Table(columns, known)
 
 
 def toda_torus(

@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Columns, Table, joined
+from symfpu.frames.tabled import Tabled
 from symfpu.localization.profiles import energy_record
 from symfpu.numbers.typed import double, seed_modes
 
@@ -27,7 +30,7 @@ LEAST_SAMPLES = 4  # of a window: two in each half
 
 
 @dataclass(frozen=True)
-class GroupGrowth:
+class GroupGrowth(Tabled):
     """Growth of the averaged energies of the modes of one D_k (section 4.1).
 
     order : k. modes : of D_k. mean : of their exponents c_q, spread : largest |c_q - mean|;
@@ -36,6 +39,8 @@ class GroupGrowth:
 
     >>> GroupGrowth(1, (2, 3), 2.02, 0.05, (110.0, 150.0))
     D_1 (2 modes): c = 2.02, spread 0.05, saturated at 110 .. 150
+    >>> GroupGrowth(1, (2, 3), 2.02, 0.05, (110.0, 150.0)).to_frame().modes[0]
+    '2,3'
     """
 
     order: int
@@ -61,9 +66,22 @@ class GroupGrowth:
             return "not saturated"
         return f"saturated at {first:.3g} .. {last:.3g}"
 
+    def _table(self) -> Table:
+        """One row."""
+        first, last = self.saturation
+        columns: Columns = {
+            "order": [self.order],
+            "modes": [joined(self.modes)],
+            "exponent": [self.mean],
+            "spread": [self.spread],
+            "first_saturation": [first],
+            "last_saturation": [last],
+        }
+        return Table(columns, attributes(self))
+
 
 @dataclass(frozen=True, eq=False)
-class GrowthExponents:
+class GrowthExponents(Tabled):
     """Exponents of Ebar_q(t) ~ t^(c_q), by mode (section 4.1); dimensionless.
 
     Made by `growth_exponents`.
@@ -83,6 +101,10 @@ class GrowthExponents:
     >>> averages = np.stack([1 + 0 * t, np.minimum(1e-9 * t**2, 1e-4), 1e-20 + 0 * t], axis=-1)
     >>> growth_exponents(Chain(N=4, alpha=1), t, averages, [(1,), (2,)], window=(2, 100))
     GrowthExponents(D_1 (1 modes): c = 2, spread 0, not saturated)
+    >>> found = growth_exponents(Chain(N=4, alpha=1), t, averages, [(1,), (2,)], window=(2, 100))
+    >>> found.to_frame()[["mode", "order", "exponent"]].round(6)
+       mode  order  exponent
+    0     2      1       2.0
     """
 
     modes: Ints
@@ -115,6 +137,21 @@ class GrowthExponents:
             first = float(times.min())
             last = float(times.max())
         return GroupGrowth(k, modes, mean, spread, (first, last))
+
+    def _table(self) -> Table:
+        """One row for each mode."""
+        columns: Columns = {
+            "mode": self.modes,
+            "order": self.orders,
+            "exponent": self.exponents,
+            "error": self.errors,
+            "window_from": self.windows[:, 0],
+            "window_to": self.windows[:, 1],
+            "first_half": self.halves[:, 0],
+            "second_half": self.halves[:, 1],
+            "saturation": self.saturation,
+        }
+        return Table(columns, attributes(self))
 
 
 def growth_exponents(

@@ -19,6 +19,9 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Columns, Table
+from symfpu.frames.tabled import Tabled
 from symfpu.numbers.typed import integer, seed_modes
 
 Floats = NDArray[np.float64]
@@ -278,7 +281,7 @@ def rounding_floor(
 
 
 @dataclass(frozen=True, eq=False)
-class ProfileFit:
+class ProfileFit(Tabled):
     """A line through a profile. Made by `fit_profile`; kappa and e_kappa are dimensionless.
 
     line : a ProfileLine, the form of Eqs. eksa2 and eksp2. errors : standard errors of slope,
@@ -290,6 +293,9 @@ class ProfileFit:
     >>> fit_profile(Chain(N=32, beta=1), 10.0 ** (-20 * q / 32 + 0.1 * np.sin(q)), 2, floor=0)
     ProfileFit(log10 e = (-20.005 +- 0.067) kappa + (0.42305 +- 0.047), 29 modes 3..31,
     scatter 0.072)
+    >>> fit = fit_profile(Chain(N=32, beta=1), 10.0 ** (-20 * q / 32 + 0.1 * np.sin(q)), 2, floor=0)
+    >>> fit.to_frame().shape, round(fit.to_frame().attrs["slope"], 3)
+    ((29, 2), -20.005)
     """
 
     line: ProfileLine
@@ -309,6 +315,14 @@ class ProfileFit:
         modes = f"{len(self.modes)} modes {self.modes[0]}..{self.modes[-1]}"
         fitted = f"log10 e = {slope} kappa + {intercept}{power}"
         return f"ProfileFit({fitted}, {modes}, scatter {self.scatter:.2g})"
+
+    def _table(self) -> Table:
+        names = ("slope", "intercept", "power")
+        line = {name: getattr(self.line, name) for name in names}
+        errors = zip(names, self.errors, strict=True)
+        known = line | {f"{name}_error": error for name, error in errors}
+        columns: Columns = {"mode": self.modes, "residual": self.residuals}
+        return Table(columns, attributes(self, scatter=self.scatter, **known))
 
 
 def fit_profile(

@@ -8,6 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.errors import InputError, SymfpuError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
 from symfpu.localization.profiles import energy_record
 
 Floats = NDArray[np.float64]
@@ -34,7 +37,7 @@ class NoRecurrence(SymfpuError):
 
 
 @dataclass(frozen=True, eq=False)
-class Recurrence:
+class Recurrence(Tabled):
     """Returns of an orbit to its first mode energies. Made by `recurrence` (section 6.4.3).
 
     times : (R,), of each visit, in order, in units of the chain (dimensionless).
@@ -44,6 +47,10 @@ class Recurrence:
     >>> Recurrence(np.array([157.0, 315.0]), np.array([0.97, 0.99]), 0.8)
     Recurrence(2 returns, first at t=157 of 97.0000%, best at t=315 of 99.0000%,
     up to 0.8 of the energy away)
+    >>> Recurrence(np.array([157.0, 315.0]), np.array([0.97, 0.99]), 0.8).to_frame()
+        time  returned
+    0  157.0      0.97
+    1  315.0      0.99
     """
 
     times: Floats = field(repr=False)
@@ -68,6 +75,10 @@ class Recurrence:
         best = f"best at t={time:.6g} of {part:.4%}"
         away = f"up to {self.excursion:.3g} of the energy away"
         return f"Recurrence({len(self.times)} returns, {first}, {best}, {away})"
+
+    def _table(self) -> Table:
+        columns = {"time": self.times, "returned": self.returned}
+        return Table(columns, attributes(self, excursion=self.excursion))
 
 
 def recurrence(times: ArrayLike, energies: ArrayLike) -> Recurrence:

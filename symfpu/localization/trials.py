@@ -17,6 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
 from symfpu.localization.laws import (
     FLOOR,
     ProfileFit,
@@ -36,7 +39,7 @@ PHASES = ("equal", "random")
 
 
 @dataclass(frozen=True, eq=False)
-class Trend:
+class Trend(Tabled):
     """Rate of y with x by least squares, all points alike, and its standard error.
 
     Made by `slope_by_energy` and others. Ours.
@@ -46,6 +49,11 @@ class Trend:
 
     >>> Trend(np.array([0.0, 1, 2]), np.array([0.0, 2.1, 3.9]), 1.95, 0.087)
     Trend(1.95 +- 0.087, 3 points)
+    >>> Trend(np.array([0.0, 1, 2]), np.array([0.0, 2.1, 3.9]), 1.95, 0.087).to_frame()
+         x    y
+    0  0.0  0.0
+    1  1.0  2.1
+    2  2.0  3.9
     """
 
     x: Floats
@@ -55,6 +63,10 @@ class Trend:
 
     def __repr__(self) -> str:
         return f"Trend({self.rate:.4g} +- {self.error:.2g}, {len(self.x)} points)"
+
+    def _table(self) -> Table:
+        known = attributes(self, rate=self.rate, error=self.error)
+        return Table({"x": self.x, "y": self.y}, known)
 
 
 def _trend(x: ArrayLike, y: ArrayLike) -> Trend:
@@ -132,7 +144,7 @@ def _power_of_the_law(chain: Chain) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class ProfileInvariance:
+class ProfileInvariance(Tabled):
     """Profiles of packets of the same M and eps in chains of several lengths.
 
     They are those of section 6.1; dimensionless. Made by `profile_invariance`.
@@ -147,6 +159,8 @@ class ProfileInvariance:
     ProfileInvariance(N=16, 32, 48, M=1/8, eps=0.01, T=10000, equal phases,
     1 realisations: E_q/eps ~ N^c, c = D_1 1.73 +- 0.17,
     ...; d slope/d log10 N = Trend(... 3 points))
+    >>> profile_invariance(Chain(N=16, beta=1), "1/8", 1e-2, (16, 32, 48), 1e2).to_frame().shape
+    (93, 7)
     """
 
     fraction: Fraction
@@ -256,6 +270,43 @@ class ProfileInvariance:
             unit = chain.N if per_mode else 1
             logs.append(math.log10(share * unit))
         return logs
+
+    def _table(self) -> Table:
+        """One row for each mode of each realisation of each size."""
+        by_size = zip(self.chains, self.spectra, self.floors, self.fits, strict=True)
+        parts = [_profile_columns(*one) for one in by_size]
+        columns = {
+            name: np.concatenate([part[name] for part in parts]) for name in parts[0]
+        }
+        known = attributes(
+            self,
+            chains=tuple(map(repr, self.chains)),
+            fraction=self.fraction,
+            specific_energy=self.specific_energy,
+            T=self.T,
+            phases=self.phases,
+        )
+        return Table(columns, known)
+
+
+def _profile_columns(
+    chain: Chain, shares: Floats, floor: Floats, fit: ProfileFit
+) -> dict[str, NDArray[Any]]:
+    """All realisations of one size below each other."""
+    realisations, count = shares.shape
+    modes = np.array(chain.mode_numbers)
+    kappa = modes / chain.N
+    columns = {
+        "N": np.full(count, chain.N),
+        "mode": modes,
+        "kappa": kappa,
+        "floor": floor,
+        "log10_fit": fit.line(kappa),
+    }
+    below = {name: np.tile(values, realisations) for name, values in columns.items()}
+    below["realisation"] = np.repeat(range(realisations), count)
+    below["share"] = shares.reshape(-1)
+    return below
 
 
 def _middle_halves(chain: Chain, fraction: Fraction) -> list[NDArray[np.int64]]:

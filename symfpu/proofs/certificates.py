@@ -27,6 +27,9 @@ from symfpu.chain.propagation import coupled_modes, excitation_sequence
 from symfpu.errors import InputError, SymfpuError, VanishingResidue
 from symfpu.files.progress import Progress
 from symfpu.files.writing import write_text
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Columns, Table, joined
+from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.series.force import force_numbers
@@ -119,7 +122,7 @@ class RuleException:
 
 
 @dataclass(frozen=True)
-class PropagationProof(Shown):
+class PropagationProof(Shown, Tabled):
     """The Proposition's D_k beside the actual ones up to an order, and everything that shows it.
 
     Made by `prove_propagation`.
@@ -138,6 +141,9 @@ class PropagationProof(Shown):
     >>> from symfpu import prove_propagation
     >>> prove_propagation(8, (1, 4), 3, model="beta")
     PropagationProof(N=8, beta, seeds=1,4, order 3: refuted; mode 7 predicted at 1, actually 2)
+    >>> prove_propagation(8, (1, 4), 3, model="beta").to_frame().query("not agrees")
+       mode  rule  actual  agrees undecided_orders
+    6     7     1       2   False
     """
 
     N: int
@@ -208,6 +214,29 @@ class PropagationProof(Shown):
         """
         text = json.dumps(self.certificate(), indent=1)
         write_text(Path(path), text + "\n")
+
+    def _table(self) -> Table:
+        """One row for each mode: its order by the rule, its actual one, what is not decided."""
+        modes = range(1, self.N)
+        rule = {q: k for k, at in enumerate(self.rule) for q in at}
+        actual = {q: k for k, at in enumerate(self.actual) for q in at}
+        shown = {zero.mode: joined(zero.orders) for zero in self.undecided}
+        columns: Columns = {
+            "mode": modes,
+            "rule": [rule.get(q) for q in modes],
+            "actual": [actual.get(q) for q in modes],
+            "agrees": [rule.get(q) == actual.get(q) for q in modes],
+            "undecided_orders": [shown.get(q, "") for q in modes],
+        }
+        known = attributes(
+            self,
+            N=self.N,
+            model=self.model,
+            seeds=self.seeds,
+            order=self.order,
+            verdict=self.verdict,
+        )
+        return Table(columns, known)
 
 
 def _point_record(point: ResiduePoint) -> dict[str, Any]:

@@ -27,6 +27,9 @@ from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.propagation import coupling_sequence
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Columns, Table, joined
+from symfpu.frames.tabled import Tabled
 from symfpu.numbers.typed import integer
 from symfpu.proofs.certificates import law_name, prove_propagation, proved_chain
 
@@ -55,7 +58,7 @@ class SweepCase:
 
 
 @dataclass(frozen=True)
-class Sweep:
+class Sweep(Tabled):
     """All cases of a sweep of the Proposition. Made by `sweep_propagation`.
 
     model, order : of every case, the model of another potential being its text, "toda:0.5".
@@ -68,6 +71,10 @@ class Sweep:
     >>> with ThreadPoolExecutor(1) as pool:
     ...     sweep_propagation((4, 5), 1, 2, model="beta", executor=pool)
     Sweep(beta, order 2: 7 seed sets: 7 proved; corrected rule holds in 7)
+    >>> case = SweepCase(4, (1, 2), "refuted", ((3, 1, None),), True)
+    >>> Sweep("beta", 1, (case,)).to_frame()
+       N seeds  verdict  exceptions  corrected_rule_holds
+    0  4   1,2  refuted           1                  True
     """
 
     model: str
@@ -85,6 +92,18 @@ class Sweep:
     def exceptions(self) -> tuple[SweepCase, ...]:
         """The cases in which the proposition fails."""
         return tuple(case for case in self.cases if case.verdict == "refuted")
+
+    def _table(self) -> Table:
+        """One row for each seed set."""
+        cases = self.cases
+        columns: Columns = {
+            "N": [case.N for case in cases],
+            "seeds": [joined(case.seeds) for case in cases],
+            "verdict": [case.verdict for case in cases],
+            "exceptions": [len(case.exceptions) for case in cases],
+            "corrected_rule_holds": [case.corrected_rule_holds for case in cases],
+        }
+        return Table(columns, attributes(self, model=self.model, order=self.order))
 
 
 class SweepIncomplete(SymfpuError):

@@ -19,6 +19,18 @@ from symfpu.algebra.formulas import Coupling, Multiplier
 from symfpu.algebra.program import Program
 from symfpu.algebra.program_values import tabled, tangents_in_doubles, values_in_doubles
 from symfpu.errors import InputError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.table import Column, Table
+from symfpu.frames.tabled import Gridded, Tabled
+from symfpu.series.coefficient_table import (
+    COORDINATE,
+    Part,
+    coefficient_table,
+    harmonics_and_powers,
+    of_amplitudes,
+    of_frequency,
+)
 from symfpu.series.series import LindstedtSeries, require_series
 from symfpu.series.substitution import sampled_leaves
 
@@ -28,7 +40,7 @@ Tables = tuple[Floats, ...]
 
 
 @dataclass(frozen=True)
-class FrequencyChanges:
+class FrequencyChanges(Gridded):
     """The frequencies that amplitudes give, and their derivatives, at each of P points.
 
     Made by `SampledSeries`; dimensionless. Ours.
@@ -41,6 +53,8 @@ class FrequencyChanges:
     >>> series = lindstedt(Chain(N=8, beta=1), (1,), order=1)
     >>> sample_series(series, [[0.4], [0.41]]).frequencies_at([0.1])
     FrequencyChanges(2 points, omega of the first 0.39022241...)
+    >>> sample_series(series, [[0.4], [0.41]]).frequencies_at([0.1]).to_frame().shape
+    (2, 6)
     """
 
     omega: Floats
@@ -51,9 +65,28 @@ class FrequencyChanges:
         first = ", ".join(f"{w:.12g}" for w in self.omega[0])
         return f"FrequencyChanges({len(self.omega)} points, omega of the first {first})"
 
+    def _grid(self) -> Grid:
+        changes = "derivative of omega by"
+        both = ("point", "frequency", "by")
+        numbers = range(1, self.omega.shape[1] + 1)
+        return Grid(
+            axes={"point": range(len(self.omega)), "frequency": numbers, "by": numbers},
+            variables={
+                "omega": Variable(both[:2], self.omega, "frequency of a seed"),
+                "by_amplitude": Variable(
+                    both, self.by_amplitudes, f"{changes} an amplitude"
+                ),
+                "by_frequency": Variable(
+                    both, self.by_frequencies, f"{changes} a frequency of the divisors"
+                ),
+            },
+            attributes=attributes(self),
+            rows=both,
+        )
+
 
 @dataclass(frozen=True)
-class EnergyChanges:
+class EnergyChanges(Gridded):
     """Average mode energies of the tori with given amplitudes, and derivatives, at P points.
 
     Made by `SampledSeries`; dimensionless. Ours.
@@ -65,6 +98,8 @@ class EnergyChanges:
     >>> series = lindstedt(Chain(N=8, beta=1), (1,), order=1)
     >>> sample_series(series, [[0.4], [0.41]]).energies_at([0.1])
     EnergyChanges(2 points, sum of the first 0.00078060...)
+    >>> sample_series(series, [[0.4], [0.41]]).energies_at([0.1]).to_frame().shape
+    (14, 6)
     """
 
     energies: Floats
@@ -75,9 +110,32 @@ class EnergyChanges:
         total = self.energies[0].sum()
         return f"EnergyChanges({len(self.energies)} points, sum of the first {total:.12g})"
 
+    def _grid(self) -> Grid:
+        points, modes, seeds = self.by_amplitudes.shape
+        changes = "derivative of the energy by"
+        both = ("point", "mode", "by")
+        return Grid(
+            axes={
+                "point": range(points),
+                "mode": range(1, modes + 1),
+                "by": range(1, seeds + 1),
+            },
+            variables={
+                "energy": Variable(both[:2], self.energies, "average energy of a mode"),
+                "by_amplitude": Variable(
+                    both, self.by_amplitudes, f"{changes} an amplitude"
+                ),
+                "by_frequency": Variable(
+                    both, self.by_frequencies, f"{changes} a frequency"
+                ),
+            },
+            attributes=attributes(self),
+            rows=both,
+        )
+
 
 @dataclass(frozen=True, eq=False)
-class SampledSeries:
+class SampledSeries(Tabled):
     """A universal series at P points: tables of numbers with the point as last axis.
 
     Made by `sample_series`; dimensionless. Variables and factors are those of `LindstedtSeries`
@@ -93,6 +151,8 @@ class SampledSeries:
     >>> tables, _ = sampled.derivatives_by_frequency(1)
     >>> tables[2].shape
     (2, 7, 2)
+    >>> sampled.to_frame().point.unique().tolist()
+    [0, 1]
     """
 
     series: LindstedtSeries
@@ -236,6 +296,42 @@ class SampledSeries:
                 "amplitudes", given.shape, allowed, "pass one row for every point"
             )
         return np.broadcast_to(given, self.frequencies.shape)
+
+    def _table(self) -> Table:
+        """One row for each coefficient at each point, of coordinates and of omega^2."""
+        series, points = self.series, range(len(self.frequencies))
+        tables = [
+            coefficient_table(self._parts(point), series.seeds, {}).columns
+            for point in points
+        ]
+        counts = [len(table["value"]) for table in tables]
+        columns: dict[str, Column] = {"point": np.repeat(points, counts)}
+        for name in tables[0]:
+            columns[name] = np.concatenate([table[name] for table in tables])
+        known = attributes(self, series.chain, seeds=series.seeds, order=series.order)
+        return Table(columns, known)
+
+    def _parts(self, point: int) -> Iterator[Part]:
+        """The coefficients at one point, as in the table of a numeric series."""
+        chain, seeds, grading = self.series.chain, self.series.seeds, self.series.grading
+        linear = chain.frequencies()
+        own = linear[np.array(seeds) - 1]
+        for k, table in enumerate(self.coordinates):
+            degree = self.series.degree(k)
+            rows = grading.canonical(degree)
+            harmonics, powers = harmonics_and_powers(grading.exponents(degree)[rows])
+            factors = np.prod(own**powers, axis=1)
+            for q in chain.mode_numbers:
+                values = table[:, q - 1, point] / linear[q - 1] * factors
+                at = values != 0
+                found = of_amplitudes(values[at], harmonics[at], degree)
+                yield Part(COORDINATE, k, q, harmonics[at], powers[at], found)
+        for k, table in enumerate(self.corrections, start=1):
+            exponents = 2 * grading.diagonal(chain.degree_step * k)
+            factors = np.prod((own / 2) ** exponents, axis=1)
+            for i, q in enumerate(seeds):
+                values = own[i] ** 2 * table[:, i, point] * factors
+                yield of_frequency(k, q, exponents, values, squared=True)
 
 
 def _averages(harmonics: Ints) -> Floats:

@@ -24,6 +24,9 @@ from symfpu.algebra.polynomials import (
 )
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     DOUBLES,
@@ -36,6 +39,14 @@ from symfpu.numbers.arithmetic import (
 )
 from symfpu.numbers.typed import Number, integer
 from symfpu.series.arguments import digits_of, frequencies_of
+from symfpu.series.coefficient_table import (
+    COORDINATE,
+    Part,
+    coefficient_table,
+    harmonics_and_powers,
+    of_amplitudes,
+    of_frequency,
+)
 from symfpu.series.divisors import Float64Divisors, SmallDivisor
 from symfpu.series.monomials import monomial_space
 from symfpu.series.named_parts import NamedParts
@@ -64,7 +75,7 @@ class ResiduePoint:
 
 
 @dataclass(frozen=True, eq=False)
-class LindstedtSeries(Shown):
+class LindstedtSeries(Shown, Tabled):
     """The series Q_q = sum mu^k Q_q^(k) and omega_q = Omega_q + sum mu^k omega_q^(k).
 
     The amplitudes are free.
@@ -103,6 +114,9 @@ class LindstedtSeries(Shown):
     >>> series.term(q=2, order=1)
     (-1/2)*A1**2*Omega_1**2*L_{2}(0)/Omega_2
     + (-1/2)*A1**2*Omega_1**2*cos(2*theta1)*L_{2}(2)/Omega_2
+    >>> numeric = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 2)
+    >>> list(numeric.to_frame())
+    ['quantity', 'order', 'mode', 'nu_1', 'power_1', 'value']
     """
 
     chain: Chain
@@ -635,6 +649,40 @@ class LindstedtSeries(Shown):
         diagonals = [self.grading.diagonal(self.chain.degree_step * k) for k in orders]
         tables = [self._sign(k) * self.corrections[k] for k in orders]
         return frequency_sums(linear, slope, squares, diagonals, tables)
+
+    def _table(self) -> Table:
+        """One row for each coefficient of the coordinates and of the frequencies, without mu^k."""
+        if self.ring == RESIDUE.name:
+            advice = "its `coordinates` are residues"
+            raise InputError("series", "of residues", "one of numbers or symbols", advice)
+        coordinates = [
+            self._coordinate_part(q, k)
+            for k in range(self.order + 1)
+            for q in self.chain.mode_numbers
+        ]
+        frequencies = [
+            of_frequency(k, q, *self.frequency_coefficients(q, k))
+            for k in range(self.order + 1)
+            for q in self.seeds
+        ]
+        known = attributes(
+            self,
+            self.chain,
+            seeds=self.seeds,
+            frequencies=self.frequencies,
+            order=self.order,
+            ring=self.ring,
+            digits=self.digits,
+        )
+        return coefficient_table([*coordinates, *frequencies], self.seeds, known)
+
+    def _coordinate_part(self, q: int, order: int) -> Part:
+        exponents, values = self.coefficients(q, order)
+        harmonics, powers = harmonics_and_powers(exponents)
+        with self._context():
+            found = of_amplitudes(values, harmonics, self.degree(order))
+        shown = with_digits(found, self.digits)
+        return Part(COORDINATE, order, q, harmonics, powers, shown)
 
 
 def frequency_sums(

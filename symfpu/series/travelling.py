@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -15,22 +15,34 @@ from symfpu.algebra.travelling import TravellingDoubles, TravellingModes
 from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import DOUBLES, Arithmetic
 from symfpu.numbers.typed import Number, integer
 from symfpu.series.arguments import frequencies_of
+from symfpu.series.coefficient_table import (
+    STRETCH,
+    Part,
+    coefficient_table,
+    harmonics_and_powers,
+    of_amplitudes,
+    of_frequency,
+)
 from symfpu.series.divisors import SmallDivisor
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import shared_grading
 from symfpu.series.recursion import run_recursion
 from symfpu.series.rings import FLOAT64
 from symfpu.series.series import frequency_sums
+from symfpu.series.tables import DoubleTables, Exponents
 from symfpu.series.travelling_divisors import TravellingDivisors, place_of
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class TravellingSeries:
+class TravellingSeries(Tabled):
     """The series of travelling waves on a ring of N particles, with free amplitudes.
 
     Made by `travelling_waves`, ours; dimensionless, phases in radians. Every seed q is a wave,
@@ -53,6 +65,9 @@ class TravellingSeries:
     >>> travelling_waves(Chain(N=8, alpha="0.3", ends="periodic"), (1,), ("0.766",), 6)
     TravellingSeries(N=8, alpha=0.3, ends='periodic', seeds=1, order 6, 19 coefficients,
     smallest divisor 0.35 at mode 2, harmonic (2), order 1)
+    >>> series = travelling_waves(Chain(N=8, beta=1, ends="periodic"), (1,), ("0.8",), 1)
+    >>> series.to_frame().query("order == 1 and quantity == 'stretch'").nu_1.tolist()
+    [3]
     """
 
     chain: Chain
@@ -149,6 +164,51 @@ class TravellingSeries:
         squares = np.asarray(squared_amplitudes, dtype=float)
         slope = self.seed_factors**2
         return frequency_sums(self._linear, slope, squares, diagonals, tables)
+
+    def _table(self) -> Table:
+        """One row for each coefficient of the stretches and of omega^2, without mu^k."""
+        orders = range(self.order + 1)
+        stretches = [part for k in orders for part in self._stretch_parts(k)]
+        squares = [self._square_part(k, i) for k in orders for i in range(len(self.seeds))]
+        known = attributes(
+            self,
+            self.chain,
+            seeds=self.seeds,
+            frequencies=self.frequencies,
+            order=self.order,
+        )
+        return coefficient_table([*stretches, *squares], self.seeds, known)
+
+    def _stretch_parts(self, order: int) -> Iterator[Part]:
+        """By mode the coefficients of N^(-1/2) prod A^power cos(nu.(2 pi q (j+1/2)/N - theta))."""
+        degree = self.degree(order)
+        rows = self.grading.canonical(degree)
+        harmonics, powers = harmonics_and_powers(self.grading.exponents(degree)[rows])
+        scale = Exponents(self.unit, degree - 1, 0)
+        values = DoubleTables().scaled(
+            self.coordinates[order], self._linear.tolist(), powers, scale
+        )
+        found = of_amplitudes(values, harmonics, degree)
+        places = harmonics @ np.array(self.seeds) % self.chain.N
+        for q in self.chain.mode_numbers:
+            chosen = (places == q % self.chain.N) & (found != 0)
+            if chosen.any():
+                yield Part(
+                    STRETCH, order, q, harmonics[chosen], powers[chosen], found[chosen]
+                )
+
+    def _square_part(self, order: int, i: int) -> Part:
+        """[omega_q^2]^(k) of one seed."""
+        degree = self.chain.degree_step * order
+        square = self._linear[i] ** 2
+        exponents, values = np.zeros((1, len(self.seeds)), dtype=np.int64), np.ones(1)
+        if order:
+            exponents = 2 * self.grading.diagonal(degree)
+            scale = Exponents(self.unit, degree, degree)
+            values = DoubleTables().scaled(
+                self.corrections[order][:, i], self._linear.tolist(), exponents, scale
+            )
+        return of_frequency(order, self.seeds[i], exponents, square * values, squared=True)
 
 
 def travelling_waves(

@@ -24,6 +24,9 @@ from symfpu.errors import (
     SymfpuError,
     UndeterminedAmplitudes,
 )
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     GUARD_DIGITS,
@@ -77,7 +80,7 @@ class FrequencySeries(Protocol):
 
 
 @dataclass(frozen=True)
-class AmplitudeHistory(Shown):
+class AmplitudeHistory(Shown, Tabled):
     """Amplitudes A(K) by frequency order K, and why orders without a root have none.
 
     Made by `amplitude_history`; dimensionless. Fig. 1(b) shows the differences |A(K+2) - A(K)| of
@@ -89,6 +92,11 @@ class AmplitudeHistory(Shown):
     >>> from symfpu import Chain, amplitude_history, lindstedt
     >>> amplitude_history(lindstedt(Chain(N=8, beta="0.3"), (1,), ("0.3905",), 2))
     AmplitudeHistory(seeds=(1,), 2 of 2 orders have a root, A(2) = (0.504955824...,))
+    >>> history = amplitude_history(lindstedt(Chain(N=8, beta="0.3"), (1,), ("0.3905",), 2))
+    >>> history.to_frame()[["frequency_order", "seed", "amplitude"]].round(6)
+       frequency_order  seed  amplitude
+    0                1     1   0.504850
+    1                2     1   0.504956
     """
 
     seeds: tuple[int, ...]
@@ -116,6 +124,21 @@ class AmplitudeHistory(Shown):
                 pairs = zip(self.amplitudes[K], self.amplitudes[following], strict=True)
                 found[K] = tuple(float(abs(after - before)) for before, after in pairs)
         return found
+
+    def _table(self) -> Table:
+        """One row for each seed at each order; an order without a root has its error."""
+        rows = [(K, i) for K in self.orders for i in range(len(self.seeds))]
+        changes = self.differences()
+        none = (None,) * len(self.seeds)
+        failures = {K: str(error) for K, error in self.failures.items()}
+        columns = {
+            "frequency_order": [K for K, _ in rows],
+            "seed": [self.seeds[i] for _, i in rows],
+            "amplitude": [self.amplitudes.get(K, none)[i] for K, i in rows],
+            "difference": [changes.get(K, none)[i] for K, i in rows],
+            "failure": [failures.get(K, "") for K, _ in rows],
+        }
+        return Table(columns, attributes(self, seeds=self.seeds))
 
 
 def frequency_orders(series: FrequencySeries) -> tuple[int, ...]:

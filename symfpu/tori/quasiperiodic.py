@@ -19,6 +19,10 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError
+from symfpu.frames.attributes import RADIANS, attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.table import joined
+from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     DOUBLES,
@@ -66,7 +70,7 @@ else:
     Parts = object
 
 
-class QuasiPeriodic(Shown, Parts):
+class QuasiPeriodic(Shown, Gridded, Parts):
     """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
 
     This is what every torus and breather can do.
@@ -369,6 +373,48 @@ class QuasiPeriodic(Shown, Parts):
             digits = np.stack(np.unravel_index(index, shape), axis=-1)
             yield 2 * self.numbers.pi * (3 * digits + 1) / (3 * number)
 
+    # as a table
+
+    def _grid(self) -> Grid:
+        seeds, modes = ("seed",), ("mode",)
+        phases = [self.phases[q] for q in self.seeds]
+        amplitudes = [self.amplitudes[q] for q in self.seeds]
+        nu = "factor of the angle of a seed in a harmonic"
+        cosine = "coefficient of cos(nu.(omega t + phi)) in Q_q"
+        average = "infinite-time average of the harmonic energy E_q"
+        linear = self.chain.frequencies(self.numbers)
+        return Grid(
+            axes={
+                "harmonic": list(map(joined, self.harmonics.tolist())),
+                "mode": self.chain.mode_numbers,
+                "seed": self.seeds,
+            },
+            variables={
+                "nu": Variable(("harmonic", "seed"), self.harmonics, nu),
+                "cosine": Variable(("harmonic", "mode"), self.cosines, cosine),
+                "frequency": Variable(seeds, self._omega, "frequency omega_q of a seed"),
+                "amplitude": Variable(
+                    seeds, amplitudes, "coefficient of cos(theta_q) in Q_q"
+                ),
+                "phase": Variable(seeds, phases, "angle at t = 0", RADIANS),
+                "average_energy": Variable(modes, self.average_spectrum(), average),
+                "linear_frequency": Variable(
+                    modes, linear, "Omega_q of small oscillations"
+                ),
+            },
+            attributes=attributes(
+                self,
+                self.chain,
+                seeds=self.seeds,
+                frequencies=self.frequencies,
+                energy=self.energy(),
+                digits=self.digits,
+                warnings=self.warnings,
+            ),
+            rows=("harmonic", "mode"),
+            across="seed",
+        )
+
 
 def require_solution(solution: object, argument: str) -> None:
     """InputError for what is no solution."""
@@ -421,6 +467,11 @@ class FourierTorus(QuasiPeriodic):
     phases={1: 0.0}, ...)
     >>> mode.positions(0.0)
     array([1., 0., 0.])
+    >>> mode.to_frame()
+      harmonic  mode  nu_1  cosine  average_energy  linear_frequency
+    0        1     1     1     1.0        0.208947          0.765367
+    1        1     2     1     0.0        0.000000          1.414214
+    2        1     3     1     0.0        0.000000          1.847759
     """
 
     chain: Chain

@@ -17,6 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
+from symfpu.frames.attributes import attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.table import Column, Table
+from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import Numbers, with_digits
 from symfpu.numbers.typed import integer
 from symfpu.series.series import LindstedtSeries, require_series
@@ -37,7 +41,7 @@ LARGEST_SUM = 20  # and of those that sum a series
 
 
 @dataclass(frozen=True)
-class PadeSum:
+class PadeSum(Tabled):
     """A sum by Pade approximants, and how far it can be trusted.
 
     values : the highest approximants, dimensionless; (s,) of frequencies, (H, N-1) of coefficients.
@@ -49,10 +53,22 @@ class PadeSum:
 
     >>> PadeSum(np.array([0.5]), np.array([0.25]))
     PadeSum(values=array([0.5]), disagreement=array([0.25]))
+    >>> PadeSum(np.array([0.5]), np.array([0.25])).to_frame()
+       index_0  value  disagreement
+    0        0    0.5          0.25
     """
 
     values: Numbers
     disagreement: Floats
+
+    def _table(self) -> Table:
+        """One row for each sum, with its place in the array."""
+        columns: dict[str, Column] = {}
+        for axis, places in enumerate(np.indices(self.values.shape)):
+            columns[f"index_{axis}"] = places.reshape(-1)
+        columns["value"] = self.values.reshape(-1)
+        columns["disagreement"] = self.disagreement.reshape(-1)
+        return Table(columns, attributes(self))
 
 
 def pade_sum(terms: Numbers) -> PadeSum:
@@ -254,9 +270,17 @@ class ResummedTorus(FourierTorus):
     ResummedTorus(chain=Chain(N=8, alpha=0.3), seeds=(1,), frequencies=(Fraction(781, 2000),), ...)
     >>> torus.disagreement.shape == torus.cosines.shape
     True
+    >>> "disagreement" in torus.to_xarray()
+    True
     """
 
     disagreement: Floats = field(repr=False, default_factory=lambda: np.zeros((0, 0)))
+
+    def _grid(self) -> Grid:
+        grid = super()._grid()
+        meaning = "distance of neighbouring approximants of a coefficient"
+        trust = Variable(("harmonic", "mode"), self.disagreement, meaning)
+        return replace(grid, variables={**grid.variables, "disagreement": trust})
 
 
 def resum(torus: QTorus) -> ResummedTorus:

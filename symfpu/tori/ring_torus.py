@@ -18,6 +18,9 @@ from scipy.sparse import csr_matrix
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.frames.attributes import RADIANS, attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import integer
@@ -41,7 +44,7 @@ CHUNK = 256  # angles held at once
 
 
 @dataclass(frozen=True, eq=False)
-class RingTorus(Shown):
+class RingTorus(Shown, Gridded):
     """A torus of a ring of N particles, as a sum of waves; doubles, dimensionless.
 
     x_j(t) = N^(-1/2) sum b sin(2 pi m j / N - nu.theta), theta = omega t + phi. Ours; made by
@@ -58,6 +61,8 @@ class RingTorus(Shown):
     >>> chain = Chain(N=8, alpha="0.3", ends="periodic")
     >>> travelling_torus(travelling_waves(chain, (1,), ("0.766",), 8))
     RingTorus(N=8, alpha=0.3, ends='periodic', A_1=..., H=..., residual ...)
+    >>> list(travelling_torus(travelling_waves(chain, (1,), ("0.766",), 8)).to_frame())
+    ['wave', 'nu_1', 'wave_number', 'sine']
     """
 
     chain: Chain
@@ -198,6 +203,43 @@ class RingTorus(Shown):
             index = np.arange(start, min(start + CHUNK, number ** len(shape)))
             digits = np.stack(np.unravel_index(index, shape), axis=-1)
             yield 2 * np.pi * (3 * digits + 1) / (3 * number)
+
+    def _grid(self) -> Grid:
+        seeds = ("seed",)
+        phases = [self.phases[q] for q in self.seeds]
+        amplitudes = [self.amplitudes[q] for q in self.seeds]
+        sine = "coefficient of N^(-1/2) sin(2 pi m j / N - nu.theta) in x_j"
+        average = "infinite-time average of the harmonic energy E_q"
+        return Grid(
+            axes={
+                "wave": range(len(self.modes)),
+                "mode": self.chain.mode_numbers,
+                "seed": self.seeds,
+            },
+            variables={
+                "nu": Variable(
+                    ("wave", "seed"), self.harmonics, "factor of the angle of a seed"
+                ),
+                "wave_number": Variable(("wave",), self.modes, "m of the wave"),
+                "sine": Variable(("wave",), self.sines, sine),
+                "frequency": Variable(seeds, self._omega, "frequency omega_q of a seed"),
+                "amplitude": Variable(seeds, amplitudes, "amplitude A_q of a seed"),
+                "phase": Variable(seeds, phases, "angle at t = 0", RADIANS),
+                "average_energy": Variable(("mode",), self.average_spectrum(), average),
+            },
+            attributes=attributes(
+                self,
+                self.chain,
+                seeds=self.seeds,
+                frequencies=self.frequencies,
+                frequency_order=self.frequency_order,
+                order=self.order,
+                energy=self.energy(),
+                warnings=self.warnings,
+            ),
+            rows=("wave",),
+            across="seed",
+        )
 
 
 def _rate(nu: list[int], frequencies: tuple[Fraction, ...]) -> Fraction:

@@ -13,13 +13,16 @@ import numpy as np
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import Numbers, text, with_digits
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic, show
 
 
 @dataclass(frozen=True)
-class RootCertificate:
+class RootCertificate(Tabled):
     """Whether the truncated system is proved to have exactly one root near the amplitudes.
 
     By interval Newton in ball arithmetic; ours: the paper proves no root.
@@ -36,11 +39,18 @@ class RootCertificate:
     True
     >>> RootCertificate(False, {}, "the box does not shrink")
     RootCertificate(certified=False, radius={}, reason='the box does not shrink')
+    >>> solve_amplitudes(series).certificate.to_frame().seed.tolist()
+    [1]
     """
 
     certified: bool
     radius: Mapping[int, Any]  # mpf: doubles end at 1e-308
     reason: str = ""
+
+    def _table(self) -> Table:
+        known = attributes(self, certified=self.certified, reason=self.reason)
+        columns = {"seed": list(self.radius), "radius": list(self.radius.values())}
+        return Table(columns, known)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +75,9 @@ class QTorus(QuasiPeriodic):
     >>> solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8))
     QTorus(N=8, alpha=0.3, A_1=0.247740186794, frequency order 8, order 8, H=0.004714606926,
     residual ...)
+    >>> torus = solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8))
+    >>> dict(torus.to_xarray().sizes)
+    {'harmonic': 10, 'seed': 1, 'mode': 7}
     """
 
     series: LindstedtSeries = field(repr=False)

@@ -19,6 +19,9 @@ from numpy.typing import NDArray
 
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
+from symfpu.frames.attributes import Attributes, attributes
+from symfpu.frames.table import Column, Table, joined
+from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, text
 from symfpu.series.divisors import divisor
@@ -82,7 +85,7 @@ class LargestTerm:
 
 
 @dataclass(frozen=True, eq=False)
-class Assessment(Shown):
+class Assessment(Shown, Tabled):
     """What `assess` found; dimensionless numbers.
 
     word : 'converged', 'asymptotic', 'not a torus', or 'undecided' where too few orders are known.
@@ -109,6 +112,8 @@ class Assessment(Shown):
     >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8)
     >>> assess(series, solve_amplitudes(series))
     Assessment(converged: residual of the equations of motion ... at order 8; ...)
+    >>> assess(series, solve_amplitudes(series)).to_frame().shape
+    (9, 11)
     """
 
     word: str
@@ -183,6 +188,43 @@ class Assessment(Shown):
             cosines[str(q)] = _short_list(S_2)
         largest = [term.record() for term in self.terms]
         return {"S_1": moduli, "S_2": cosines, "largest_terms": largest}
+
+    def _table(self) -> Table:
+        """One row for each order: residual, energy error, largest term, sums, amplitudes."""
+        orders = range(self.order + 1)
+        largest = {term.order: term for term in self.terms}
+        terms = [largest.get(k) for k in orders]
+        columns: dict[str, Column] = {
+            "order": orders,
+            "residual": self.residuals,
+            "energy_error": self.energy_errors,
+            "largest_term": [math.nan if term is None else term.size for term in terms],
+            "term_mode": [None if term is None else term.mode for term in terms],
+            "term_harmonic": [
+                "" if term is None else joined(term.harmonic) for term in terms
+            ],
+            "divisor": [math.nan if term is None else term.divisor for term in terms],
+        }
+        for i, (q, (moduli, cosines)) in enumerate(self.sums.items()):
+            columns[f"S1_{q}"], columns[f"S2_{q}"] = moduli, cosines
+            found = {K: values[i] for K, values in self.amplitudes.items()}
+            changes = {K: values[i] for K, values in self.differences.items()}
+            columns[f"amplitude_{q}"] = [found.get(k, math.nan) for k in orders]
+            columns[f"difference_{q}"] = [changes.get(k, math.nan) for k in orders]
+        return Table(columns, self._attributes())
+
+    def _attributes(self) -> Attributes:
+        return attributes(
+            self,
+            verdict=self.word,
+            best_order=self.best_order,
+            reasons="; ".join(self.reasons),
+            frequency_order=self.frequency_order,
+            root_uncertainty=self.root_uncertainty,
+            radius_by_ratio=self.radius,
+            radius_by_poles=self.pole_radius,
+            resummed_residual=self.resummed_residual,
+        )
 
 
 def short(value: float) -> float | None:

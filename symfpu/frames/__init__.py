@@ -1,0 +1,1 @@
+"""Results as tables of pandas and as data sets of xarray."""
