@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from numbers import Integral, Real
+from numbers import Integral
 from typing import Any, Protocol
+
+import numpy as np
 
 from symfpu import __version__
 from symfpu.numbers.typed import decimal
@@ -14,6 +16,7 @@ Attributes = dict[str, Any]
 
 DIMENSIONLESS = "dimensionless"
 RADIANS = "radians"
+LONGEST_TYPED = 2000  # bits of an exact number that is written in decimal digits
 
 
 class SomeChain(Protocol):
@@ -43,24 +46,29 @@ def attributes(result: object, chain: SomeChain | None = None, **more: Any) -> A
 
 
 def plain(value: Any) -> Any:
-    """A value as a netCDF file can hold it: whole numbers, doubles, text and lists of numbers.
+    """A value as a netCDF file can hold it: a whole number, a double or text.
 
-    Exact numbers and those of many digits become text, as they are typed. Lists of text become
-    one text, mappings one line of "key: value".
+    Exact numbers and those of many digits become text, as they are typed; lists and mappings too.
 
     >>> plain((Fraction(1, 3), Fraction(1, 2))), plain({1: 0.5}), plain((1, 2)), plain(True)
-    ('1/3, 0.5', '1: 0.5', [1, 2], 'True')
+    ('1/3, 0.5', '1: 0.5', '1, 2', 'True')
     """
     if isinstance(value, Mapping):
         return ", ".join(f"{key}: {plain(item)}" for key, item in value.items())
     if isinstance(value, tuple | list):
-        items = list(map(plain, value))
-        numbers = all(isinstance(item, int | float) for item in items)
-        return items if items and numbers else ", ".join(map(str, items))
+        return ", ".join(str(plain(item)) for item in value)
     if isinstance(value, bool):
         return str(value)
     if isinstance(value, Integral):
         return int(value)
     if isinstance(value, Fraction):
-        return decimal(value)
-    return float(value) if isinstance(value, Real) else str(value)
+        return _exact_text(value)
+    return float(value) if isinstance(value, float | np.floating) else str(value)
+
+
+def _exact_text(value: Fraction) -> str:
+    """As it is typed; with so many digits that Python prints none of them, in base 16."""
+    bits = max(value.numerator.bit_length(), value.denominator.bit_length())
+    if bits > LONGEST_TYPED:
+        return f"{value.numerator:#x}/{value.denominator:#x}"
+    return decimal(value)
