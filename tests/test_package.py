@@ -13,7 +13,7 @@ import pytest
 import symfpu
 
 ROOT = Path(symfpu.__file__).parent
-HEAVY = ("numpy", "symengine", "sympy", "numba", "matplotlib", "scipy", "IPython")
+HEAVY = ("numpy", "symengine", "sympy", "numba", "matplotlib", "scipy", "IPython", "pandas", "xarray")
 IMPORT_SECONDS = 0.3  # ten times what it takes: a machine may be busy
 
 

@@ -189,6 +189,7 @@ class TravellingSeries(Tabled):
             self.coordinates[order], self._linear.tolist(), powers, scale
         )
         found = of_amplitudes(values, harmonics, degree)
+        DoubleTables().finite(found, f"order {order} of the stretches")
         places = harmonics @ np.array(self.seeds) % self.chain.N
         for q in self.chain.mode_numbers:
             chosen = (places == q % self.chain.N) & (found != 0)

@@ -382,7 +382,9 @@ class QuasiPeriodic(Shown, Gridded, Parts):
         nu = "factor of the angle of a seed in a harmonic"
         cosine = "coefficient of cos(nu.(omega t + phi)) in Q_q"
         average = "infinite-time average of the harmonic energy E_q"
-        linear = self.chain.frequencies(self.numbers)
+        with self._context():
+            rates = with_digits(self._omega, self.digits)
+            linear = with_digits(self.chain.frequencies(self.numbers), self.digits)
         return Grid(
             axes={
                 "harmonic": list(map(joined, self.harmonics.tolist())),
@@ -392,7 +394,7 @@ class QuasiPeriodic(Shown, Gridded, Parts):
             variables={
                 "nu": Variable(("harmonic", "seed"), self.harmonics, nu),
                 "cosine": Variable(("harmonic", "mode"), self.cosines, cosine),
-                "frequency": Variable(seeds, self._omega, "frequency omega_q of a seed"),
+                "frequency": Variable(seeds, rates, "frequency omega_q of a seed"),
                 "amplitude": Variable(
                     seeds, amplitudes, "coefficient of cos(theta_q) in Q_q"
                 ),
