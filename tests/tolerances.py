@@ -576,3 +576,5 @@ NO_RESIDUE = 1e-5
 # Pictures without words, averaged over squares of four pixels, from 0 to 1: fonts do not count, other edges of the same curves
 # differ by up to 0.002 between releases of matplotlib, one marker at another place by some 0.01.
 DRAWING = 0.004
+# Closed formulas of two seeds at 40 digits: their long polynomials cancel some ten digits.
+CLOSED_OF_FORTY = 1e-25

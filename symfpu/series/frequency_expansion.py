@@ -30,6 +30,7 @@ import symengine as se
 
 from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
 from symfpu.algebra.program_values import ancestors, values_in
+from symfpu.algebra.quotients import monomials_of, quotient_field
 from symfpu.algebra.selection import fold
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.length import mode_label, mode_of
@@ -314,16 +315,15 @@ class _Closed(_Expanded):
     """Over the rational functions of Omega_1, Omega_2, and rho."""
 
     def __init__(self, series: LindstedtSeries, names: Sequence[int]) -> None:
-        from sympy import QQ, symbols  # lazy: it takes long to import
-
         super().__init__(series, names)
-        self.field = QQ.frac_field(*symbols([f"Omega_{i}" for i in range(len(names))]))
-        squares = [x * x for x in self.field.gens]
+        frequencies = quotient_field([f"Omega_{i}" for i in range(len(names))])
+        self._zero, self._unit = frequencies[0] * 0, frequencies[0] * 0 + 1
+        squares = [x * x for x in frequencies]
         sines = [w * (4 - w) / 4 for w in squares]  # squared, of twice the angles
-        self._square_of_rho = prod(sines, start=self.field.one)
+        self._square_of_rho = prod(sines, start=self._unit)
         self._cosines = [_chebyshev(1 - w / 2, self.degree) for w in squares]
-        self.one = self._element(self.field.one, self.field.zero)
-        self.linear = [self.one * x for x in self.field.gens]
+        self.one = self._element(self._unit, self._zero)
+        self.linear = [self.one * x for x in frequencies]
         self._sums = self._signed_sums()
 
     @property
@@ -351,12 +351,12 @@ class _Closed(_Expanded):
     def linear_square(self, q: int) -> _Element:
         """Omega_q^2 = 2 - 2 cos(2 j.x)."""
         j = self._sums[q]
-        cosine, second = self.field.one, []
+        cosine, second = self._unit, []
         for (first_kind, second_kind), n in zip(self._cosines, j, strict=True):
             cosine = cosine * first_kind[abs(n)]
-            kind = second_kind[abs(n) - 1] if n else self.field.zero
+            kind = second_kind[abs(n) - 1] if n else self._zero
             second.append(kind if n >= 0 else -kind)
-        sines = prod(second) if len(second) == MOST_SEEDS else self.field.zero
+        sines = prod(second) if len(second) == MOST_SEEDS else self._zero
         return self._element(2 - 2 * cosine, 2 * sines)
 
     def expression(self, value: _Element) -> Any:
@@ -398,14 +398,13 @@ def _interpolated(values: Sequence[Any]) -> list[Any]:
 
 def _rational(value: Any, symbols: Sequence[Any]) -> Any:
     """A rational function as an expression."""
-    top, bottom = (_polynomial(part, symbols) for part in (value.numer, value.denom))
+    top, bottom = (_polynomial(part, symbols) for part in (value.top, value.bottom))
     return top / bottom
 
 
 def _polynomial(value: Any, symbols: Sequence[Any]) -> Any:
-    terms = []
-    for powers, number in value.terms():
-        ratio = se.Integer(int(number.numerator)) / se.Integer(int(number.denominator))
+    found = []
+    for powers, number in monomials_of(value):
         monomial = se.Mul(*(x**e for x, e in zip(symbols, powers, strict=True)))
-        terms.append(ratio * monomial)
-    return se.Add(*terms)
+        found.append(se.Integer(number) * monomial)
+    return se.Add(*found)

@@ -1,7 +1,9 @@
 """The frequency as a function of the amplitudes: against solutions found without series, by the rate of the error."""
 
 import math
+import re
 
+import mpmath
 import numpy as np
 import pytest
 import symengine as se
@@ -10,9 +12,11 @@ from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift_formula
 from symfpu.errors import InputError
-from symfpu.series.frequency_expansion import frequency_expansion
+from symfpu.numbers.arithmetic import MULTIPRECISION
+from symfpu.series.frequency_expansion import _Expanded, frequency_expansion
+from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.frequencies import torus_at_amplitudes
-from tests.tolerances import SLOPE, SMALL_SHIFT_ERROR
+from tests.tolerances import CLOSED_OF_FORTY, SLOPE, SMALL_SHIFT_ERROR
 
 
 def value(chain, amplitudes, q, order):
@@ -68,6 +72,65 @@ def test_error_of_two_seeds_falls_with_the_sixth_power(chain, seeds, order):
         errors.append([abs(value(chain, amplitudes, q, order) - float(w)) for q, w in zip(seeds, torus.frequencies, strict=True)])
     rates = np.log2(np.array(errors[0]) / np.array(errors[1]))
     assert (np.abs(rates - 6) < 4 * SLOPE).all(), rates
+
+
+class AtLinearFrequencies(_Expanded):
+    """The expansion in numbers, at given squares of the amplitudes: no rational function on the way."""
+
+    def __init__(self, chain, seeds, order, squares):
+        series = lindstedt(chain, seeds, order=order, ring="nested")
+        super().__init__(series, seeds)
+        self.squares, self.one = squares, mpmath.mpf(1)
+        self.linear = [chain.linear_frequency(q) for q in seeds]
+
+    def linear_square(self, q):
+        return self.series.chain.linear_frequency(q) ** 2
+
+    def expression(self, value):
+        return value
+
+    def values(self, place):
+        """omega^(k) of a seed by order k."""
+        return [c * self.linear[place] for c in self._at(self.squares)[place].coefficients]
+
+
+def in_digits(formula, numbers):
+    """A formula at mpf, all its integers made mpf first."""
+    text = re.sub(r"(?<![A-Za-z_0-9])(\d+)", r"mpf(\1)", str(formula))
+    return eval(text, {"mpf": mpmath.mpf, "sqrt": mpmath.sqrt, **numbers})
+
+
+@pytest.mark.parametrize(("couplings", "order"), [({"alpha": 1}, 4), ({"beta": 1}, 3)], ids=str)
+def test_closed_formulas_of_two_seeds_are_the_expansion_in_numbers(couplings, order):
+    """To 25 of 40 digits: doubles lose too many in polynomials so long."""
+    chain, seeds = Chain(53, **couplings), (5, 17)
+    with mpmath.workdps(40):
+        amplitudes = [mpmath.mpf("0.4"), mpmath.mpf("0.3")]
+        numbers = {f"A{q}": a for q, a in zip(seeds, amplitudes, strict=True)}
+        numbers |= {f"Omega_{q}": chain.linear_frequency(q) for q in seeds}
+        expected = AtLinearFrequencies(chain, seeds, order, [a**2 for a in amplitudes]).values(1)[order]
+        formula = frequency_expansion(chain, seeds, 17, order)
+        assert abs(in_digits(formula, numbers) / expected - 1) < CLOSED_OF_FORTY
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("chain", "order", "rate"), [(Chain(53, alpha="0.1"), 6, 8), (Chain(37, beta="0.1"), 4, 10)], ids=str)
+def test_error_of_high_orders_falls_with_the_next_power(chain, order, rate):
+    """Against tori whose divisors hold the frequencies themselves, in 40 digits."""
+    seeds, errors = (5, 17), []
+    with mpmath.workdps(50):
+        mu = chain.small_parameter(MULTIPRECISION)
+        for a in (mpmath.mpf("0.4"), mpmath.mpf("0.2")):
+            expansion = AtLinearFrequencies(chain, seeds, order, [a**2, (a / 2) ** 2])
+            longer = order + 6 // chain.degree_step
+            torus = torus_at_amplitudes(chain, {5: str(a), 17: str(a / 2)}, order=longer, digits=40)
+            row = []
+            for place, w in enumerate(torus.frequencies):
+                found = sum(mu**k * c for k, c in enumerate(expansion.values(place)))
+                row.append(float(abs(found - mpmath.mpf(w.numerator) / w.denominator)))
+            errors.append(row)
+    rates = np.log2(np.array(errors[0]) / np.array(errors[1]))
+    assert (np.abs(rates - rate) < 4 * SLOPE).all(), rates
 
 
 @pytest.mark.parametrize(("couplings", "order"), [({"alpha": 1}, 2), ({"beta": 1}, 1)], ids=str)
