@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -70,7 +71,7 @@ def lyapunov(result: Any, ax: Axes | None = None) -> Axes:
     times, estimates = found.times[positive], found.lyapunov[positive]
     with axes_for(ax) as axes:
         axes.loglog(times, estimates, color="C0", label="estimate")
-        late = times > np.e
+        late = times > math.e
         if late.any():
             law = np.log(times[late]) / times[late]
             through = law * estimates[-1] / law[-1]
