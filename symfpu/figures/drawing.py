@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from symfpu.figures.panels import Curve, Panel
 from symfpu.plots.style import COLOURS, MARKERS, write_picture
 
+Floats = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 Axes = Any
 # with more of them, or of lines among them, the legend goes beside the picture
@@ -35,6 +36,27 @@ CURVE_STYLES: Mapping[str, dict[str, Any]] = {
 }
 # of which the sixth and later ones are dashed, as their colours are those of the first
 DASHED_STYLES = ("line", "beads")
+
+
+def plot_spectrum(
+    spectrum: Floats,
+    ax: Axes,
+    *,
+    label: str = "",
+    marker: str = "o",
+    floor: Floats | float = 0.0,
+) -> Axes:
+    """Normalised average energies of the modes against q, on a logarithmic scale.
+
+    spectrum : (N-1,). floor : in the unit of the spectrum, (N-1,) or one for all, as from
+    `spectrum_floor`; modes at or below it are not drawn.
+    """
+    q = np.arange(1, len(spectrum) + 1)
+    known = spectrum > floor
+    ax.semilogy(q[known], spectrum[known], marker=marker, label=label)
+    ax.set_xlabel(r"$q$")
+    ax.set_ylabel(r"$\overline{E}_q / E$")
+    return ax
 
 
 def plot_panel(panel: Panel, ax: Axes) -> Axes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -26,13 +27,19 @@ ADVICE = "pass what toda_gaps or toda_invariants gave"
 
 
 def toda_gaps(
-    result: Any, ax: Axes | None = None, *, times: ArrayLike | None = None
+    result: Any,
+    ax: Axes | None = None,
+    *,
+    times: ArrayLike | None = None,
+    modes: Sequence[int] | None = None,
 ) -> Axes:
     """Gaps of Toda's spectral curve by mode, or along an orbit: constant if it is Toda's.
 
     result : what `toda_gaps` gave, (N-1,) of a state or (T, N-1) of an orbit, or what
         `toda_invariants` gave. Dimensionless. Ours, after Flaschka.
     ax : axes of matplotlib; default new ones. times : (T,), of the states of an orbit.
+    modes : q of the gaps in their order, (N-1,); default 1 .. N-1. On a ring pass
+        `chain.mode_numbers`.
 
     In doubles gaps below some 1e-15 are rounding, and shaded. Returns the axes. Raises InputError.
 
@@ -47,11 +54,12 @@ def toda_gaps(
         given = f"gaps of shape {gaps.shape}"
         allowed = "(N-1,) without times, or (T, N-1) with T times"
         raise InputError("times", given, allowed, ADVICE)
+    q = _numbers(modes, gaps.shape[-1])
     with axes_for(ax) as axes:
         if times is None:
-            _draw_state(axes, gaps)
+            _draw_state(axes, gaps, q)
         else:
-            _draw_orbit(axes, gaps, _checked(times, len(gaps)))
+            _draw_orbit(axes, gaps, q, _checked(times, len(gaps)))
         axes.set_ylabel("gap")
         if doubles:
             rounding_below(axes, ROUNDING)
@@ -67,6 +75,17 @@ def _gaps(result: Any) -> tuple[Floats, bool]:
     return values.astype(float), values.dtype != object
 
 
+def _numbers(modes: Sequence[int] | None, count: int) -> Any:
+    """The mode of every gap, (N-1,)."""
+    q = np.arange(1, count + 1) if modes is None else np.asarray(modes)
+    if q.shape != (count,) or q.dtype.kind != "i" or len(set(q.tolist())) < count:
+        allowed = f"{count} different whole numbers"
+        raise InputError(
+            "modes", modes, allowed, "pass chain.mode_numbers, or leave it out"
+        )
+    return q
+
+
 def _checked(times: ArrayLike, count: int) -> Floats:
     t = np.asarray(times, dtype=float)
     if t.shape != (count,):
@@ -74,30 +93,29 @@ def _checked(times: ArrayLike, count: int) -> Floats:
     return t
 
 
-def _draw_state(axes: Axes, gaps: Floats) -> None:
-    q = np.arange(1, len(gaps) + 1)
+def _draw_state(axes: Axes, gaps: Floats, q: Any) -> None:
     seen = gaps > 0
     axes.plot(q[seen], gaps[seen], "o", color="C0")
     axes.set_yscale("log")
     bottom = axes.get_ylim()[0]
     axes.vlines(q[seen], bottom, gaps[seen], color="C0", lw=0.8, alpha=0.6)
     axes.set_ylim(bottom, 4 * gaps.max())
-    axes.set_xlim(0.5, len(gaps) + 0.5)
+    axes.set_xlim(q.min() - 0.5, q.max() + 0.5)
     whole_numbers(axes.xaxis)
     axes.set_xlabel("$q$")
 
 
-def _draw_orbit(axes: Axes, gaps: Floats, times: Floats) -> None:
+def _draw_orbit(axes: Axes, gaps: Floats, q: Any, times: Floats) -> None:
     import matplotlib as mpl
 
     count = gaps.shape[1]
     positive = times > 0
     uneven = not even(times)
     shown = positive if uneven else slice(None)
-    colours = mpl.colormaps["viridis"]
+    scale = mpl.cm.ScalarMappable(mpl.colors.Normalize(q.min(), q.max()), "viridis")
     for i in range(count):
-        few = {"color": f"C{i % 5}", "label": f"$q = {i + 1}$", "marker": MARKERS[i % 9]}
-        many = {"color": colours(i / max(1, count - 1))}
+        few = {"color": f"C{i % 5}", "label": f"$q = {q[i]}$", "marker": MARKERS[i % 9]}
+        many = {"color": scale.to_rgba(q[i])}
         style = few | {"markevery": max(1, len(times) // 10)} if count <= FEW else many
         axes.plot(times[shown], gaps[shown, i], **style)
     axes.set_yscale("log")
@@ -107,5 +125,4 @@ def _draw_orbit(axes: Axes, gaps: Floats, times: Floats) -> None:
     if count <= FEW:
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         return
-    scale = mpl.cm.ScalarMappable(mpl.colors.Normalize(1, count), colours)
     axes.figure.colorbar(scale, ax=axes, label="$q$")

@@ -468,6 +468,15 @@ def test_gaps_of_states_and_orbits(ax):
     assert len(alone.get_lines()[0].get_ydata()) == 1
 
 
+def test_gaps_of_a_ring_stand_at_their_modes(ax):
+    modes = cases.RING.mode_numbers
+    plots.toda_gaps(np.geomspace(1e-3, 1, 8), ax, modes=modes)
+    assert ax.get_lines()[0].get_xdata().tolist() == list(modes)
+    for wrong in ((1, 2), (1,) * 8, "12345678"):
+        with pytest.raises(InputError, match="modes ="):
+            plots.toda_gaps(np.ones(8), ax, modes=wrong)
+
+
 def test_gaps_and_times_fit(ax):
     with pytest.raises(InputError, match="times ="):
         plots.toda_gaps(cases.gaps(), ax)
