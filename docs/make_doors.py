@@ -129,11 +129,10 @@ class Case:
     @property
     def rule_words(self) -> list[str]:
         """The same for verbs that name the paper's chains as models."""
-        return (
-            ["--model", self.chain.model]
-            if self.chain.fpu and not self.chain.periodic
-            else self.words
-        )
+        if not self.chain.fpu:
+            return self.words
+        ends = ["--ends", "periodic"] if self.chain.periodic else []
+        return ["--model", self.chain.model, *ends]
 
     def proved(self) -> None:
         """A certificate written, and checked."""
@@ -177,10 +176,11 @@ class Case:
 
     @cached_property
     def omega(self) -> Any:
-        """A frequency of a breather, some of them without one on a ring."""
-        return (
-            self.chain.frequencies()[0] if self.chain.periodic else self.breather.frequency
-        )
+        """A frequency of a breather, or of one wave of a ring."""
+        if self.chain.periodic:
+            place = self.chain.mode_numbers.index(1)
+            return self.chain.frequencies()[place] * 1.0005
+        return self.breather.frequency
 
 
 CHAINS: dict[str, dict[str, Any]] = {

@@ -12,7 +12,7 @@ import typer
 
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import excitation_sequence
-from symfpu.cli.chains import BondsOption, PotentialOption
+from symfpu.cli.chains import BondsOption, EndsOption, PotentialOption
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
@@ -50,6 +50,7 @@ def propagate(
         str | None, typer.Option(help="alpha, beta or alpha+beta.  Default: alpha.")
     ] = None,
     potential: PotentialOption = None,
+    ends: EndsOption = "fixed",
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -58,12 +59,14 @@ def propagate(
     N = whole("N", bonds)
     highest = whole("order", order)
     picture = picture_named(plot)
-    sequence = excitation_sequence(N, chosen, highest, model=model, potential=potential)
+    law = {"model": model, "potential": potential}
+    sequence = excitation_sequence(N, chosen, highest, **law, ends=ends)
     draw(partial(propagation, sequence, N=N), picture)
     if as_json:
         record = {
             "N": N,
             **_law_entries(model, potential),
+            **({} if ends == "fixed" else {"ends": ends}),
             "seeds": sorted(chosen),
             "order": highest,
             "excitation_sequence": [list(modes) for modes in sequence],

@@ -9,10 +9,12 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.bundles.bundle import Bundle, load, save
+from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import (
     AlphaOption,
     BetaOption,
     BondsOption,
+    EndsOption,
     PotentialOption,
     chain_of,
 )
@@ -41,11 +43,13 @@ from symfpu.reports.family import refined_record, refined_text
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.reports.torus import assessment_text, torus_record
 from symfpu.series.lindstedt import lindstedt
+from symfpu.series.travelling import travelling_waves
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.ring_torus import RingTorus, travelling_torus
+from symfpu.tori.ring_verdict import assess_waves
 from symfpu.tori.torus import QTorus
-from symfpu.tori.verdict import assess
+from symfpu.tori.verdict import Assessment, assess
 
 
 @app.command(
@@ -66,6 +70,7 @@ def solve(
     alpha: AlphaOption = "0",
     beta: BetaOption = "0",
     potential: PotentialOption = None,
+    ends: EndsOption = "fixed",
     frequency_order: Annotated[
         str | None,
         typer.Option(
@@ -100,26 +105,32 @@ def solve(
 
     With a verdict on its series.
     """
-    chain = chain_of(bonds, alpha, beta, potential)
+    chain = chain_of(bonds, alpha, beta, potential, ends)
     chosen = whole_numbers("seeds", seeds)
     highest = optional("frequency-order", frequency_order)
     cut = optional("coordinate-order", coordinate_order)
     places = optional("digits", digits)
     file = None if output is None else output_file(path_named("output", output))
     picture = picture_named(plot)
+    frequencies, last = omega.split(","), whole("order", order)
+    if places is not None:
+        require_fixed_ends(chain)
+    torus: QTorus | RingTorus
     with progress_bar("series") as advance:
-        series = lindstedt(
-            chain,
-            chosen,
-            omega.split(","),
-            whole("order", order),
-            digits=places,
-            progress=advance,
-        )
-        advance("amplitudes", NO_FRACTION)
-        torus = solve_amplitudes(series, frequency_order=highest, order=cut)
-        assessment = assess(series, torus, progress=advance)
-        record = torus_record(torus, assessment)
+        if chain.periodic:
+            waves = travelling_waves(chain, chosen, frequencies, last, progress=advance)
+            advance("amplitudes", NO_FRACTION)
+            torus = travelling_torus(waves, frequency_order=highest, order=cut)
+            assessment = assess_waves(waves, torus, progress=advance)
+            record = _ring_record(torus, assessment)
+        else:
+            series = lindstedt(
+                chain, chosen, frequencies, last, digits=places, progress=advance
+            )
+            advance("amplitudes", NO_FRACTION)
+            torus = solve_amplitudes(series, frequency_order=highest, order=cut)
+            assessment = assess(series, torus, progress=advance)
+            record = torus_record(torus, assessment)
         if file:
             advance("writing", NO_FRACTION)
             save(
@@ -133,7 +144,7 @@ def solve(
         print_json(record)
     else:
         say(f"verdict: {assessment.headline}")
-        _print_torus(torus, record)
+        _print_solution(torus, record)
         say(assessment_text(assessment, width_of(sys.stdout)))
         if file:
             print(f"written: {file}")
@@ -207,7 +218,23 @@ def _print_held(bundle: Bundle, record: dict[str, Any]) -> None:
         say(bundle.series)
     elif isinstance(solution, RefinedTorus):
         say(refined_text(solution))
-    elif isinstance(solution, QTorus):
+    else:
+        _print_solution(solution, record)
+
+
+def _print_solution(solution: QuasiPeriodic | RingTorus, record: dict[str, Any]) -> None:
+    if isinstance(solution, QTorus):
         _print_torus(solution, record)
     else:
         say(solution_text(record))
+
+
+def _ring_record(torus: RingTorus, assessment: Assessment) -> dict[str, Any]:
+    """A torus of a ring for JSON, with the verdict on its series."""
+    return {
+        **solution_record(torus),
+        "order": torus.order,
+        "frequency_order": torus.frequency_order,
+        "verdict": assessment.headline,
+        "assessment": assessment.record(),
+    }

@@ -6,7 +6,7 @@ Both are sums of waves, x_j = N^(-1/2) sum b sin(2 pi m j / N - nu.theta).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -197,6 +197,17 @@ class RingTorus(Shown, Gridded):
             largest = max(largest, float(np.abs(force).max()))
         return worst / largest
 
+    def energy_error(self) -> float:
+        """The range of H over the same angles, over its mean: zero for an exact torus."""
+        s = len(self.seeds)
+        number = max(3, min(64, round(GRID_POINTS ** (1 / s))))
+        energies = []
+        for theta in self._angle_grid(number):
+            Q, P = self._sums(theta), self._sums(theta, -1j * self._rates)
+            energies.append(self.chain.energy(Q, P))
+        H = np.concatenate(energies)
+        return float((H.max() - H.min()) / abs(H.mean()))
+
     def _angle_grid(self, number: int) -> Iterator[Floats]:
         shape = (number,) * len(self.seeds)
         for start in range(0, number ** len(shape), CHUNK):
@@ -302,6 +313,13 @@ def travelling_torus(
         order=last,
         warnings=order_doubts(amplitudes, orders, history),
     )
+
+
+def cut_waves(series: TravellingSeries, torus: RingTorus, order: int) -> RingTorus:
+    """The torus of the same amplitudes with its coordinates cut at another order."""
+    amplitudes = tuple(torus.amplitudes[q] for q in series.seeds)
+    harmonics, modes, sines = _waves(series, amplitudes, order)
+    return replace(torus, harmonics=harmonics, modes=modes, sines=sines, order=order)
 
 
 def _waves(

@@ -273,8 +273,17 @@ def assess(
     tell("verdict", 1.0)
     step = 2 // series.chain.degree_step
     floor = FLOOR if series.digits is None else min(FLOOR, 10.0**-series.digits)
+    return judged(evidence, torus.residual(), step, floor)
+
+
+def judged(evidence: Assessment, residual: float, step: int, floor: float) -> Assessment:
+    """What was measured with its word and reasons.
+
+    residual : of the torus. step : orders between two frequency corrections. floor : residual
+    below which nothing is seen.
+    """
     word, closing = _word(evidence, step, floor)
-    reasons = (*_measures(evidence, torus.residual()), *closing)
+    reasons = (*_measures(evidence, residual), *closing)
     return replace(evidence, word=word, reasons=reasons)
 
 
@@ -305,15 +314,15 @@ def _evidence(torus: QTorus, found: list[_Order], resummed: bool) -> Assessment:
     orders = frequency_orders(series)
     history = AmplitudeHistory(series.seeds, orders, torus.history, {})
     differences = history.differences()
-    root_uncertainty = _root_uncertainty(torus, differences)
+    root_uncertainty = root_uncertainty_of(torus.amplitudes, torus.history, differences)
     sums = {}
     for q in series.seeds:
         moduli = np.array([order.moduli[q] for order in found])
         cosines = np.array([order.cosines[q] for order in found])
         sums[q] = (moduli, cosines)
-    growth = _growth(terms, step)
+    growth = growth_of(terms, step)
     poles = {q: pade_poles(series, q, torus.amplitudes) for q in torus.seeds}
-    pole_radius = _pole_radius(poles, step)
+    pole_radius = pole_radius_of(poles, step)
     resummed_residual = resum(torus).residual() if resummed else math.inf
     return Assessment(
         word="undecided",
@@ -427,7 +436,7 @@ def _largest(
     return LargestTerm(order, size, mode, harmonic, smallness)
 
 
-def _growth(terms: list[LargestTerm], step: int) -> float:
+def growth_of(terms: list[LargestTerm], step: int) -> float:
     """Factor from order to order by which the largest terms grow.
 
     Fitted to the last ones of the last one's parity (alpha).
@@ -453,21 +462,25 @@ def _ratio(
     return float(np.exp(slope))
 
 
-def _pole_radius(poles: Mapping[int, NDArray[np.complex128]], step: int) -> float:
+def pole_radius_of(poles: Mapping[int, NDArray[np.complex128]], step: int) -> float:
     """Modulus of the nearest pole in units of mu; infinite where there is none."""
     moduli = [abs(found[0]) for found in poles.values() if len(found)]
     nearest = min(moduli, default=math.inf)
     return float(nearest ** (1 / step)) if math.isfinite(nearest) else math.inf
 
 
-def _root_uncertainty(torus: QTorus, differences: Mapping[int, tuple[float, ...]]) -> float:
+def root_uncertainty_of(
+    torus_amplitudes: Mapping[int, Any],
+    history: Mapping[int, tuple[Any, ...]],
+    differences: Mapping[int, tuple[float, ...]],
+) -> float:
     """Relative uncertainty of the amplitudes: what the frequency orders still to come would change.
 
     Where Delta A falls to the last order, the rest of the geometric series that its last values
     suggest; where it has a minimum before, the least change met. Added is how far the torus' own
     order is from there. Infinite if too few have a root.
     """
-    amplitudes = np.array([float(a) for a in torus.amplitudes.values()])
+    amplitudes = np.array([float(a) for a in torus_amplitudes.values()])
     orders = list(differences)
     if len(orders) < 2:
         return math.inf
@@ -483,7 +496,7 @@ def _root_uncertainty(torus: QTorus, differences: Mapping[int, tuple[float, ...]
         last = changes[-RATIO_ORDERS:]
         ratio = _ratio(np.arange(len(last)), last)
         rest = rest * ratio / (1 - ratio) if ratio < 1 else math.inf
-    best = torus.history.get(orders[at], ())
+    best = history.get(orders[at], ())
     there = np.array([float(a) for a in best] or amplitudes)
     distance = np.max(np.abs(there / amplitudes - 1))
     return rest + float(distance)

@@ -16,7 +16,7 @@ from symfpu.errors import InputError
 from symfpu.paper.printed import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.verdict import RATIO_ORDERS, LargestTerm, _growth, _root_uncertainty, assess, short
+from symfpu.tori.verdict import RATIO_ORDERS, LargestTerm, assess, growth_of, root_uncertainty_of, short
 from tests.tolerances import (
     DIFFERENCE_OF_DOUBLES,
     DOUBLE_RESIDUAL,
@@ -188,16 +188,16 @@ def test_the_torus_of_fig_1_is_undone_by_one_small_divisor():
 def test_growth_of_a_geometric_sequence_is_its_rate(rate, step):
     """With alpha, orders of the other parity may be of another size: only those of the last one's parity count."""
     terms = [LargestTerm(k, rate**k * (7 if step == 2 and k % 2 else 3), 1, (1,), 1.0) for k in range(24)]
-    assert _growth(terms, step) == pytest.approx(rate, rel=SEQUENCE_LIMIT)
+    assert growth_of(terms, step) == pytest.approx(rate, rel=SEQUENCE_LIMIT)
     bent = [*terms, *(replace(terms[-1], order=23 + j, size=terms[-1].size * 2.0**j) for j in range(1, step * RATIO_ORDERS + 1))]
-    assert _growth(bent, step) == pytest.approx(2.0, rel=SEQUENCE_LIMIT)
+    assert growth_of(bent, step) == pytest.approx(2.0, rel=SEQUENCE_LIMIT)
 
 
 def test_growth_needs_two_orders_beyond_the_seeds_own():
     one = LargestTerm(1, 0.5, 1, (1,), 1.0)
-    assert _growth([], 1) == _growth([one], 1) == _growth([replace(one, order=0), one], 1) == 0.0
-    assert _growth([one, replace(one, order=2)], 2) == 0.0
-    assert _growth([one, replace(one, order=2, size=0.125)], 1) == pytest.approx(0.25)
+    assert growth_of([], 1) == growth_of([one], 1) == growth_of([replace(one, order=0), one], 1) == 0.0
+    assert growth_of([one, replace(one, order=2)], 2) == 0.0
+    assert growth_of([one, replace(one, order=2, size=0.125)], 1) == pytest.approx(0.25)
     assert replace(judged("order 2")[1], growth=0.0).radius == math.inf
 
 
@@ -210,16 +210,16 @@ def test_the_root_uncertainty_bounds_the_error_of_geometric_amplitudes(rate, cou
     differences = {a: (abs(history[b][0] - history[a][0]),) for a, b in itertools.pairwise(orders)}
     torus = SimpleNamespace(amplitudes={1: history[orders[-1]][0]}, history=history)
     error = abs(torus.amplitudes[1] - 1)
-    assert error < _root_uncertainty(torus, differences) < 40 * error
+    assert error < root_uncertainty_of(torus.amplitudes, torus.history, differences) < 40 * error
 
 
 def test_amplitudes_that_move_apart_are_as_uncertain_as_their_least_change():
     differences = {2: (0.1, 0.1), 4: (0.001, 0.002), 6: (0.02, 0.01)}
     torus = SimpleNamespace(amplitudes={1: 1.0, 2: 0.5}, history={4: (1.0, 0.5)})
-    assert _root_uncertainty(torus, differences) == pytest.approx(0.004)
-    assert _root_uncertainty(torus, {2: (0.1, 0.1)}) == math.inf
+    assert root_uncertainty_of(torus.amplitudes, torus.history, differences) == pytest.approx(0.004)
+    assert root_uncertainty_of(torus.amplitudes, torus.history, {2: (0.1, 0.1)}) == math.inf
     growing = {2: (0.1, 0.1), 4: (0.2, 0.3), 6: (0.3, 0.4)}
-    assert _root_uncertainty(torus, growing) == pytest.approx(0.2)
+    assert root_uncertainty_of(torus.amplitudes, torus.history, growing) == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize("name", CASES)
