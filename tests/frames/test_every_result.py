@@ -1,6 +1,8 @@
 """Every public result has a table, and what has axes is written to netCDF and read back the same."""
 
 import inspect
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,6 +23,7 @@ WITHOUT = {
     "ProfileLine": "three numbers",
 }
 CASES = {name: make for name, (make, _) in RESULTS.items() if issubclass(getattr(symfpu, name.partition(",")[0], object), Tabled)}
+PAGE = (Path(__file__).parents[2] / "docs" / "tables.md").read_text()
 RESIDUES = "LindstedtSeries, residue"
 WITH_NUMBERS = [name for name in CASES if not name.startswith(RESIDUES)]
 
@@ -49,6 +52,7 @@ def test_the_table_says_what_it_is_of(name, tmp_path):
     result = CASES[name](tmp_path)
     table = result.to_frame()
     assert len(table) > 0
+    assert left_out(type(result).__name__, table) == []
     assert len(set(table)) == len(list(table))
     assert table.attrs["result"] == type(result).__name__
     assert table.attrs["symfpu_version"] == symfpu.__version__
@@ -56,7 +60,25 @@ def test_the_table_says_what_it_is_of(name, tmp_path):
     if hasattr(result, "chain"):
         assert table.attrs["chain"] == repr(result.chain)
     if isinstance(result, Gridded):
-        returns_from_netcdf(result.to_xarray(), tmp_path / "file.nc")
+        found = result.to_xarray()
+        assert left_out(type(result).__name__, found.data_vars) == []
+        assert all(re.search(rf"\b{axis}\b", row_of(type(result).__name__)) for axis in found.dims)
+        returns_from_netcdf(found, tmp_path / "file.nc")
+
+
+def row_of(name):
+    """What the page says of a result."""
+    (row,) = [line for line in PAGE.splitlines() if re.match(rf"\|[^|]*`{name}`", line)]
+    return row
+
+
+def left_out(name, columns):
+    """Columns or variables that its row on the page, or one that it refers to, does not name."""
+    rows = [row_of(other) for other in re.findall(r"`([A-Z]\w+)`", row_of(name).split("|", 2)[2]) if other != name]
+    words = set(re.findall(r"\w+\*?", " ".join([row_of(name), *rows]).replace("**", "")))
+    plain = {column: re.sub("_(real|imaginary)$", "", column) for column in columns}
+    by_seed = {column: re.sub(r"_-?\d+$", "", base) for column, base in plain.items()}
+    return [column for column, base in by_seed.items() if not {plain[column], base, f"{base}_*"} & words]
 
 
 def test_residues_are_refused_by_name(tmp_path):
