@@ -175,6 +175,15 @@ def test_an_orbit_has_its_axes_and_so_have_several():
     assert row.energy.item() == orbit.energies[5, 1]
 
 
+def test_an_orbit_of_a_ring_has_complex_modes_with_their_signs():
+    Q = np.where(np.abs(RING.mode_numbers) == 1, 0.05 + 0.02j * np.sign(RING.mode_numbers), 0)
+    orbit = integrate(RING, Q, 0 * Q, 10.0, step=0.125)
+    data = orbit.to_xarray()
+    both = data.Q_real.sel(mode=-1) + 1j * data.Q_imaginary.sel(mode=-1)
+    assert both.values.tolist() == orbit.Q[:, RING.mode_numbers.index(-1)].tolist()
+    assert data.attrs["ends"] == "periodic"
+
+
 def test_complex_numbers_are_two_variables():
     found = floquet(torus_of_one())
     data = found.to_xarray()
