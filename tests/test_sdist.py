@@ -29,6 +29,7 @@ def tracked():
     return [name for name in listed.stdout.split("\0") if name and (ROOT / name).exists()]
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not backend(), reason=f"setuptools {NEEDED} or later is not installed: pip install '.[dev]'")
 def test_every_tracked_file_is_in_the_sdist(tracked, tmp_path):
     copy, built = tmp_path / "copy", tmp_path / "built"

@@ -70,10 +70,21 @@ def _in_units(differences):
 
 @pytest.fixture(scope="module")
 def all_compared():
-    return {case.name: compared(case) for case in CASES + LONG}
+    return Cases()
 
 
-@pytest.mark.parametrize("case", CASES + LONG, ids=lambda c: c.name)
+class Cases(dict):
+    """Compared when they are first asked for."""
+
+    def __missing__(self, name):
+        self[name] = compared(next(case for case in CASES + LONG if case.name == name))
+        return self[name]
+
+
+ALL = [*CASES, *(pytest.param(case, marks=pytest.mark.long) for case in LONG)]
+
+
+@pytest.mark.parametrize("case", ALL, ids=lambda c: c.name)
 def test_no_coefficient_is_off_by_more_than_its_radius(case, all_compared):
     """Measured: the largest radius of a table is 5 to 1100 times its largest error, mostly 10 to 100, growing with the order:
     signs cancel in the errors, moduli do not. That costs one to three guard digits."""
@@ -83,7 +94,7 @@ def test_no_coefficient_is_off_by_more_than_its_radius(case, all_compared):
         assert (error <= radius).all()
 
 
-@pytest.mark.parametrize("case", CASES + LONG, ids=lambda c: c.name)
+@pytest.mark.parametrize("case", ALL, ids=lambda c: c.name)
 def test_the_series_carries_these_radii(case, all_compared):
     """For the coordinates the largest of each order, for the corrections each one."""
     series, errors, radii = all_compared[case.name]
@@ -95,7 +106,7 @@ def test_the_series_carries_these_radii(case, all_compared):
             assert (errors[orders + k - 1] <= correction).all()
 
 
-@pytest.mark.parametrize("case", CASES + LONG, ids=lambda c: c.name)
+@pytest.mark.parametrize("case", ALL, ids=lambda c: c.name)
 def test_radii_are_not_absurd(case, all_compared):
     """Half a thousand thousand is far above what was measured; a bound without cancellation of a long series may get there."""
     _, errors, radii = all_compared[case.name]
@@ -103,7 +114,7 @@ def test_radii_are_not_absurd(case, all_compared):
         assert radius.max(initial=0) <= 1e6 * max(error.max(initial=0), 0.5)
 
 
-@pytest.mark.parametrize("case", CASES + LONG, ids=lambda c: c.name)
+@pytest.mark.parametrize("case", ALL, ids=lambda c: c.name)
 def test_radii_keep_the_promise(case, all_compared):
     """Every radius is below 10^-digits of the largest coefficient of its order, unless all of them vanish."""
     series, _, radii = all_compared[case.name]
@@ -112,7 +123,7 @@ def test_radii_keep_the_promise(case, all_compared):
         assert radius.max(initial=0.0) <= size * 10.0**-DIGITS or size == 0
 
 
-@pytest.mark.parametrize("case", CASES + LONG, ids=lambda c: c.name)
+@pytest.mark.parametrize("case", ALL, ids=lambda c: c.name)
 def test_zero_radii_are_exact_coefficients(case, all_compared):
     """Seeds, and what the selection rules and the gauge forbid; everything else was rounded at least once."""
     series, errors, radii = all_compared[case.name]

@@ -30,6 +30,7 @@ CASES = (
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("chain", "seed", "frequency", "digits"), CASES, ids=repr)
 def test_the_digits_continue_those_of_doubles(chain, seed, frequency, digits):
     orbit = periodic_orbit(chain, seed, frequency)

@@ -57,6 +57,7 @@ def test_flipped_bits_and_overwritten_bytes_are_found(healthy, tmp_path):
     assert found > 900
 
 
+@pytest.mark.long
 def test_every_bit_of_the_directory_may_flip(healthy, tmp_path):
     """The part that claims sizes, names and methods."""
     bundle, data = healthy

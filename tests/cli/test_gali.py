@@ -109,7 +109,9 @@ def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, kept, tmp_
     assert "is a checkpoint of alignment indices" in err
 
 
-@pytest.mark.parametrize(("verb", "options"), [("gali", ["--samples", "64"]), ("orbit", ["--samples", "9"])])
+@pytest.mark.parametrize(
+    ("verb", "options"), [("gali", ["--samples", "64"]), pytest.param("orbit", ["--samples", "9"], marks=pytest.mark.long)]
+)
 def test_the_interrupt_key_keeps_a_run_that_was_not_written_yet(capsys, kept, tmp_path, verb, options):
     """Pressed in a process of its own, while the first checkpoint is seconds away; then the run is gone on with."""
     file, begun = tmp_path / "run", tmp_path / "begun"

@@ -286,6 +286,7 @@ def small_rows(monkeypatch):
     monkeypatch.setattr("symfpu.paper.corrected.HEAVY_ROWS", {"Fig. 1": ((1e-8, 1e-9), 4)})
 
 
+@pytest.mark.long
 def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
     small_rows(monkeypatch)
     folder = tmp_path / "new" / "out"

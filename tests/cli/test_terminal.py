@@ -303,6 +303,7 @@ def test_an_interrupted_run_names_its_checkpoint(verb, monkeypatch, capsys, tmp_
     assert str(run) in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_the_key_itself(tmp_path):
     """A real interruption of a real process, while it follows an orbit."""
     command = [sys.executable, "-m", "symfpu", "reproduce", "fig6", "fig7", "-o", str(tmp_path)]

@@ -31,7 +31,7 @@ def python(*words, **changes):
     return subprocess.run([sys.executable, *words], capture_output=True, text=True, check=False, env=surroundings)
 
 
-@pytest.mark.parametrize("verb", SHORT)
+@pytest.mark.parametrize("verb", [pytest.param(verb, marks=[pytest.mark.long] * (verb not in ("solve", "orbit"))) for verb in SHORT])
 def test_a_general_verb_loads_neither_the_paper_nor_pictures(verb):
     code = f"""
 import sys

@@ -79,7 +79,7 @@ def assert_close(values, expected):
     assert (error.max(axis=0) <= OF_TAIL * scale.max(axis=0)).all()
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] * n.endswith(("four seeds", "five seeds"))) for n in CASES])
 def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
     torus = case(name)
     draw = np.random.default_rng(5)

@@ -211,6 +211,7 @@ def test_same_bytes_twice(torus, text):
     assert text == source(QTorus(torus.series, torus.amplitudes, torus.phases, torus.order, torus.order), "example")
 
 
+@pytest.mark.long
 def test_tables_in_several_statements_are_whole(build, large):
     text = source(large, "example")
     assert "data (c_odd(i, 1), i = 1, " in text

@@ -227,6 +227,7 @@ def stopped(tmp_path_factory):
     return stopped
 
 
+@pytest.mark.long
 def test_order_250_compiles_and_stays_finite(build):
     chain = Chain(2, alpha="0.2", beta="0.3")
     series = lindstedt(chain, (1,), ("1.421875",), 250)

@@ -29,6 +29,7 @@ def test_every_template_belongs_to_a_language():
     assert {path.name for path in FOLDER.iterdir()} == expected
 
 
+@pytest.mark.long
 def test_jinja_is_loaded_by_the_first_source_only():
     loaded = "import sys, symfpu.codegen.evaluator, symfpu.codegen.export; sys.exit('jinja2' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", loaded], check=False).returncode == 0

@@ -69,6 +69,7 @@ def test_it_is_called_chaotic_once_it_shows_with_two_vectors_too(seed):
     assert said == ["undecided"] * said.index("chaotic") + ["chaotic"] * (len(said) - said.index("chaotic"))
 
 
+@pytest.mark.long
 def test_a_vector_that_has_grown_by_e_to_the_58_is_that_of_a_chaotic_orbit():
     found = mixed(2)
     grown = until(found, found.times[np.argmax(found.lyapunov * found.times > 58)])

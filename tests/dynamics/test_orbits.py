@@ -256,6 +256,7 @@ orbits.integrate(Chain(16, alpha="0.3", beta="0.1"), *start, 1e4, step=0.1, sche
 """
 
 
+@pytest.mark.long
 def test_a_killed_run_goes_on_bitwise(tmp_path, monkeypatch):
     """Killed at random moments, also inside a write, and started again until it ends."""
     name = "aba864_modes"

@@ -113,6 +113,7 @@ def test_a_broken_bond_is_bounded_by_the_length_of_the_chain():
     assert broken.energy_error < STEP_ERROR
 
 
+@pytest.mark.long
 def test_an_odd_polynomial_is_escaped_from():
     chain = Chain(6, potential="poly:1/3,0,1/5")
     with pytest.raises(EscapedOrbit, match=r"bond 1 passes the barrier of its potential at time") as caught:

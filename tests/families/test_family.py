@@ -297,6 +297,7 @@ def test_a_family_that_comes_back_to_rest_ends_there():
     assert omega(last) == pytest.approx(of_the_limit(last), abs=LINEAR_LIMIT * shift)
 
 
+@pytest.mark.long
 def test_a_beginning_beyond_the_series_is_led_up_to():
     """At H = 0.5 Newton's method from the lowest order leads to no torus; the first member is the end of a family from below."""
     with pytest.raises(NoTorus):

@@ -153,6 +153,7 @@ def test_floors_with_digits_are_bounds():
     assert (floor < E).all()
 
 
+@pytest.mark.long
 def test_the_floor_of_a_refined_torus_is_above_its_error():
     """The truth is a series that has converged far below doubles."""
     chain, seeds, frequencies = Chain(8, beta=1), (1, 3), ("0.39020", "1.11119")

@@ -166,6 +166,7 @@ def test_the_breathers_series_ends_in_a_square_root(breather):
     assert exponent == pytest.approx(0.5, abs=SMALL_CHANGE)
 
 
+@pytest.mark.long
 def test_roots_of_the_breather_fall_and_stay_above_the_end_of_the_series(breather):
     """A(K) > END > PERIODIC: the truncated roots tend to an amplitude beyond which the series says nothing."""
     history = amplitude_history(breather)
@@ -241,6 +242,7 @@ def test_at_the_limit_the_breather_is_the_end_of_its_series():
     assert all(m.verdict == "torus" for m in limit.family.members)
 
 
+@pytest.mark.long
 def test_a_range_without_the_limit_is_refused():
     with pytest.raises(InputError, match=r"^energies = .*the second larger"):
         scheme_limit(FIG9_BREATHER.chain, 1, ("0.0002", "0.002"))

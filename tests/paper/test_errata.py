@@ -56,6 +56,7 @@ def test_appendix_f_is_met_at_these_frequency_orders(label):
     assert row(label).digits[ORDERS[label]] >= 10
 
 
+@pytest.mark.long
 def test_middle_modes_are_met_to_nine_digits():
     assert row("Fig. 5c").best == 6
     assert row("Fig. 5c").digits[6] == pytest.approx(9, abs=ONE_PLACE)

@@ -78,6 +78,7 @@ def test_the_torus_of_toda_exists_although_its_series_diverges(torus):
     assert float(torus.energy()) == pytest.approx(TODA_ENERGY, rel=10 * ROUNDING)
 
 
+@pytest.mark.long
 def test_toda_s_torus_passes_its_resonance(chains):
     """On both sides of it the detuning changes its sign, and the coefficient hardly changes."""
     second = ("0.390472", "0.390474")

@@ -43,6 +43,7 @@ DIVISORS = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("m", "seeds", "nu"), DIVISORS, ids=str)
 @pytest.mark.parametrize("terms", [1, 2])
 def test_divisors_are_those_of_sympy(m, seeds, nu, terms):
@@ -202,6 +203,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "asymptotics.md"
 ROWS = [line.split("|")[1:-1] for line in PAGE.read_text().splitlines() if line.startswith("| ") and line[2].isdigit()]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"s={row[0].strip()}")
 def test_factors_of_the_page(row):
     s, *printed = (cell.strip() for cell in row)

@@ -52,6 +52,7 @@ def test_exceptions_are_pairs_with_sum_N_and_a_third_seed(beta):
             assert any(l + m == case.N for l in case.seeds for m in case.seeds if n not in (l, m))
 
 
+@pytest.mark.long
 def test_alpha_has_no_exception(threads):
     sweep = sweep_propagation(range(2, 9), 3, 5, executor=threads)
     assert sweep.exceptions == ()
@@ -84,6 +85,7 @@ def test_file_of_another_sweep_is_refused(tmp_path, threads):
         sweep_propagation([4], 1, 1, executor=threads, file=tmp_path / "none" / "sweep.jsonl")
 
 
+@pytest.mark.long
 def test_process_pool_by_default():
     assert len(sweep_propagation([4], 2, 2).cases) == len([s for n in (1, 2) for s in combinations(range(1, 4), n)])
 

@@ -289,6 +289,7 @@ def test_balls_of_order_twenty_give_the_same_roots():
     assert close(near(BallSeries(TWO_TORUS, 20), 20), TWO_TORUS.amplitudes[20])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("orbit", PERIODIC_ORBITS, ids=lambda o: f"seed {o.seed}")
 def test_breathers_are_the_periodic_orbits(orbit):
     torus = solve_amplitudes(lindstedt(Chain(orbit.N, orbit.alpha), (orbit.seed,), (orbit.frequency,), orbit.order, digits=20))
@@ -380,6 +381,7 @@ def test_the_energy_is_that_of_the_state(pair):
         assert abs(many.chain.energy(Q, P) / many.energy(1.5) - 1) < ENERGY_OF_FIFTY
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("chain", "seeds", "frequencies", "order"),
     [

@@ -74,7 +74,9 @@ def judged(name):
     return torus, assess(torus.series, torus)
 
 
-@pytest.mark.parametrize("name", [name for name in CASES if CASES[name][1]])
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.long] * n.startswith("torus of Fig. 1,")) for n in CASES if CASES[n][1]]
+)
 def test_the_word_for_a_known_case(name):
     _, assessment = judged(name)
     assert assessment.headline == CASES[name][1]
@@ -254,6 +256,7 @@ def test_digits_change_no_word_and_no_evidence(doubles, digits):
         assert amplitudes == pytest.approx(tuple(map(float, precise.amplitudes[K])), rel=SAME_AS_DOUBLES)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["small torus", "small torus, digits"])
 def test_progress_goes_from_the_first_order_to_the_end(name):
     torus, _ = judged(name)
