@@ -30,7 +30,7 @@ from tests.codegen.series_cases import (
 build, numbers = test_fortran.build, test_fortran.numbers  # a fixture and a function
 
 LIMIT = "symfpu.codegen.series_program.STRAIGHT_LINE"
-TABLES_BY_DEFAULT = {"alpha, two seeds", "mixed, three seeds", "beta, four seeds", "alpha, five seeds", "high order"}
+TABLES_BY_DEFAULT = {"alpha, two seeds", "toda, two seeds", "mixed, three seeds", "beta, four seeds", "alpha, five seeds", "high order"}
 SLOW_AS_STATEMENTS = ("alpha, two seeds", "mixed, three seeds")  # seconds of SymPy each
 FORMS = {  # of a case, and the operations up to which it becomes statements; universal ones always do
     **{f"{name}, tables": (name, 0) for name in CASES},
