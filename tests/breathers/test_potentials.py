@@ -30,6 +30,7 @@ LAWS = {"toda:1/2": "0.3", "lj:12,6": "0.03", "poly:1/3,0,1/5,-1/4": "0.3", "pol
 POLYNOMIALS = [law for law in LAWS if law.startswith("poly")]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("N", "seed"), [(2, 1), (8, 3), (9, 2)])
 def test_harmonic_balance_shooting_and_newton_on_tori_agree(law, N, seed):

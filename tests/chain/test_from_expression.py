@@ -114,6 +114,7 @@ def test_functions_are_those_of_the_expression(potential, function):
         assert np.all(np.abs(many - expected) <= FORTY_DIGITS * size)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("text", [LJ, MORSE])
 @pytest.mark.parametrize("name", ["tension", "stiffness"])
 def test_loops_compile_the_same_functions(text, name):

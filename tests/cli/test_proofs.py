@@ -86,6 +86,7 @@ def test_sweep_prints_exceptions_and_writes_its_summary(capsys, tmp_path):
     assert len(file.read_text().splitlines()) == 36
 
 
+@pytest.mark.long
 def test_figure_6_is_written(capsys, tmp_path):
     code, _, _ = run(capsys, "reproduce", "fig6", "-o", str(tmp_path))
     assert code == 0

@@ -77,6 +77,7 @@ def test_json_is_strict_and_alone_on_standard_output(capsys, tmp_path):
     assert list(strict(out)) == ["section5"]
 
 
+@pytest.mark.long
 def test_a_target_that_fails_loses_nothing_of_those_before(monkeypatch, capsys, tmp_path):
     def lost(folder, progress, *, full=False):
         raise NoRecurrence(1e4, 0.9)

@@ -187,6 +187,7 @@ def agree(found, expected):
     assert (off.max(axis=0) <= OF_TAIL * largest).all()
 
 
+@pytest.mark.long
 def test_two_modules_in_one_program(build):
     tori = made("one seed, alpha"), made("one mode")
     values = numbers(build(source(tori[0], "alone"), source(tori[1], "other"), PAIR)())
@@ -195,6 +196,7 @@ def test_two_modules_in_one_program(build):
     assert np.abs(values - np.array(expected)).max() <= OF_LARGEST * max(abs(x) for x in expected)
 
 
+@pytest.mark.long
 def test_arrays_of_other_shapes_stop_the_program(build):
     driver = "program p\nuse example, only: positions\ndouble precision :: Q(6, 2)\ncall positions([0d0, 1d0], Q)\nend program\n"
     done = build(source(made("one seed, alpha"), "example"), driver)()

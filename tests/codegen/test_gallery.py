@@ -39,6 +39,7 @@ def test_the_manifest_lists_every_file_with_its_hash():
         assert manifest[path.name]["sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+@pytest.mark.long
 def test_the_commands_of_the_manifest_make_the_file(tmp_path, monkeypatch):
     manifest = json.loads((FOLDER / "manifest.json").read_text())
     monkeypatch.chdir(tmp_path)
@@ -47,6 +48,7 @@ def test_the_commands_of_the_manifest_make_the_file(tmp_path, monkeypatch):
     assert (tmp_path / "breather_25.c").read_bytes() == (FOLDER / "breather_25.c").read_bytes()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_every_file_passes_its_own_test(path, tmp_path):
     if path.suffix == ".py":

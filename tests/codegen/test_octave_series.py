@@ -57,6 +57,7 @@ def numbers(lines):
     return iter(arrays(line for line in lines if not line.startswith("largest deviation")))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("names", [STRAIGHT, tuple(CASES)], ids=["statements", "tables"])
 def test_numeric_series_agree_with_forty_digits(names, tmp_path, monkeypatch):
     monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", LARGE if names is STRAIGHT else 0)

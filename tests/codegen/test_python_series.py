@@ -87,6 +87,7 @@ def test_mpmath_keeps_the_digits_of_the_series(name, form, tmp_path, monkeypatch
     assert ours.self_test() <= ours.TOLERANCE
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", UNIVERSAL)
 def test_mpmath_of_a_universal_series_has_any_digits(name, tmp_path):
     case = UNIVERSAL[name]

@@ -142,7 +142,7 @@ def pairs():
     """Every language with every case; the default run has what does not take seconds, and one case of each compiler."""
     for language in LANGUAGES:
         for name in CASES:
-            slow = name == "large" or (language in ("c", "fortran") and name != "both couplings")
+            slow = name != "both couplings"
             yield pytest.param(language, name, marks=[pytest.mark.long] * slow)
 
 
@@ -156,6 +156,7 @@ def test_values_and_derivatives_are_those_of_the_series(language, name, tmp_path
         assert error <= OF_LARGEST * np.abs(exact).max(), kind
 
 
+@pytest.mark.long
 def test_the_large_case_does_not_fit_into_statements():
     large = program("large")
     assert large.straight is None
@@ -262,6 +263,7 @@ def test_what_cannot_be_exported_says_so(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.long
 def test_command_line(tmp_path, capsys):
     file = str(save(tmp_path / "universal.symfpu", lindstedt(Chain(8, "0.3"), (1, 2), order=5)))
     assert main(["export", file, "--series", "--lang", "numpy", "-o", str(tmp_path / "large")]) == 0

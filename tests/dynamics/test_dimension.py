@@ -92,6 +92,7 @@ def test_no_word_is_taken_back(chain, scale, seed):
         assert said[len(said) - len(words) :] == words
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("frame", range(6))
 @pytest.mark.parametrize(
     ("chain", "Q", "P"),

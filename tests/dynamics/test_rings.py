@@ -84,6 +84,7 @@ WAVES = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("law", "N", "seeds", "omega"), WAVES)
 def test_an_orbit_stays_on_the_torus_of_its_waves(law, N, seeds, omega):
     chain = ring(N, **law)

@@ -61,6 +61,7 @@ def test_the_interrupt_key_leaves_a_family_in_its_folder_and_says_so(tmp_path):
     assert not isinstance(bare.value, RunInterrupted)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("run", RUNS)
 def test_a_stopped_family_goes_on_as_if_it_had_not_been(run, tmp_path):
     arguments, options = RUNS[run]
@@ -125,6 +126,7 @@ def test_a_family_stopped_while_writing_goes_on(moment, tmp_path, monkeypatch):
     alike(family(*arguments, **options, folder=tmp_path), whole("breather"))
 
 
+@pytest.mark.long
 def test_a_killed_family_goes_on(tmp_path):
     code = (
         "from symfpu.chain.chain import Chain; from symfpu.families.family import family\n"

@@ -236,6 +236,7 @@ def test_without_the_package_one_line_says_what_to_install(package, method, monk
         getattr(torus_of_one(), method)()
 
 
+@pytest.mark.long
 def test_results_are_made_without_the_packages():
     code = "import sys; from symfpu import Chain, lindstedt, solve_amplitudes, integrate, family, floquet; "
     code += "solve_amplitudes(lindstedt(Chain(8, alpha='0.3'), (1,), ('0.3905',), 4)); "

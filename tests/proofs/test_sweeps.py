@@ -137,6 +137,7 @@ def workers_that(function):
     return ProcessPoolExecutor(1, context, initializer=prove_by, initargs=(function,))
 
 
+@pytest.mark.long
 def test_a_case_that_fails_in_a_worker_costs_no_other(tmp_path, threads):
     file, calls = tmp_path / "sweep.jsonl", []
     with workers_that(fails) as pool, pytest.raises(SweepIncomplete) as caught:

@@ -37,6 +37,7 @@ def test_refined_tori_solve_the_closed_equations_of_motion(law, N, seeds):
     assert not torus.warnings
 
 
+@pytest.mark.long
 @EVERY_LAW
 def test_frequencies_of_series_err_by_the_next_order(law):
     """As A^(K+2), or A^(2K+2) where V is even: omega goes by squares of the amplitudes."""

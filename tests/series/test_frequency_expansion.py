@@ -62,6 +62,7 @@ TORI = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("chain", "seeds", "order"), TORI, ids=str)
 def test_error_of_two_seeds_falls_with_the_sixth_power(chain, seeds, order):
     """Generic seeds, seeds in special position, and seeds with the sum N."""
@@ -100,6 +101,7 @@ def in_digits(formula, numbers):
     return eval(text, {"mpf": mpmath.mpf, "sqrt": mpmath.sqrt, **numbers})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("couplings", "order"), [({"alpha": 1}, 4), ({"beta": 1}, 3)], ids=str)
 def test_closed_formulas_of_two_seeds_are_the_expansion_in_numbers(couplings, order):
     """To 25 of 40 digits: doubles lose too many in polynomials so long."""

@@ -140,6 +140,7 @@ def test_mean_cosine_at_rate_zero_is_the_cosine():
     assert mean_cosine(np.array([0.0, 2.0]), np.array([0.3, 0.0]), 5.0) == pytest.approx([np.cos(0.3), np.sin(10.0) / 10.0], rel=ROUNDING)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("couplings", "seeds", "frequencies"),
     [

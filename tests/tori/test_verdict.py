@@ -224,6 +224,7 @@ def test_amplitudes_that_move_apart_are_as_uncertain_as_their_least_change():
     assert root_uncertainty_of(torus.amplitudes, torus.history, growing) == pytest.approx(0.2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CASES)
 def test_a_record_is_strict_json(name):
     """No Infinity and no NaN, which JSON does not have; what is not finite is null."""
