@@ -143,6 +143,7 @@ def test_the_self_test_passes(build, text):
     assert max(deviations) <= OF_LARGEST
 
 
+@pytest.mark.long
 def test_the_self_test_fails_for_a_wrong_coefficient(build):
     text = source(made("two seeds, mixed"), "example")
     wrong = re.sub(r"(data \(c_odd\(i, 1\).*\n *)", r"\g<1>1d-3+0*", text).replace("1d-3+0*", "1d-3,", 1)

@@ -161,6 +161,7 @@ def test_the_self_test_passes(build, form):
     assert max(deviations) <= OF_LARGEST
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "form", "coefficient"),
     [

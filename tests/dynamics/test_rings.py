@@ -47,6 +47,7 @@ def state(chain, size, count=()):
     return chain.modes(centred(x)), chain.modes(centred(p))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("law", LAWS)
 def test_the_error_of_orbits_falls_as_the_order_of_the_scheme(law):
     chain = ring(7, potential=law)

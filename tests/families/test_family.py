@@ -79,6 +79,7 @@ def energies(found):
     return np.array([m.energy for m in found.members])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("found", [breathers, folded, resonant, destabilised])
 def test_a_family_reaches_its_energy_with_tori_only(found):
     """It begins and ends where asked for; every member solves the equations of motion, also at other times than its own."""
@@ -378,6 +379,7 @@ def test_a_family_that_cannot_go_on_says_so():
         member_at_energy(found, "20", harmonic=False)
 
 
+@pytest.mark.long
 def test_the_family_goes_on_where_its_series_ends():
     """docs/convergence.md: orbit and fold of the fixed-frequency scheme coincide at A = 1.0812, omega = 0.098352. Before it the roots of
     the truncated series approach the member of their frequency; behind it they do not."""

@@ -298,6 +298,7 @@ def test_breathers_are_the_periodic_orbits(orbit):
     assert float(torus.energy()) == pytest.approx(orbit.energy, rel=PERIODIC_ORBIT)
 
 
+@pytest.mark.long
 def test_a_one_mode_reduction_converges_to_the_elliptic_functions():
     """N = 2, beta: x'' + 2 x + beta x^3 at 30 digits: each order gains a factor of 25 and more, to the last digits of the oracle."""
     with mpmath.workdps(30):

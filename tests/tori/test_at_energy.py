@@ -23,6 +23,7 @@ def measured(torus, harmonic):
     return torus.harmonic_energies().sum() if harmonic else torus.energy()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("harmonic", [False, True])
 @pytest.mark.parametrize(("chain", "seeds", "energy", "order"), CASES, ids=str)
 def test_energy_and_mode_energies_are_met(chain, seeds, energy, order, harmonic):
