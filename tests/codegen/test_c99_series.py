@@ -99,10 +99,7 @@ def corrected(library, form, case, amplitudes, frequencies):
     return omega, jacobian
 
 
-SHORT_FIRST = [pytest.param(*case, marks=[pytest.mark.long] * (case not in FEW)) for case in EVERY]
-
-
-@pytest.mark.parametrize(("form", "name"), SHORT_FIRST)
+@pytest.mark.parametrize(("form", "name"), EVERY)
 def test_values_are_those_of_the_series_at_forty_digits(form, name, shared):
     case = case_of(form, name)
     library = shared(form, name)
