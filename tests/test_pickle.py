@@ -355,10 +355,10 @@ def test_every_error_of_every_module_has_a_case():
 
 
 def content(error):
-    """Attributes, those that are errors as what is in them."""
+    """Attributes by name, in whatever order they were set; those that are errors as what is in them."""
     failures = vars(error).get("failures", {})
     inside = {"failures": [content(e) for e in failures.values()]} if failures else {}
-    return vars(error) | inside
+    return dict(sorted((vars(error) | inside).items()))
 
 
 @pytest.mark.parametrize("way", COPIES)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from symfpu.frames.grid import Grid
@@ -12,12 +13,12 @@ if TYPE_CHECKING:
     import xarray
 
 
-class Tabled:
+class Tabled(ABC):
     """A result whose numbers are a table."""
 
+    @abstractmethod
     def _table(self) -> Table:
         """Its columns; of every class its own."""
-        raise NotImplementedError
 
     def to_frame(self) -> pd.DataFrame:
         """Its numbers as a DataFrame of pandas; the columns are in docs/tables.md.
@@ -38,9 +39,9 @@ class Tabled:
 class Gridded(Tabled):
     """A result whose numbers are arrays over named axes."""
 
+    @abstractmethod
     def _grid(self) -> Grid:
         """Its axes and variables; of every class its own."""
-        raise NotImplementedError
 
     def _table(self) -> Table:
         return self._grid().table()
