@@ -90,6 +90,12 @@ from symfpu.dynamics.alignment import seconds_needed as seconds_needed
 from symfpu.dynamics.orbits import Orbit as Orbit
 from symfpu.dynamics.orbits import integrate as integrate
 
+# frequency analysis of orbits
+from symfpu.spectral.analysis import FrequencyAnalysis as FrequencyAnalysis
+from symfpu.spectral.analysis import SpectralLine as SpectralLine
+from symfpu.spectral.analysis import frequency_analysis as frequency_analysis
+from symfpu.spectral.near import torus_near as torus_near
+
 # the Toda chain, exactly
 from symfpu.integrable.invariants import TodaInvariants as TodaInvariants
 from symfpu.integrable.invariants import toda_gaps as toda_gaps

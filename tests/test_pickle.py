@@ -65,6 +65,7 @@ from symfpu.series.expandable import expandable_term
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.sample import sample_series
 from symfpu.series.travelling import travelling_waves
+from symfpu.spectral.analysis import frequency_analysis
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.at_energy import NoTorusAtEnergy, torus_at_energy
 from symfpu.tori.frequencies import NoSelfConsistentFrequencies, torus_at_amplitudes
@@ -151,6 +152,10 @@ def fitted():
     return fit_profile(chain, spectrum, 4, floor=0.0)
 
 
+def lines_found():
+    return frequency_analysis(integrate(Chain(N=3, beta=1), [0.1, 0.2], [0, 0], 300, step=0.25))
+
+
 def times_and_returns():
     t = np.linspace(0, 15, 151)
     return recurrence(t, np.stack([1 + np.cos(t), 1 - np.cos(t)], axis=-1))
@@ -228,6 +233,8 @@ RESULTS = {
     "TorusDimension": (lambda _: indices().dimension(), lambda x: x.weights),
     "TodaInvariants": (lambda _: toda_invariants(PAIR, *fpu_trajectory(PAIR, {1: "0.1"})), lambda x: (x.gaps, x.actions, x.frequencies)),
     "TodaTorus": (lambda _: toda_torus(Chain(4, alpha="1/2"), (1, 3), actions=("0.1", "0.2"), digits=20), lambda x: x.state({3: 1})),
+    "FrequencyAnalysis": (lambda _: lines_found(), lambda x: (x.drift, x.count(0.1))),
+    "SpectralLine": (lambda _: lines_found().lines[0], repr),
     "Trend": (lambda _: invariance().slope_rate, lambda x: x.rate),
 }
 

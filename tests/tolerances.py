@@ -578,3 +578,21 @@ NO_RESIDUE = 1e-5
 DRAWING = 0.004
 # Closed formulas of two seeds at 40 digits: their long polynomials cancel some ten digits.
 CLOSED_OF_FORTY = 1e-25
+
+# Integrators keep phases to some 1e-14 a unit of frequency at these steps; lines of the window's lobe add less.
+FREQUENCY_OF_LINE = 1e-12
+
+# Sums over the strongest lines of each mode: the weakest taken are 1e-9 of the strongest, the next ones not many times that.
+ACTION_OF_LINES = 1e-4
+
+# Coefficients of a line in a channel and in the whole signal: neighbours that only one of them has taken out.
+CHANNEL_LINE = 1e-6
+
+# Kaiser's window over sixteen hops beyond its half width.
+CHANNEL_LEAK = 1e-12
+
+# Made of exact exponentials: the window's lobes at these distances, and rounding of phases up to some hundred turns.
+LINE_OF_RECORD = 1e-12
+
+# Amplitudes follow the frequencies, which carry some 1e-14 of the integrator, by dA / domega of some hundred.
+AMPLITUDE_FROM_LINES = 1e-10

@@ -6,6 +6,7 @@ from symfpu.plots.families import family_multipliers as family_multipliers
 from symfpu.plots.families import family_spectra as family_spectra
 from symfpu.plots.indices import alignment as alignment
 from symfpu.plots.indices import lyapunov as lyapunov
+from symfpu.plots.lines import lines as lines
 from symfpu.plots.motion import animation as animation
 from symfpu.plots.motion import space_time as space_time
 from symfpu.plots.motion import time_series as time_series

@@ -21,6 +21,7 @@ from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import decimal
 from symfpu.plots.families import family_frequencies
 from symfpu.plots.indices import alignment
+from symfpu.plots.lines import lines
 from symfpu.plots.motion import time_series
 from symfpu.plots.rule import propagation
 from symfpu.plots.series import amplitudes, residuals, small_divisors
@@ -30,6 +31,7 @@ from symfpu.plots.style import Axes, picture_bytes
 from symfpu.plots.toda import toda_gaps
 from symfpu.proofs.certificates import PropagationProof
 from symfpu.series.series import LindstedtSeries
+from symfpu.spectral.analysis import FrequencyAnalysis
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -200,6 +202,17 @@ def _toda_rows(found: TodaInvariants) -> Rows:
     yield "sum of actions", _number(sum(found.actions), found.digits)
 
 
+def _line_rows(found: FrequencyAnalysis) -> Rows:
+    yield "chain", _model(found.chain)
+    yield "to t", f"{found.T:.10g}"
+    by_seed = zip(found.seeds, found.frequencies, found.errors, strict=True)
+    for q, omega, error in by_seed:
+        yield f"\N{GREEK SMALL LETTER OMEGA}_{q}", f"{omega:.15g} \u00b1 {error:.1g}"
+    unknown = sum(line.harmonic is None for line in found.lines)
+    yield "lines", f"{len(found.lines)}, {unknown} of them unidentified"
+    yield "drift", f"{found.drift:.2g}"
+
+
 def _energy_series(orbit: Orbit, ax: Axes | None = None) -> Axes:
     return time_series(orbit, ax, quantity="E")
 
@@ -242,5 +255,11 @@ USUAL = (
     ),
     Usual(Family, family_frequencies, lambda found: f"it {found.ending}", _family_rows),
     Usual(PropagationProof, propagation, lambda proof: proof.verdict, _proof_rows),
+    Usual(
+        FrequencyAnalysis,
+        lines,
+        lambda found: f"{len(found.seeds)} independent frequencies",
+        _line_rows,
+    ),
     Usual(TodaInvariants, toda_gaps, lambda found: "gaps and actions", _toda_rows),
 )

@@ -17,6 +17,7 @@ from symfpu.proofs.certificates import prove_propagation
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.travelling import travelling_waves
+from symfpu.spectral.analysis import frequency_analysis
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.ring_torus import travelling_torus
@@ -71,6 +72,14 @@ def refined():
 @cache
 def ring():
     return travelling_torus(travelling_waves(RING, (1,), ("0.69",), 6))
+
+
+@cache
+def lines_found():
+    """Two frequencies and their combinations, some too weak to tell."""
+    chain = Chain(N=5, alpha="0.3")
+    start = fpu_trajectory(chain, {1: "0.3", 3: "0.2"})
+    return frequency_analysis(integrate(chain, *start, 1000, step=0.25))
 
 
 @cache

@@ -1,0 +1,53 @@
+"""Samples of an orbit, integrated anew block after block; none is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.dynamics.averages import steps_between_looks
+from symfpu.dynamics.motion import Motion
+from symfpu.dynamics.orbits import Orbit
+from symfpu.errors import InputError
+from symfpu.files.progress import Progress
+
+Numbers = NDArray[Any]
+
+BLOCK = 8192  # samples held at once
+FEWEST = 256  # samples
+NO_BOUNDS = np.array([[-np.inf, np.inf]])  # the orbit has been here: it stays within them
+
+
+class Samples:
+    """The mode coordinates of an orbit at equal times from 0, by the orbit's scheme and step.
+
+    interval : between two samples, at most half a unit of time unless a step is longer, so that
+        the linear frequencies, below 2, and three times them stand for themselves.
+    """
+
+    def __init__(self, orbit: Orbit) -> None:
+        self.orbit = orbit
+        self.stride = steps_between_looks(orbit.step)
+        self.interval = orbit.step * self.stride
+        self.T = float(orbit.times[-1])
+        self.count = int(self.T / self.interval * (1 + 1e-12)) + 1
+        if self.count < FEWEST:
+            least = f"at least {FEWEST * abs(self.interval):.6g}"
+            raise InputError("orbit", f"T = {self.T:.6g}", least, "integrate a longer one")
+
+    def blocks(self, progress: Progress) -> Iterator[Numbers]:
+        """Arrays (n, N-1), one after the other; after the first each begins after the last."""
+        motion = Motion(self.orbit.chain, self.orbit.scheme, self.orbit.step, NO_BOUNDS)
+        start, momenta = self.orbit.Q[:1], self.orbit.P[:1]
+        state = motion.coordinates(start, momenta)
+        done = 1
+        yield start
+        while done < self.count:
+            looks = min(BLOCK, self.count - done)
+            _, Q, _ = motion.look(state, looks, self.stride, map)
+            done += looks
+            progress("samples", done / self.count)
+            yield Q[0]

@@ -1,0 +1,161 @@
+"""Lines of orbits against tori whose frequencies, actions and coefficients are known."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from symfpu import (
+    Chain,
+    breather_at_amplitude,
+    fpu_trajectory,
+    frequency_analysis,
+    integrate,
+    lindstedt,
+    plots,
+    refine,
+    solve_amplitudes,
+    toda_invariants,
+)
+from symfpu.errors import InputError
+from tests.tolerances import ACTION_OF_LINES, CHANNEL_LINE, FREQUENCY_OF_LINE
+
+PAIR = Chain(N=8, alpha="0.3")
+ANGLES = {1: 0.3, 2: 1.1}
+
+
+@cache
+def torus():
+    series = lindstedt(PAIR, (1, 2), ("0.391", "0.7663"), 6)
+    return refine(solve_amplitudes(series, phases=ANGLES))
+
+
+@cache
+def orbit(T):
+    return integrate(PAIR, *torus().state(), T, step=0.125)
+
+
+def errors(analysis):
+    """Frequencies of the seeds 1, 2 against the exact ones."""
+    by_seed = dict(zip(analysis.seeds, analysis.frequencies, strict=True))
+    exact = zip((1, 2), torus().frequencies, strict=True)
+    return [abs(by_seed[q] - float(omega)) for q, omega in exact]
+
+
+def test_a_breather_has_one_frequency():
+    breather = breather_at_amplitude(Chain(N=4, beta=1), 2, "0.3")
+    orbit = integrate(breather.chain, *breather.state(), 2000, step=0.1)
+    found = frequency_analysis(orbit, lines=3)
+    assert found.seeds == (2,)
+    assert found.frequencies[0] == pytest.approx(float(breather.frequency), abs=FREQUENCY_OF_LINE)
+    by_harmonic = {line.harmonic: line.amplitude for line in found.lines if line.mode == 2}
+    for n in (1, 3):
+        exact = abs(breather.by_harmonic()[n, 1])
+        assert by_harmonic[(n,)] == pytest.approx(exact, abs=ACTION_OF_LINES)
+
+
+def test_two_modes_of_a_chain_without_couplings_are_their_own_lines():
+    """N = 2: one mode; a line for it and its odd harmonics."""
+    single = Chain(N=2, beta="1/2")
+    found = frequency_analysis(integrate(single, [0.2], [0.0], 500, step=0.1))
+    assert found.seeds == (1,)
+    assert {line.harmonic[0] % 2 for line in found.lines} == {1}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("T", [12_000, 60_000])
+def test_the_frequencies_of_a_torus(T):
+    """Once as it is, once through channels."""
+    found = frequency_analysis(orbit(T), lines=12, level=1e-8)
+    assert sorted(found.seeds) == [1, 2]
+    assert max(errors(found)) < FREQUENCY_OF_LINE
+    assert all(line.harmonic is not None for line in found.lines)
+
+
+@pytest.mark.long
+def test_channels_give_what_the_whole_signal_gives(monkeypatch):
+    """Amplitudes, phases and all."""
+    few = orbit(12_000)
+    channels = frequency_analysis(few, lines=3)
+    monkeypatch.setattr("symfpu.spectral.analysis.SHORT", 10**9)
+    whole = frequency_analysis(few, lines=3)
+    names = [{(x.mode, x.harmonic): x for x in found.lines} for found in (channels, whole)]
+    both = names[0].keys() & names[1].keys()
+    assert len(both) > 15
+    for name in both:
+        waves = [x[name].amplitude * np.exp(1j * x[name].phase) for x in names]
+        assert abs(waves[0] - waves[1]) < CHANNEL_LINE
+
+
+@pytest.mark.long
+def test_actions_are_those_of_toda():
+    """Sums over lines against the spectral curve, which knows no lines."""
+    toda = Chain(N=6, potential="toda:1/2")
+    start = fpu_trajectory(toda, {1: "0.3", 2: "0.2"})
+    found = frequency_analysis(integrate(toda, *start, 30_000, step=0.1), lines=10, level=1e-9)
+    exact = toda_invariants(toda, *start)
+    for q, action in zip(found.seeds, found.actions, strict=True):
+        if q in (1, 2):
+            assert action == pytest.approx(float(exact.actions[q - 1]), rel=ACTION_OF_LINES)
+
+
+@pytest.mark.long
+def test_an_orbit_beside_a_torus_has_its_normal_frequencies_too():
+    """That of the mode that was pushed; those of the torus are the strongest."""
+    Q, P = torus().state()
+    P[4] += 1e-3
+    found = frequency_analysis(integrate(PAIR, Q, P, 50_000, step=0.125), lines=12, level=1e-9)
+    assert set(found.seeds[:2]) == {1, 2}
+    assert found.seeds[2] == 5
+    assert found.count(1e-2) == 2
+
+
+@pytest.mark.long
+def test_an_error_is_what_two_parts_differ_by_and_covers_the_truth():
+    """Lines too near for the time are told by their errors, not hidden."""
+    found = frequency_analysis(orbit(1000))
+    real = errors(found)
+    claimed = dict(zip(found.seeds, found.errors, strict=True))
+    assert max(real) > FREQUENCY_OF_LINE
+    for q, error in zip((1, 2), real, strict=True):
+        assert error < 3 * claimed[q]
+
+
+def test_a_chaotic_orbit_drifts():
+    chain = Chain(N=8, alpha=1)
+    start = fpu_trajectory(chain, {1: 0.6, 5: 0.3})
+    found = frequency_analysis(integrate(chain, *start, 3000, step=0.1), lines=2)
+    assert found.drift > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"lines": 0}, "lines"),
+        ({"level": 2}, "level"),
+        ({"windows": 0}, "windows"),
+    ],
+)
+def test_bad_arguments_are_named(change, words):
+    short = integrate(Chain(N=2, beta=1), [0.1], [0.0], 200, step=0.1)
+    with pytest.raises(InputError, match=words):
+        frequency_analysis(short, **change)
+
+
+def test_orbits_that_cannot_be_analysed_are_refused():
+    chain = Chain(N=4, beta=1)
+    for T, many, words in ((20, (), "T = 20"), (-300, (), "forward"), (300, (2,), "2 orbits")):
+        state = np.full((*many, 3), 0.1)
+        with pytest.raises(InputError, match=words):
+            frequency_analysis(integrate(chain, state, 0 * state, T, step=0.1))
+    with pytest.raises(InputError, match="Orbit"):
+        frequency_analysis(3)
+    ring = Chain(N=4, beta=1, ends="periodic")
+    Q = np.array([0.1, 0.1, 0.0], complex)
+    with pytest.raises(InputError, match="fixed"):
+        frequency_analysis(integrate(ring, Q, 0 * Q, 300, step=0.1))
+
+
+def test_the_picture_takes_an_analysis_only():
+    with pytest.raises(InputError, match="FrequencyAnalysis"):
+        plots.lines(3)
