@@ -41,7 +41,8 @@ class SpectralLine:
     """A cos(f t + phi) in the coordinate of one mode. Made by `frequency_analysis`; ours.
 
     mode : q. frequency : f >= 0, dimensionless. amplitude : A > 0, dimensionless.
-    phase : phi at time 0, in radians. error : of it, what two windows of three quarters of the time differ by.
+    phase : phi at time 0, in radians. error : of the frequency, what two windows of three
+        quarters of the time differ by, and rounding.
     harmonic : nu with f = nu.omega, as the independent frequencies stand; None where no
         combination is beyond accident. Such a line may be the image, below pi a sample, of one
         above it.
@@ -49,7 +50,7 @@ class SpectralLine:
     >>> from symfpu import Chain, frequency_analysis, integrate
     >>> orbit = integrate(Chain(N=2, beta=1), [0.2], [0.0], 200, step=0.1)
     >>> frequency_analysis(orbit).lines[1]
-    mode 1: 4.2931... +- ..., amplitude 9.05...e-05, (3)
+    SpectralLine(mode 1: 4.305733926... +- ..., amplitude 0.00024272..., nu=(3))
     """
 
     mode: int
@@ -62,7 +63,8 @@ class SpectralLine:
     def __repr__(self) -> str:
         name = "?" if self.harmonic is None else f"({joined(self.harmonic)})"
         rate = f"{self.frequency:.15g} +- {self.error:.1g}"
-        return f"mode {self.mode}: {rate}, amplitude {self.amplitude:.6g}, {name}"
+        size = f"amplitude {self.amplitude:.6g}"
+        return f"SpectralLine(mode {self.mode}: {rate}, {size}, nu={name})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +84,10 @@ class FrequencyAnalysis(Shown, Tabled):
     >>> torus = refine(torus_at_amplitudes(Chain(N=4, alpha="0.3"), {1: "0.4"}, order=4))
     >>> orbit = integrate(torus.chain, *torus.state(), 1000, step=0.1)
     >>> found = frequency_analysis(orbit)
-    >>> found.seeds, abs(found.frequencies[0] - float(torus.frequency)) < 1e-13
-    ((1,), True)
+    >>> found
+    FrequencyAnalysis(N=4, alpha=0.3, T=1000, 1 independent frequencies: omega_1=... +- ...; ...)
+    >>> bool(abs(found.frequencies[0] - float(torus.frequency)) < 1e-12)
+    True
     """
 
     chain: Chain
@@ -167,7 +171,7 @@ def frequency_analysis(
     >>> from symfpu import Chain, integrate
     >>> found = frequency_analysis(integrate(Chain(N=2, beta=1), [0.2], [0.0], 200, step=0.1))
     >>> found.seeds, [line.harmonic for line in found.lines]
-    ((1,), [(1,), (3,)])
+    ((1,), [(1,), (3,), (5,)])
     """
     _require_one_orbit(orbit)
     most = integer(lines, "lines", 1)
