@@ -33,7 +33,7 @@ def torus_near(
     >>> torus = refine(torus_at_amplitudes(Chain(N=4, alpha="0.3"), {1: "0.4"}, order=4))
     >>> orbit = integrate(torus.chain, *torus.state(1.7), 1000, step=0.1)
     >>> near = torus_near(frequency_analysis(orbit, lines=8))
-    >>> abs(refine(near).energy() - torus.energy()) < 1e-9
+    >>> bool(abs(refine(near).energy() - torus.energy()) < 1e-9)
     True
     """
     chosen = _chosen(analysis, seeds)
