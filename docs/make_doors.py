@@ -320,6 +320,7 @@ PROOFS: dict[str, Door] = {
     "asymptotic_group_energy": lambda c: symfpu.asymptotic_group_energy(
         Chain("N", **c.law), 2, 1
     ),
+    "asymptotic_profile": lambda c: symfpu.asymptotic_profile(Chain("N", **c.law), 2, 1),
     "asymptotic_term": lambda c: symfpu.asymptotic_term(
         c.for_all_lengths, 3 if c.chain.potential.even else 2, 1
     ),
@@ -419,7 +420,7 @@ cosh r - 1) and a ring of the alpha model.
 - Orbits, tangent maps, Newton's method and Floquet multipliers take the closed potential, not its Taylor series.
 - The scheme `aba864_modes` multiplies polynomials of modes, and the many digits of a breather need a force with finitely many
   harmonics: both are for polynomials.
-- Laws of the energy profile, the Lemma and its asymptotics are stated for alpha or beta alone.
+- Laws of the energy profile and the Lemma are stated for alpha or beta alone.
 - An orbit that comes to a wall of its potential (r = -1 in `lennard_jones`) by a step too long stops with time and bond named;
   no orbit starts beyond one.
 

@@ -134,9 +134,12 @@ from symfpu.localization.trials import profile_invariance as profile_invariance
 from symfpu.localization.trials import slope_by_energy as slope_by_energy
 
 # proofs
+from symfpu.proofs.asymptotic_groups import (
+    asymptotic_group_energy as asymptotic_group_energy,
+)
+from symfpu.proofs.asymptotic_groups import asymptotic_profile as asymptotic_profile
 from symfpu.proofs.asymptotics import asymptotic_divisor as asymptotic_divisor
 from symfpu.proofs.asymptotics import asymptotic_energy as asymptotic_energy
-from symfpu.proofs.asymptotics import asymptotic_group_energy as asymptotic_group_energy
 from symfpu.proofs.asymptotics import asymptotic_term as asymptotic_term
 from symfpu.proofs.certificates import PropagationProof as PropagationProof
 from symfpu.proofs.certificates import prove_propagation as prove_propagation

@@ -1,4 +1,4 @@
-"""The symbols of a mode: amplitude, phase, linear and chosen frequency, coordinate."""
+"""The symbols of a mode: amplitude, phase, linear and chosen frequency, energy, coordinate."""
 
 from __future__ import annotations
 
@@ -27,6 +27,11 @@ def linear_symbol(q: int) -> Any:
 def chosen_symbol(q: int) -> Any:
     """omega_q, written omega_1 or omega_{N-1}."""
     return se.Symbol(f"omega_{_after_line(q)}")
+
+
+def energy_symbol(q: int) -> Any:
+    """E_q, written E1 or E_{N-1}."""
+    return se.Symbol(f"E{_after_letter(q)}")
 
 
 def coordinate_symbol(q: int) -> Any:
