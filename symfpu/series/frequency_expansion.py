@@ -11,19 +11,24 @@ modes of j and of j with one sign changed come with the same harmonics.
 
 Two seeds are special at order k where a signed sum j.q of as many seeds as the degree is, and no
 sum for all seeds, is a multiple of N, so that its mode is missing, or the seed of the secular
-harmonic: then the formula is written in Omega_q of all modes, as the chain's own recursion has
-them. Else the formula of seeds in general position is right, also where the modes of two
-different j coincide: with linear frequencies in all divisors each mode is driven linearly.
+harmonic: then the chain's own recursion is taken. Else the formula of seeds in general position
+is right, also where the modes of two different j coincide: with linear frequencies in all
+divisors each mode is driven linearly.
+
+Special seeds obey a relation j.q = wN, so one angle is left: q_i = w_i N + m_i g, and with
+u = g pi/2N every frequency is a polynomial in 2 sin u and 2 cos u. Both signs of a frequency give
+the same motion, so omega_q / Omega_q is a rational function of (2 sin u)^2 = Omega_g^2 alone.
 Ours; at lowest order it is `frequency_shift_formula`.
 """
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from itertools import pairwise, product
+from itertools import count, pairwise, product
 from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import symengine as se
@@ -33,7 +38,7 @@ from symfpu.algebra.program_values import ancestors, values_in
 from symfpu.algebra.quotients import monomials_of, quotient_field
 from symfpu.algebra.selection import fold
 from symfpu.chain.chain import Chain, require_chain
-from symfpu.chain.length import mode_label, mode_of
+from symfpu.chain.length import label_entry, mode_label, mode_of
 from symfpu.chain.symbols import amplitude_symbol, linear_symbol
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer
@@ -58,8 +63,10 @@ def frequency_expansion(
     q : one of them. order : k, from 0 up.
 
     Returns a SymEngine expression in A_q and Omega_q of the seeds, a polynomial in the squares of
-    the amplitudes with rational functions of Omega_q^2 in front; two seeds in special position,
-    at the lowest order those with the sum N, bring in Omega_m of further modes.
+    the amplitudes with rational functions of Omega_q^2 in front. Two seeds in special position,
+    such as (1, 2), (1, 3) or (1, "N-1"), have rational functions of one Omega_g^2: g is their
+    greatest common divisor, or the mode that both are multiples of when multiples of N are left
+    out.
     It has no value where linear frequencies of the chain resonate. Differs from the paper's
     omega_q^(k), whose divisors hold the chosen frequencies: that is
     `LindstedtSeries.frequency_correction`. Ours.
@@ -69,6 +76,8 @@ def frequency_expansion(
     (1/4)*A1**2*(4*Omega_1 - 3*Omega_1**3)
     >>> frequency_expansion(Chain(N=32, beta=1), (5,), 5, 1)
     (9/8)*A5**2*Omega_5**3
+    >>> frequency_expansion(Chain("N", alpha=1), (1, "N-1"), 1, 2)
+    (1/4)*A1**2*(4 - 3*Omega_1**2)*Omega_1 + (1/2)*(-4 + Omega_1**2)*Omega_1*A_{N-1}**2
     """
     require_chain(chain)
     order = integer(order, "order", 0)
@@ -88,9 +97,12 @@ def frequency_expansion(
         every = Chain("N", potential=chain.potential)
         series = lindstedt(every, apart, order=order, ring="nested")
         return _Closed(series, start.seeds).formula(place, order)
-    series = lindstedt(chain, start.seeds, order=order, ring="nested")
-    kind = _Closed if len(modes) == 1 else _InAllModes
-    return kind(series, start.seeds).formula(place, order)
+    written = [label_entry(label) for label in start.seeds]
+    series = lindstedt(chain, written, order=order, ring="nested")
+    if len(modes) == 1:
+        return _Closed(series, start.seeds).formula(place, order)
+    relation = _relation(chain, start.seeds)
+    return _OnOneAngle(series, start.seeds, relation).formula(place, order)
 
 
 def _seed(series: LindstedtSeries, q: int | str) -> int:
@@ -129,6 +141,50 @@ def _is_special(N: int, modes: Sequence[int], degree: int) -> bool:
             if secular and (np.abs(j) != unit).any():
                 return True
     return False
+
+
+class _Relation(NamedTuple):
+    """Two seeds as q_i = w_i N + m_i g: turns w, multiples m, and the mode g."""
+
+    turns: tuple[int, int]
+    multiples: tuple[int, int]
+    mode: int
+
+    def of(self, j: Sequence[int]) -> tuple[int, int]:
+        """w and m of j.q."""
+        turns = sum(n * w for n, w in zip(j, self.turns, strict=True))
+        return turns, sum(n * m for n, m in zip(j, self.multiples, strict=True))
+
+
+def _relation(chain: Chain, seeds: Sequence[int]) -> _Relation:
+    """The shortest that binds two seeds: j.q is a multiple of N, j without a common divisor."""
+    first, second = map(int, seeds)
+    if chain.symbolic:
+        g = math.gcd(first, second)
+        return _Relation((first < 0, second < 0), (first // g, second // g), g)
+    for size in count(2):
+        for a in range(1, size):
+            for j in ((a, size - a), (a, a - size)):
+                turns, rest = divmod(j[0] * first + j[1] * second, chain.N)
+                if math.gcd(*j) == 1 and not rest:
+                    return _bound(chain.N, first, j, turns)
+    raise AssertionError("(q_2, -q_1) over their common divisor is one")
+
+
+def _bound(N: int, first: int, j: tuple[int, int], turns: int) -> _Relation:
+    """The relation of q_1 and q_2 with a q_1 + b q_2 = turns N, where (a, b) = j is primitive."""
+    a, b = j
+    pairs = [(w, (turns - a * w) // b) for w in range(-abs(b), abs(b) + 1)]
+    w, v = min((p for p in pairs if a * p[0] + b * p[1] == turns), key=_size)
+    # (q_1, q_2) - N (w, v) is a multiple of (b, -a)
+    g, sign = (first - w * N) // b, 1
+    if g < 0:
+        g, sign = -g, -1
+    return _Relation((w, v), (sign * b, -sign * a), fold(g, N))
+
+
+def _size(numbers: Sequence[int]) -> int:
+    return sum(map(abs, numbers))
 
 
 class _Element:
@@ -196,8 +252,8 @@ class _Expanded(ABC):
         """Omega_q^2 of any mode."""
 
     @abstractmethod
-    def expression(self, value: Any) -> Any:
-        """An element of the field as an expression."""
+    def expression(self, value: Any, place: int) -> Any:
+        """An element of the field times Omega_q of a seed, as an expression."""
 
     def _frequencies(self) -> dict[tuple[int, ...], list[PowerSeries]]:
         """omega_i / Omega_i as series in mu, at A_1^2 = 1 and several A_2^2."""
@@ -281,34 +337,19 @@ class _Expanded(ABC):
         values = [
             roots[place].coefficients[order] for roots in self._frequencies().values()
         ]
-        scaled = [value * self.linear[place] for value in values]
         half = order * self.series.chain.degree_step
         if half % 2:
             return se.Integer(0)
         A = [amplitude_symbol(q) ** 2 for q in self.names]
         if len(A) == 1:
-            (value,) = scaled
-            return self.expression(value) * A[0] ** (half // 2)
+            (value,) = values
+            return self.expression(value, place) * A[0] ** (half // 2)
         terms = []
-        for e, value in enumerate(_interpolated(scaled)[: half // 2 + 1]):
-            terms.append(self.expression(value) * A[0] ** (half // 2 - e) * A[1] ** e)
+        for e, value in enumerate(_interpolated(values)[: half // 2 + 1]):
+            terms.append(
+                self.expression(value, place) * A[0] ** (half // 2 - e) * A[1] ** e
+            )
         return se.Add(*terms)
-
-
-class _InAllModes(_Expanded):
-    """In Omega_q of all modes, as they come."""
-
-    def __init__(self, series: LindstedtSeries, names: Sequence[int]) -> None:
-        super().__init__(series, names)
-        self.one, self.linear = se.Integer(1), list(map(linear_symbol, self.seeds))
-
-    def linear_square(self, q: int) -> Any:
-        """The square of its symbol."""
-        return linear_symbol(q) ** 2
-
-    def expression(self, value: Any) -> Any:
-        """It is one."""
-        return value
 
 
 class _Closed(_Expanded):
@@ -324,7 +365,7 @@ class _Closed(_Expanded):
         self._cosines = [_chebyshev(1 - w / 2, self.degree) for w in squares]
         self.one = self._element(self._unit, self._zero)
         self.linear = [self.one * x for x in frequencies]
-        self._sums = self._signed_sums()
+        self._sums = _signed_sums(series)
 
     @property
     def degree(self) -> int:
@@ -333,20 +374,6 @@ class _Closed(_Expanded):
 
     def _element(self, a: Any, b: Any) -> _Element:
         return _Element(a, b, self._square_of_rho)
-
-    def _signed_sums(self) -> dict[int, tuple[int, ...]]:
-        """For each mode j with j.q that mode: the shortest."""
-        series = self.series
-        N = series.valid_from if isinstance(series, SeriesForAllN) else series.chain.N
-        numbers = [mode_of(q, N) for q in self.seeds]
-        found: dict[int, tuple[int, ...]] = {}
-        span = range(-self.degree, self.degree + 1)
-        for j in sorted(product(span, repeat=len(numbers)), key=lambda j: sum(map(abs, j))):
-            if sum(map(abs, j)) <= self.degree:
-                total = sum(n * m for n, m in zip(j, numbers, strict=True))
-                found.setdefault(fold(total, N), j)
-        names = getattr(series, "modes", range(1, N))
-        return {q: found[mode_of(q, N)] for q in names if mode_of(q, N) in found}
 
     def linear_square(self, q: int) -> _Element:
         """Omega_q^2 = 2 - 2 cos(2 j.x)."""
@@ -359,12 +386,80 @@ class _Closed(_Expanded):
         sines = prod(second) if len(second) == MOST_SEEDS else self._zero
         return self._element(2 - 2 * cosine, 2 * sines)
 
-    def expression(self, value: _Element) -> Any:
+    def expression(self, value: _Element, place: int) -> Any:
         """In the symbols Omega_q; rho is Omega_1 Omega_2 sqrt(4 - W_1) sqrt(4 - W_2) / 4."""
-        linear = [linear_symbol(q) for q in self.names]
-        first, second = (_rational(part, linear) for part in (value.a, value.b))
+        linear, scaled = list(map(linear_symbol, self.names)), value * self.linear[place]
+        first, second = (_rational(part, linear) for part in (scaled.a, scaled.b))
         rho = se.Mul(*linear, *(se.sqrt(4 - x**2) for x in linear)) / 4
         return first + second * rho
+
+
+class _OnOneAngle(_Expanded):
+    """Over the rational functions of 2 sin u and 2 cos u: seeds that obey a relation."""
+
+    def __init__(
+        self, series: LindstedtSeries, names: Sequence[int], relation: _Relation
+    ) -> None:
+        super().__init__(series, names)
+        self.relation, self._sums = relation, _signed_sums(series)
+        (sine,) = quotient_field(["sine"])
+        zero, unit = sine * 0, sine * 0 + 1
+        self._square = 4 - sine * sine
+        self.one = self._element(unit, zero)
+        highest = 2 * series.degree(series.order) * max(map(abs, relation.multiples))
+        cosine = self._element(zero, unit)
+        self._sines = _multiples(self.one * 0, self._element(sine, zero), cosine, highest)
+        self._cosines = _multiples(self.one * 2, cosine, cosine, highest)
+        pairs = zip(relation.turns, relation.multiples, strict=True)
+        self.linear = [self._frequency(w, m) for w, m in pairs]
+
+    def _element(self, a: Any, b: Any) -> _Element:
+        return _Element(a, b, self._square)
+
+    def _frequency(self, turns: int, multiple: int) -> _Element:
+        """2 sin(w pi/2 + m u)."""
+        n = abs(multiple)
+        value = self._cosines[n]
+        if turns % 2 == 0:
+            value = self._sines[n] if multiple > 0 else -self._sines[n]
+        return value if turns % 4 < 2 else -value
+
+    def linear_square(self, q: int) -> _Element:
+        """Omega_m^2 = 2 - 2 cos(w pi + 2 m u)."""
+        turns, multiple = self.relation.of(self._sums[q])
+        cosine = self._cosines[2 * abs(multiple)]
+        return 2 + (cosine if turns % 2 else -cosine)
+
+    def expression(self, value: _Element, place: int) -> Any:
+        """Omega_q times a rational function of Omega_g."""
+        assert not value.b, "both signs of the cosine give the same motion"
+        front = linear_symbol(self.names[place])
+        return front * _rational(value.a, [linear_symbol(self.relation.mode)])
+
+
+def _multiples(
+    zeroth: _Element, first: _Element, cosine: _Element, highest: int
+) -> list[_Element]:
+    """f_0 .. f_highest with f_(n+1) = 2 cos u f_n - f_(n-1)."""
+    found = [zeroth, first]
+    for _ in range(highest - 1):
+        found.append(cosine * found[-1] - found[-2])
+    return found
+
+
+def _signed_sums(series: LindstedtSeries) -> dict[int, tuple[int, ...]]:
+    """For each mode j with j.q that mode: the shortest."""
+    degree = series.degree(series.order)
+    N = series.valid_from if isinstance(series, SeriesForAllN) else series.chain.N
+    numbers = [mode_of(q, N) for q in series.seeds]
+    found: dict[int, tuple[int, ...]] = {}
+    span = range(-degree, degree + 1)
+    for j in sorted(product(span, repeat=len(numbers)), key=_size):
+        if _size(j) <= degree:
+            total = sum(n * m for n, m in zip(j, numbers, strict=True))
+            found.setdefault(fold(total, N), j)
+    names = getattr(series, "modes", range(1, N))
+    return {q: found[mode_of(q, N)] for q in names if mode_of(q, N) in found}
 
 
 def _coefficients(value: Any) -> list[Any]:

@@ -2,6 +2,7 @@
 
 import math
 import re
+from itertools import combinations
 
 import mpmath
 import numpy as np
@@ -11,6 +12,8 @@ import symengine as se
 from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift_formula
+from symfpu.chain.length import mode_label
+from symfpu.chain.symbols import linear_symbol
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION
 from symfpu.series.frequency_expansion import _Expanded, frequency_expansion
@@ -113,6 +116,61 @@ def test_closed_formulas_of_two_seeds_are_the_expansion_in_numbers(couplings, or
         expected = AtLinearFrequencies(chain, seeds, order, [a**2 for a in amplitudes]).values(1)[order]
         formula = frequency_expansion(chain, seeds, 17, order)
         assert abs(in_digits(formula, numbers) / expected - 1) < CLOSED_OF_FORTY
+
+
+def agrees(chain, seeds, order):
+    """Formulas of both seeds are the expansion in numbers; and they have one frequency besides the factor."""
+    squares = [mpmath.mpf("0.16"), mpmath.mpf("0.09")]
+    expected = AtLinearFrequencies(chain, seeds, order, squares)
+    numbers = {f"A{q}": mpmath.sqrt(a) for q, a in zip(seeds, squares, strict=True)}
+    numbers |= {f"Omega_{q}": chain.linear_frequency(q) for q in chain.mode_numbers}
+    for place, q in enumerate(seeds):
+        formula = frequency_expansion(chain, seeds, q, order)
+        exact = expected.values(place)[order]
+        if abs(in_digits(formula, numbers) - exact) > CLOSED_OF_FORTY * abs(exact):
+            return False
+    return True
+
+
+SPECIAL = [
+    (Chain(12, alpha=1), (3, 6), 4),  # q and 2 q
+    (Chain(9, beta=1), (3, 6), 2),  # with the sum N
+    (Chain(11, beta=1), (4, 10), 2),  # 3 * 4 + 10 = 2 N
+    (Chain(10, beta=1), (1, 4), 2),  # 2 (1 + 4) = N, a multiple only
+    pytest.param(Chain(8, alpha=1, beta="1/3"), (4, 7), 4, marks=pytest.mark.long),
+    pytest.param(Chain(15, potential="toda:1/2"), (1, 3), 4, marks=pytest.mark.long),
+    pytest.param(Chain(14, beta=1), (5, 9), 4, marks=pytest.mark.long),
+    pytest.param(Chain(13, alpha=1), (1, 2), 6, marks=pytest.mark.long),
+]
+
+
+@pytest.mark.parametrize(("chain", "seeds", "order"), SPECIAL, ids=str)
+def test_special_seeds_are_the_expansion_in_numbers(chain, seeds, order):
+    with mpmath.workdps(60):
+        assert agrees(chain, seeds, order)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("N", range(3, 11))
+def test_all_pairs_of_short_chains_are_the_expansion_in_numbers(N):
+    """Every fold and every coincidence of modes that such chains have."""
+    with mpmath.workdps(60):
+        assert all(agrees(Chain(N, alpha=1), seeds, 2) for seeds in combinations(range(1, N), 2))
+
+
+@pytest.mark.parametrize("seeds", [(1, 2), (1, 3), (1, "N-1"), ("N-2", "N-1")], ids=str)
+def test_special_seeds_have_one_frequency_in_front_and_one_inside(seeds):
+    """Their formulas were long sums in the frequencies of all modes."""
+    formula = frequency_expansion(Chain("N", beta=1), seeds, seeds[1], 2)
+    frequencies = {s for s in formula.free_symbols if s.name.startswith("Omega")}
+    assert frequencies <= {se.Symbol("Omega_1"), linear_symbol(mode_label(seeds[1], "q"))}
+
+
+def test_all_lengths_and_one_have_the_same_formula_of_special_seeds():
+    every = frequency_expansion(Chain("N", beta=1), (1, "N-1"), "N-1", 2)
+    one = frequency_expansion(Chain(40, beta=1), (1, 39), 39, 2)
+    names = {"A_{N-1}": "A39", "Omega_{N-1}": "Omega_39"}
+    assert every.subs({se.Symbol(old): se.Symbol(new) for old, new in names.items()}) == one
 
 
 @pytest.mark.long
