@@ -355,6 +355,10 @@ CHOSEN_RESONANCE = 2e-9
 # Bounds are radii and the rounding of the sums that made them, in units of the last place.
 RADIUS_ROUNDING = 1e-9
 
+# Radii by differential equations and by powers of the stretch, both enlarged as doubles round; the
+# measured ones of the former are 0.01 to 2 times the latter.
+RADIUS_OF_GROWTHS = 3
+
 # Modes of tails that a test is about lie below these.
 FAR_TAIL, TAIL_MODE = 1e-35, 1e-30
 

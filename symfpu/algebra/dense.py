@@ -392,6 +392,19 @@ class ValuesRing(DenseRing[Floats]):
         """As of `GrowingRing`; g is kept among the powers, under a name of its own."""
         name = -1 - number
         self._complete(name, 2 * rate)
+        out, share = self._grown(name, slope, rate, degree)
+        divided = self.number(share) * np.ldexp(2.0, -self.exponent)
+        out = self._times(out, float(divided))
+        self._store_power(name, degree, self._canonical_points(degree, out))
+        return out
+
+    def _grown(
+        self, name: int, slope: Fraction, rate: Fraction, degree: int
+    ) -> tuple[Floats, Fraction]:
+        """What the lower degrees of a function give, and the number it is still to be times.
+
+        As the kernel leaves it. Where slope is 0 the rate is part of that number.
+        """
         if slope:
             left = self._weighted_bonds(slope, rate, degree)
             share = Fraction(1, degree)
@@ -401,11 +414,7 @@ class ValuesRing(DenseRing[Floats]):
             share = rate / degree
         known = set(self._degrees)
         splits = [(d, degree - d) for d in self._degrees if degree - d in known]
-        out = self._product(left, self._powers[name], degree, splits)
-        divided = self.number(share) * np.ldexp(2.0, -self.exponent)
-        out = self._times(out, float(divided))
-        self._store_power(name, degree, self._canonical_points(degree, out))
-        return out
+        return self._product(left, self._powers[name], degree, splits), share
 
     def _complete(self, name: int, factor: Fraction | None = None) -> None:
         """Add factor c_d to what is kept under a name, where it is not there yet.

@@ -5,6 +5,10 @@ Every product of the recursion (on bonds, with cosines, with multipliers) is exa
 of 40 bits, at the speed of the residue kernels. Between two products the integers are recombined
 and rounded to the nearest at `bits` binary places. All arrays of degree d carry the factor
 unit^-(d - 1), which keeps the degrees of one series near one.
+
+A function g with (1 + slope r) g' = rate g is kept as h = (g - 1)/(2 rate), which begins as c:
+    h_d = c_d + 2/d sum (rate j - slope (d - j)) c_j h_(d-j),
+an exact sum that is rounded once, when it is divided.
 """
 
 from __future__ import annotations
@@ -23,7 +27,7 @@ from symfpu.algebra.dense import Floats, available_cores
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.residue import ResidueRing, largest_modulus
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.words import LIMB_BITS, IntegerTable, ResidueBasis, words_of
+from symfpu.algebra.words import LIMB_BITS, IntegerTable, ResidueBasis, divided, words_of
 
 BLOCK = 1 << 15  # integers converted at once, so that they stay in the cache
 
@@ -48,11 +52,12 @@ class Modes(NamedTuple):
 
 class Bonds(NamedTuple):
     """Values on bonds: residues (primes, canonical, points), still to be multiplied by
-    unit^-power.
+    factor unit^-power.
     """
 
     residues: Floats
     power: int
+    factor: Fraction = Fraction(1)
 
 
 class _Image(ResidueRing):
@@ -78,6 +83,16 @@ class _Image(ResidueRing):
     def canonical_power(self, power: int, degree: int) -> Floats:
         return self._canonical_points(degree, self.power(power, degree))
 
+    def canonical_growth(
+        self, name: int, slope: Fraction, rate: Fraction, degree: int
+    ) -> Floats:
+        """The sum of a growth over lower degrees; slope and rate are whole numbers but for a
+        rate beside slope 0, which is left out.
+        """
+        self._complete(name, Fraction(1))
+        values, _ = self._grown(name, slope, rate, degree)
+        return self._canonical_points(degree, values)
+
     def add_projection(
         self, degree: int, total: Floats, values: Floats, back: Floats
     ) -> None:
@@ -90,7 +105,7 @@ class FixedPointRing:
     """Coefficients as integers times 2^-bits."""
 
     name = "fixedpoint"
-    grows = False
+    grows = True
 
     def __init__(self, space: CosineModes, precision: Precision) -> None:
         self.space, self.grading, self.precision = space, space.grading, precision
@@ -149,13 +164,18 @@ class FixedPointRing:
             self._back[coefficient] = self._cosines(np.array(weights, dtype=object))
         return self._back[coefficient]
 
-    def _rounded(self, residues: Floats) -> tuple[Floats, NDArray[np.int64]]:
-        """Integers / 2^bits, rounded: residues (primes, count) and words (count, n)."""
+    def _rounded(
+        self, residues: Floats, divisor: int = 1
+    ) -> tuple[Floats, NDArray[np.int64]]:
+        """Integers / (2^bits divisor), rounded: residues (primes, count) and words (count, n)."""
         starts = range(0, residues.shape[1], BLOCK)
 
         def convert(start: int) -> tuple[Floats, NDArray[np.int64]]:
             block = residues[:, start : start + BLOCK].copy()
-            limbs = self.basis.limbs(block, self._drop)
+            if divisor == 1:
+                limbs = self.basis.limbs(block, self._drop)
+            else:
+                limbs = divided(self.basis.limbs(block, self._drop - 1), divisor)
             return self.basis.residues(limbs), words_of(limbs)
 
         parts = list(self._pool.map(convert, starts))
@@ -219,12 +239,30 @@ class FixedPointRing:
         self._stored.add((power, degree))
         self._each(lambda i, image: image.store_power(power, degree, values[i]))
 
+    def number(self, value: Fraction) -> Fraction:
+        return value
+
+    def growth(self, number: int, slope: Fraction, rate: Fraction, degree: int) -> Bonds:
+        """As of `GrowingRing`: h, with the factor 2 rate."""
+        name = -1 - number
+        whole, share = whole_growth(slope, rate, degree, self.precision.unit)
+        sums = np.stack(
+            self._each(lambda _, image: image.canonical_growth(name, *whole, degree))
+        )
+        numerator = self.basis.of_integers(np.array([share.numerator], dtype=object))
+        products = sums.reshape(len(self.basis), -1)
+        self.basis.scale(products, numerator[:, 0])
+        values, _ = self._rounded(products, share.denominator)
+        shaped = values.reshape(sums.shape)
+        self._each(lambda i, image: image.store_power(name, degree, shaped[i]))
+        return Bonds(shaped, 0, 2 * rate)
+
     def project(self, degree: int, parts: Sequence[tuple[Fraction, Bonds]]) -> Modes:
         rows = len(self.grading.canonical(degree))
         total = np.zeros((len(self.basis), rows, self.space.N - 1))
         for coefficient, bonds in parts:
-            scale = self.precision.unit**bonds.power
-            back = self._to_modes(coefficient / scale)
+            scale = bonds.factor / self.precision.unit**bonds.power
+            back = self._to_modes(coefficient * scale)
             self._add_projection(degree, total, bonds.residues, back)
         self._each(lambda i, image: image.reduced(total[i]))
         return self._rounded_where(total, self.space.mask(degree))
@@ -285,6 +323,20 @@ class FixedPointRing:
 
     def results(self) -> tuple[list[IntegerTable], list[IntegerTable], Fraction]:
         return self._modes, self._corrections, self.precision.unit
+
+
+def whole_growth(
+    slope: Fraction, rate: Fraction, degree: int, unit: Fraction
+) -> tuple[tuple[Fraction, Fraction], Fraction]:
+    """Whole slope and rate for the sum of a growth, and the number that the sum is then times.
+
+    Where slope is 0 the sum leaves the rate to that number.
+    """
+    share = Fraction(2, degree) / unit
+    if not slope:
+        return (slope, rate), rate * share
+    common = math.lcm(slope.denominator, rate.denominator)
+    return (slope * common, rate * common), share / common
 
 
 def _weighted(table: Sequence[Any], weight: Fraction) -> NDArray[np.object_]:

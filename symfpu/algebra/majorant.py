@@ -6,6 +6,10 @@ place, through all roundings before it. Replacing the folded cosine T_(2N-q) = -
 cosines on the points j pi / N, j = 0 .. N, so radii of products are again pointwise products
 between two cosine transforms. Radii are doubles; each step is enlarged by more than doubles can
 lose.
+
+Of a function h that is grown by a differential equation (`FixedPointRing.growth`) two radii are
+kept: what the errors of the stretch make of it, and what is lost in its own sums. The first ones
+of all functions in a force may cancel as the functions do.
 """
 
 from __future__ import annotations
@@ -17,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symfpu.algebra.dense import Floats
+from symfpu.algebra.fixedpoint import whole_growth
 from symfpu.algebra.float64 import DoublesRing
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.residue import longest_sum
@@ -31,23 +36,40 @@ SLACK = 1 + 1e-9
 class Bounds(NamedTuple):
     """radii : (canonical, points) of values on bonds.
 
-    Sizes : (canonical,) sums of moduli; unit^-power is still to come.
+    Sizes : (canonical,) sums of moduli; factor unit^-power is still to come. lost : radii that
+    never cancel.
     """
 
     radii: Floats
     sizes: Floats
     power: int
+    factor: float = 1.0
+    lost: Floats | None = None
+
+
+class Growth(NamedTuple):
+    """A function that is grown, and its radii, by the kernel's rows.
+
+    values : moduli. radii : what comes from the stretch. lost : what comes from its own sums.
+    """
+
+    values: Floats
+    radii: Floats
+    lost: Floats
 
 
 class MajorantRing(DoublesRing[Bounds]):
     """Radii in units of the last place.
 
     tables, corrections : moduli of the series, by degree, scaled by unit^-(d - 1). epsilon : the
-    unit of the last place, for products of two radii; zero leaves them out. largest : the largest
-    sum of moduli met on the way.
+    unit of the last place, for products of two radii; zero leaves them out. positive : whether
+    the Taylor coefficients of the force, and of the functions it is grown from, are positive:
+    then those of the force, and not sums of moduli over its functions, act on errors of the
+    stretch. largest : the largest sum of moduli met on the way.
     """
 
     name = "majorant"
+    grows = True
 
     def __init__(
         self,
@@ -56,13 +78,18 @@ class MajorantRing(DoublesRing[Bounds]):
         corrections: dict[int, Floats],
         unit: Fraction,
         epsilon: float = 0.0,
+        *,
+        positive: bool = False,
     ) -> None:
         super().__init__(space, points=(space.N + 2) // 2)
         self._tables, self._known = tables, corrections
+        self._exact_unit = unit
         self._unit, self._epsilon = float(unit), epsilon
         self._radii = np.zeros_like(self._bonds)
         self._sums = np.zeros_like(self._bonds)  # 2 |u| + epsilon r
         self._power_radii: dict[int, Floats] = {}
+        self._positive = positive
+        self._growths: dict[int, Growth] = {}
         self._seed_radii = np.zeros_like(self._seed_modes)
         self._correction_radii = np.zeros_like(self._corrections)
         self.largest = 1.0
@@ -170,20 +197,90 @@ class MajorantRing(DoublesRing[Bounds]):
             self._power_radii[power] = np.zeros_like(self._bonds)
         self._store(self._power_radii[power], degree, np.arange(len(radii)), radii)
 
+    def number(self, value: Fraction) -> float:
+        return float(value) if self._positive else abs(float(value))
+
+    def growth(self, number: int, slope: Fraction, rate: Fraction, degree: int) -> Bounds:
+        """As of `FixedPointRing`."""
+        grown = self._growth(number)
+        sizes, radii, lost = self._grown_sums(grown, slope, rate, degree)
+        factor = 2 / (degree * self._unit)
+        parity = self.space.parity(degree)
+        fresh = NEAREST_ROUNDING * self._noise[parity]
+        sizes, radii, lost = factor * sizes, factor * radii, factor * lost + fresh
+        every = np.arange(len(sizes))
+        for target, values in zip(grown, (sizes, radii, lost), strict=True):
+            self._store(target, degree, every, values)
+        _, share = whole_growth(slope, rate, degree, self._exact_unit)
+        # the sum before it is divided
+        self._note(share.denominator * sizes[:, 0])
+        # radii of several functions may cancel, but not what doubles lose of them
+        lost = lost + degree * self._lost * radii[:, :1] * self._noise[parity]
+        return Bounds(radii, sizes[:, 0], 0, self.number(2 * rate), lost)
+
+    def _growth(self, number: int) -> Growth:
+        """A function complete to the degrees that are stored: h_d has c_d among its terms."""
+        if number not in self._growths:
+            self._growths[number] = Growth(*(np.zeros_like(self._bonds) for _ in range(3)))
+        grown, name = self._growths[number], -1 - number
+        done = self._completed.setdefault(name, set())
+        for degree in set(self._degrees) - done:
+            rows = self._rows(degree)
+            grown.values[:, rows] += self._bonds[:, rows]
+            grown.radii[:, rows] += self._radii[:, rows]
+            done.add(degree)
+        return grown
+
+    def _grown_sums(
+        self, grown: Growth, slope: Fraction, rate: Fraction, degree: int
+    ) -> list[Floats]:
+        """Sums over lower degrees for moduli, radii and what is lost; (canonical, points)."""
+        lower = [d for d in self._degrees if degree - d in set(self._degrees)]
+        weights = np.zeros(degree)
+        for d in lower:
+            weights[d] = abs(float(rate * d - slope * (degree - d)))
+        counts = np.diff(self.grading.first_row[: degree + 1])
+        of_rows = np.repeat(weights, counts)[:, None]
+        end = len(of_rows)
+        splits = [(d, degree - d) for d in lower]
+
+        def product(left: Floats, right: Floats) -> Floats:
+            weighted = left[:, :end] * of_rows
+            return self._product(weighted, right, degree, splits)
+
+        reached = grown.values + self._epsilon * grown.radii
+        shifted = self._bonds + self._epsilon * self._radii
+        sums = (
+            product(self._bonds, grown.values),
+            product(self._bonds, grown.radii) + product(self._radii, reached),
+            product(shifted, grown.lost),
+        )
+        return [self._canonical_points(degree, values) for values in sums]
+
     def project(self, degree: int, parts: Sequence[tuple[float, Bounds]]) -> Floats:
         mask = self.space.mask(degree)
         modes = np.full(mask.shape, NEAREST_ROUNDING)
+        passed = np.zeros(mask.shape)
         for coefficient, bounds in parts:
-            scale = coefficient / self._unit**bounds.power
-            self._note(2 * scale * bounds.sizes)
-            largest = bounds.radii[:, 0]
-            reached = bounds.sizes + self._epsilon * largest
-            fresh = COSINE * self.space.half * reached + self._lost * scale * largest
-            modes += fresh[:, None]
+            scale = coefficient * bounds.factor / self._unit**bounds.power
+            modes += self._fresh(bounds, abs(scale))[:, None]
             for rows, columns in self._parts(degree):
                 back = self._to_modes[columns].T
-                modes[rows, columns] += scale * bounds.radii[rows] @ back
+                passed[rows, columns] += scale * bounds.radii[rows] @ back
+                if bounds.lost is not None:
+                    modes[rows, columns] += abs(scale) * bounds.lost[rows] @ back
+        modes += np.abs(passed)
         return np.asarray(np.where(mask, modes * SLACK, 0.0))
+
+    def _fresh(self, bounds: Bounds, scale: float) -> Floats:
+        """What the way back to modes loses, by monomial."""
+        self._note(2 * scale * bounds.sizes)
+        largest = bounds.radii[:, 0]
+        if bounds.lost is not None:
+            largest = largest + bounds.lost[:, 0]
+        reached = bounds.sizes + self._epsilon * largest
+        lost = self._lost * scale * largest
+        return np.asarray(COSINE * self.space.half * reached + lost)
 
     def correct(self, degree: int, corrections: Floats) -> None:
         super().correct(degree, self._known[degree])

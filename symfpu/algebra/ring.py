@@ -81,7 +81,10 @@ class Ring(Protocol):
 
 
 class GrowingRing(Ring, Protocol):
-    """A ring that divides by whole numbers, and solves differential equations in the stretch."""
+    """A ring that divides by whole numbers, and solves differential equations in the stretch.
+
+    Exactly, or with a rounding that it bounds.
+    """
 
     def number(self, value: Fraction) -> Any:
         """An exact number as an element."""

@@ -22,6 +22,7 @@ Words = NDArray[np.int64]
 LIMB_BITS = 20
 LIMB = 2.0**LIMB_BITS
 LIMBS_PER_WORD = 3
+LARGEST_DIVISOR = 2**42
 WORD_BITS = LIMB_BITS * LIMBS_PER_WORD
 
 
@@ -157,6 +158,10 @@ class ResidueBasis:
         self._kernels.reduce_rows(top, self.moduli)
         return np.asarray(top)
 
+    def scale(self, residues: Floats, factors: Floats) -> None:
+        """Multiply residues (primes, count), which are overwritten, by one number (primes,)."""
+        self._kernels.multiply_rows(residues, factors, self.moduli)
+
     def of_integers(self, integers: NDArray[np.object_]) -> Floats:
         """Residues (primes, ...) of Python's integers, of any size."""
         stack = []
@@ -165,6 +170,30 @@ class ResidueBasis:
             centred = np.where(residues > p // 2, residues - p, residues)
             stack.append(centred)
         return np.stack(stack)
+
+
+def divided(limbs: Floats, divisor: int) -> Floats:
+    """Integers / (2^20 divisor) as balanced limbs, off by less than 0.5 + 2^-20.
+
+    limbs : balanced, (limbs, count), lowest first. divisor : positive.
+
+    >>> divided(np.array([[1.0], [12.0], [0.0]]), 4).ravel().tolist()
+    [3.0, 0.0]
+    """
+    # long division; remainders times 2^20 fit into 63 bits
+    kind = np.int64 if divisor < LARGEST_DIVISOR else object
+    whole = limbs.astype(np.int64).astype(kind)
+    rest = np.zeros_like(whole[0])
+    for n in range(len(whole) - 1, -1, -1):
+        value = (rest << LIMB_BITS) + whole[n]
+        whole[n] = value // divisor
+        rest = value - whole[n] * divisor
+    quotients = whole.astype(np.float64)
+    for n in range(len(quotients) - 1):
+        carry = np.rint(quotients[n] / LIMB)
+        quotients[n] -= carry * LIMB
+        quotients[n + 1] += carry
+    return np.asarray(quotients[1:])
 
 
 def words_of(limbs: Floats) -> Words:

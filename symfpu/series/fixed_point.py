@@ -18,6 +18,7 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
 from symfpu.series.divisors import Divisors, FixedPointDivisors, Float64Divisors
+from symfpu.series.force import positive_growths
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import monomial_space
 from symfpu.series.recursion import named_series, ring_series, run_recursion
@@ -152,7 +153,8 @@ def _rounding_bounds(
     chain, order = series.chain, series.order
     tables, corrections = _moduli(series, unit)
     place = 2.0**-series.bits if series.bits else 0.0
-    ring = MajorantRing(space, tables, corrections, unit, place)
+    positive = positive_growths(chain, space.grading.degree)
+    ring = MajorantRing(space, tables, corrections, unit, place, positive=positive)
     with np.errstate(over="ignore", invalid="ignore"):
         run_recursion(ring, divisors, chain, order, progress)
     modes, diagonal, _ = ring.results()

@@ -64,6 +64,18 @@ def scaled_growths(chain: Chain) -> tuple[Growth, ...]:
     return tuple(g.scaled(chain.unit_coupling) for g in chain.potential.growths())
 
 
+def positive_growths(chain: Chain, top: int) -> bool:
+    """Whether the tension is made of growths, and its Taylor coefficients and theirs are positive.
+
+    In units of the small parameter, where that of r^2 is 1. So it is for exponentials of one
+    direction, and for negative powers.
+    """
+    growths = scaled_growths(chain)
+    if not growths or any(g.rate < 0 or g.slope > 0 for g in growths):
+        return False
+    return all(number > 0 for number in chain.relative_couplings(top).values())
+
+
 def force_numbers(chain: Chain, top: int) -> list[Fraction]:
     """All numbers that the force takes, either way, up to a degree."""
     growths = [number for growth in scaled_growths(chain) for number in growth]

@@ -80,7 +80,7 @@ NESTED = RingKind(
     _universal_divisors,
     program=True,
 )
-FIXED_POINT = RingKind("fixedpoint", FixedPointTables, numeric=True)
+FIXED_POINT = RingKind("fixedpoint", FixedPointTables, numeric=True, grows=True)
 RESIDUE = RingKind("residue", _double_tables, exact_point=True, grows=True)
 
 RINGS = {kind.name: kind for kind in (FLOAT64, SYMBOLIC, NESTED, FIXED_POINT, RESIDUE)}

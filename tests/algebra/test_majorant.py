@@ -10,15 +10,16 @@ import pytest
 from symfpu.algebra import majorant
 from symfpu.algebra.fixedpoint import FixedPointRing, Modes, Precision
 from symfpu.algebra.majorant import MajorantRing
-from symfpu.algebra.words import LIMB_BITS, IntegerTable, words_of
+from symfpu.algebra.words import LIMB_BITS, IntegerTable, divided, words_of
 from symfpu.chain.chain import Chain
 from symfpu.series.divisors import FixedPointDivisors, Float64Divisors
 from symfpu.series.fixed_point import _moduli
+from symfpu.series.force import positive_growths
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.monomials import monomial_space
 from symfpu.series.recursion import run_recursion
 from tests.oracles.cases import CASES, Case
-from tests.tolerances import NEAREST, RADIUS_ROUNDING
+from tests.tolerances import NEAREST, RADIUS_OF_GROWTHS, RADIUS_ROUNDING
 
 DIGITS = 30
 MORE_BITS = 80  # with them the other run is exact, as far as 30 digits can see
@@ -173,6 +174,56 @@ def test_radii_of_a_changed_coupling_are_its_own():
     assert series.radii[2][0] != other.radii[2][0]
 
 
+GROWN = (
+    (Chain(8, potential="toda:1/2"), (1, 2), ("0.392", "0.768"), 5),
+    (Chain(7, potential="lj:12,6"), (3,), ("1.25",), 8),
+    (Chain(2, potential="morse:-2/3"), (1,), ("1.42",), 8),
+    (Chain(6, potential="lj:6.0001,6"), (2, 4), ("1.01", "1.75"), 4),  # a small difference of its powers
+    (Chain(5, potential="expr:(exp(r)-1-r)/2+(exp(-2*r)-1+2*r)/8"), (3,), ("1.63",), 6),  # exponentials of both directions
+)
+
+
+def names(case):
+    return f"{case[0].potential}, N={case[0].N}"
+
+
+@pytest.mark.parametrize("case", [GROWN[2], *(pytest.param(case, marks=pytest.mark.long) for case in GROWN)], ids=names)
+def test_radii_of_grown_forces_hold_against_powers(case, monkeypatch):
+    """No coefficient is further than its radius from that of plain powers with many more bits.
+
+    Nor is a radius above the one of powers, but by what is lost where functions cancel.
+    """
+    chain, seeds, frequencies, order = case
+    series = lindstedt(chain, seeds, frequencies, order, digits=DIGITS)
+    space = monomial_space(chain, series.seeds, order)
+    ours = [table.integers() for table in (*series.coordinates, *series.corrections[1:])]
+    grown = bounds_of(series, space)
+    monkeypatch.setattr(FixedPointRing, "grows", False)
+    monkeypatch.setattr(MajorantRing, "grows", False)
+    exact = tables(space, series, Precision(series.bits + MORE_BITS, HEADROOM, series.unit))
+    powers = bounds_of(series, space)
+    lost = float(sum(abs(growth.weight * growth.rate) for growth in chain.potential.growths()))
+    for a, b, radius, other in zip(ours, exact, grown, powers, strict=True):
+        assert (_in_units((a << MORE_BITS) - b) <= radius).all()
+        assert radius.max(initial=0.0) <= RADIUS_OF_GROWTHS * lost * other.max(initial=0.0)
+
+
+def bounds_of(series, space):
+    positive = positive_growths(series.chain, space.grading.degree)
+    bound = MajorantRing(space, *_moduli(series, series.unit), series.unit, 2.0**-series.bits, positive=positive)
+    moduli = FixedPointDivisors(series.chain, series.seeds, series.frequencies, series.bits).moduli()
+    run_recursion(bound, moduli, series.chain, series.order, None)
+    coordinates, corrections, _ = bound.results()
+    return [*coordinates, *corrections]
+
+
+def test_which_tensions_have_positive_growths():
+    found = [positive_growths(case[0], 8) for case in GROWN]
+    assert found == [True, True, True, True, False]
+    assert not positive_growths(Chain(8, alpha=1), 8)
+    assert not positive_growths(Chain(8, potential="expr:2*(1+r)**(5/2)/5*2/3-4/15-2*r/3"), 8)
+
+
 class Coarse(FixedPointRing):
     """Many more bits, but one kind of number is rounded to few: its error is the only one. source : which, if any."""
 
@@ -196,8 +247,15 @@ class Coarse(FixedPointRing):
         finally:
             self._inside = False
 
-    def _rounded(self, residues):
-        return self._coarse(residues) if self._inside else super()._rounded(residues)
+    def growth(self, *arguments):
+        self._inside = self.source == "growths"
+        try:
+            return super().growth(*arguments)
+        finally:
+            self._inside = False
+
+    def _rounded(self, residues, divisor=1):
+        return self._coarse(residues, divisor=divisor) if self._inside else super()._rounded(residues, divisor)
 
     def correct(self, degree, corrections):
         if self.source == "corrections" and corrections.table.size:
@@ -206,10 +264,11 @@ class Coarse(FixedPointRing):
             corrections = Modes(residues.reshape(corrections.residues.shape), table)
         super().correct(degree, corrections)
 
-    def _coarse(self, residues, keep=False):
+    def _coarse(self, residues, keep=False, divisor=1):
         """Rounded at few bits; keep : there are bits 2^-bits already, not twice of them."""
-        drop = 0 if keep else self._drop
-        limbs = self.basis.limbs(residues.copy(), drop + MORE_BITS // LIMB_BITS)
+        drop = MORE_BITS // LIMB_BITS + (0 if keep else self._drop)
+        limbs = self.basis.limbs(residues.copy(), drop - (divisor > 1))
+        limbs = divided(limbs, divisor) if divisor > 1 else limbs
         limbs = np.vstack([np.zeros((MORE_BITS // LIMB_BITS, limbs.shape[1])), limbs])
         return self.basis.residues(limbs), words_of(limbs)
 
@@ -230,11 +289,20 @@ ISOLATED = (
 )
 
 
-@pytest.mark.parametrize("source", ["multipliers", "cosines", "bonds", "corrections"])
-@pytest.mark.parametrize("case", ISOLATED, ids=lambda c: c.name)
+ALONE = [(Chain(c.N, c.alpha, c.beta), c.seeds, c.frequencies, c.order, "bonds") for c in ISOLATED]
+ALONE += [(*case, "growths") for case in GROWN]
+SOURCES = ["multipliers", "cosines", "products", "corrections"]
+QUICK = [(case, source) for case in ALONE[: len(ISOLATED)] for source in SOURCES]
+QUICK += [(ALONE[-5], "products"), (ALONE[-1], "products")]
+ISOLATION = [pytest.param(case, source, marks=() if (case, source) in QUICK else pytest.mark.long) for case in ALONE for source in SOURCES]
+
+
+@pytest.mark.parametrize(("case", "source"), ISOLATION, ids=lambda x: x if isinstance(x, str) else names(x))
 def test_each_source_of_errors_is_bounded_alone(case, source, monkeypatch):
     """Only one kind of number is rounded, only its terms are in the bound: no other term can hide a missing one."""
-    series = lindstedt(Chain(case.N, case.alpha, case.beta), case.seeds, case.frequencies, case.order, digits=DIGITS)
+    *problem, products = case
+    source = products if source == "products" else source
+    series = lindstedt(*problem, digits=DIGITS)
     space = monomial_space(series.chain, series.seeds, series.order)
     found = []
     for kind in ("", source):
@@ -245,16 +313,20 @@ def test_each_source_of_errors_is_bounded_alone(case, source, monkeypatch):
     errors = [_in_units(a - b) for a, b in zip(*found, strict=True)]
     if source != "multipliers":
         monkeypatch.setattr(majorant, "MULTIPLIER", 0.0)
+    rounding = majorant.NEAREST_ROUNDING
     if source != "bonds":
         monkeypatch.setattr(majorant, "NEAREST_ROUNDING", 1e-15)
-    bound = MajorantRing(space, *_moduli(series, series.unit), series.unit, 2.0**-series.bits)
+    positive = positive_growths(series.chain, space.grading.degree)
+    bound = MajorantRing(space, *_moduli(series, series.unit), series.unit, 2.0**-series.bits, positive=positive)
     if source in ("multipliers", "corrections"):
         bound._noise *= 0
     if source == "corrections":
         correct = bound.correct
         monkeypatch.setattr(bound, "correct", lambda degree, radii: correct(degree, radii + NEAREST))
-    if source == "bonds":
+    if source in ("bonds", "growths"):
         monkeypatch.setattr(bound, "put", _without_noise(bound))
+    if source == "growths":
+        monkeypatch.setattr(bound, "growth", _with_rounding(bound, rounding, monkeypatch))
     divisors = Float64Divisors(series.chain, series.seeds, series.frequencies, space.grading.degree)
     run_recursion(bound, divisors, series.chain, series.order, None)
     coordinates, corrections, _ = bound.results()
@@ -272,3 +344,14 @@ def _without_noise(ring):
         ring._noise = noise
 
     return quiet
+
+
+def _with_rounding(ring, rounding, monkeypatch):
+    growth = ring.growth
+
+    def loud(*arguments):
+        with monkeypatch.context() as patch:
+            patch.setattr(majorant, "NEAREST_ROUNDING", rounding)
+            return growth(*arguments)
+
+    return loud

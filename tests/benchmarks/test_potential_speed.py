@@ -19,9 +19,13 @@ CASES = {"one seed, order 80": (1, 80), "four seeds, order 11": (4, 11)}
 ROUNDS = 7
 
 
-def seconds(chain, seeds, order):
+DIGIT_CASES = {"one seed, order 40": (1, 40), "four seeds, order 8": (4, 8)}
+DIGIT_ROUNDS = 3
+
+
+def seconds(chain, seeds, order, digits=None):
     start = time.perf_counter()
-    lindstedt(chain, tuple(range(1, seeds + 1)), FREQUENCIES[:seeds], order)
+    lindstedt(chain, tuple(range(1, seeds + 1)), FREQUENCIES[:seeds], order, digits=digits)
     return time.perf_counter() - start
 
 
@@ -39,6 +43,21 @@ def test_potentials(benchmark, record, case):
     ratios = ", ".join(f"{name} {least[name] / least['alpha+beta']:.2f}" for name in least)
     spread = statistics.median(runs["alpha+beta"]) / least["alpha+beta"]
     record(f"series of N = 32, {case}", note=f"alpha+beta {least['alpha+beta']:.3f} s; in units of it: {ratios}; median/least {spread:.2f}")
+
+
+@pytest.mark.parametrize("case", DIGIT_CASES)
+def test_thirty_digits(benchmark, record, case):
+    chains = {name: Chain(32, potential=text) for name, text in CHAINS.items()}
+    runs = {name: [] for name in chains}
+
+    def turn():
+        for name, chain in chains.items():
+            runs[name].append(seconds(chain, *DIGIT_CASES[case], digits=30))
+
+    benchmark.pedantic(turn, rounds=DIGIT_ROUNDS, iterations=1, warmup_rounds=1)
+    least = {name: min(times) for name, times in runs.items()}
+    ratios = ", ".join(f"{name} {least[name] / least['alpha+beta']:.2f}" for name in least)
+    record(f"thirty digits, N = 32, {case}", note=f"alpha+beta {least['alpha+beta']:.3f} s; in units of it: {ratios}")
 
 
 @pytest.mark.parametrize("case", CASES)
