@@ -418,8 +418,10 @@ whose last words are what to do instead. Columns are potentials with fixed ends 
 cosh r - 1) and a ring of the alpha model.
 
 - Orbits, tangent maps, Newton's method and Floquet multipliers take the closed potential, not its Taylor series.
-- The scheme `aba864_modes` multiplies polynomials of modes, and the many digits of a breather need a force with finitely many
-  harmonics: both are for polynomials.
+- The scheme `aba864_modes` multiplies polynomials of modes: it is for polynomials.
+- The many digits of a breather (`periodic_orbit_digits`) are of polynomials, and of tensions made of exponentials and powers with
+  rational numbers: their Taylor series is cut where a bound of the rest is below the last place. Even ones (cosh r - 1) and other
+  expressions have no such bound here.
 - Laws of the energy profile and the Lemma are stated for alpha or beta alone.
 - An orbit that comes to a wall of its potential (r = -1 in `lennard_jones`) by a step too long stops with time and bond named;
   no orbit starts beyond one.

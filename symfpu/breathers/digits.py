@@ -29,8 +29,7 @@ from symfpu.breathers.balance import (
     relative_heights,
     unknowns,
 )
-from symfpu.breathers.fixed_force import FixedForce, Integers, highest_product
-from symfpu.chain.potentials.polynomial import Polynomial
+from symfpu.breathers.fixed_force import FixedForce, Integers, has_terms
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers
 from symfpu.numbers.typed import Number, exact, integer
@@ -41,13 +40,13 @@ Floats = NDArray[np.float64]
 MORE_ANGLES = (
     "tori of more angles have many digits as series only: give digits= to lindstedt"
 )
-NO_POLYNOMIAL = (
-    "a closed law has many digits as series only: give digits= to lindstedt, or take as potential "
-    "the polynomial of its first coefficients"
+NO_TERMS = (
+    "take as potential the polynomial of its first coefficients, or digits= of lindstedt"
 )
 LARGEST_BLOCK = 2500  # unknowns in the matrix that is factored
 MOST_DIGITS = 1000
 MOST_HARMONICS = 4096
+NEAR_REACH = 1.01  # times the largest stretch
 SWEEPS = 400
 STALL_SWEEPS = 4  # sweeps without a smaller residual that end the search
 # of a residual in units of the last place that is rounding, before the last correction
@@ -67,8 +66,8 @@ class PreciseOrbit(FourierTorus):
         phases : 0 of the seed, radians.
     digits : of the largest coefficient.
     bound : above |Q'' - force| of every mode at every time, relative to the largest acceleration:
-        the sum of the sizes of all Fourier coefficients of the residual, up to harmonic 3H, or
-        (n-1)H where V has a degree n above 4, taken with 64 bits more than the orbit has.
+        the sum of the sizes of all Fourier coefficients of the residual, taken with 64 bits more
+        than the orbit has.
     sweeps : corrections made.
 
     >>> from symfpu import Chain, periodic_orbit, periodic_orbit_digits
@@ -102,8 +101,8 @@ def periodic_orbit_digits(
 ) -> PreciseOrbit:
     """A periodic orbit refined to so many digits of its largest coefficient.
 
-    orbit : a solution of one angle of a chain of polynomial potential, whose phase (radians) is
-        kept; all else is dimensionless.
+    orbit : a solution of one angle, whose phase (radians) is kept; all else is dimensionless. Of
+        a polynomial potential, or of one whose tension is made of exponentials and powers.
     digits : 1 .. 1000.
     frequency, amplitude : exact numbers, at most one of them; the member with that omega or that
         A near the orbit. Neither: the frequency of the orbit.
@@ -118,9 +117,10 @@ def periodic_orbit_digits(
     0.0512121591740189630941015617011
     """
     near = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
-    if not isinstance(near.chain.potential, Polynomial):
-        allowed = "an orbit of a chain of polynomial potential with exact coefficients"
-        raise InputError("orbit", f"one of {near.chain!r}", allowed, NO_POLYNOMIAL)
+    if not has_terms(near.chain):
+        allowed = "an orbit of a chain whose V is a polynomial, or not even and made of "
+        allowed += "exponentials and powers, with rational numbers"
+        raise InputError("orbit", f"one of {near.chain!r}", allowed, NO_TERMS)
     if integer(digits, "digits", 1) > MOST_DIGITS:
         raise InputError("digits", digits, f"1..{MOST_DIGITS}", "take fewer")
     if frequency is not None and amplitude is not None:
@@ -168,7 +168,7 @@ class Sweeps:
         self.by_amplitude = amplitude is not None
         largest = float(np.max(np.abs(orbit.cosines)))
         _, exponent = math.frexp(largest)
-        self.force = FixedForce(self.chain, int(mpmath.mp.prec) - exponent)
+        self.force = FixedForce(self.chain, int(mpmath.mp.prec) - exponent, _reach(orbit))
         fixed, seed = self.force.fixed, orbit.seed
         self.size = fixed(mpmath.mpf(largest))
         self.n, self.q = unknowns(self.chain, seed, harmonics)
@@ -266,16 +266,24 @@ class Sweeps:
         )
 
     def _bound(self, c: Integers, omega: Fraction) -> Any:
-        finer = FixedForce(self.chain, self.force.bits + CHECK_BITS)
+        bits = self.force.bits + CHECK_BITS
+        finer = FixedForce(self.chain, bits, self.force.reach(c))
         squared = finer.fixed(omega**2)
-        highest = highest_product(self.chain) * len(c)
-        equations = finer.equations(c << CHECK_BITS, squared, highest)
-        rounding = 1 << CHECK_BITS  # one last place of the orbit
+        equations = finer.equations(c << CHECK_BITS, squared)
+        # one last place of the orbit; what is beyond the terms is less
+        rounding = 1 << CHECK_BITS
         total = max(np.abs(equations).sum(axis=0)) + rounding
         t = np.linspace(0, np.pi / float(omega), 4 * len(self.orbit.cosines))
         forces = self.chain.accelerations(self.orbit.positions(t))
         largest = float(np.max(np.abs(forces)))
         return mpmath.ldexp(total, -finer.bits) / largest
+
+
+def _reach(orbit: PeriodicOrbit) -> Any:
+    """What no stretch of the orbit exceeds, nor of one near to it."""
+    chain = orbit.chain
+    bonds = Balance(chain, orbit.seed, 1).stretch
+    return mpmath.mpf(NEAR_REACH * np.abs(orbit.cosines @ bonds).sum(axis=0).max())
 
 
 def _integers(values: Floats, exponent: int) -> Integers:

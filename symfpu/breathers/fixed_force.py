@@ -1,7 +1,8 @@
 """Forces of cosine series in fixed point: integer polynomials multiplied exactly by FLINT.
 
-For polynomial potentials: their forces have finitely many harmonics, so that the whole residual
-of an orbit is known.
+Of a polynomial potential all powers of the stretch; of one whose tension is made of exponentials
+and powers, so many that a bound of all others, on stretches up to a reach, is below the last place.
+So the whole residual of an orbit is known.
 
 A series sum_n c_n cos(n theta), times two, is the palindromic Laurent polynomial sum_n d_|n| z^n
 with d_0 = 2 c_0, d_n = c_n. Every number is an integer times 2^-bits; a product is rounded down
@@ -10,9 +11,10 @@ once.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 import flint
 import mpmath
@@ -20,9 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
+from symfpu.chain.potentials.potential import Growth
+from symfpu.errors import InputError
 
 Integers = NDArray[np.object_]
 
+MOST_POWERS = 2000
+UPWARDS = 1 + 1e-9  # more than doubles lose
 SPARE_BITS = 64  # in the cosines before they are rounded
 
 
@@ -31,11 +37,62 @@ def highest_product(chain: Chain) -> int:
     return max(3, (chain.potential.degree or 0) - 1)
 
 
-class FixedForce:
-    """The terms of n^2 omega^2 c + force = 0 with so many bits after the point."""
+class Terms(NamedTuple):
+    """The anharmonic tension as powers of the stretch.
 
-    def __init__(self, chain: Chain, bits: int) -> None:
+    couplings : c_(k+1) by power k. rest : above the sum of all others.
+    """
+
+    couplings: dict[int, Fraction]
+    rest: Any = 0
+
+
+def has_terms(chain: Chain) -> bool:
+    """Whether `terms` knows the tension exactly: its coefficients, and a bound of the last ones."""
+    return chain.potential.degree is not None or bool(chain.potential.growths())
+
+
+def terms(chain: Chain, bits: int, reach: Any) -> Terms:
+    """So many powers that the rest is below 2^-bits where no stretch is above the reach."""
+    potential = chain.potential
+    highest, rest = highest_product(chain), mpmath.mpf(0)
+    if potential.degree is None:
+        highest, rest = _highest_power(potential.growths(), bits, reach)
+    found = {k: potential.coefficient(k + 1) for k in range(2, highest + 1)}
+    return Terms({k: coupling for k, coupling in found.items() if coupling}, rest)
+
+
+def _highest_power(growths: Sequence[Growth], bits: int, reach: Any) -> tuple[int, Any]:
+    """The power after which Taylor series of growths are cut, and what they add beyond.
+
+    The ratio of successive terms, (rate - slope n)/(n + 1) times the reach, is monotonic.
+    """
+    sizes = [abs(growth.weight * growth.rate) * reach for growth in growths]  # of r^1
+    rates = [(float(abs(g.rate)), float(abs(g.slope))) for g in growths]
+    for n in range(2, MOST_POWERS):
+        rest = mpmath.mpf(0)
+        for i, (rate, slope) in enumerate(rates):
+            sizes[i] *= reach * (rate + slope * (n - 1)) / n * UPWARDS
+            ratio = reach * max((rate + slope * n) / (n + 1), slope) * UPWARDS
+            rest += sizes[i] / (1 - ratio) if ratio < 1 else mpmath.inf
+        if rest < mpmath.ldexp(1, -bits):
+            return n - 1, rest
+    allowed = (
+        f"what {MOST_POWERS} powers of stretches up to {mpmath.nstr(reach, 3)} can give"
+    )
+    advice = "take fewer digits or a smaller amplitude"
+    raise InputError("digits", math.floor(bits * math.log10(2)), allowed, advice)
+
+
+class FixedForce:
+    """The terms of n^2 omega^2 c + force = 0 with so many bits after the point.
+
+    reach : no stretch of a bond is larger; it does not matter to polynomials.
+    """
+
+    def __init__(self, chain: Chain, bits: int, reach: Any = 0) -> None:
         self.chain, self.bits = chain, bits
+        self.terms = terms(chain, bits, reach)
         N = chain.N
         with mpmath.workprec(bits + SPARE_BITS):
             root = mpmath.sqrt(mpmath.mpf(2) / N)
@@ -57,10 +114,17 @@ class FixedForce:
             return int(doubled + 1) // 2
         return int(mpmath.nint(mpmath.ldexp(value, self.bits)))
 
-    def equations(self, c: Integers, squared: int, harmonics: int) -> Integers:
+    def reach(self, c: Integers) -> Any:
+        """A number that no stretch exceeds."""
+        sums = np.abs(self._product(c, self.stretch)).sum(axis=0) + len(c)
+        return mpmath.ldexp(max(sums), -self.bits)
+
+    def equations(
+        self, c: Integers, squared: int, harmonics: int | None = None
+    ) -> Integers:
         """n^2 omega^2 c + force for all modes, shape (H+1, N-1) to (harmonics+1, N-1).
 
-        squared : omega^2.
+        squared : omega^2. harmonics : all that are not zero where it is None.
         """
         total = self._nonlinear(c, harmonics)
         n = np.arange(len(c)).astype(object)[:, None]
@@ -68,37 +132,48 @@ class FixedForce:
         total[: len(c)] += (diagonal * c) >> self.bits
         return total
 
-    def _nonlinear(self, c: Integers, harmonics: int) -> Integers:
+    def _nonlinear(self, c: Integers, harmonics: int | None) -> Integers:
         """Cosine coefficients of -S (c_3 r^2 + c_4 r^3 + ...)."""
         r = self._product(c, self.stretch)
-        tension = np.zeros((harmonics + 1, self.chain.N), dtype=object)
-        for j in range(self.chain.N):
-            tension[:, j] = self._tension(r[:, j].tolist(), harmonics)
+        of_bonds = [self._tension(r[:, j].tolist()) for j in range(self.chain.N)]
+        last = max(len(c), *map(len, of_bonds)) - 1 if harmonics is None else harmonics
+        tension = np.zeros((last + 1, self.chain.N), dtype=object)
+        for j, values in enumerate(of_bonds):
+            kept = values[: last + 1]
+            tension[: len(kept), j] = kept
         return np.negative(self._product(tension, self.modes))
 
-    def _tension(self, r: Sequence[int], harmonics: int) -> list[int]:
+    def _tension(self, r: Sequence[int]) -> list[int]:
         """Cosine coefficients of the anharmonic tension of one bond, c_3 r^2 and so on.
 
         They are those of d d / 4, d d d / 8, ... with d = 2 r, and twice that for n > 0.
         """
-        degree = len(r) - 1
-        total = np.zeros(harmonics + 1, dtype=object)
+        total: list[int] = []
         twice = flint.fmpz_poly([*r[:0:-1], 2 * r[0], *r[1:]])
-        power = twice
-        for k in range(2, highest_product(self.chain) + 1):
-            coupling = self.chain.potential.coefficient(k + 1)
-            power = self._lowered(power * twice)
+        degree = len(r) - 1
+        power, middle = (
+            twice,
+            degree,
+        )  # FLINT leaves out zeros at the end, not those at the start
+        for k in range(2, max(self.terms.couplings, default=1) + 1):
+            power, middle = self._lowered(power * twice, middle + degree)
+            coupling = self.terms.couplings.get(k)
             if coupling:
-                middle = k * degree
-                part = power.coeffs()[middle : middle + harmonics + 1]
+                part = power.coeffs()[middle:]
                 above, below = 2 * coupling.numerator, 2**k * coupling.denominator
-                total[: len(part)] += [int(x) * above // below for x in part]
-        total[0] //= 2
-        return list(total)
+                total += [0] * (len(part) - len(total))
+                for n, x in enumerate(part):
+                    total[n] += int(x) * above // below
+        return [total[0] // 2, *total[1:]] if total else [0]
 
     def _product(self, left: Integers, right: Any) -> Integers:
         rows = (flint.fmpz_mat(left.tolist()) * right).tolist()
         return np.array([[int(x) >> self.bits for x in row] for row in rows], dtype=object)
 
-    def _lowered(self, polynomial: Any) -> Any:
-        return flint.fmpz_poly([int(x) >> self.bits for x in polynomial.coeffs()])
+    def _lowered(self, polynomial: Any, middle: int) -> tuple[Any, int]:
+        """Rounded to the nearest; high harmonics that are zero then are left out."""
+        half = 1 << (self.bits - 1)
+        values = [(int(x) + half) >> self.bits for x in polynomial.coeffs()]
+        above = values[middle:]
+        last = max((n for n, value in enumerate(above) if value), default=0)
+        return flint.fmpz_poly(values[middle - last : middle + last + 1]), last

@@ -10,9 +10,11 @@ import pytest
 from symfpu.breathers import digits as digits_module
 from symfpu.breathers.balance import NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.breathers.digits import Sweeps, periodic_orbit_digits
-from symfpu.breathers.fixed_force import FixedForce
+from symfpu.breathers.fixed_force import FixedForce, terms
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.integrable.torus import toda_torus
+from symfpu.numbers.arithmetic import MULTIPRECISION
 from tests.oracles.oscillators import duffing
 from tests.tolerances import BOUND_OF_FORTY, HUNDRED_ROUNDINGS, LAST_DIGIT, ORBIT_IN_DOUBLES, SPOILT_LEAST, SPOILT_MOST
 
@@ -73,6 +75,55 @@ def test_duffing_to_many_digits():
         assert abs(mpmath.mpf(by_amplitude.frequency.numerator) / by_amplitude.frequency.denominator / omega - 1) < ORACLE
         assert abs(by_amplitude.amplitude - mpmath.mpf(texts[1])) < mpmath.mpf("1e-38")
         assert not by_amplitude.cosines[:, [0, 2]].any()
+
+
+def test_toda_has_the_energy_of_the_spectral_curve():
+    chain = Chain(4, potential="toda:1/2")
+    precise = periodic_orbit_digits(periodic_orbit(chain, 1, "0.78"), 30)
+    exact = toda_torus(chain, (1,), frequencies=("0.78",), digits=35)
+    assert abs(precise.energy() / exact.energy - 1) < ORACLE
+    assert precise.bound < ORACLE
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("text", "amplitude"), [("morse:1/2", "0.3"), ("lj:12,6", "0.03"), ("lj:5/2,1", "-0.1"), ("expr:(exp(2*r)-1-2*r)/4", "0.3")]
+)
+def test_closed_laws_to_many_digits(text, amplitude):
+    """The residual goes by the closed law, the orbit by its first Taylor coefficients."""
+    orbit = breather_at_amplitude(Chain(6, potential=text), 2, amplitude)
+    precise = periodic_orbit_digits(orbit, 40, amplitude=amplitude)
+    rounded = precise.cosines[: len(orbit.cosines)].astype(float)
+    assert rounded == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES * np.max(np.abs(orbit.cosines)))
+    assert precise.bound < mpmath.mpf(10) ** -40
+    assert 0 < precise.residual(3) < mpmath.mpf(10) ** -45
+
+
+@pytest.mark.parametrize("text", ["morse:1/2", "lj:12,6", "toda:-2"])
+def test_the_rest_of_the_terms_is_above_what_is_left_out(text):
+    """Against the closed law, at both ends of the reach."""
+    chain, reach = Chain(2, potential=text), mpmath.mpf("0.2")
+    with mpmath.workdps(60):
+        found = terms(chain, 60, reach)
+        law = chain.law(MULTIPRECISION)
+        left = []
+        for r in (reach, -reach):
+            kept = sum(mpmath.mpf(c.numerator) / c.denominator * r**k for k, c in found.couplings.items())
+            left.append(abs(law.anharmonic_tension(r) - kept))
+        assert 0 < max(left) < found.rest < mpmath.ldexp(1, -60)
+
+
+@pytest.mark.parametrize("text", ["expr:cosh(r)-1", "expr:log(1+r**2)/2", "expr:r**2/2+sqrt(2)*sin(r)**3"])
+def test_what_has_no_known_rest_is_refused(text):
+    orbit = breather_at_amplitude(Chain(2, potential=text), 1, "0.1")
+    with pytest.raises(InputError, match=r"^orbit = .*exponentials and powers"):
+        periodic_orbit_digits(orbit, 20)
+
+
+def test_stretches_near_the_singularity_are_refused():
+    orbit = breather_at_amplitude(Chain(2, potential="lj:2,1"), 1, "0.5")
+    with pytest.raises(InputError, match=r"powers of stretches up to .* take fewer digits or a smaller amplitude"):
+        periodic_orbit_digits(orbit, 1000)
 
 
 def test_frequency_and_amplitude_lead_to_the_same_member():

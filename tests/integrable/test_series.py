@@ -26,6 +26,7 @@ from tests.tolerances import EPS, FLOQUET_PHASE, ROUNDING, TODA_RATE, TWENTY_DIG
 CASES = [
     (8, (1,), (1.0,), (0.05, 0.1), range(2, 13)),
     pytest.param(8, (1, 3), (1.0, 0.5), (0.05, 0.1), range(2, 13), marks=pytest.mark.long),
+    pytest.param(8, (1, 2, 3, 4), (1.0, 0.5, 0.3, 0.2), (0.04, 0.06), range(2, 13), marks=pytest.mark.long),
     pytest.param(16, (1, 2, 3, 4), (1.0, 0.5, 0.3, 0.2), (0.025, 0.05), range(2, 9), marks=pytest.mark.long),
 ]
 
