@@ -32,6 +32,7 @@ from symfpu.dynamics.stopping import (
 )
 from symfpu.dynamics.wells import (
     leaving_bond,
+    nearest_to_wall,
     require_within_walls,
     stretch_bounds,
     wall_of,
@@ -420,8 +421,10 @@ class _Run:
             reason = f"bond {bond} passes the barrier of its potential"
             advice = "start from a state of less energy"
         elif crossed:
-            ahead = r[bond] + self.step * speeds[bond]
-            wall = f"the wall r = {wall_of(self.chain, ahead):.12g} of its potential"
+            ahead = r + self.step * speeds
+            if math.isinf(wall_of(self.chain, ahead[bond])):  # none on that side
+                bond = nearest_to_wall(self.chain, ahead)
+            wall = f"the wall r = {wall_of(self.chain, ahead[bond]):.12g} of its potential"
             reason = f"a step of {abs(self.step):.6g} takes bond {bond} across {wall}"
         raise kind(
             reason,

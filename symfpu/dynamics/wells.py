@@ -139,6 +139,13 @@ def wall_of(chain: Chain, stretch: float) -> float:
     return math.copysign(math.inf, stretch) if wall is None else wall
 
 
+def nearest_to_wall(chain: Chain, stretches: Floats) -> int:
+    """The bond that has the least way to a wall of its potential, shape (N,)."""
+    walls = [side.wall for side in sides(chain.potential) if side.wall is not None]
+    distances = [np.abs(stretches - wall) for wall in walls]
+    return int(np.argmin(np.min(distances, axis=0)))
+
+
 def leaving_bond(stretches: Floats, velocities: Floats, bounds: Floats) -> int:
     """The bond j that is outside of the bounds, or that will be first if it moves as now.
 

@@ -129,6 +129,14 @@ def test_a_start_beyond_the_wall_is_refused(run):
         run(LJ, Q, 0 * Q, 200.0, step=0.01)
 
 
+def test_a_bond_that_is_stretched_is_not_the_one_at_the_wall():
+    """From rest no bond moves yet: the one nearest to a wall is named, not the first."""
+    chain, Q = Chain(8, potential="lj:12,6"), np.zeros(7)
+    Q[0] = 1.2
+    with pytest.raises(UnstableStep, match=r"takes bond 7 across the wall r = -1 of"):
+        integrate(chain, Q, 0 * Q, 100.0, step=1.0)
+
+
 def test_a_step_across_the_wall_is_stopped_with_time_and_bond():
     """Kicked so hard that the first step of a particle is longer than its bond."""
     with pytest.raises(UnstableStep, match=r"takes bond 2 across the wall r = -1 of its potential at time 0 .*shorter step") as caught:
