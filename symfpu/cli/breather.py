@@ -23,6 +23,7 @@ from symfpu.cli.chains import (
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     JsonOption,
+    one_of,
     optional,
     path_named,
     print_json,
@@ -31,7 +32,6 @@ from symfpu.cli.terminal import (
     whole,
 )
 from symfpu.cli.verbs import app
-from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION
 from symfpu.files.writing import output_file
 from symfpu.reports.solution import solution_record, solution_text
@@ -76,7 +76,7 @@ def breather(
     """A q-breather, found from exactly one of --omega, --amplitude and --energy."""
     chain = chain_of(bonds, alpha, beta, potential)
     mode, places = whole("seed", seed), optional("digits", digits)
-    _require_one(omega, amplitude, energy)
+    one_of({"omega": omega, "amplitude": amplitude, "energy": energy})
     file = None if output is None else output_file(path_named("output", output))
     picture = picture_named(plot)
     doubts = (DOUBLE_ENERGY,) if energy is not None and places is not None else ()
@@ -101,16 +101,6 @@ def breather(
     if file:
         print(f"written: {file}")
     say_drawn(picture)
-
-
-def _require_one(omega: str | None, amplitude: str | None, energy: str | None) -> None:
-    """InputError unless exactly one of them is given."""
-    options = {"omega": omega, "amplitude": amplitude, "energy": energy}
-    given = {name: value for name, value in options.items() if value is not None}
-    if len(given) != 1:
-        allowed = "exactly one of --omega, --amplitude and --energy"
-        advice = "leave the others out" if given else "give one of them"
-        raise InputError("omega, amplitude, energy", given or None, allowed, advice)
 
 
 def _found(

@@ -24,6 +24,8 @@ from symfpu.cli.terminal import (
     FileArgument,
     JsonOption,
     SeedsOption,
+    by_seed,
+    number,
     optional,
     path_named,
     print_json,
@@ -135,27 +137,6 @@ def verdict_of(torus: RefinedTorus) -> dict[str, Any]:
     """What a file says of a refined torus."""
     verdict = "doubtful" if torus.warnings else "torus"
     return {"verdict": verdict, "reasons": list(torus.warnings)}
-
-
-def number(argument: str, text: str) -> float:
-    """A number of the command line; InputError naming the argument otherwise."""
-    try:
-        return float(text)
-    except ValueError as error:
-        raise InputError(argument, text, "a number", "write it as 1e-13") from error
-
-
-def by_seed(argument: str, text: str, seeds: tuple[int, ...]) -> dict[int, str]:
-    """Numbers with commas between them, one for each seed."""
-    parts = text.split(",")
-    if len(parts) != len(seeds):
-        raise InputError(
-            argument,
-            text,
-            f"a number for each of the seeds {seeds}",
-            "separate them by commas",
-        )
-    return dict(zip(seeds, parts, strict=True))
 
 
 def ratio(argument: str, text: str | None, seeds: tuple[int, ...]) -> dict[int, str] | None:

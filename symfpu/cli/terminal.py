@@ -11,7 +11,7 @@ import os
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
@@ -92,6 +92,29 @@ def whole_numbers(argument: str, text: str) -> list[int]:
     if not text.strip():
         return []
     return [whole(argument, part) for part in text.split(",")]
+
+
+def by_seed(argument: str, text: str, seeds: tuple[int, ...]) -> dict[int, str]:
+    """Numbers with commas between them, one for each seed."""
+    parts = text.split(",")
+    if len(parts) != len(seeds):
+        raise InputError(
+            argument,
+            text,
+            f"a number for each of the seeds {seeds}",
+            "separate them by commas",
+        )
+    return dict(zip(seeds, parts, strict=True))
+
+
+def one_of(options: Mapping[str, str | None]) -> None:
+    """InputError unless exactly one of the options, by name, is given."""
+    given = {name: value for name, value in options.items() if value is not None}
+    if len(given) != 1:
+        *names, last = (f"--{name}" for name in options)
+        allowed = f"exactly one of {', '.join(names)} and {last}"
+        advice = "leave the others out" if given else "give one of them"
+        raise InputError(", ".join(options), given or None, allowed, advice)
 
 
 def mode_named(argument: str, text: str) -> int | str:

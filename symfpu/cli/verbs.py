@@ -21,7 +21,7 @@ VERBS = {
     "verify": "proofs",
     "sweep": "proofs",
     "term": "term",
-    "solve": "tori",
+    "solve": "solve",
     "show": "tori",
     "breather": "breather",
     "refine": "families",

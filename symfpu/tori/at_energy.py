@@ -208,8 +208,8 @@ def torus_at_energy(
     seeds: Sequence[int],
     energy: Number,
     *,
-    harmonic: bool,
     order: int,
+    harmonic: bool = False,
     amplitude_ratio: Mapping[int, Number] | None = None,
     energy_ratio: Mapping[int, Number] | None = None,
     frequency_order: int | None = None,
@@ -224,9 +224,9 @@ def torus_at_energy(
     chain, seeds : the model and its distinct modes D_0; all quantities are dimensionless, phases
         in radians.
     energy : a positive exact number.
+    order : of the series.
     harmonic : False, it is the total energy H at t = 0; True, the harmonic energy sum E_q at
         t = 0, over all modes.
-    order : of the series.
     amplitude_ratio : weights of the amplitudes A_q, by seed.
     energy_ratio : weights of the infinite-time averages of E_q of the seeds (other modes take
         what the torus gives them). At most one of the two; default equal mode energies. Only
@@ -243,7 +243,7 @@ def torus_at_energy(
     why they end there: no frequencies, or a series that solves the equations of motion no better
     than to a quarter of the largest acceleration.
 
-    >>> torus = torus_at_energy(Chain(N=8, alpha="0.33"), (1, 2), "0.01", harmonic=False, order=3)
+    >>> torus = torus_at_energy(Chain(N=8, alpha="0.33"), (1, 2), "0.01", order=3)
     >>> round(float(torus.energy()), 12), [round(a, 9) for a in torus.amplitudes.values()]
     (0.01, [0.254094674, 0.129588043])
     """

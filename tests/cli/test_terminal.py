@@ -236,7 +236,7 @@ def test_the_interrupt_key_says_what_is_kept():
             "proofs.prove_propagation",
             "nothing is kept",
         ),
-        (SOLVE, "tori.lindstedt", "nothing is kept"),
+        (SOLVE, "solve.lindstedt", "nothing is kept"),
         (
             ["sweep", "--order", "1", "--file", "cases"],
             "proofs.sweep_propagation",

@@ -1,0 +1,279 @@
+"""The verb solve: a torus from frequencies, from an energy, or from amplitudes."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import typer
+
+from symfpu.bundles.bundle import save
+from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.cli.chains import (
+    AlphaOption,
+    BetaOption,
+    BondsOption,
+    EndsOption,
+    PotentialOption,
+    chain_of,
+)
+from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
+from symfpu.cli.terminal import (
+    JsonOption,
+    OrderOption,
+    SeedsOption,
+    by_seed,
+    one_of,
+    optional,
+    path_named,
+    print_json,
+    progress_bar,
+    say,
+    whole,
+    whole_numbers,
+    width_of,
+)
+from symfpu.cli.tori import print_solution
+from symfpu.cli.verbs import app
+from symfpu.errors import InputError
+from symfpu.files.progress import NO_FRACTION, Progress
+from symfpu.files.writing import output_file
+from symfpu.reports.solution import solution_record
+from symfpu.reports.torus import assessment_text, torus_record
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.travelling import travelling_waves
+from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.at_energy import torus_at_energy
+from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.tori.ring_torus import RingTorus, travelling_torus
+from symfpu.tori.ring_verdict import assess_waves
+from symfpu.tori.torus import QTorus
+from symfpu.tori.verdict import Assessment, assess
+
+EQUAL_SHARES = "equal time averages of E_q of the seeds; --shares S,S,... for others"
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is asked of a torus, besides its chain and seeds.
+
+    One of frequencies (in the order of the seeds), energy and amplitudes is given; the others
+    are None.
+    shares : of the energy, or None for equal ones. harmonic : whether it is sum E_q.
+    """
+
+    frequencies: list[str] | None
+    energy: str | None
+    amplitudes: dict[int, str] | None
+    shares: dict[int, str] | None
+    harmonic: bool
+    order: int
+    frequency_order: int | None
+    coordinate_order: int | None
+    digits: int | None
+
+
+@app.command(
+    epilog="Example: symfpu solve -N 16 --alpha 0.33 --seeds 1,2 --energy 0.01 --order 8"
+)
+def solve(
+    context: typer.Context,
+    bonds: BondsOption,
+    seeds: SeedsOption,
+    order: OrderOption,
+    omega: Annotated[
+        str | None,
+        typer.Option(
+            help="Frequencies, one for each seed, such as 0.19626,0.39046.",
+            metavar="W,W,...",
+        ),
+    ] = None,
+    energy: Annotated[
+        str | None,
+        typer.Option(help="The torus of this energy H; frequencies found.", metavar="E"),
+    ] = None,
+    amplitudes: Annotated[
+        str | None,
+        typer.Option(
+            help="The torus of these amplitudes; frequencies found.", metavar="A,A,..."
+        ),
+    ] = None,
+    shares: Annotated[
+        str | None,
+        typer.Option(
+            help="With --energy: ratio of the averaged E_q of the seeds.  Default: equal.",
+            metavar="S,S,...",
+        ),
+    ] = None,
+    harmonic: Annotated[
+        bool,
+        typer.Option(
+            "--harmonic", help="With --energy: the harmonic energy sum E_q instead of H."
+        ),
+    ] = False,
+    alpha: AlphaOption = "0",
+    beta: BetaOption = "0",
+    potential: PotentialOption = None,
+    ends: EndsOption = "fixed",
+    frequency_order: Annotated[
+        str | None,
+        typer.Option(
+            help="Order of the frequency series that gives the amplitudes.  Default: --order.",
+            metavar="K",
+        ),
+    ] = None,
+    coordinate_order: Annotated[
+        str | None,
+        typer.Option(
+            help="Order at which the coordinates Q(t) are cut.  Default: --order.",
+            metavar="K",
+        ),
+    ] = None,
+    digits: Annotated[
+        str | None,
+        typer.Option(help="Any number of digits, proved.  Default: doubles.", metavar="D"),
+    ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="Keep series, torus and verdict in this file.",
+            metavar="FILE",
+        ),
+    ] = None,
+    plot: PlotOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """The q-torus of exactly one of --omega, --energy and --amplitudes.
+
+    Frequencies, amplitudes and energies, with a verdict on its series.
+    """
+    chain = chain_of(bonds, alpha, beta, potential, ends)
+    chosen = tuple(whole_numbers("seeds", seeds))
+    given = {"omega": omega, "energy": energy, "amplitudes": amplitudes}
+    one_of(given)
+    _refuse_without_energy(energy, shares, harmonic)
+    wish = Wish(
+        frequencies=None if omega is None else omega.split(","),
+        energy=energy,
+        amplitudes=None
+        if amplitudes is None
+        else by_seed("amplitudes", amplitudes, chosen),
+        shares=None if shares is None else by_seed("shares", shares, chosen),
+        harmonic=harmonic,
+        order=whole("order", order),
+        frequency_order=optional("frequency-order", frequency_order),
+        coordinate_order=optional("coordinate-order", coordinate_order),
+        digits=optional("digits", digits),
+    )
+    file = None if output is None else output_file(path_named("output", output))
+    picture = picture_named(plot)
+    with progress_bar("series") as advance:
+        torus, assessment, record = _found(chain, chosen, wish, advance)
+        if file:
+            advance("writing", NO_FRACTION)
+            save(
+                file,
+                torus,
+                verdict=assessment.record(),
+                command=shlex.join(["symfpu", *context.obj]),
+            )
+        draw(torus.plot, picture)
+    if as_json:
+        print_json(record)
+        return
+    say(f"verdict: {assessment.headline}")
+    print_solution(torus, record)
+    if "energy_shares" in record:
+        say(f"energy shared      {_shares_text(wish)}")
+    say(assessment_text(assessment, width_of(sys.stdout)))
+    if file:
+        print(f"written: {file}")
+    say_drawn(picture)
+
+
+def _refuse_without_energy(energy: str | None, shares: str | None, harmonic: bool) -> None:
+    """InputError for options that say something about an energy, where none is given."""
+    if energy is not None:
+        return
+    for name, value in (("shares", shares), ("harmonic", harmonic or None)):
+        if value is not None:
+            allowed = "an --energy that it says something about"
+            raise InputError(name, value, allowed, "give --energy E, or leave it out")
+
+
+def _shares_text(wish: Wish) -> str:
+    if wish.shares is None:
+        return EQUAL_SHARES
+    ratio = ", ".join(f"{q}: {share}" for q, share in sorted(wish.shares.items()))
+    return f"time averages of E_q of the seeds as {ratio}"
+
+
+def _found(
+    chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
+) -> tuple[QTorus | RingTorus, Assessment, dict[str, Any]]:
+    """The torus, the verdict on its series, and both for JSON."""
+    if chain.periodic:
+        return _on_a_ring(chain, seeds, wish, advance)
+    torus = _with_fixed_ends(chain, seeds, wish, advance)
+    assessment = assess(torus.series, torus, progress=advance)
+    record = torus_record(torus, assessment)
+    if wish.energy is not None:
+        shares = wish.shares or dict.fromkeys(seeds, "1")
+        record["energy_shares"] = {str(q): shares[q] for q in torus.seeds}
+    return torus, assessment, record
+
+
+def _with_fixed_ends(
+    chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
+) -> QTorus:
+    if wish.frequencies is not None:
+        series = lindstedt(
+            chain, seeds, wish.frequencies, wish.order, digits=wish.digits, progress=advance
+        )
+        advance("amplitudes", NO_FRACTION)
+        K, cut = wish.frequency_order, wish.coordinate_order
+        return solve_amplitudes(series, frequency_order=K, order=cut)
+    advance("frequencies", NO_FRACTION)
+    orders = {
+        "order": wish.order,
+        "frequency_order": wish.frequency_order,
+        "coordinate_order": wish.coordinate_order,
+        "digits": wish.digits,
+    }
+    if wish.amplitudes is not None:
+        return torus_at_amplitudes(chain, wish.amplitudes, **orders)  # type: ignore[arg-type]
+    assert wish.energy is not None
+    return torus_at_energy(
+        chain,
+        seeds,
+        wish.energy,
+        harmonic=wish.harmonic,
+        energy_ratio=wish.shares,
+        **orders,  # type: ignore[arg-type]
+    )
+
+
+def _on_a_ring(
+    chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
+) -> tuple[RingTorus, Assessment, dict[str, Any]]:
+    """Travelling waves; from frequencies alone, in doubles."""
+    if wish.digits is not None or wish.frequencies is None:
+        require_fixed_ends(chain)
+    assert wish.frequencies is not None
+    waves = travelling_waves(chain, seeds, wish.frequencies, wish.order, progress=advance)
+    advance("amplitudes", NO_FRACTION)
+    K, cut = wish.frequency_order, wish.coordinate_order
+    torus = travelling_torus(waves, frequency_order=K, order=cut)
+    assessment = assess_waves(waves, torus, progress=advance)
+    record = {
+        **solution_record(torus),
+        "order": torus.order,
+        "frequency_order": torus.frequency_order,
+        "verdict": assessment.headline,
+        "assessment": assessment.record(),
+    }
+    return torus, assessment, record
