@@ -48,6 +48,13 @@ class Case:
         Q = self.chain.modes(x)
         return Q, 0 * Q
 
+    @property
+    def state_file(self) -> Path:
+        """The state of the particles in columns."""
+        path = self.folder / "state.txt"
+        np.savetxt(path, np.transpose([self.chain.positions(part) for part in self.state]))
+        return path
+
     @cached_property
     def torus(self) -> Any:
         return symfpu.torus_at_amplitudes(self.chain, self.amplitudes, order=4)
@@ -275,6 +282,12 @@ DYNAMICS: dict[str, Door] = {
     "integrate, file=": lambda c: symfpu.integrate(
         c.chain, *c.state, 5.0, step=0.1, file=c.folder / "orbit"
     ),
+    "packet_state": lambda c: symfpu.packet_state(c.chain, SEEDS, c.size**2 / 20),
+    "particle_state": lambda c: symfpu.particle_state(
+        c.chain, *map(c.chain.positions, c.state)
+    ),
+    "random_state": lambda c: symfpu.random_state(c.chain, c.size**2 / 20, 1),
+    "read_state": lambda c: symfpu.read_state(c.chain, c.state_file),
     "seconds_needed": lambda c: symfpu.seconds_needed(c.chain, 100.0, vectors=2),
     "toda_gaps": lambda c: symfpu.toda_gaps(c.chain, *c.state, a="1/2"),
     "toda_invariants": lambda c: symfpu.toda_invariants(c.chain, *c.state, a="1/2"),

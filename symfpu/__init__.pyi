@@ -83,12 +83,16 @@ from symfpu.families.family import family as family
 from symfpu.families.family import member_at_energy as member_at_energy
 from symfpu.families.family import member_at_frequency as member_at_frequency
 
-# dynamics: orbits and alignment indices
+# dynamics: orbits and alignment indices, and states to start from
 from symfpu.dynamics.alignment import AlignmentIndices as AlignmentIndices
 from symfpu.dynamics.alignment import alignment_indices as alignment_indices
 from symfpu.dynamics.alignment import seconds_needed as seconds_needed
 from symfpu.dynamics.orbits import Orbit as Orbit
 from symfpu.dynamics.orbits import integrate as integrate
+from symfpu.dynamics.starts import packet_state as packet_state
+from symfpu.dynamics.starts import particle_state as particle_state
+from symfpu.dynamics.starts import random_state as random_state
+from symfpu.dynamics.state_files import read_state as read_state
 
 # frequency analysis of orbits
 from symfpu.spectral.analysis import FrequencyAnalysis as FrequencyAnalysis

@@ -1,4 +1,4 @@
-"""The verb gali: alignment indices of the orbit of a saved torus."""
+"""The verb gali: alignment indices of the orbit of a saved torus, or of a state of your own."""
 
 from __future__ import annotations
 
@@ -8,11 +8,22 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.bundles.bundle import load
-from symfpu.cli.chains import solution_of
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
+from symfpu.cli.starts import (
+    EnergyOption,
+    OwnAlpha,
+    OwnBeta,
+    OwnBonds,
+    OwnEnds,
+    OwnPotential,
+    PacketOption,
+    RandomOption,
+    Start,
+    StartArgument,
+    StateOption,
+    start_of,
+)
 from symfpu.cli.terminal import (
-    FileArgument,
     JsonOption,
     kept_run,
     number,
@@ -37,15 +48,23 @@ from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
 from symfpu.reports.tables import fifteen_digits
-from symfpu.reports.torus import chain_record
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
 def gali(
-    file: FileArgument,
     time: Annotated[
         str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")
     ],
+    file: StartArgument = None,
+    state: StateOption = None,
+    packet: PacketOption = None,
+    random: RandomOption = None,
+    energy: EnergyOption = None,
+    bonds: OwnBonds = None,
+    alpha: OwnAlpha = None,
+    beta: OwnBeta = None,
+    potential: OwnPotential = None,
+    ends: OwnEnds = None,
     vectors: Annotated[
         str | None,
         typer.Option(
@@ -85,27 +104,28 @@ def gali(
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Alignment indices of the orbit that starts on a torus, and the dimension they show.
+    """Alignment indices of the orbit from a torus or a state, and the dimension they show.
 
     With the Lyapunov exponent of that orbit.
     """
-    torus = solution_of(load(path_named("FILE", file)), file)
+    typed = {"N": bonds, "alpha": alpha, "beta": beta, "potential": potential, "ends": ends}
+    states = {"state": state, "packet": packet, "random": random}
+    start = start_of(file, typed, states, energy)
     picture = picture_named(plot)
     T = number("time", time)
     h = number("step", step)
     count = optional("vectors", vectors)
     if estimate:
-        seconds = seconds_needed(torus.chain, T, vectors=count, step=h, scheme=scheme)
+        seconds = seconds_needed(start.chain, T, vectors=count, step=h, scheme=scheme)
         _print_estimate(seconds, as_json)
         return
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     folder = None if output is None else output_folder(path_named("output", output))
-    Q, P = torus.state()
     with progress_bar("alignment indices", lambda: kept_run(kept)) as advance:
         found = alignment_indices(
-            torus.chain,
-            Q,
-            P,
+            start.chain,
+            start.Q,
+            start.P,
             T,
             vectors=count,
             step=h,
@@ -120,9 +140,9 @@ def gali(
             draw_alignment(found, folder)
         draw(found.plot, picture)
     if as_json:
-        print_json(_record(found, torus.seeds))
+        print_json(_record(found, start))
     else:
-        say("\n".join(_text(found, torus.seeds)))
+        say("\n".join(_text(found, start)))
         if folder is not None:
             pictures = "gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf"
             print(f"written: {folder}: gali.csv, {pictures}")
@@ -137,7 +157,7 @@ def _print_estimate(seconds: float, as_json: bool) -> None:
         print(f"about {seconds:.2g} seconds{hours} of one processor")
 
 
-def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
+def _record(found: AlignmentIndices, start: Start) -> dict[str, Any]:
     """The result for JSON; `dimension` is null where nothing is decided, and in chaos."""
     dimension = found.dimension()
     decided = dimension.value is not None
@@ -149,7 +169,9 @@ def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
     for k, index in enumerate(found.log10_gali[-1].tolist(), start=2):
         indices[str(k)] = fifteen_digits(index)
     return {
-        **chain_record(found.chain, seeds),
+        **found.chain.typed,
+        "seeds": None if start.torus is None else list(start.torus.seeds),
+        "start": start.record,
         "time": fifteen_digits(float(found.times[-1])),
         "scheme": found.scheme.name,
         "step": fifteen_digits(found.step),
@@ -164,16 +186,18 @@ def _record(found: AlignmentIndices, seeds: tuple[int, ...]) -> dict[str, Any]:
     }
 
 
-def _text(found: AlignmentIndices, seeds: tuple[int, ...]) -> list[str]:
+def _text(found: AlignmentIndices, start: Start) -> list[str]:
     """The same for a reader."""
     dimension = found.dimension()
     value = "none" if dimension.value is None else str(dimension.value)
-    listed = ", ".join(map(str, seeds))
+    origin = "a state of your own"
+    if start.torus is not None:
+        origin = f"the torus has the seeds {', '.join(map(str, start.torus.seeds))}"
     end = f"log|v| / t at t = {found.times[-1]:.6g}"
     steps = f"steps of {found.step:g}"
     lines = [
         f"verdict: {dimension.verdict}",
-        f"dimension          {value}   (the torus has the seeds {listed})",
+        f"dimension          {value}   ({origin})",
         f"                   {dimension.reason}",
         f"Lyapunov exponent  {found.lyapunov[-1]:.3g}   ({end}; falls as log(t)/t on a torus)",
         f"energy error       {found.energy_error:.2g}   (relative, at the end; {steps})",

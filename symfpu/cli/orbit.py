@@ -1,4 +1,4 @@
-"""Verbs of motion: the orbit that starts on a saved torus."""
+"""The verb orbit: from a saved torus, or from a state of your own."""
 
 from __future__ import annotations
 
@@ -11,11 +11,22 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from symfpu.bundles.bundle import load
-from symfpu.cli.chains import solution_of
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
+from symfpu.cli.starts import (
+    EnergyOption,
+    OwnAlpha,
+    OwnBeta,
+    OwnBonds,
+    OwnEnds,
+    OwnPotential,
+    PacketOption,
+    RandomOption,
+    Start,
+    StartArgument,
+    StateOption,
+    start_of,
+)
 from symfpu.cli.terminal import (
-    FileArgument,
     JsonOption,
     kept_run,
     number,
@@ -31,7 +42,7 @@ from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.numbers.arithmetic import Numbers
-from symfpu.reports.tables import fifteen_digits
+from symfpu.reports.tables import fifteen_digits, text_table
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
@@ -42,10 +53,19 @@ SHOWN_MODES = 8  # those of the largest average harmonic energy
 
 @app.command(epilog="Example: symfpu orbit torus.symfpu --time 1e5 -o orbit.csv")
 def orbit(
-    file: FileArgument,
     time: Annotated[
         str, typer.Option("--time", help="How long to follow it, such as 1e6.", metavar="T")
     ],
+    file: StartArgument = None,
+    state: StateOption = None,
+    packet: PacketOption = None,
+    random: RandomOption = None,
+    energy: EnergyOption = None,
+    bonds: OwnBonds = None,
+    alpha: OwnAlpha = None,
+    beta: OwnBeta = None,
+    potential: OwnPotential = None,
+    ends: OwnEnds = None,
     step: Annotated[str, typer.Option(help="Length of a step.", metavar="H")] = "0.2",
     scheme: Annotated[
         str, typer.Option(help=f"{', '.join(SCHEMES)}.", metavar="SCHEME")
@@ -72,21 +92,24 @@ def orbit(
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Integrates the orbit of a torus from t = 0 on, and says how far it stays from the torus."""
+    """Integrates the orbit from a saved torus, or from a state of your own.
+
+    It says how far the orbit stays from its torus.
+    """
     target = None if output is None else _output(path_named("output", output))
     picture = picture_named(plot)
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     T = number("time", time)
     h = number("step", step)
     count = whole("samples", samples)
-    torus = solution_of(load(path_named("FILE", file)), file)
-    exact = torus if isinstance(torus, RingTorus) else torus.in_doubles()
-    Q, P = exact.state()
+    typed = {"N": bonds, "alpha": alpha, "beta": beta, "potential": potential, "ends": ends}
+    states = {"state": state, "packet": packet, "random": random}
+    start = start_of(file, typed, states, energy)
     with progress_bar("orbit", lambda: kept_run(kept)) as advance:
         made = integrate(
-            exact.chain,
-            Q,
-            P,
+            start.chain,
+            start.Q,
+            start.P,
             T,
             step=h,
             scheme=scheme,
@@ -98,7 +121,7 @@ def orbit(
         if target is not None:
             _write(target, made)
         draw(made.plot, picture)
-    record = _record(made, exact)
+    record = _record(made, start)
     if as_json:
         print_json(record)
         return
@@ -120,33 +143,38 @@ def _output(path: Path) -> Path:
     return output_file(path)
 
 
-def _record(made: Orbit, torus: QuasiPeriodic | RingTorus) -> dict[str, Any]:
-    """What the verb prints.
-
-    Deviations relative to the largest coordinate of the torus at the samples.
-    """
-    there = _modes_of(torus, made.times)
-    largest = np.max(np.abs(there))
-    distances = np.max(np.abs(made.Q - there), axis=1) / largest
-    worst = int(np.argmax(distances))
+def _record(made: Orbit, start: Start) -> dict[str, Any]:
+    """What the verb prints; what compares with a torus is null where there is none."""
     assert made.averages is not None
     average = [fifteen_digits(value) for value in made.averages[-1]]
-    expected = [fifteen_digits(value) for value in torus.average_spectrum()]
     return {
-        "N": made.chain.N,
+        **made.chain.typed,
         **_mode_entries(made),
+        "start": start.record,
         "scheme": made.scheme.name,
         "step": fifteen_digits(made.step),
         "time": fifteen_digits(made.times[-1]),
         "samples": len(made.times),
         "energy": repr(float(made.energies[0])),
         "energy_error": fifteen_digits(made.energy_error),
-        "largest_deviation": fifteen_digits(distances[worst]),
-        "largest_deviation_time": fifteen_digits(made.times[worst]),
         "average_spectrum": average,
-        "torus_average_spectrum": expected,
+        **_comparison(made, start.torus),
         "seconds": round(made.seconds, 3),
     }
+
+
+def _comparison(made: Orbit, torus: QuasiPeriodic | RingTorus | None) -> dict[str, Any]:
+    """Deviations relative to the largest coordinate of the torus at the samples."""
+    names = "largest_deviation", "largest_deviation_time", "torus_average_spectrum"
+    if torus is None:
+        return dict.fromkeys(names)
+    there = _modes_of(torus, made.times)
+    largest = np.max(np.abs(there))
+    distances = np.max(np.abs(made.Q - there), axis=1) / largest
+    worst = int(np.argmax(distances))
+    expected = [fifteen_digits(value) for value in torus.average_spectrum()]
+    found = fifteen_digits(distances[worst]), fifteen_digits(made.times[worst]), expected
+    return dict(zip(names, found, strict=True))
 
 
 def _modes_of(torus: QuasiPeriodic | RingTorus, times: Floats) -> Numbers:
@@ -156,29 +184,42 @@ def _modes_of(torus: QuasiPeriodic | RingTorus, times: Floats) -> Numbers:
 
 
 def _mode_entries(made: Orbit) -> dict[str, Any]:
-    """The ends of a ring and its modes, in the order of its spectra."""
+    """The modes of a ring, in the order of its spectra."""
     if not made.chain.periodic:
         return {}
-    return {"ends": made.chain.ends, "modes": list(made.chain.mode_numbers)}
+    return {"modes": list(made.chain.mode_numbers)}
 
 
 def _print(record: dict[str, Any]) -> None:
     energy_error = record["energy_error"]
     say(f"energy error       {energy_error:.3g}   (largest |H(t)/H(0) - 1| of the samples)")
-    deviation = f"{record['largest_deviation']:.3g}"
-    when = f"t = {record['largest_deviation_time']:.10g}"
-    say(
-        f"off the torus      {deviation}   (largest at {when}, relative to the largest coordinate)"
-    )
+    expected = record["torus_average_spectrum"]
+    if expected is not None:
+        deviation = f"{record['largest_deviation']:.3g}"
+        when = f"largest at t = {record['largest_deviation_time']:.10g}"
+        say(
+            f"off the torus      {deviation}   ({when}, relative to the largest coordinate)"
+        )
     if energy_error > LOST_ENERGY:
         say("the energy is lost: this is no orbit of the chain, take a shorter step")
-    say("mode  time average of E_q      on the torus, for ever")
+    head = ["mode", "time average of E_q"]
+    head += [] if expected is None else ["on the torus, for ever"]
+    say("\n".join(text_table(head, _rows(record))))
+
+
+def _rows(record: dict[str, Any]) -> list[list[str]]:
+    """The modes of the largest average harmonic energy."""
     average = record["average_spectrum"]
-    expected = record["torus_average_spectrum"]
+    columns = [average]
+    if record["torus_average_spectrum"] is not None:
+        columns.append(record["torus_average_spectrum"])
     modes = record.get("modes", range(1, record["N"]))
     by_energy = sorted(range(len(average)), key=lambda place: -average[place])
+    rows = []
     for place in by_energy[:SHOWN_MODES]:
-        say(f"{modes[place]:<5} {average[place]:<24.6g} {expected[place]:.6g}")
+        numbers = [f"{column[place]:.6g}" for column in columns]
+        rows.append([str(modes[place]), *numbers])
+    return rows
 
 
 def _write(path: Path, made: Orbit) -> None:
