@@ -155,8 +155,8 @@ from symfpu.proofs.sweeps import sweep_propagation as sweep_propagation
 
 # files
 from symfpu.bundles.bundle import Bundle as Bundle
-from symfpu.bundles.bundle import load as load
-from symfpu.bundles.bundle import save as save
+from symfpu.saved.results import load as load
+from symfpu.saved.results import save as save
 
 # code generation
 from symfpu.codegen.evaluator import Evaluator as Evaluator

@@ -85,11 +85,9 @@ class Floquet(Shown, Gridded):
     def __repr__(self) -> str:
         chain = repr(self.orbit.chain).removeprefix("Chain(").removesuffix(")")
         which = f"seed {self.orbit.seed}, omega={decimal(self.orbit.frequency)}"
-        unstable = ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
-        verdict = "stable" if self.stable else f"unstable: {unstable}"
         largest = f"largest |multiplier| {self.largest:.12g}"
         quality = f"symplecticity error {self.symplecticity:.1g}"
-        return f"Floquet({chain}, {which}, {verdict}, {largest}, {quality})"
+        return f"Floquet({chain}, {which}, {self.verdict}, {largest}, {quality})"
 
     @property
     def multipliers(self) -> NDArray[np.complex128]:
@@ -100,6 +98,12 @@ class Floquet(Shown, Gridded):
     def stable(self) -> bool:
         """Every multiplier on the unit circle, as far as the errors allow to tell."""
         return not self.instabilities
+
+    @property
+    def verdict(self) -> str:
+        """'stable', or 'unstable' with the number of unstable pairs by kind."""
+        kinds = ", ".join(f"{n} {kind}" for kind, n in self.instabilities.items())
+        return f"unstable: {kinds}" if kinds else "stable"
 
     @property
     def instabilities(self) -> dict[str, int]:

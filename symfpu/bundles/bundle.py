@@ -53,11 +53,10 @@ from symfpu.files.archive import (
     Archive,
     BundleError,
     Json,
-    digest_of,
-    member_digest,
-    write_archive,
+    write_document,
 )
 from symfpu.files.checkpoint import KINDS
+from symfpu.frames.recorded import Recorded
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
@@ -96,7 +95,7 @@ READERS: dict[str, Callable[[Archive, Json], QuasiPeriodic | RingTorus]] = {
     FOURIER: solution_from,
     WAVES: ring_torus_from,
 }
-SERIES = LindstedtSeries, TravellingSeries
+SERIES: tuple[type[Any], ...] = LindstedtSeries, TravellingSeries
 Result = LindstedtSeries | TravellingSeries | QuasiPeriodic | RingTorus
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
@@ -115,7 +114,7 @@ class OrbitPoint(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Bundle:
+class Bundle(Recorded):
     """What a file held. Made by `load`; numbers are as they were saved, to the last bit or digit.
 
     All is dimensionless; the format is ours.
@@ -126,6 +125,7 @@ class Bundle:
     provenance : created (UTC), command, versions by package.
     test_vectors : a few points of the torus as it was when it was saved: t, Q and P, (N-1,), as
         decimals.
+    other : a result that is neither a series nor a solution, or None.
 
     >>> import tempfile
     >>> from symfpu import lindstedt
@@ -139,6 +139,13 @@ class Bundle:
     verdict: Json | None
     provenance: Json
     test_vectors: tuple[OrbitPoint, ...] = field(repr=False, default=())
+    other: Any = None
+
+    @property
+    def result(self) -> Any:
+        """What was saved: the solution, the series, or any other result."""
+        held = self.series if self.torus is None else self.torus
+        return self.other if held is None else held
 
     def __repr__(self) -> str:
         torus = "no torus"
@@ -150,7 +157,7 @@ class Bundle:
         verdict = "a verdict" if self.verdict is not None else "no verdict"
         version = self.provenance["versions"].get("symfpu", "of unknown version")
         saved = f"saved {self.provenance['created']} by symfpu {version}"
-        held = f"{self.series!r}, {torus}" if self.series else repr(self.torus)
+        held = f"{self.series!r}, {torus}" if self.series else repr(self.result)
         return f"Bundle({held}, {verdict}, {saved})"
 
 
@@ -180,28 +187,39 @@ def save(
     ...     load(save(f"{folder}/a", series)).series.seeds
     (3,)
     """
-    path = _path(path)
-    _require_arguments(result, verdict, command, created)
-    parts, members = _parts(result)
-    moment = (created or datetime.now(UTC)).astimezone(UTC)
-    points = [] if isinstance(result, SERIES) else _test_vectors(result)
-    digests = {name: member_digest(values) for name, values in members.items()}
-    body: Json = {
-        "format": FORMAT,
-        "schema": _schema(result),
-        "created": moment.isoformat(timespec="seconds"),
-        "command": command,
-        "versions": _versions(),
-        **parts,
-        "verdict": verdict,
-        "test_vectors": [point._asdict() for point in points],
-        "arrays": digests,
-    }
-    write_archive(path, body | {"digest": digest_of(body)}, members)
+    path = named_path(path)
+    if not isinstance(result, (*SERIES, RingTorus)):
+        require_solution(result, "result")
+    require_notes(verdict, command, created)
+    parts, members = parts_of(result)
+    points: list[OrbitPoint] = []
+    if not isinstance(result, LindstedtSeries | TravellingSeries):
+        points = _test_vectors(result)
+    known = document(_schema(result), verdict, command, created)
+    vectors = [point._asdict() for point in points]
+    write_document(path, known | parts | {"test_vectors": vectors}, members)
     return path
 
 
-def _parts(result: Result) -> tuple[Json, dict[str, Array]]:
+def document(
+    schema: int, verdict: Json | None, command: str | None, created: datetime | None
+) -> Json:
+    """What every file begins with; without a series, a torus and test vectors yet."""
+    moment = (created or datetime.now(UTC)).astimezone(UTC)
+    return {
+        "format": FORMAT,
+        "schema": schema,
+        "created": moment.isoformat(timespec="seconds"),
+        "command": command,
+        "versions": _versions(),
+        "series": None,
+        "torus": None,
+        "verdict": verdict,
+        "test_vectors": [],
+    }
+
+
+def parts_of(result: Result) -> tuple[Json, dict[str, Array]]:
     """The entries of series and torus, and their arrays."""
     if isinstance(result, TravellingSeries):
         entries, members = travelling_entries(result)
@@ -250,14 +268,23 @@ def load(path: Path | str) -> Bundle:
     >>> all((a == b).all() for a, b in zip(kept.coordinates, series.coordinates, strict=True))
     True
     """
-    path = _path(path)
+    return load_with(path, _no_solution)
+
+
+def _no_solution(archive: Archive, body: Json) -> Any:
+    raise ValueError(f"a {body['root']['class']:.40} where a series or a solution is due")
+
+
+def load_with(path: Path | str, other: Callable[[Archive, Json], Any]) -> Bundle:
+    """As `load`; other : makes the result of a file with neither a series nor a solution."""
+    path = named_path(path)
     with path.open("rb") as stream:
         if stream.read(4) != b"PK\x03\x04":
             raise BundleError(
                 path, "is not a symfpu bundle", "give a file that symfpu.save wrote"
             )
         try:
-            return _bundle(path, Archive(path, stream))
+            return _bundle(path, Archive(path, stream), other)
         except BundleError:
             raise
         except UnknownPotential as error:
@@ -270,17 +297,15 @@ def load(path: Path | str) -> Bundle:
             raise BundleError(path, f"is damaged ({reason})", advice) from None
 
 
-def _path(path: object) -> Path:
+def named_path(path: object) -> Path:
+    """A path; InputError for what names no file."""
     if not isinstance(path, (str, os.PathLike)) or "\0" in os.fsdecode(path):
         raise InputError("path", path, "the name of a file", "pass a string or a Path")
     return Path(os.fsdecode(path))
 
 
-def _require_arguments(
-    result: object, verdict: object, command: object, created: object
-) -> None:
-    if not isinstance(result, (*SERIES, RingTorus)):
-        require_solution(result, "result")
+def require_notes(verdict: object, command: object, created: object) -> None:
+    """InputError for notes that a file does not keep."""
     if command is not None and not isinstance(command, str):
         raise InputError("command", command, "a string or None", "join its words")
     if created is not None and not isinstance(created, datetime):
@@ -591,20 +616,37 @@ def _test_vectors(torus: QuasiPeriodic | RingTorus) -> list[OrbitPoint]:
     return [OrbitPoint(repr(t), written(Q), written(P)) for t, Q, P in states]
 
 
-def _bundle(path: Path, archive: Archive) -> Bundle:
+def _bundle(path: Path, archive: Archive, other: Callable[[Archive, Json], Any]) -> Bundle:
     body = archive.body
     if body.get("kind") in KINDS:
         kind = KINDS[body["kind"]]
         problem = f"is a checkpoint of {kind.of}, which holds no torus"
         raise BundleError(path, problem, f"go on from it with {kind.resume}")
-    series = None if body["series"] is None else _any_series(archive, body["series"])
+    series = torus = held = None
+    if "result" in body:
+        held = other(archive, body["result"])
+    else:
+        series, torus = _held(archive, body)
     return Bundle(
         series=series,
-        torus=_solution(archive, body["torus"], series),
+        torus=torus,
         verdict=None if body["verdict"] is None else dict(body["verdict"]),
         provenance={name: body[name] for name in ("created", "command", "versions")},
         test_vectors=tuple(map(_orbit_point, body["test_vectors"])),
+        other=held,
     )
+
+
+def _held(archive: Archive, body: Json) -> tuple[Any, Any]:
+    """The series and the solution of the entries that `parts_of` makes, or None."""
+    series = None if body["series"] is None else _any_series(archive, body["series"])
+    return series, _solution(archive, body["torus"], series)
+
+
+def parts_from(archive: Archive, body: Json) -> Any:
+    """The series or the solution of such entries."""
+    series, torus = _held(archive, body)
+    return series if torus is None else torus
 
 
 def _orbit_point(entry: Json) -> OrbitPoint:

@@ -11,7 +11,6 @@ from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import PeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.breathers.floquet import floquet
-from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
 from symfpu.cli.chains import (
     AlphaOption,
@@ -35,6 +34,7 @@ from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
 from symfpu.files.writing import output_file
 from symfpu.reports.solution import solution_record, solution_text
+from symfpu.saved.results import save
 from symfpu.tori.quasiperiodic import FourierTorus
 
 DOUBLE_ENERGY = (

@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from symfpu.bundles.bundle import load
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.terminal import FileArgument, optional, path_named, progress_bar
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file
+from symfpu.saved.results import load
 from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.ring_torus import RingTorus
 

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.bundles.bundle import load, save
 from symfpu.cli.chains import (
     AlphaOption,
     BetaOption,
@@ -18,6 +17,7 @@ from symfpu.cli.chains import (
     chain_of,
     with_fixed_ends,
 )
+from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
@@ -46,12 +46,11 @@ from symfpu.refinement.tori import (
     refine_at_energy,
 )
 from symfpu.reports.family import (
-    family_record,
     family_table,
     family_text,
-    refined_record,
     refined_text,
 )
+from symfpu.saved.results import load, save
 
 
 @app.command("refine", epilog="Example: symfpu refine torus.symfpu -o refined.symfpu")
@@ -125,7 +124,7 @@ def refine_file(
             save(kept, refined, verdict=verdict_of(refined), command=command)
         draw(refined.plot, picture)
     if as_json:
-        print_json(refined_record(refined))
+        print_json(refined.record())
     else:
         say(refined_text(refined))
         if kept:
@@ -135,8 +134,7 @@ def refine_file(
 
 def verdict_of(torus: RefinedTorus) -> dict[str, Any]:
     """What a file says of a refined torus."""
-    verdict = "doubtful" if torus.warnings else "torus"
-    return {"verdict": verdict, "reasons": list(torus.warnings)}
+    return {"verdict": torus.verdict, "reasons": list(torus.warnings)}
 
 
 def ratio(argument: str, text: str | None, seeds: tuple[int, ...]) -> dict[int, str] | None:
@@ -149,6 +147,7 @@ def ratio(argument: str, text: str | None, seeds: tuple[int, ...]) -> dict[int, 
     epilog="Example: symfpu family -N 32 --alpha 0.33 --seeds 1 --to-energy 0.05 -o out",
 )
 def follow_family(
+    context: typer.Context,
     bonds: BondsOption,
     seeds: SeedsOption,
     to_energy: Annotated[
@@ -194,6 +193,7 @@ def follow_family(
             metavar="FOLDER",
         ),
     ] = None,
+    kept_file: SaveOption = None,
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -201,6 +201,7 @@ def follow_family(
     chain = chain_of(bonds, alpha, beta, potential)
     chosen = tuple(whole_numbers("seeds", seeds))
     picture = picture_named(plot)
+    saved = file_named(kept_file)
     folder = None if output is None else output_folder(path_named("output", output))
     with progress_bar("first member", lambda: _kept(folder)) as advance:
         found = family(
@@ -221,14 +222,16 @@ def follow_family(
         pictures = [] if folder is None else draw_family(found, folder)
         if folder is not None:
             _write_table(found, folder / "family.csv")
+        keep(found, saved, context)
         draw(found.plot, picture)
     if as_json:
-        print_json(family_record(found))
+        print_json(found.record())
     else:
         say("\n".join(family_text(found)))
         if folder is not None:
             counts = f"{len(found.members)} members, {len(pictures)} pictures"
             print(f"written: {folder}: family.csv, {counts}")
+        say_kept(saved)
         say_drawn(picture)
     raise typer.Exit(0 if found.ending.startswith("reached") else 1)
 

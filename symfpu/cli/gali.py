@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.starts import (
     EnergyOption,
@@ -47,11 +48,11 @@ from symfpu.dynamics.alignment import (
 from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
-from symfpu.reports.tables import fifteen_digits
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
 def gali(
+    context: typer.Context,
     time: Annotated[
         str, typer.Option("--time", help="Length of the orbit, from 100 up.", metavar="T")
     ],
@@ -101,6 +102,7 @@ def gali(
             "--estimate", help="Only say how long it would take, from a trial of a second."
         ),
     ] = False,
+    kept_file: SaveOption = None,
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -112,6 +114,7 @@ def gali(
     states = {"state": state, "packet": packet, "random": random}
     start = start_of(file, typed, states, energy)
     picture = picture_named(plot)
+    saved = file_named(kept_file)
     T = number("time", time)
     h = number("step", step)
     count = optional("vectors", vectors)
@@ -138,6 +141,7 @@ def gali(
         if folder is not None:
             _write_table(found, folder / "gali.csv")
             draw_alignment(found, folder)
+        keep(found, saved, context)
         draw(found.plot, picture)
     if as_json:
         print_json(_record(found, start))
@@ -146,6 +150,7 @@ def gali(
         if folder is not None:
             pictures = "gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf"
             print(f"written: {folder}: gali.csv, {pictures}")
+        say_kept(saved)
         say_drawn(picture)
 
 
@@ -158,32 +163,9 @@ def _print_estimate(seconds: float, as_json: bool) -> None:
 
 
 def _record(found: AlignmentIndices, start: Start) -> dict[str, Any]:
-    """The result for JSON; `dimension` is null where nothing is decided, and in chaos."""
-    dimension = found.dimension()
-    decided = dimension.value is not None
-    slopes = {}
-    for slope in found.slopes():
-        value = fifteen_digits(slope.value)
-        slopes[str(slope.k)] = {"value": value, "error": fifteen_digits(slope.error)}
-    indices = {}
-    for k, index in enumerate(found.log10_gali[-1].tolist(), start=2):
-        indices[str(k)] = fifteen_digits(index)
-    return {
-        **found.chain.typed,
-        "seeds": None if start.torus is None else list(start.torus.seeds),
-        "start": start.record,
-        "time": fifteen_digits(float(found.times[-1])),
-        "scheme": found.scheme.name,
-        "step": fifteen_digits(found.step),
-        "slopes": slopes,
-        "log10_gali": indices,
-        "dimension": dimension.value,
-        "dimension_error": fifteen_digits(dimension.error) if decided else None,
-        "verdict": dimension.verdict,
-        "reason": dimension.reason,
-        "lyapunov": fifteen_digits(float(found.lyapunov[-1])),
-        "energy_error": fifteen_digits(found.energy_error),
-    }
+    """The result for JSON, and where it started."""
+    seeds = None if start.torus is None else list(start.torus.seeds)
+    return found.record() | {"seeds": seeds, "start": start.record}
 
 
 def _text(found: AlignmentIndices, start: Start) -> list[str]:

@@ -11,6 +11,7 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
+from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.starts import (
     EnergyOption,
@@ -53,6 +54,7 @@ SHOWN_MODES = 8  # those of the largest average harmonic energy
 
 @app.command(epilog="Example: symfpu orbit torus.symfpu --time 1e5 -o orbit.csv")
 def orbit(
+    context: typer.Context,
     time: Annotated[
         str, typer.Option("--time", help="How long to follow it, such as 1e6.", metavar="T")
     ],
@@ -89,6 +91,7 @@ def orbit(
             metavar="FILE",
         ),
     ] = None,
+    kept_file: SaveOption = None,
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -98,6 +101,7 @@ def orbit(
     """
     target = None if output is None else _output(path_named("output", output))
     picture = picture_named(plot)
+    saved = file_named(kept_file)
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     T = number("time", time)
     h = number("step", step)
@@ -120,6 +124,7 @@ def orbit(
         )
         if target is not None:
             _write(target, made)
+        keep(made, saved, context)
         draw(made.plot, picture)
     record = _record(made, start)
     if as_json:
@@ -129,6 +134,7 @@ def orbit(
     _print(record)
     if target is not None:
         print(f"written: {target}")
+    say_kept(saved)
     say_drawn(picture)
 
 
@@ -145,22 +151,7 @@ def _output(path: Path) -> Path:
 
 def _record(made: Orbit, start: Start) -> dict[str, Any]:
     """What the verb prints; what compares with a torus is null where there is none."""
-    assert made.averages is not None
-    average = [fifteen_digits(value) for value in made.averages[-1]]
-    return {
-        **made.chain.typed,
-        **_mode_entries(made),
-        "start": start.record,
-        "scheme": made.scheme.name,
-        "step": fifteen_digits(made.step),
-        "time": fifteen_digits(made.times[-1]),
-        "samples": len(made.times),
-        "energy": repr(float(made.energies[0])),
-        "energy_error": fifteen_digits(made.energy_error),
-        "average_spectrum": average,
-        **_comparison(made, start.torus),
-        "seconds": round(made.seconds, 3),
-    }
+    return made.record() | {"start": start.record} | _comparison(made, start.torus)
 
 
 def _comparison(made: Orbit, torus: QuasiPeriodic | RingTorus | None) -> dict[str, Any]:
@@ -181,13 +172,6 @@ def _modes_of(torus: QuasiPeriodic | RingTorus, times: Floats) -> Numbers:
     if isinstance(torus, RingTorus):
         return torus.mode_coordinates(times)
     return torus.positions(times)
-
-
-def _mode_entries(made: Orbit) -> dict[str, Any]:
-    """The modes of a ring, in the order of its spectra."""
-    if not made.chain.periodic:
-        return {}
-    return {"modes": list(made.chain.mode_numbers)}
 
 
 def _print(record: dict[str, Any]) -> None:

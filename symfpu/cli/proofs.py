@@ -13,6 +13,7 @@ import typer
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.cli.chains import BondsOption, EndsOption, PotentialOption
+from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
@@ -131,10 +132,7 @@ def prove(
         if file is not None:
             proof.write(file)
     if as_json:
-        record = proof.certificate()
-        for evidence in ("excited", "vanishing", "points", "coefficients", "digest"):
-            record.pop(evidence, None)
-        print_json(record)
+        print_json(proof.record())
     else:
         _print_proof(proof)
         if file is not None:
@@ -187,6 +185,7 @@ def verify(
     epilog="Example: symfpu sweep --model beta --longest 9 --order 3 --file beta.jsonl"
 )
 def sweep(
+    context: typer.Context,
     order: OrderOption,
     model: SingleModelOption = None,
     potential: PotentialOption = None,
@@ -212,6 +211,7 @@ def sweep(
             metavar="FILE",
         ),
     ] = None,
+    kept_file: SaveOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Decide the propagation rule for all seed sets of a range of chains."""
@@ -222,6 +222,7 @@ def sweep(
     if file is not None:
         log = output_file(path_named("file", file), "file", "choose another with --file")
     summary = None if markdown is None else output_file(path_named("output", markdown))
+    saved = file_named(kept_file)
     with progress_bar("seed sets", lambda: _kept(log)) as advance:
         result = sweep_propagation(
             lengths,
@@ -234,6 +235,7 @@ def sweep(
         )
         if summary is not None:
             write_text(summary, sweep_markdown(result))
+        keep(result, saved, context)
     if as_json:
         record = {
             **_law_entries(model, potential),
@@ -249,6 +251,7 @@ def sweep(
         for q, predicted, actual in case.exceptions:
             modes.append(f"mode {q} at {actual}, predicted {predicted}")
         say(f"N={case.N} seeds {case.seeds}: {', '.join(modes)}")
+    say_kept(saved)
 
 
 def _kept(log: Path | None) -> str:

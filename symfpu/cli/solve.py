@@ -9,7 +9,6 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.cli.chains import (
     AlphaOption,
@@ -42,6 +41,7 @@ from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.files.writing import output_file
 from symfpu.reports.solution import solution_record
 from symfpu.reports.torus import assessment_text, torus_record
+from symfpu.saved.results import save
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.travelling import travelling_waves
 from symfpu.tori.amplitudes import solve_amplitudes

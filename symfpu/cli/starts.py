@@ -7,7 +7,6 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.bundles.bundle import load
 from symfpu.chain.chain import Chain
 from symfpu.cli.chains import chain_of, solution_of
 from symfpu.cli.terminal import path_named, whole, whole_numbers
@@ -15,6 +14,7 @@ from symfpu.dynamics.starts import packet_state, random_state
 from symfpu.dynamics.state_files import read_state
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers
+from symfpu.saved.results import load
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
 from symfpu.chain.length import label_entry, mode_label
 from symfpu.chain.symbols import chosen_symbol, coordinate_symbol
@@ -29,6 +28,7 @@ from symfpu.errors import InputError
 from symfpu.files.writing import output_file
 from symfpu.notebook import latex_lines
 from symfpu.numbers.typed import decimal
+from symfpu.saved.results import save
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.closed_forms import closed_form
 from symfpu.series.lindstedt import lindstedt

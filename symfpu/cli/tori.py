@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symfpu.bundles.bundle import Bundle, load
+from symfpu.bundles.bundle import Bundle
 from symfpu.cli.terminal import (
     FileArgument,
     JsonOption,
@@ -16,9 +16,9 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.tori import RefinedTorus
-from symfpu.reports.family import refined_record, refined_text
-from symfpu.reports.solution import solution_record, solution_text
-from symfpu.reports.torus import torus_record
+from symfpu.reports.family import refined_text
+from symfpu.reports.solution import solution_text
+from symfpu.saved.results import load
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
@@ -53,18 +53,13 @@ def show(
     file: FileArgument,
     as_json: JsonOption = False,
 ) -> None:
-    """What a result file holds: series, torus, verdict, and what made it."""
+    """What a result file holds: any result, its verdict, and what made it."""
     bundle = load(path_named("FILE", file))
     solution = bundle.torus
-    record = {} if solution is None else _record(solution)
     if as_json:
-        kept = {
-            "provenance": dict(bundle.provenance),
-            "assessment": bundle.verdict,
-            "test_vectors": bundle.test_vectors,
-        }
-        print_json(record | kept)
+        print_json(bundle.record())
         return
+    record = {} if solution is None else solution.record()
     verdict = bundle.verdict or {}
     if verdict and not isinstance(solution, RefinedTorus):
         say(f"verdict: {verdict.get('verdict')}")
@@ -75,20 +70,11 @@ def show(
         say(f"{key:<18} {value}")
 
 
-def _record(solution: QuasiPeriodic | RingTorus) -> dict[str, Any]:
-    """A solution for JSON, with what only its kind has."""
-    if isinstance(solution, RefinedTorus):
-        return refined_record(solution)
-    if isinstance(solution, QTorus):
-        return torus_record(solution)
-    return solution_record(solution)
-
-
 def _print_held(bundle: Bundle, record: dict[str, Any]) -> None:
-    """The series or the solution of a file, for a reader."""
+    """The result of a file, for a reader."""
     solution = bundle.torus
     if solution is None:
-        say(bundle.series)
+        say(bundle.result)
     elif isinstance(solution, RefinedTorus):
         say(refined_text(solution))
     else:

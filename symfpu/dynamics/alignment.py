@@ -103,6 +103,11 @@ class AlignmentIndices(Shown, Gridded):
     energy_error: float
     scheme: Scheme = BLANES_MOAN6
 
+    @property
+    def verdict(self) -> str:
+        """That of `dimension()`: 'regular, dimension s', 'chaotic' or 'undecided'."""
+        return self.dimension().verdict
+
     def __repr__(self) -> str:
         model = repr(self.chain)[6:-1]
         verdict = self.dimension().verdict

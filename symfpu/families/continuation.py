@@ -24,6 +24,7 @@ from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import text
@@ -188,7 +189,7 @@ def members_grid(result: object, members: Sequence[Member]) -> Grid:
 
 
 @dataclass(frozen=True)
-class Event:
+class Event(Recorded):
     """Something on the way between two members of a family; dimensionless. Ours.
 
     after : the number of the first of the two.

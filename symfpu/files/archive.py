@@ -27,7 +27,7 @@ Array = NDArray[Any]
 Json = dict[str, Any]
 
 FORMAT = "symfpu bundle"
-SCHEMA = 5  # the newest that is read; files say the oldest that reads them
+SCHEMA = 6  # the newest that is read; files say the oldest that reads them
 DOCUMENT = "bundle.json"
 COMPRESSION = 1  # mantissas are noise; the zeros between them are gone at the first level
 CHUNK = 1 << 22
@@ -86,6 +86,13 @@ def write_archive(path: Path, body: Json, members: Mapping[str, Array]) -> None:
     finally:
         with contextlib.suppress(OSError):
             draft.unlink(missing_ok=True)
+
+
+def write_document(path: Path, body: Json, members: Mapping[str, Array]) -> None:
+    """An archive of a document, with the digests of its arrays and of itself."""
+    digests = {name: member_digest(values) for name, values in members.items()}
+    whole = body | {"arrays": digests}
+    write_archive(path, whole | {"digest": digest_of(whole)}, members)
 
 
 def _write_members(stream: BinaryIO, body: Json, members: Mapping[str, Array]) -> None:

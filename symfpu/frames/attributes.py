@@ -62,11 +62,11 @@ def plain(value: Any) -> Any:
     if isinstance(value, Integral):
         return int(value)
     if isinstance(value, Fraction):
-        return _exact_text(value)
+        return exact_text(value)
     return float(value) if isinstance(value, float | np.floating) else str(value)
 
 
-def _exact_text(value: Fraction) -> str:
+def exact_text(value: Fraction) -> str:
     """As it is typed; with so many digits that Python prints none of them, in base 16."""
     bits = max(value.numerator.bit_length(), value.denominator.bit_length())
     if bits > LONGEST_TYPED:

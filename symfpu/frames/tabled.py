@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from symfpu.frames.grid import Grid
+from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Table
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-class Tabled(ABC):
+class Tabled(Recorded, ABC):
     """A result whose numbers are a table."""
 
     @abstractmethod

@@ -20,6 +20,7 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
+from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Columns, Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.typed import integer, seed_modes
@@ -36,7 +37,7 @@ LEAST_GROUPS = 2  # of modes, for a line with an error bar
 
 
 @dataclass(frozen=True)
-class ProfileLine:
+class ProfileLine(Recorded):
     """log10 e_kappa = slope * kappa + intercept + power * log10 kappa, with kappa = q/N.
 
     Call it with kappa, a number or an array, for log10 e_kappa in its shape.

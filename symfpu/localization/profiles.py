@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
+from symfpu.frames.recorded import Recorded
 from symfpu.numbers.typed import Number, double, seed_modes
 
 Floats = NDArray[np.float64]
@@ -136,7 +137,7 @@ def normalised_averages(orbit: Orbit) -> Floats:
 
 
 @dataclass(frozen=True)
-class ProfileDistance:
+class ProfileDistance(Recorded):
     """How far two spectra differ. Made by `profile_distance`. Ours.
 
     distance : largest |log10(a_q/b_q)|, in decades. mode : where it is reached. modes : how many

@@ -103,6 +103,11 @@ class RefinedTorus(QuasiPeriodic):
     warnings: tuple[str, ...] = ()
     digits: int | None = None
 
+    @property
+    def verdict(self) -> str:
+        """'torus', or 'doubtful' with the reasons in `warnings`."""
+        return "doubtful" if self.warnings else "torus"
+
     def __repr__(self) -> str:
         chain = repr(self.chain)[6:-1]
         amplitudes = ", ".join(f"A_{q}={a:.13g}" for q, a in self.amplitudes.items())

@@ -9,10 +9,9 @@ import numpy as np
 
 from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
-from symfpu.numbers.typed import decimal
 from symfpu.refinement.tori import RefinedTorus
-from symfpu.reports.tables import fifteen_digits
-from symfpu.reports.torus import chain_record
+from symfpu.reports.solution import frequencies_record, solution_record
+from symfpu.reports.tables import fifteen_digits, number_text
 
 SHOWN_EVENTS = 12
 SHOWN_MEMBERS = 8  # besides the first; the last one is among them
@@ -20,32 +19,13 @@ SHOWN_DIVISORS = 5
 
 
 def refined_record(torus: RefinedTorus) -> dict[str, Any]:
-    """A refined torus for JSON: keys of the command line, numbers to 15 digits.
-
-    Frequencies are exact, as strings.
-    """
-    harmonic_energy = float(torus.harmonic_energies().sum())
-    average = float(torus.average_spectrum().sum())
-    record = chain_record(torus.chain, torus.seeds)
-    record["frequencies"] = _frequencies(torus)
-    record["amplitudes"] = {str(q): fifteen_digits(a) for q, a in torus.amplitudes.items()}
-    record["energy"] = fifteen_digits(float(torus.energy()))
-    record["harmonic_energy"] = fifteen_digits(harmonic_energy)
-    record["average_harmonic_energy"] = fifteen_digits(average)
-    record["residual"] = fifteen_digits(torus.residual())
+    """A refined torus for JSON: what all solutions have, and its Newton steps."""
+    record = solution_record(torus)
     record["energy_error"] = fifteen_digits(energy_spread(torus))
-    record["harmonics"] = len(torus.harmonics)
     record["newton"] = _newton_records(torus)
     record["smallest_divisors"] = _divisor_records(torus)
-    record["verdict"] = "doubtful" if torus.warnings else "torus"
-    record["warnings"] = list(torus.warnings)
+    record["verdict"] = torus.verdict
     return record
-
-
-def _frequencies(torus: Any) -> dict[str, str]:
-    """By seed, exact."""
-    by_seed = zip(torus.seeds, torus.frequencies, strict=True)
-    return {str(q): decimal(w) for q, w in by_seed}
 
 
 def _newton_records(torus: RefinedTorus) -> list[dict[str, Any]]:
@@ -81,8 +61,8 @@ def energy_spread(torus: RefinedTorus, periods: int = 25, points: int = 100) -> 
 def refined_text(torus: RefinedTorus) -> str:
     """The same for a reader."""
     record = refined_record(torus)
-    amplitudes = record["amplitudes"]
-    average = f"time average {record['average_harmonic_energy']:.12g}"
+    amplitudes = {q: float(a) for q, a in record["amplitudes"].items()}
+    average = f"time average {float(record['average_harmonic_energy']):.12g}"
     relative = "equations of motion, relative to the largest acceleration"
     newton = (
         f"Newton steps {len(torus.steps)}, the last change {torus.steps[-1].change:.1g}"
@@ -92,9 +72,9 @@ def refined_text(torus: RefinedTorus) -> str:
         lines.append(f"potential          {record['potential']}")
     for q, w in record["frequencies"].items():
         lines.append(f"seed {q:<4} omega {w:<28} amplitude {amplitudes[q]:.15g}")
-    lines.append(f"energy H           {record['energy']:.15g}   (at t = 0)")
+    lines.append(f"energy H           {float(record['energy']):.15g}   (at t = 0)")
     lines.append(
-        f"harmonic energy    {record['harmonic_energy']:.15g}   (at t = 0; {average})"
+        f"harmonic energy    {float(record['harmonic_energy']):.15g}   (at t = 0; {average})"
     )
     lines.append(f"residual           {record['residual']:.2g}   ({relative})")
     over = "relative, over 25 periods of the slowest seed"
@@ -108,29 +88,34 @@ def refined_text(torus: RefinedTorus) -> str:
 
 def family_record(found: Family) -> dict[str, Any]:
     """A family for JSON."""
-    record = chain_record(found.chain, found.seeds)
+    record: dict[str, Any] = {"kind": type(found).__name__, **found.chain.typed}
+    record["seeds"] = list(found.seeds)
     record["ending"] = found.ending
-    record["members"] = [_member_record(m) for m in found.members]
-    record["events"] = [_event_record(e) for e in found.events]
+    record["members"] = [member_record(m) for m in found.members]
+    record["events"] = [event_record(e) for e in found.events]
     return record
 
 
-def _event_record(event: Event) -> dict[str, Any]:
-    record: dict[str, Any] = {"kind": event.kind, "what": event.what}
+def event_record(event: Event) -> dict[str, Any]:
+    """An event of a family for JSON; what it is of, by name and by mode and harmonic."""
+    record: dict[str, Any] = {"event": event.kind, "what": event.what}
     record["after"] = event.after
-    record["energy"] = fifteen_digits(event.energy)
-    record["value"] = fifteen_digits(event.value)
+    record["energy"] = number_text(event.energy, None)
+    record["value"] = number_text(event.value, None)
     record["mode"] = event.mode or None
     record["harmonic"] = list(event.harmonic) or None
     record["interpolated"] = event.interpolated
     return record
 
 
-def _member_record(m: Member) -> dict[str, Any]:
-    record: dict[str, Any] = {"energy": fifteen_digits(m.energy)}
-    record["harmonic_energy"] = fifteen_digits(m.harmonic_energy)
-    record["frequencies"] = _frequencies(m.torus)
-    record["amplitudes"] = {str(q): fifteen_digits(a) for q, a in m.amplitudes.items()}
+def member_record(m: Member) -> dict[str, Any]:
+    """A member of a family for JSON; its chain and seeds are those of the family."""
+    digits = m.torus.digits
+    record: dict[str, Any] = {"energy": number_text(m.energy, None)}
+    record["harmonic_energy"] = number_text(m.harmonic_energy, None)
+    record["frequencies"] = frequencies_record(m.torus)
+    amplitudes = m.amplitudes.items()
+    record["amplitudes"] = {str(q): number_text(a, digits) for q, a in amplitudes}
     record["residual"] = fifteen_digits(m.residual)
     record["verdict"] = m.verdict
     record["warnings"] = list(m.warnings)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 from symfpu.breathers.floquet import Floquet
-from symfpu.numbers.typed import decimal
+from symfpu.frames.attributes import exact_text
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION
 from symfpu.reports.tables import fifteen_digits, number_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -25,27 +27,51 @@ def solution_record(
     found : its multipliers, if they were asked for. warnings : besides its own.
     """
     chain, digits = solution.chain, solution.digits
-    frequencies = zip(solution.seeds, solution.frequencies, strict=True)
-    energies = {
-        "energy": solution.energy(),
-        "harmonic_energy": solution.harmonic_energies().sum(),
-        "average_harmonic_energy": solution.average_spectrum().sum(),
-    }
     stability = {} if found is None else multipliers_record(found)
     return {
         "kind": type(solution).__name__,
         **chain.typed,
         "seeds": list(solution.seeds),
-        "frequencies": {str(q): decimal(omega) for q, omega in frequencies},
+        "frequencies": frequencies_record(solution),
         "digits": digits,
         "amplitudes": {
             str(q): number_text(a, digits) for q, a in solution.amplitudes.items()
         },
-        **{name: number_text(value, digits) for name, value in energies.items()},
+        **{name: number_text(value, digits) for name, value in _energies(solution)},
         "residual": fifteen_digits(solution.residual()),
         "harmonics": len(solution.harmonics),
         "warnings": [*solution.warnings, *warnings],
         **stability,
+    }
+
+
+def frequencies_record(solution: Any) -> dict[str, str] | None:
+    """By seed, exact; of a series, too: None where none are chosen."""
+    if solution.frequencies is None:
+        return None
+    return {str(q): exact_text(w) for q, w in solution.omega.items()}
+
+
+def _energies(solution: QuasiPeriodic | RingTorus) -> Iterator[tuple[str, Any]]:
+    """H and sum E_q at t = 0, and the time average of the latter, with all digits."""
+    numbers = DOUBLES if solution.digits is None else MULTIPRECISION
+    with numbers.context(solution.digits):
+        yield "energy", solution.energy()
+        yield "harmonic_energy", solution.harmonic_energies().sum()
+        yield "average_harmonic_energy", solution.average_spectrum().sum()
+
+
+def floquet_record(found: Floquet) -> dict[str, Any]:
+    """Multipliers with the orbit they are of."""
+    orbit = found.orbit
+    return {
+        **orbit.chain.typed,
+        "seeds": list(orbit.seeds),
+        "frequencies": frequencies_record(orbit),
+        "verdict": found.verdict,
+        **multipliers_record(found),
+        "symplecticity": fifteen_digits(found.symplecticity),
+        "map_error": fifteen_digits(found.map_error),
     }
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from symfpu.chain.chain import Chain
-from symfpu.numbers.typed import decimal
+from symfpu.chain.length import label_entry
+from symfpu.reports.solution import frequencies_record, solution_record
 from symfpu.reports.tables import GAP, fifteen_digits, number_text, text_table
 from symfpu.series.series import LindstedtSeries
+from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment
 
@@ -20,40 +21,29 @@ def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[st
     series = torus.series
     digits = torus.digits
     certificate = torus.certificate
-    average = torus.average_spectrum().sum()
-    record = chain_record(series.chain, series.seeds)
-    record["frequencies"] = _frequencies(series)
+    record = solution_record(torus)
     record["order"] = torus.order
     record["frequency_order"] = torus.frequency_order
-    record["digits"] = digits
     record["guard_digits"] = None if digits is None else series.guard_digits
-    record["amplitudes"] = {
-        str(q): number_text(a, digits) for q, a in torus.amplitudes.items()
-    }
     record["certified"] = None if certificate is None else certificate.certified
     record["history"] = _history(torus)
-    record["energy"] = number_text(torus.energy(), digits)
-    record["harmonic_energy"] = number_text(torus.harmonic_energies().sum(), digits)
-    record["average_harmonic_energy"] = number_text(average, digits)
-    record["residual"] = fifteen_digits(torus.residual())
     record["root_residual"] = fifteen_digits(torus.root_residual)
     record["smallest_divisors"] = _divisor_records(series)
-    record["warnings"] = list(torus.warnings)
     if assessment is not None:
         record["verdict"] = assessment.headline
         record["assessment"] = assessment.record()
     return record
 
 
-def chain_record(chain: Chain, seeds: tuple[int, ...]) -> dict[str, Any]:
-    """What every record of a solution begins with: the chain, exact, and the seeds."""
-    return {**chain.typed, "seeds": list(seeds)}
-
-
-def _frequencies(series: LindstedtSeries) -> dict[str, str]:
-    """By seed, exact."""
-    by_seed = zip(series.seeds, series.frequencies or (), strict=True)
-    return {str(q): decimal(w) for q, w in by_seed}
+def series_record(series: LindstedtSeries | TravellingSeries) -> dict[str, Any]:
+    """A series for JSON, without its coefficients: those are in its table and in its file."""
+    record = {"kind": type(series).__name__, **series.chain.typed}
+    record["seeds"] = list(map(label_entry, series.seeds))
+    record["frequencies"] = frequencies_record(series)
+    record["order"] = series.order
+    record["digits"] = getattr(series, "digits", None)  # those of waves are doubles
+    record["smallest_divisors"] = _divisor_records(series)
+    return record
 
 
 def _history(torus: QTorus) -> dict[str, list[str]]:
@@ -64,7 +54,7 @@ def _history(torus: QTorus) -> dict[str, list[str]]:
     return history
 
 
-def _divisor_records(series: LindstedtSeries) -> list[dict[str, Any]]:
+def _divisor_records(series: LindstedtSeries | TravellingSeries) -> list[dict[str, Any]]:
     records = []
     for divisor in series.smallest_divisors:
         record: dict[str, Any] = {"size": fifteen_digits(divisor.size)}

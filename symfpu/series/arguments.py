@@ -13,10 +13,12 @@ SMALLEST, LARGEST = Fraction(1, 10**6), 10**6
 
 
 def frequencies_of(
-    frequencies: Sequence[Number], seeds: tuple[int, ...]
+    frequencies: Sequence[Number] | Mapping[int, Number], seeds: tuple[int, ...]
 ) -> tuple[Fraction, ...]:
-    """One exact positive number for each seed; raises InputError."""
-    if isinstance(frequencies, (str, Mapping)) or not isinstance(frequencies, Iterable):
+    """One exact positive number for each seed, in their order or by seed; raises InputError."""
+    if isinstance(frequencies, Mapping):
+        frequencies = _in_order(frequencies, seeds)
+    if isinstance(frequencies, str) or not isinstance(frequencies, Iterable):
         allowed = "a sequence, one positive number for each seed"
         advice = "list them in the order of the seeds"
         raise InputError("frequencies", frequencies, allowed, advice)
@@ -32,6 +34,14 @@ def frequencies_of(
             advice = "take one near the linear frequency"
             raise InputError(f"frequencies, omega_{q}", str(number), allowed, advice)
     return values
+
+
+def _in_order(frequencies: Mapping[int, Number], seeds: tuple[int, ...]) -> list[Number]:
+    """Those given by seed, in the order of the seeds."""
+    if set(frequencies) != set(seeds):
+        allowed = f"a number for each of the seeds {seeds}"
+        raise InputError("frequencies", dict(frequencies), allowed, "name every seed once")
+    return [frequencies[q] for q in seeds]
 
 
 def digits_of(digits: int) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError
@@ -24,7 +24,7 @@ ADVICE = "put a number for N: chain.at(N=32)"
 def lindstedt(
     chain: Chain,
     seeds: Sequence[int | str],
-    frequencies: Sequence[Number] | None = None,
+    frequencies: Sequence[Number] | Mapping[int, Number] | None = None,
     order: int = 0,
     *,
     ring: str | None = None,
@@ -39,8 +39,9 @@ def lindstedt(
         Chain("N", ...) the universal series of every N at once: valid_from is the N from which it
         holds, at_length(N) that of one chain.
     seeds : distinct modes D_0; where N is a symbol also 'N-1', 'N-2', ...
-    frequencies : omega_q of each seed, exact numbers, shape (s,); a float is read by its shortest
-        decimal, so 0.33 is exactly 33/100. None gives the universal form with symbols L_q(nu).
+    frequencies : omega_q of each seed, exact numbers, shape (s,) or by seed; a float is read by
+        its shortest decimal, so 0.33 is exactly 33/100. None gives the universal form with symbols
+        L_q(nu).
     order : K of the coordinates and of the frequency corrections, from 0 up; order k has degree
         k+1 in the amplitudes (2k+1 if alpha = 0, and with both couplings beta enters two orders
         up).

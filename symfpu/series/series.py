@@ -135,6 +135,11 @@ class LindstedtSeries(Shown, Tabled):
     radii: tuple[tuple[float, Floats], ...] = field(repr=False, default=())
     point: ResiduePoint | None = None
 
+    @property
+    def omega(self) -> dict[int, Fraction]:
+        """The frequencies by seed, as the amplitudes are; exact, and none where none are chosen."""
+        return dict(zip(self.seeds, self.frequencies or (), strict=False))
+
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
         smallest = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -82,6 +82,11 @@ class TravellingSeries(Tabled):
     multiply_adds: int = 0
 
     digits = None
+
+    @property
+    def omega(self) -> dict[int, Fraction]:
+        """The frequencies by seed, as the amplitudes are; exact."""
+        return dict(zip(self.seeds, self.frequencies, strict=True))
 
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
@@ -215,7 +220,7 @@ class TravellingSeries(Tabled):
 def travelling_waves(
     chain: Chain,
     seeds: Sequence[int],
-    frequencies: Sequence[Number],
+    frequencies: Sequence[Number] | Mapping[int, Number],
     order: int,
     *,
     progress: Progress | None = None,
@@ -223,7 +228,7 @@ def travelling_waves(
     """The Poincare-Lindstedt series of travelling waves on a ring, with free amplitudes.
 
     chain : with ends="periodic". seeds : distinct signed modes; q and -q are two waves.
-    frequencies : omega_q of each seed, exact numbers, shape (s,); dimensionless.
+    frequencies : omega_q of each seed, exact numbers, shape (s,) or by seed; dimensionless.
     order : K of the coordinates and of the frequency corrections, from 0 up.
     progress : called as (label, fraction done).
 

@@ -106,6 +106,11 @@ class QuasiPeriodic(Shown, Gridded, Parts):
     # solutions of one angle
 
     @property
+    def omega(self) -> dict[int, Fraction]:
+        """The frequencies by seed, as the amplitudes are; exact."""
+        return dict(zip(self.seeds, self.frequencies, strict=True))
+
+    @property
     def seed(self) -> int:
         """The seed mode of a solution of one angle; raises InputError for more."""
         return self._only("seed", self.seeds)

@@ -79,6 +79,11 @@ class RingTorus(Shown, Gridded):
 
     digits = None
 
+    @property
+    def omega(self) -> dict[int, Fraction]:
+        """The frequencies by seed, as the amplitudes are; exact."""
+        return dict(zip(self.seeds, self.frequencies, strict=True))
+
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
         found = ", ".join(f"A_{q}={a:.12g}" for q, a in self.amplitudes.items())

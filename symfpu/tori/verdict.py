@@ -146,6 +146,11 @@ class Assessment(Shown, Tabled):
             return f"asymptotic, best at order {self.best_order}"
         return self.word
 
+    @property
+    def verdict(self) -> str:
+        """The word, with the best order where there is one: what the command line prints."""
+        return self.headline
+
     def __repr__(self) -> str:
         return f"Assessment({self.headline}: {'; '.join(self.reasons)})"
 
@@ -154,6 +159,7 @@ class Assessment(Shown, Tabled):
         certificate = self.certificate
         certified = None if certificate is None else certificate.certified
         return {
+            "kind": type(self).__name__,
             "verdict": self.headline,
             "reasons": list(self.reasons),
             "best_order": self.best_order,

@@ -120,8 +120,8 @@ class Bomb:
 
 
 CHANGES = {
-    "newer": (lambda m, b: b.update(schema=6), r"newer symfpu \(schema 6; this one reads 5\); update symfpu"),
-    "newer without a digest": (lambda m, b: b.update(schema=7, arrays={}), "newer symfpu"),
+    "newer": (lambda m, b: b.update(schema=7), r"newer symfpu \(schema 7; this one reads 6\); update symfpu"),
+    "newer without a digest": (lambda m, b: b.update(schema=8, arrays={}), "newer symfpu"),
     "schema 0": (lambda m, b: b.update(schema=0), "schema"),
     "schema as text": (lambda m, b: b.update(schema="1"), "schema"),
     "foreign format": (lambda m, b: b.update(format="another"), "is not a symfpu bundle"),

@@ -6,6 +6,7 @@ import pytest
 
 from symfpu.bundles.bundle import load, save
 from symfpu.cli.main import main
+from symfpu.saved import results
 from tests.tolerances import COARSE_STEP_ERROR, NEWTON_RESIDUAL, TEN_ROUNDINGS
 from tests.tori.solutions import CASES
 
@@ -57,3 +58,27 @@ def test_export(capsys, saved, tmp_path):
     file, _ = saved
     assert main(["export", str(file), "--lang", "numpy", "-o", str(tmp_path / "mode")]) == 0
     assert "def positions(" in (tmp_path / "mode.py").read_text()
+
+
+STEPS = {
+    "orbit": ("Orbit", ["--packet", "1", "--energy", "0.1", "-N", "4", "--alpha", "1", "--time", "5"]),
+    "gali": ("AlignmentIndices", ["--packet", "1", "--energy", "0.1", "-N", "4", "--alpha", "1", "--time", "100", "--vectors", "2"]),
+    "family": ("Family", ["-N", "4", "--beta", "1", "--seeds", "1", "--to-energy", "0.01", "--from-energy", "0.009"]),
+    "sweep": ("Sweep", ["--order", "1", "--longest", "3", "--largest", "1"]),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("verb", STEPS)
+def test_verbs_keep_their_results(capsys, verb, tmp_path):
+    kind, words = STEPS[verb]
+    file = tmp_path / "kept.symfpu"
+    printed = record(capsys, verb, *words, "--save", file)
+    bundle = results.load(file)
+    assert type(bundle.result).__name__ == kind
+    assert bundle.provenance["command"].startswith(f"symfpu {verb} ")
+    shown = record(capsys, "show", file)
+    assert shown["kind"] == kind
+    assert all(shown[key] == printed[key] for key in shown.keys() & printed.keys())
+    assert main([verb, *words, "--save", str(tmp_path / "none" / "file")]) == 2
+    assert "save" in capsys.readouterr().err

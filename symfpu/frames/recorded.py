@@ -1,0 +1,31 @@
+"""What results inherit: their answer as a record that JSON can hold."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+RECORDS = "symfpu.reports.records"  # the records of results, by their kind
+
+
+class Recorded:
+    """A result with a record of its own.
+
+    Records are made far above results: the module that knows them all is imported when the first
+    one is asked for.
+    """
+
+    def record(self) -> dict[str, Any]:
+        """Its answer as a dictionary that JSON can hold, with the keys of the command line.
+
+        `kind` is the class. The chain is as typed, what belongs to a seed is by seed. Numbers that
+        need more than 15 digits are strings that lose none; measures of size (residuals, errors)
+        are numbers of 15 digits. The keys are in docs/records.md.
+
+        >>> from symfpu import Chain, torus_at_energy
+        >>> found = torus_at_energy(Chain(N=4, alpha=1), (1,), "0.001", order=2).record()
+        >>> found["kind"], found["N"], found["alpha"], float(found["energy"])
+        ('QTorus', 4, '1', 0.001)
+        """
+        found: dict[str, Any] = import_module(RECORDS).record(self)
+        return found

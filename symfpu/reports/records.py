@@ -1,0 +1,152 @@
+"""The record of every result: one dictionary that JSON can hold, with the same keys everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from numbers import Integral
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from symfpu.breathers.floquet import Floquet
+from symfpu.bundles.bundle import Bundle
+from symfpu.chain.length import label_entry
+from symfpu.dynamics.alignment import AlignmentIndices
+from symfpu.dynamics.orbits import Orbit
+from symfpu.errors import InputError
+from symfpu.families.continuation import Event, Member
+from symfpu.families.family import Family
+from symfpu.frames.attributes import exact_text
+from symfpu.frames.tabled import Tabled
+from symfpu.localization.laws import ProfileLine
+from symfpu.localization.profiles import ProfileDistance
+from symfpu.numbers.arithmetic import text
+from symfpu.proofs.certificates import PropagationProof
+from symfpu.refinement.tori import RefinedTorus
+from symfpu.reports.dynamics import alignment_record, orbit_record
+from symfpu.reports.family import event_record, family_record, member_record, refined_record
+from symfpu.reports.solution import floquet_record, solution_record
+from symfpu.reports.tables import fifteen_digits
+from symfpu.reports.torus import series_record, torus_record
+from symfpu.series.series import LindstedtSeries
+from symfpu.series.travelling import TravellingSeries
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.torus import QTorus
+
+Json = dict[str, Any]
+
+LARGEST_NUMBER = 10**15  # of whole numbers in JSON: what all readers keep
+BITS_A_DIGIT = 3.33
+
+
+def record(result: object) -> Json:
+    """The record of a result; raises InputError for what is none."""
+    for kind, made in KINDS:
+        if isinstance(result, kind):
+            return {"kind": type(result).__name__} | made(result)
+    if isinstance(result, Tabled):
+        return {"kind": type(result).__name__} | _columns(result)
+    allowed = "a result with a record"
+    raise InputError("result", type(result).__name__, allowed, "pass what symfpu computed")
+
+
+def _columns(result: Tabled) -> Json:
+    """What holds for its whole table, and the columns, as docs/tables.md has them."""
+    table = result._table()
+    found: Json = {}
+    chain, seeds = getattr(result, "chain", None), getattr(result, "seeds", None)
+    if chain is not None:
+        found |= chain.typed
+    if isinstance(seeds, tuple):
+        found["seeds"] = list(map(label_entry, seeds))
+    if hasattr(result, "verdict"):
+        found["verdict"] = result.verdict
+    about = table.attributes.items()
+    left_out = {"result", "units", "chain", "symfpu_version", *found}
+    found["about"] = {key: plain(value) for key, value in about if key not in left_out}
+    columns = table.columns.items()
+    found["columns"] = {name: plain(list(values)) for name, values in columns}
+    return found
+
+
+def plain(value: Any) -> Any:
+    """A value of a result as JSON can hold it.
+
+    Whole numbers stay numbers, all others become text that loses no digit; complex ones are their
+    real and imaginary parts.
+
+    >>> plain([1, 0.5, None, Fraction(1, 3), 1 + 2j, {1: True}])
+    [1, '0.5', None, '1/3', ['1.0', '2.0'], {'1': True}]
+    """
+    if value is None or isinstance(value, bool | str):
+        return value
+    if isinstance(value, np.bool_):
+        return bool(value)
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, tuple | list | np.ndarray):
+        return [plain(item) for item in value]
+    return _number(value)
+
+
+def _number(value: Any) -> Any:
+    if isinstance(value, Integral):
+        return int(value) if abs(int(value)) < LARGEST_NUMBER else str(int(value))
+    if isinstance(value, Fraction):
+        return exact_text(value)
+    if isinstance(value, mpmath.mpf):
+        return text(value, max(17, int(value.man.bit_length() / BITS_A_DIGIT)))
+    if isinstance(value, complex | np.complexfloating):
+        return [repr(float(value.real)), repr(float(value.imag))]
+    if isinstance(value, float | np.floating):
+        return repr(float(value))
+    return str(value)
+
+
+def _proof_record(proof: PropagationProof) -> Json:
+    """The certificate without its evidence."""
+    found = proof.certificate()
+    for evidence in ("excited", "vanishing", "points", "coefficients", "digest"):
+        found.pop(evidence, None)
+    return found
+
+
+def _bundle_record(bundle: Bundle) -> Json:
+    """What the file holds, and what made it."""
+    return record(bundle.result) | {
+        "provenance": dict(bundle.provenance),
+        "assessment": bundle.verdict,
+        "test_vectors": [plain(point._asdict()) for point in bundle.test_vectors],
+    }
+
+
+def _line_record(line: ProfileLine) -> Json:
+    return {name: fifteen_digits(value) for name, value in vars(line).items()}
+
+
+def _distance_record(found: ProfileDistance) -> Json:
+    size = fifteen_digits(found.distance)
+    return {"distance": size, "mode": found.mode, "modes": found.modes}
+
+
+KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
+    (QTorus, torus_record),
+    (RefinedTorus, refined_record),
+    (QuasiPeriodic, solution_record),
+    (RingTorus, solution_record),
+    (LindstedtSeries, series_record),
+    (TravellingSeries, series_record),
+    (Family, family_record),
+    (Member, member_record),
+    (Event, event_record),
+    (Floquet, floquet_record),
+    (Orbit, orbit_record),
+    (AlignmentIndices, alignment_record),
+    (PropagationProof, _proof_record),
+    (ProfileLine, _line_record),
+    (ProfileDistance, _distance_record),
+    (Bundle, _bundle_record),
+)

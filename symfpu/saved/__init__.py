@@ -1,0 +1,1 @@
+"""Every result as a file, and back."""

@@ -1,0 +1,74 @@
+"""The classes that a file may name: nothing else is made of what is in it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from symfpu.breathers.floquet import Floquet
+from symfpu.dynamics.alignment import AlignmentIndices
+from symfpu.dynamics.orbits import Orbit
+from symfpu.families.continuation import Event, Member
+from symfpu.families.family import Family
+from symfpu.integrable.discriminant import Edges
+from symfpu.integrable.invariants import TodaInvariants
+from symfpu.integrable.torus import TodaTorus
+from symfpu.localization.growth import GroupGrowth, GrowthExponents
+from symfpu.localization.laws import ProfileFit, ProfileLine
+from symfpu.localization.profiles import ProfileDistance
+from symfpu.localization.recurrence import Recurrence
+from symfpu.localization.trials import ProfileInvariance, Trend
+from symfpu.proofs.certificates import (
+    PropagationProof,
+    RuleException,
+    Undecided,
+    Vanishing,
+    Witness,
+)
+from symfpu.proofs.sweeps import Sweep, SweepCase
+from symfpu.series.sample import EnergyChanges, FrequencyChanges, SampledSeries
+from symfpu.series.series import ResiduePoint
+from symfpu.tori.amplitudes import AmplitudeHistory
+from symfpu.tori.resummation import PadeSum
+from symfpu.tori.torus import RootCertificate
+from symfpu.tori.verdict import Assessment, LargestTerm
+
+# results that a user keeps; series and solutions have formats of their own (symfpu.bundles)
+RESULTS: tuple[type[Any], ...] = (
+    AlignmentIndices,
+    AmplitudeHistory,
+    Assessment,
+    EnergyChanges,
+    Event,
+    Family,
+    Floquet,
+    FrequencyChanges,
+    GroupGrowth,
+    GrowthExponents,
+    Member,
+    Orbit,
+    PadeSum,
+    ProfileDistance,
+    ProfileFit,
+    ProfileInvariance,
+    ProfileLine,
+    PropagationProof,
+    Recurrence,
+    RootCertificate,
+    SampledSeries,
+    Sweep,
+    TodaInvariants,
+    TodaTorus,
+    Trend,
+)
+# what they hold
+PARTS: tuple[type[Any], ...] = (
+    Edges,
+    LargestTerm,
+    ResiduePoint,
+    RuleException,
+    SweepCase,
+    Undecided,
+    Vanishing,
+    Witness,
+)
+CLASSES = {kind.__name__: kind for kind in (*RESULTS, *PARTS)}
