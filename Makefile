@@ -5,7 +5,7 @@ OUT ?= out
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 # workers of pytest share the cores
 OLD := -W ignore::DeprecationWarning -W ignore::PendingDeprecationWarning # old releases call newer ones of each other
 
-.PHONY: install reproduce test lowest bench sweeps long generated equations doors clean
+.PHONY: install reproduce test lowest bench sweeps long generated equations citation doors clean
 
 install: .venv/installed
 
@@ -49,6 +49,9 @@ generated: install  ## the gallery of exported evaluators, byte for byte
 
 equations: install  ## docs/equations.md from the docstrings
 	$(BIN)/python docs/make_equations.py
+
+citation: install  ## CITATION.cff from symfpu/reports/citation.py
+	$(BIN)/python -c 'import symfpu; print(symfpu.cite("cff"))' > CITATION.cff
 
 doors: install  ## the table of docs/chains.md, by calling every door
 	$(BIN)/python docs/make_doors.py

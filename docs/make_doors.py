@@ -412,6 +412,7 @@ DOORS = {
 OTHERS = {
     *(
         "asymptotic_divisor",
+        "cite",
         "collect_terms",
         "frequency_rank",
         "from_expression",

@@ -153,8 +153,9 @@ from symfpu.proofs.sweeps import Sweep as Sweep
 from symfpu.proofs.sweeps import SweepIncomplete as SweepIncomplete
 from symfpu.proofs.sweeps import sweep_propagation as sweep_propagation
 
-# files
+# files, and how to cite
 from symfpu.bundles.bundle import Bundle as Bundle
+from symfpu.reports.citation import cite as cite
 from symfpu.saved.results import load as load
 from symfpu.saved.results import save as save
 
