@@ -8,10 +8,12 @@ import typer
 
 from symfpu.bundles.bundle import Bundle
 from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.cli.choices import choice
 from symfpu.cli.terminal import held, whole
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
+ENDS = ("fixed", "periodic")
 BondsOption = Annotated[
     str,
     typer.Option(
@@ -30,11 +32,7 @@ PotentialOption = Annotated[
 ]
 EndsOption = Annotated[
     str,
-    typer.Option(
-        "--ends",
-        help="fixed, or periodic for a ring of N particles with seeds such as --seeds=1,-3.",
-        metavar="ENDS",
-    ),
+    choice("--ends", ENDS, "Periodic: a ring of N particles, seeds such as --seeds=1,-3."),
 ]
 
 

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from symfpu.chain.chain import require_fixed_ends
+from symfpu.cli.choices import choice
 from symfpu.cli.terminal import FileArgument, optional, path_named, progress_bar
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
@@ -16,16 +17,15 @@ from symfpu.saved.results import load
 from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.ring_torus import RingTorus
 
-LANGUAGES = "c, fortran, numpy, mpmath, octave"  # known to the help without importing them
+# known to the help without importing them
+LANGUAGES = ("c", "fortran", "numpy", "mpmath", "octave")
 
 
 @app.command(epilog="Example: symfpu export torus.symfpu --lang c -o my_torus")
 def export(
     context: typer.Context,
     file: FileArgument,
-    language: Annotated[
-        str, typer.Option("--lang", help=f"{LANGUAGES}.", metavar="LANGUAGE")
-    ],
+    language: Annotated[str, choice("--lang", LANGUAGES, "Language of the source.")],
     output: Annotated[
         str,
         typer.Option(

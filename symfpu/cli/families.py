@@ -17,6 +17,7 @@ from symfpu.cli.chains import (
     chain_of,
     with_fixed_ends,
 )
+from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
@@ -180,7 +181,9 @@ def follow_family(
     multipliers: Annotated[
         bool, typer.Option("--multipliers", help="Floquet multipliers (one seed).")
     ] = False,
-    method: Annotated[str, typer.Option(help=f"{' or '.join(METHODS)}.")] = "arclength",
+    method: Annotated[
+        str, choice("--method", tuple(METHODS), "How it is followed.")
+    ] = "arclength",
     order: Annotated[
         str | None, typer.Option(help="With appendix-a: order of the series.", metavar="K")
     ] = None,

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.starts import (
@@ -77,7 +78,7 @@ def gali(
         STEP
     ),
     scheme: Annotated[
-        str, typer.Option(help=f"{', '.join(PARTICLE_SCHEMES)}.", metavar="SCHEME")
+        str, choice("--scheme", tuple(PARTICLE_SCHEMES), "Integrator.")
     ] = SCHEME,
     samples: Annotated[
         str, typer.Option(help="Times at which the indices are kept.")

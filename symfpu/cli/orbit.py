@@ -11,6 +11,7 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
+from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.starts import (
@@ -69,9 +70,7 @@ def orbit(
     potential: OwnPotential = None,
     ends: OwnEnds = None,
     step: Annotated[str, typer.Option(help="Length of a step.", metavar="H")] = "0.2",
-    scheme: Annotated[
-        str, typer.Option(help=f"{', '.join(SCHEMES)}.", metavar="SCHEME")
-    ] = "kahan_li8",
+    scheme: Annotated[str, choice("--scheme", tuple(SCHEMES), "Integrator.")] = "kahan_li8",
     samples: Annotated[
         str, typer.Option(help="How many times to look, log-spaced.", metavar="S")
     ] = "200",

@@ -13,6 +13,7 @@ import typer
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.cli.chains import BondsOption, EndsOption, PotentialOption
+from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
@@ -37,8 +38,9 @@ from symfpu.proofs.verify import CertificateError
 from symfpu.proofs.verify import verify as verify_certificate
 from symfpu.reports.sweep import sweep_markdown
 
+MODELS = ("alpha", "beta", "alpha+beta")
 SingleModelOption = Annotated[
-    str | None, typer.Option("--model", help="alpha or beta.  Default: alpha.")
+    str | None, choice("--model", MODELS[:2], "The chain.  Default: alpha.")
 ]
 
 
@@ -48,7 +50,7 @@ def propagate(
     seeds: SeedsOption,
     order: OrderOption,
     model: Annotated[
-        str | None, typer.Option(help="alpha, beta or alpha+beta.  Default: alpha.")
+        str | None, choice("--model", MODELS, "The chain.  Default: alpha.")
     ] = None,
     potential: PotentialOption = None,
     ends: EndsOption = "fixed",

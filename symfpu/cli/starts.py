@@ -8,7 +8,8 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.chain.chain import Chain
-from symfpu.cli.chains import chain_of, solution_of
+from symfpu.cli.chains import ENDS, chain_of, solution_of
+from symfpu.cli.choices import choice
 from symfpu.cli.terminal import path_named, whole, whole_numbers
 from symfpu.dynamics.starts import packet_state, random_state
 from symfpu.dynamics.state_files import read_state
@@ -40,7 +41,7 @@ OwnPotential = Annotated[
 ]
 OwnEnds = Annotated[
     str | None,
-    typer.Option("--ends", help="Without FILE: fixed or periodic.", metavar="ENDS"),
+    choice("--ends", ENDS, "Without FILE: ends of the chain."),
 ]
 StateOption = Annotated[
     str | None,

@@ -12,6 +12,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.length import label_entry, mode_label
 from symfpu.chain.symbols import chosen_symbol, coordinate_symbol
 from symfpu.cli.chains import AlphaOption, BetaOption, PotentialOption, chain_of
+from symfpu.cli.choices import choice
 from symfpu.cli.terminal import (
     JsonOption,
     OrderOption,
@@ -87,8 +88,10 @@ def term(
     ] = False,
     form: Annotated[
         str | None,
-        typer.Option(
-            help=f"{', '.join(FORMS)} (in N and omega).  Default: expanded.", metavar="FORM"
+        choice(
+            "--form",
+            FORMS,
+            "How it is written; closed: in N and omega.  Default: expanded.",
         ),
     ] = None,
     omega: Annotated[

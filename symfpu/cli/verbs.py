@@ -61,7 +61,6 @@ app = typer.Typer(
     help="Poincare-Lindstedt series of q-tori in Fermi-Pasta-Ulam chains.",
     cls=Verbs,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
