@@ -78,7 +78,7 @@ class Case:
 
     @cached_property
     def refined(self) -> Any:
-        return symfpu.refine(self.of(lambda: self.torus))
+        return symfpu.refine(self.solution)
 
     @cached_property
     def breather(self) -> Any:
@@ -261,11 +261,9 @@ NEWTON: dict[str, Door] = {
     "periodic_orbit": lambda c: symfpu.periodic_orbit(c.chain, 1, c.breather.frequency),
     "periodic_orbit_digits": lambda c: symfpu.periodic_orbit_digits(c.breather, 25),
     "refine": lambda c: c.refined,
-    "refine_at_amplitudes": lambda c: symfpu.refine_at_amplitudes(
-        c.of(lambda: c.torus), c.amplitudes
-    ),
+    "refine_at_amplitudes": lambda c: symfpu.refine_at_amplitudes(c.solution, c.amplitudes),
     "refine_at_energy": lambda c: symfpu.refine_at_energy(
-        c.of(lambda: c.torus), c.torus.energy(), harmonic=False
+        c.solution, c.solution.energy(), harmonic=False
     ),
     "shoot": lambda c: symfpu.shoot(c.chain, 1, c.breather.frequency),
 }
@@ -301,7 +299,7 @@ DYNAMICS: dict[str, Door] = {
 PROFILE = np.logspace(0, -12, N - 1)
 LOCALIZATION: dict[str, Door] = {
     "breather_law": lambda c: symfpu.breather_law(c.chain, 0.01),
-    "coefficient_errors": lambda c: symfpu.coefficient_errors(c.refined),
+    "coefficient_errors": lambda c: symfpu.coefficient_errors(c.of(lambda: c.refined)),
     "fit_profile": lambda c: symfpu.fit_profile(c.chain, PROFILE, 1),
     "fpu_trajectory": lambda c: symfpu.fpu_trajectory(c.chain, c.amplitudes),
     "group_energy": lambda c: symfpu.group_energy(c.chain, 2, 1e-3, 1),
@@ -326,7 +324,7 @@ LOCALIZATION: dict[str, Door] = {
     "slope_by_energy": lambda c: symfpu.slope_by_energy(
         c.chain, 1, [1e-3, 2e-3, 3e-3], [PROFILE] * 3
     ),
-    "spectrum_floor": lambda c: symfpu.spectrum_floor(c.refined),
+    "spectrum_floor": lambda c: symfpu.spectrum_floor(c.of(lambda: c.refined)),
 }
 PROOFS: dict[str, Door] = {
     "asymptotic_energy": lambda c: symfpu.asymptotic_energy(Chain("N", **c.law), SEEDS, 3),

@@ -204,6 +204,7 @@ RESULTS = {
     **{f"LindstedtSeries, {kind}": (partial(series_of, kind), repr) for kind in SERIES},
     "TravellingSeries": (lambda _: waves(), lambda x: (x.harmonic_terms([0.1], 3), x.frequency_terms([0.1]))),
     "RingTorus": (lambda _: travelling_torus(waves()), lambda x: (x.positions(TIMES), x.momenta(TIMES), x.average_spectrum())),
+    "RefinedRingTorus": (lambda _: refine(travelling_torus(waves())), lambda x: (x.positions(TIMES), x.near_resonances)),
     "LeadingTerm": (lambda _: leading_terms(PAIR, (1, 2), 3)[5], lambda x: x.expression()),
     "SampledSeries": (lambda _: sampled(), lambda x: (x.coordinates, x.derivatives_by_frequency(1)[1])),
     "EnergyChanges": (lambda _: sampled().energies_at([0.1]), lambda x: x.by_frequencies),

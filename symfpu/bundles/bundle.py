@@ -37,8 +37,10 @@ from symfpu.bundles.entries import (
 )
 from symfpu.bundles.refined import refined_entries, refined_from
 from symfpu.bundles.rings import (
+    REFINED_WAVES,
     TRAVELLING,
     WAVES,
+    refined_waves_from,
     ring_torus_entries,
     ring_torus_from,
     travelling_entries,
@@ -94,6 +96,7 @@ READERS: dict[str, Callable[[Archive, Json], QuasiPeriodic | RingTorus]] = {
     REFINED_KIND: refined_from,
     FOURIER: solution_from,
     WAVES: ring_torus_from,
+    REFINED_WAVES: refined_waves_from,
 }
 SERIES: tuple[type[Any], ...] = LindstedtSeries, TravellingSeries
 Result = LindstedtSeries | TravellingSeries | QuasiPeriodic | RingTorus

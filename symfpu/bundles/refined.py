@@ -12,7 +12,9 @@ from symfpu.bundles.entries import chain_entries, chain_from
 from symfpu.files.archive import Archive, Json
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
 from symfpu.refinement.newton import NewtonStep
-from symfpu.refinement.tori import NearResonance, RefinedTorus
+from symfpu.refinement.resonances import NearResonance
+from symfpu.refinement.ring_tori import RefinedRingTorus
+from symfpu.refinement.tori import RefinedTorus
 
 Array = NDArray[Any]
 FLOATS, INTEGERS = "<f8", "<i8"
@@ -23,7 +25,6 @@ def refined_entries(torus: RefinedTorus) -> tuple[Json, dict[str, Array]]:
 
     The arrays are `harmonics` and `cosines`.
     """
-    near = [_near_resonance_entry(resonance) for resonance in torus.near_resonances]
     entries: Json = {
         **chain_entries(torus.chain),
         "seeds": list(torus.seeds),
@@ -31,8 +32,7 @@ def refined_entries(torus: RefinedTorus) -> tuple[Json, dict[str, Array]]:
         "amplitudes": [repr(a) for a in torus.amplitudes.values()],
         "phases": [repr(phi) for phi in torus.phases.values()],
         "harmonics": len(torus.harmonics),
-        "steps": [_step_entry(step) for step in torus.steps],
-        "near_resonances": near,
+        **newton_entries(torus),
         "warnings": list(torus.warnings),
     }
     harmonics = torus.harmonics.ravel().astype(INTEGERS)
@@ -70,14 +70,28 @@ def refined_from(archive: Archive, body: Json) -> RefinedTorus:
         phases=_by_seed(seeds, body["phases"]),
         harmonics=harmonics,
         cosines=cosines,
-        steps=tuple(_step(*entry) for entry in body["steps"]),
-        near_resonances=tuple(_near_resonance(*entry) for entry in body["near_resonances"]),
+        **newton_from(body),
         warnings=tuple(map(str, body["warnings"])),
     )
 
 
 def _by_seed(seeds: Sequence[int], entries: Sequence[str]) -> dict[int, float]:
     return {q: float(entry) for q, entry in zip(seeds, entries, strict=True)}
+
+
+def newton_entries(torus: RefinedTorus | RefinedRingTorus) -> Json:
+    """Steps and small divisors."""
+    near = [_near_resonance_entry(resonance) for resonance in torus.near_resonances]
+    return {"steps": [_step_entry(step) for step in torus.steps], "near_resonances": near}
+
+
+def newton_from(body: Json) -> dict[str, Any]:
+    """The same as fields; ValueError where they are none."""
+    near = tuple(_near_resonance(*entry) for entry in body["near_resonances"])
+    return {
+        "steps": tuple(_step(*entry) for entry in body["steps"]),
+        "near_resonances": near,
+    }
 
 
 def _step_entry(step: NewtonStep) -> list[Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from fractions import Fraction
 from math import comb
 from typing import Any
@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.grading import canonical_count
 from symfpu.bundles.entries import chain_entries, chain_from, number, number_entry
+from symfpu.bundles.refined import newton_entries, newton_from
 from symfpu.chain.chain import Chain
 from symfpu.files.archive import Archive, Json
 from symfpu.numbers.typed import fraction, fraction_text, integer
+from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.series.divisors import SmallDivisor
 from symfpu.series.monomials import shared_grading
 from symfpu.series.travelling import TravellingSeries
@@ -24,6 +26,7 @@ from symfpu.tori.ring_torus import RingTorus
 Array = NDArray[Any]
 TRAVELLING = "travelling"  # name of the ring of numbers of a series of waves
 WAVES = "waves"  # kind of a torus of a ring
+REFINED_WAVES = "refined waves"  # the same by Newton's method
 FLOATS, INTEGERS = "<f8", "<i8"
 
 
@@ -105,6 +108,8 @@ def ring_torus_entries(torus: RingTorus) -> tuple[Json, dict[str, Array]]:
         "waves": len(torus.sines),
         "warnings": list(torus.warnings),
     }
+    if isinstance(torus, RefinedRingTorus):
+        entries |= {"kind": REFINED_WAVES, **newton_entries(torus)}
     arrays = {
         "harmonics": torus.harmonics.ravel().astype(INTEGERS),
         "modes": torus.modes.astype(INTEGERS),
@@ -131,6 +136,13 @@ def ring_torus_from(archive: Archive, body: Json) -> RingTorus:
         order=_order(body["order"]),
         warnings=tuple(map(str, body["warnings"])),
     )
+
+
+def refined_waves_from(archive: Archive, body: Json) -> RefinedRingTorus:
+    """The torus by Newton's method, likewise."""
+    torus = ring_torus_from(archive, body)
+    waves = {item.name: getattr(torus, item.name) for item in fields(RingTorus)}
+    return RefinedRingTorus(**waves, **newton_from(body))
 
 
 def _order(entry: Any) -> int | None:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from symfpu.bundles.bundle import Bundle
-from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.chain.chain import Chain
 from symfpu.cli.choices import choice
 from symfpu.cli.terminal import held, whole
 from symfpu.tori.quasiperiodic import QuasiPeriodic
@@ -58,11 +58,3 @@ def solution_of(bundle: Bundle, file: str) -> QuasiPeriodic | RingTorus:
     held(bundle.torus, file)
     assert bundle.torus is not None
     return bundle.torus
-
-
-def with_fixed_ends(bundle: Bundle, file: str) -> QuasiPeriodic:
-    """The same; InputError for one of a ring, too."""
-    solution = solution_of(bundle, file)
-    require_fixed_ends(solution.chain)
-    assert isinstance(solution, QuasiPeriodic)
-    return solution

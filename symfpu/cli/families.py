@@ -15,7 +15,7 @@ from symfpu.cli.chains import (
     BondsOption,
     PotentialOption,
     chain_of,
-    with_fixed_ends,
+    solution_of,
 )
 from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
@@ -40,6 +40,7 @@ from symfpu.errors import InputError
 from symfpu.families.family import METHODS, Family, family
 from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_file, output_folder
+from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import (
     RefinedTorus,
     refine,
@@ -95,7 +96,7 @@ def refine_file(
 
     It has the same frequencies, or a given energy or amplitudes.
     """
-    torus = with_fixed_ends(load(path_named("FILE", file)), file)
+    torus = solution_of(load(path_named("FILE", file)), file)
     picture = picture_named(plot)
     if energy is not None and amplitudes is not None:
         raise InputError(
@@ -133,7 +134,7 @@ def refine_file(
         say_drawn(picture)
 
 
-def verdict_of(torus: RefinedTorus) -> dict[str, Any]:
+def verdict_of(torus: RefinedTorus | RefinedRingTorus) -> dict[str, Any]:
     """What a file says of a refined torus."""
     return {"verdict": torus.verdict, "reasons": list(torus.warnings)}
 

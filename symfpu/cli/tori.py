@@ -15,6 +15,7 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.numbers.arithmetic import text
+from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.family import refined_text
 from symfpu.reports.solution import solution_text
@@ -22,6 +23,8 @@ from symfpu.saved.results import load
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
+
+REFINED = RefinedTorus, RefinedRingTorus
 
 
 def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
@@ -61,7 +64,7 @@ def show(
         return
     record = {} if solution is None else solution.record()
     verdict = bundle.verdict or {}
-    if verdict and not isinstance(solution, RefinedTorus):
+    if verdict and not isinstance(solution, REFINED):
         say(f"verdict: {verdict.get('verdict')}")
     _print_held(bundle, record)
     for reason in verdict.get("reasons", []):
@@ -75,7 +78,7 @@ def _print_held(bundle: Bundle, record: dict[str, Any]) -> None:
     solution = bundle.torus
     if solution is None:
         say(bundle.result)
-    elif isinstance(solution, RefinedTorus):
+    elif isinstance(solution, REFINED):
         say(refined_text(solution))
     else:
         print_solution(solution, record)

@@ -35,7 +35,8 @@ from symfpu.refinement.conditions import (
     Plane,
     ratio_conditions,
 )
-from symfpu.refinement.invariance import DIGITS, Floats, Ints
+from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.invariance import DIGITS
 from symfpu.refinement.tori import (
     TOLERANCE,
     NoTorus,

@@ -24,7 +24,8 @@ from symfpu.families.continuation import (
     member,
 )
 from symfpu.refinement.conditions import Crossing, ratio_conditions
-from symfpu.refinement.invariance import DIGITS, Floats, Ints, long
+from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.invariance import DIGITS, long
 from symfpu.refinement.tori import NoTorus, RefinedTorus, refined_torus, shifts_of
 
 # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed

@@ -27,6 +27,7 @@ from symfpu.plots.style import (
     look,
     whole_numbers,
 )
+from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -43,6 +44,7 @@ KINDS: tuple[tuple[type, str], ...] = (
     (QTorus, "series"),
     (RefinedTorus, "Newton's method"),
     (PeriodicOrbit, "breather"),
+    (RefinedRingTorus, "waves, by Newton's method"),
     (RingTorus, "waves of a ring"),
     (Orbit, "orbit"),
 )

@@ -1,6 +1,6 @@
 """What is prescribed of a torus: as many conditions as it has angles.
 
-The unknowns are the coefficients c (H, N-1) and the shifts omega - Omega (s,). A condition gives
+The unknowns are the coefficients c (H, C) and the shifts omega - Omega (s,). A condition gives
 its value, zero where it is met, and its derivatives by both.
 """
 
@@ -12,22 +12,22 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from symfpu.refinement.invariance import Floats, InvarianceEquation
+from symfpu.refinement.equation import Floats, TorusEquation
 
 
 class Condition(Protocol):
     """One equation more."""
 
     def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         """What is to be zero, relative to its own size."""
         ...
 
     def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
-        """Derivatives of the value by coefficients (H, N-1) and shifts (s,), in doubles."""
+        """Derivatives of the value by coefficients (H, C) and shifts (s,), in doubles."""
         ...
 
 
@@ -39,21 +39,20 @@ class FrequencyShift:
     shift: np.longdouble
 
     def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         off = shifts[self.place] - self.shift
         return np.longdouble(off / self._size(equation))
 
     def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         by_shift = np.zeros(len(shifts))
         by_shift[self.place] = 1 / float(self._size(equation))
         return np.zeros(cosines.shape), by_shift
 
-    def _size(self, equation: InvarianceEquation) -> np.longdouble:
-        column = equation.seed_columns[self.place]
-        return np.longdouble(equation.linear[column])
+    def _size(self, equation: TorusEquation) -> np.longdouble:
+        return np.longdouble(equation.seed_frequencies[self.place])
 
 
 @dataclass(frozen=True)
@@ -68,13 +67,13 @@ class Crossing:
     size: float
 
     def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         moved = np.dot(np.array(self.harmonic), shifts)
         return np.longdouble((moved - self.shift) / self.size)
 
     def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         by_shift = np.array(self.harmonic) / self.size
         return np.zeros(cosines.shape), by_shift
@@ -88,13 +87,13 @@ class Amplitude:
     amplitude: np.longdouble
 
     def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         A = seed_amplitudes(equation, cosines)[self.place]
         return np.longdouble(A / self.amplitude - 1)
 
     def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         row, column = equation.seed_rows[self.place], equation.seed_columns[self.place]
         by_cosine = np.zeros(cosines.shape)
@@ -110,14 +109,14 @@ class AmplitudeRatio:
     ratio: float
 
     def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         A = seed_amplitudes(equation, cosines)
         expected = self.ratio * A[0]
         return np.longdouble(A[self.place] / expected - 1)
 
     def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         by_cosine = np.zeros(cosines.shape)
         rows, columns = equation.seed_rows, equation.seed_columns
@@ -135,65 +134,47 @@ class EnergyRatio:
     ratio: float
 
     def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
-        averages = self._averages(equation, cosines, shifts)[0]
-        expected = self.ratio * averages[0]
-        return np.longdouble(averages[self.place] / expected - 1)
-
-    def _averages(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats, Floats]:
-        """The averages by seed, what multiplies c^2 in them, and its derivative by rates."""
-        moving = (equation.harmonics != 0).any(axis=1)
-        weights = np.where(moving, 0.25, 0.5)[:, None]
-        rates, columns = equation.rates(shifts)[:, None], equation.seed_columns
-        sizes = weights * (rates**2 + equation.linear[columns] ** 2)
-        averages = (sizes * cosines[:, columns] ** 2).sum(axis=0)
-        return averages, sizes, 2 * weights * rates
+        first, _ = equation.seed_energy(0, cosines, shifts)
+        own, _ = equation.seed_energy(self.place, cosines, shifts)
+        return np.longdouble(own / (self.ratio * first) - 1)
 
     def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
-        averages, sizes, slopes = self._averages(equation, cosines, shifts)
-        by_cosine, by_shift = np.zeros(cosines.shape), np.zeros(len(shifts))
-        own = 1 / (self.ratio * averages[0])
-        first = -averages[self.place] / (self.ratio * averages[0] ** 2)
-        for i, factor in ((self.place, own), (0, first)):
-            column = equation.seed_columns[i]
-            c = cosines[:, column]
-            by_cosine[:, column] += (factor * 2 * sizes[:, i] * c).astype(float)
-            turning = (slopes[:, 0] * c**2) @ equation.harmonics
-            by_shift += (factor * turning).astype(float)
+        first, of_first = equation.seed_energy(0, cosines, shifts)
+        own, of_own = equation.seed_energy(self.place, cosines, shifts)
+        factors = 1 / (self.ratio * first), -own / (self.ratio * first**2)
+        by_cosine, by_shift = (
+            (factors[0] * x + factors[1] * y).astype(float)
+            for x, y in zip(of_own, of_first, strict=True)
+        )
         return by_cosine, by_shift
 
 
 @dataclass(frozen=True)
 class Energy:
-    """H, or with `harmonic` the harmonic energy sum E_q, at the angles zero.
+    """H, or with `harmonic` the harmonic energy sum E_q.
 
-    The momenta vanish there.
+    With fixed ends at the angles zero, of a ring averaged over the angles.
     """
 
     energy: np.longdouble
     harmonic: bool
 
     def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
-        Q = cosines.sum(axis=0)
-        harmonic = (equation.linear**2 * Q**2).sum() / 2
-        energy = harmonic if self.harmonic else equation.potential(Q)
+        energy, _ = equation.energy(cosines, shifts, harmonic=self.harmonic)
         return np.longdouble(energy / self.energy - 1)
 
     def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
-        Q = cosines.sum(axis=0)
-        slope = equation.linear**2 * Q if self.harmonic else equation.potential_slope(Q)
-        row = (slope / self.energy).astype(float)
-        by_cosine = np.broadcast_to(row, cosines.shape) * equation.mask
-        return by_cosine, np.zeros(len(shifts))
+        _, slopes = equation.energy(cosines, shifts, harmonic=self.harmonic)
+        by_cosine, by_shift = ((slope / self.energy).astype(float) for slope in slopes)
+        return by_cosine, by_shift
 
 
 @dataclass(frozen=True)
@@ -209,14 +190,14 @@ class Plane:
     distance: float
 
     def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         x = plane_variables(equation, cosines, shifts, self.scales)
         gone = np.dot(np.array(self.tangent), x - np.array(self.start))
         return np.longdouble(gone - self.distance)
 
     def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         s, tangent = len(shifts), np.array(self.tangent)
         A = seed_amplitudes(equation, cosines).astype(float)
@@ -226,13 +207,13 @@ class Plane:
         return by_cosine, by_shift
 
 
-def seed_amplitudes(equation: InvarianceEquation, cosines: Floats) -> Floats:
+def seed_amplitudes(equation: TorusEquation, cosines: Floats) -> Floats:
     """A of every seed, with its sign; shape (s,)."""
     return np.asarray(cosines[equation.seed_rows, equation.seed_columns])
 
 
 def plane_variables(
-    equation: InvarianceEquation, cosines: Floats, shifts: Floats, scales: Sequence[float]
+    equation: TorusEquation, cosines: Floats, shifts: Floats, scales: Sequence[float]
 ) -> Floats:
     """(ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
     A = seed_amplitudes(equation, cosines)

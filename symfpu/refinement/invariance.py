@@ -23,9 +23,7 @@ from numpy.typing import NDArray
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.numbers.arithmetic import Arithmetic, mpf
-
-Floats = NDArray[Any]
-Ints = NDArray[np.int64]
+from symfpu.refinement.equation import Floats, Ints, Slopes
 
 # size, in that of the largest chosen harmonics, up to which harmonics are told apart
 OVERSAMPLING = 2.5
@@ -60,7 +58,7 @@ def rational(value: np.longdouble) -> Fraction:
     return Fraction(high) + Fraction(low)
 
 
-def _halves(value: Any) -> tuple[np.longdouble, np.longdouble]:
+def halves(value: Any) -> tuple[np.longdouble, np.longdouble]:
     """An mpf as the sum of two long doubles."""
     high = long(value)
     with mpmath.workdps(2 * DIGITS):
@@ -187,6 +185,39 @@ def generated_lattice(harmonics: Ints) -> tuple[int, Ints]:
     return period, np.array(generator)
 
 
+def largest_slopes(grid: Lattice, spectrum: Floats, entries: int) -> Ints:
+    """The harmonics of the slopes that a sparse derivative holds.
+
+    spectrum : of the slopes, (bonds, points). entries : that one harmonic makes.
+    """
+    heights = np.abs(spectrum).max(axis=0)
+    nu = grid.harmonics
+    height = heights[grid.entries(nu)]
+    most = min(MOST_SLOPES, max(1, MOST_ENTRIES // entries))
+    order = np.argsort(-height, kind="stable")
+    chosen = nu[order[:most]]
+    tall = heights[grid.entries(chosen)] > SHARE * heights.max()
+    return np.asarray(chosen[tall])
+
+
+def shifted(harmonics: Ints, kappa: Ints) -> tuple[Ints, Ints]:
+    """Rows of harmonics nu and of nu - kappa (or its negative), where both are chosen."""
+    highest = np.abs(harmonics).max(axis=0)
+    base = 4 * highest + 3
+    weights = np.cumprod(np.append(base[1:], 1)[::-1])[::-1]
+    moved = harmonics - kappa
+    first_nonzero = np.argmax(moved != 0, axis=1)
+    lead = moved[np.arange(len(moved)), first_nonzero]
+    sign = np.where(lead < 0, -1, 1)
+    keys, wanted = harmonics @ weights, sign * (moved @ weights)
+    order = np.argsort(keys)
+    nearest = np.searchsorted(keys[order], wanted)
+    place = order[np.clip(nearest, 0, len(keys) - 1)]
+    within = (np.abs(moved) <= highest).all(axis=1)
+    rows = np.flatnonzero((keys[place] == wanted) & within)
+    return rows, place[rows]
+
+
 WORKERS = os.cpu_count() or 1
 FIRST_TRIED, TRIALS = (
     500,
@@ -244,8 +275,8 @@ class InvarianceEquation:
         of_seeds = [linear[q - 1] for q in self.seeds]
         with mpmath.workdps(2 * DIGITS):
             exact = [mpmath.fdot(nu, of_seeds) for nu in self.harmonics.tolist()]
-        high, low = (np.array(part) for part in zip(*map(_halves, linear), strict=True))
-        rates = zip(*map(_halves, exact), strict=True)
+        high, low = (np.array(part) for part in zip(*map(halves, linear), strict=True))
+        rates = zip(*map(halves, exact), strict=True)
         rate_high, rate_low = (np.array(part)[:, None] for part in rates)
         self._below = (rate_high - high) + (rate_low - low)
         self._above = (rate_high + high) + (rate_low + low)
@@ -260,9 +291,19 @@ class InvarianceEquation:
         moved = (self.harmonics @ shifts)[:, None]
         return np.asarray((self._below + moved) * (self._above + moved))
 
+    @property
+    def points(self) -> int:
+        """Of the lattice."""
+        return self.grid.points
+
+    @property
+    def seed_frequencies(self) -> Floats:
+        """Omega of the seeds in long doubles; shape (s,)."""
+        return np.asarray(self.linear[self.seed_columns])
+
     def rates(self, shifts: Floats) -> Floats:
         """nu.omega in long doubles; shape (H,)."""
-        omega = self.linear[self.seed_columns] + shifts
+        omega = self.seed_frequencies + shifts
         return np.asarray(self.harmonics @ omega)
 
     def _portions(self) -> list[slice]:
@@ -319,6 +360,31 @@ class InvarianceEquation:
         """Its gradient; shape (N-1,)."""
         tension = bonds.tension(self._law, Q @ self._all_bonds)
         return np.asarray(self._all_bonds @ tension)
+
+    def energy(
+        self, cosines: Floats, shifts: Floats, *, harmonic: bool
+    ) -> tuple[np.longdouble, Slopes]:
+        """H, or the harmonic energy, at the angles zero, where the momenta vanish."""
+        Q = cosines.sum(axis=0)
+        if harmonic:
+            energy, slope = (self.linear**2 * Q**2).sum() / 2, self.linear**2 * Q
+        else:
+            energy, slope = self.potential(Q), self.potential_slope(Q)
+        by_cosine = np.broadcast_to(slope, cosines.shape) * self.mask
+        return np.longdouble(energy), (by_cosine, np.zeros(len(shifts)))
+
+    def seed_energy(
+        self, place: int, cosines: Floats, shifts: Floats
+    ) -> tuple[np.longdouble, Slopes]:
+        """E_q of a seed averaged over the angles."""
+        column = self.seed_columns[place]
+        c, rates = cosines[:, column], self.rates(shifts)
+        weights = np.where((self.harmonics != 0).any(axis=1), 0.25, 0.5)
+        sizes = weights * (rates**2 + self.linear[column] ** 2)
+        by_cosine = np.zeros(cosines.shape, dtype=cosines.dtype)
+        by_cosine[:, column] = 2 * sizes * c
+        by_shift = (2 * weights * rates * c**2) @ self.harmonics
+        return np.longdouble((sizes * c**2).sum()), (by_cosine, by_shift)
 
     def slopes(self, cosines: Floats) -> Floats:
         """V''(r) - 1 on the lattice, in doubles; shape (bonds, points)."""
@@ -378,26 +444,15 @@ class InvarianceEquation:
         from scipy import sparse
 
         spectrum = self._spectrum(slopes)
-        chosen = self._largest_slopes(spectrum)
         unknowns = int(self.mask.sum())
+        # two modes a row and sign
+        chosen = largest_slopes(self.grid, spectrum, 4 * unknowns)
         number = np.full(self.mask.shape, -1, dtype=np.int32)
         number[self.mask] = np.arange(unknowns)
         both_signs = np.unique(np.concatenate([chosen, -chosen]), axis=0)
         parts = [self._coupled_by(kappa, spectrum, number) for kappa in both_signs]
         values, i, j = (np.concatenate(x) for x in zip(*parts, strict=True))
         return sparse.csr_matrix((values, (i, j)), shape=(unknowns, unknowns))
-
-    def _largest_slopes(self, spectrum: Floats) -> Ints:
-        """The harmonics of the slopes that a sparse derivative holds."""
-        heights = np.abs(spectrum).max(axis=0)
-        nu = self.harmonics
-        height = heights[self.grid.entries(nu)]
-        entries = int(self.mask.sum()) * 4  # two modes a row and sign
-        most = min(MOST_SLOPES, max(1, MOST_ENTRIES // entries))
-        order = np.argsort(-height, kind="stable")
-        chosen = nu[order[:most]]
-        tall = heights[self.grid.entries(chosen)] > SHARE * heights.max()
-        return np.asarray(chosen[tall])
 
     def _coupled_by(
         self, kappa: Ints, spectrum: Floats, number: NDArray[np.int32]
@@ -408,7 +463,7 @@ class InvarianceEquation:
         coupling = (self._back.astype(float) * slope) @ self._stretch.astype(float).T
         sizes = np.abs(coupling)
         at, to = np.nonzero(sizes > 1e-3 * sizes.max())
-        rows, columns = self._shifted(kappa)
+        rows, columns = shifted(self.harmonics, kappa)
         still_row = (nu[rows] == 0).all(axis=1)
         still_column = (nu[columns] == 0).all(axis=1)
         weight = np.where(still_row, 0.5, 1.0) * np.where(still_column, 2.0, 1.0)
@@ -416,20 +471,3 @@ class InvarianceEquation:
         i, j = number[rows[:, None], at], number[columns[:, None], to]
         inside = (i >= 0) & (j >= 0)
         return values[inside], i[inside], j[inside]
-
-    def _shifted(self, kappa: Ints) -> tuple[Ints, Ints]:
-        """Rows of harmonics nu and of nu - kappa (or its negative), where both are chosen."""
-        highest = np.abs(self.harmonics).max(axis=0)
-        base = 4 * highest + 3
-        weights = np.cumprod(np.append(base[1:], 1)[::-1])[::-1]
-        shifted = self.harmonics - kappa
-        first_nonzero = np.argmax(shifted != 0, axis=1)
-        lead = shifted[np.arange(len(shifted)), first_nonzero]
-        sign = np.where(lead < 0, -1, 1)
-        keys, wanted = self.harmonics @ weights, sign * (shifted @ weights)
-        order = np.argsort(keys)
-        nearest = np.searchsorted(keys[order], wanted)
-        place = order[np.clip(nearest, 0, len(keys) - 1)]
-        within = (np.abs(shifted) <= highest).all(axis=1)
-        rows = np.flatnonzero((keys[place] == wanted) & within)
-        return rows, place[rows]

@@ -10,6 +10,7 @@ they are solved directly.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -18,7 +19,7 @@ import numpy as np
 
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.invariance import Floats, Ints, InvarianceEquation
+from symfpu.refinement.equation import Floats, Ints, TorusEquation
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
 NEARNESS = (
@@ -48,7 +49,7 @@ class NewtonStep(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Iterate:
-    """cosines (H, N-1) and shifts (s,) in long doubles, and the way there.
+    """cosines (H, C) and shifts (s,) in long doubles, and the way there.
 
     failure : why it ended early, empty if it converged.
     """
@@ -72,7 +73,7 @@ class _System:
 
     def __init__(
         self,
-        equation: InvarianceEquation,
+        equation: TorusEquation,
         conditions: Sequence[Condition],
         cosines: Floats,
         shifts: Floats,
@@ -124,8 +125,6 @@ class _Preconditioner:
     """
 
     def __init__(self, system: _System) -> None:
-        from scipy import linalg
-
         mask = system.mask
         total, s = int(mask.sum()), len(system.by_shift)
         chosen = self._block(system, total)
@@ -140,7 +139,7 @@ class _Preconditioner:
         self.whole = len(outside) == 0
         if not self.whole:
             matrix -= self._couplings(system, inside, by_shift)
-        self.factors = linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
+        self.factors = _factors(matrix)
 
     def _block(self, system: _System, total: int) -> Ints:
         """Places of the unknowns with the smallest divisors, those of the seeds first of all."""
@@ -195,10 +194,23 @@ class _Preconditioner:
         return result
 
 
+def _factors(matrix: Floats) -> tuple[Floats, Ints]:
+    """L and U of a matrix, overwritten; LinAlgError for an exact zero among the pivots."""
+    from scipy import linalg
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", linalg.LinAlgWarning)
+        factors = linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
+    if not factors[0].diagonal().all():
+        raise np.linalg.LinAlgError("a pivot is zero")
+    lower_and_upper, pivots = factors
+    return lower_and_upper, pivots
+
+
 # iterates that run away are refused by their size
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def newton(
-    equation: InvarianceEquation,
+    equation: TorusEquation,
     conditions: Sequence[Condition],
     cosines: Floats,
     shifts: Floats,
@@ -247,14 +259,14 @@ def newton(
     return failed(f"no convergence in {ITERATIONS} steps")
 
 
-def _sizes(equation: InvarianceEquation, cosines: Floats) -> list[float]:
+def _sizes(equation: TorusEquation, cosines: Floats) -> list[float]:
     """What must not run away or vanish: the largest coefficient, and every seed's amplitude."""
     amplitudes = cosines[equation.seed_rows, equation.seed_columns]
     largest = float(np.abs(cosines).max())
     return [largest, *(float(abs(a)) for a in amplitudes)]
 
 
-def _names(equation: InvarianceEquation) -> list[str]:
+def _names(equation: TorusEquation) -> list[str]:
     return ["the largest coefficient", *(f"A_{q}" for q in equation.seeds)]
 
 

@@ -5,12 +5,11 @@ Their series only approximate them.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from numbers import Real
-from typing import Any
+from typing import Any, NamedTuple, overload
 
 import mpmath
 import numpy as np
@@ -28,46 +27,29 @@ from symfpu.refinement.conditions import (
     ratio_conditions,
     seed_amplitudes,
 )
-from symfpu.refinement.invariance import (
-    DIGITS,
-    OVERSAMPLING,
-    Floats,
-    Ints,
-    InvarianceEquation,
-    long,
-    rational,
-)
+from symfpu.refinement.equation import Floats, Ints, TorusEquation
+from symfpu.refinement.harmonics import chosen_harmonics, known_rows
+from symfpu.refinement.invariance import DIGITS, InvarianceEquation, long, rational
 from symfpu.refinement.newton import Iterate, NewtonStep, newton
+from symfpu.refinement.resonances import NearResonance, near_resonances
+from symfpu.refinement.ring_tori import (
+    RefinedRingTorus,
+    driven_in_resonance,
+    refined_waves,
+    require_independent,
+    require_travelling,
+    wave_coefficients,
+)
+from symfpu.refinement.waves import WaveEquation
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
+from symfpu.tori.ring_torus import RingTorus
 
 # residual of the equations of motion, relative to the largest acceleration, that ends the search
 # for harmonics
 TOLERANCE = 1e-13
-SMALLEST_KEPT = 1e-18  # of the largest coefficient: smaller ones of a guess are left out
 MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
-LARGEST_GRID = 60_000_000  # values of half of the bonds; arrays of 480 MB
-MOST_HARMONICS = 40_000
 ROUNDS = 8  # choices of harmonics
-SHOWN_DIVISORS = 10
 LEAST_SIZE = Fraction(1, 10**40)  # of amplitudes and coefficients
-
-
-@dataclass(frozen=True)
-class NearResonance:
-    """A small divisor (nu.omega)^2 - Omega_q^2 of a torus, and the coefficient under it.
-
-    The coefficient is c_q[nu].
-    """
-
-    mode: int
-    harmonic: tuple[int, ...]
-    divisor: float
-    coefficient: float
-
-    def __repr__(self) -> str:
-        harmonic = ",".join(map(str, self.harmonic))
-        place = f"mode {self.mode}, harmonic ({harmonic})"
-        return f"{self.divisor:.2g} at {place}, coefficient {self.coefficient:.2g}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,11 +110,14 @@ class RefinedTorus(QuasiPeriodic):
 class NoTorus(SymfpuError):
     """Newton's method found no torus: raised by `refine`, its sisters and `family`.
 
-    iterate : the best one, a RefinedTorus; residual : what it leaves of the equations of motion,
-        relative to the largest acceleration, dimensionless; reason : why it ended. Ours.
+    iterate : the best one, a RefinedTorus or RefinedRingTorus; residual : what it leaves of the
+        equations of motion, relative to the largest acceleration, dimensionless; reason : why it
+        ended. Ours.
     """
 
-    def __init__(self, reason: str, iterate: RefinedTorus, residual: float) -> None:
+    def __init__(
+        self, reason: str, iterate: RefinedTorus | RefinedRingTorus, residual: float
+    ) -> None:
         self.reason, self.iterate, self.residual = reason, iterate, residual
         left = f"the best iterate leaves {residual:.2g} of the largest acceleration"
         advice = "start from a torus nearer to it, such as one of less energy"
@@ -141,20 +126,33 @@ class NoTorus(SymfpuError):
         )
 
 
+@overload
 def refine(
-    torus: QuasiPeriodic, *, tolerance: float = TOLERANCE, progress: Progress | None = None
-) -> RefinedTorus:
+    torus: RingTorus, *, tolerance: float = ..., progress: Progress | None = ...
+) -> RefinedRingTorus: ...
+@overload
+def refine(
+    torus: QuasiPeriodic, *, tolerance: float = ..., progress: Progress | None = ...
+) -> RefinedTorus: ...
+def refine(
+    torus: QuasiPeriodic | RingTorus,
+    *,
+    tolerance: float = TOLERANCE,
+    progress: Progress | None = None,
+) -> RefinedTorus | RefinedRingTorus:
     """The torus with the same frequencies that solves the equations of motion.
 
     A given torus is the guess.
 
-    torus : of a series, resummed, or any other; its phases (radians) are kept.
+    torus : of a series, resummed, or any other; its phases (radians) are kept. On a ring one of
+        travelling waves, from `travelling_torus`; a RefinedRingTorus comes back.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration,
         dimensionless; harmonics are added until it is reached.
     progress : called as (label, NO_FRACTION) on every step.
 
     Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a
-    torus, which the paper solves by series. Raises InputError, and NoTorus with the best iterate.
+    torus, which the paper solves by series. Raises InputError, on a ring also for frequencies
+    with an integer relation, and NoTorus with the best iterate.
 
     >>> from symfpu.tori.amplitudes import solve_amplitudes
     >>> from symfpu.series.lindstedt import lindstedt
@@ -163,19 +161,37 @@ def refine(
     >>> breather.residual() < 1e-13
     True
     """
-    require_solution(torus, "torus")
+    _require_torus(torus)
+    if isinstance(torus, RingTorus):
+        require_independent(torus)
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
     refined = refined_torus(torus, conditions, tolerance=tolerance, progress=progress)
     return replace(refined, frequencies=tuple(torus.frequencies))
 
 
+@overload
+def refine_at_amplitudes(
+    torus: RingTorus,
+    amplitudes: Mapping[int, Number],
+    *,
+    tolerance: float = ...,
+    progress: Progress | None = ...,
+) -> RefinedRingTorus: ...
+@overload
 def refine_at_amplitudes(
     torus: QuasiPeriodic,
     amplitudes: Mapping[int, Number],
     *,
+    tolerance: float = ...,
+    progress: Progress | None = ...,
+) -> RefinedTorus: ...
+def refine_at_amplitudes(
+    torus: QuasiPeriodic | RingTorus,
+    amplitudes: Mapping[int, Number],
+    *,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> RefinedTorus:
+) -> RefinedTorus | RefinedRingTorus:
     """The torus with the given amplitude of every seed; its frequencies are found.
 
     torus : the guess, of the same seeds; its phases (radians) are kept.
@@ -191,7 +207,7 @@ def refine_at_amplitudes(
     >>> round(float(refine_at_amplitudes(guess, {1: "0.41"}).frequencies[0]), 9)
     0.390507682
     """
-    require_solution(torus, "torus")
+    _require_torus(torus)
     values = [
         long(a) for a in _by_seed("amplitudes", amplitudes, torus, signed=True).values()
     ]
@@ -203,8 +219,30 @@ def refine_at_amplitudes(
     )
 
 
+@overload
+def refine_at_energy(
+    torus: RingTorus,
+    energy: Number,
+    *,
+    harmonic: bool,
+    amplitude_ratio: Mapping[int, Number] | None = ...,
+    energy_ratio: Mapping[int, Number] | None = ...,
+    tolerance: float = ...,
+    progress: Progress | None = ...,
+) -> RefinedRingTorus: ...
+@overload
 def refine_at_energy(
     torus: QuasiPeriodic,
+    energy: Number,
+    *,
+    harmonic: bool,
+    amplitude_ratio: Mapping[int, Number] | None = ...,
+    energy_ratio: Mapping[int, Number] | None = ...,
+    tolerance: float = ...,
+    progress: Progress | None = ...,
+) -> RefinedTorus: ...
+def refine_at_energy(
+    torus: QuasiPeriodic | RingTorus,
     energy: Number,
     *,
     harmonic: bool,
@@ -212,7 +250,7 @@ def refine_at_energy(
     energy_ratio: Mapping[int, Number] | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> RefinedTorus:
+) -> RefinedTorus | RefinedRingTorus:
     """The torus with the given energy and ratio of amplitudes or mode energies.
 
     Its frequencies are found.
@@ -220,10 +258,10 @@ def refine_at_energy(
     torus : the guess, of the same seeds; its phases (radians) are kept.
     energy : an exact number, dimensionless.
     harmonic : False for the total energy H, True for the harmonic energy sum E_q, both at the
-        angles zero.
+        angles zero; of a ring, whose waves are nowhere at rest, averaged over the angles.
     amplitude_ratio, energy_ratio : by seed, at most one of them; energy_ratio is of E_q of the
-        seeds averaged over the torus. Left out, the amplitudes keep the ratio they have in
-        `torus`.
+        seeds averaged over the torus, on a ring not of opposite ones, whose E_q are equal. Left
+        out, the amplitudes keep the ratio they have in `torus`.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration.
     progress : called as (label, NO_FRACTION) on every step.
 
@@ -235,7 +273,7 @@ def refine_at_energy(
     >>> round(float(refine_at_energy(guess, "0.012", harmonic=False).energy()), 12)
     0.012
     """
-    require_solution(torus, "torus")
+    _require_torus(torus)
     value = exact(energy, "energy")
     if value <= 0:
         raise InputError(
@@ -256,11 +294,12 @@ def refine_at_energy(
             "leave one out",
         )
     if energy_ratio is not None:
+        _require_energies(torus)
         ratio = _by_seed("energy_ratio", energy_ratio, torus, signed=False)
     elif amplitude_ratio is not None:
         ratio = _by_seed("amplitude_ratio", amplitude_ratio, torus, signed=True)
     else:
-        ratio = {q: exact(float(a), "amplitude") for q, a in amplitudes_of(torus).items()}
+        ratio = {q: exact(float(a), "amplitude") for q, a in _amplitudes(torus).items()}
     numbers = {q: float(x) for q, x in ratio.items()}
     conditions = [
         Energy(long(value), bool(harmonic)),
@@ -269,8 +308,29 @@ def refine_at_energy(
     return refined_torus(torus, conditions, tolerance=tolerance, progress=progress)
 
 
+def _require_torus(torus: object) -> None:
+    """InputError for what is no solution, and for standing waves on a ring."""
+    if isinstance(torus, RingTorus):
+        require_travelling(torus)
+    else:
+        require_solution(torus, "torus")
+
+
+def _amplitudes(torus: QuasiPeriodic | RingTorus) -> Mapping[int, Any]:
+    return torus.amplitudes if isinstance(torus, RingTorus) else amplitudes_of(torus)
+
+
+def _require_energies(torus: QuasiPeriodic | RingTorus) -> None:
+    """InputError for opposite seeds of a ring, which have the same E_q."""
+    opposite = [q for q in torus.seeds if -q in torus.seeds]
+    if opposite:
+        allowed = "a ratio of modes of different energies: E_q = E_(-q) on a ring"
+        given = f"of the seeds {opposite[0]} and {-opposite[0]}"
+        raise InputError("energy_ratio", given, allowed, "give amplitude_ratio")
+
+
 def _by_seed(
-    argument: str, values: object, torus: QuasiPeriodic, *, signed: bool
+    argument: str, values: object, torus: QuasiPeriodic | RingTorus, *, signed: bool
 ) -> dict[int, Fraction]:
     """A number for each seed, not 0 and not beyond doubles; positive unless signed."""
     kind = "number that is not 0" if signed else "positive number"
@@ -286,46 +346,75 @@ def _by_seed(
     return numbers
 
 
-def unit_harmonics(s: int) -> list[tuple[int, ...]]:
-    """e_1 .. e_s."""
-    return [tuple(row) for row in np.eye(s, dtype=np.int64).tolist()]
+class Unknowns(NamedTuple):
+    """What the tori of one kind of ends differ in.
+
+    coefficients : of a torus, harmonics (H, s) and coefficients (H, C) in doubles. functions : of
+    the angles that a lattice holds. equation : of chain, seeds and harmonics. result : of torus,
+    equation, iterate and frequencies.
+    """
+
+    coefficients: Callable[[Any], tuple[Ints, Floats]]
+    functions: Callable[[Chain], int]
+    equation: Callable[[Chain, Sequence[int], Ints], TorusEquation]
+    result: Callable[..., Any]
 
 
+@overload
+def refined_torus(
+    torus: RingTorus,
+    conditions: Sequence[Condition],
+    *,
+    tolerance: float = ...,
+    progress: Progress | None = ...,
+) -> RefinedRingTorus: ...
+@overload
 def refined_torus(
     torus: QuasiPeriodic,
     conditions: Sequence[Condition],
     *,
+    tolerance: float = ...,
+    progress: Progress | None = ...,
+) -> RefinedTorus: ...
+def refined_torus(
+    torus: QuasiPeriodic | RingTorus,
+    conditions: Sequence[Condition],
+    *,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> RefinedTorus:
+) -> RefinedTorus | RefinedRingTorus:
     """The torus near a guess that meets as many conditions as it has angles.
 
     With as many harmonics as the tolerance needs.
     """
-    require_solution(torus, "torus")
+    _require_torus(torus)
     if not isinstance(tolerance, Real) or not 0 < tolerance < 1:
         raise InputError(
             "tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more"
         )
+    kind = WAVES if isinstance(torus, RingTorus) else COSINES
     tell = progress or unheard
     chain, seeds = torus.chain, torus.seeds
-    known = _rows(torus.harmonics, _moderate_coefficients(torus))
-    shifts = shifts_of(torus)
+    guess = kind.coefficients(torus)
+    _require_moderate(guess[1])
+    known, shifts = known_rows(*guess), shifts_of(torus)
+    none = np.zeros(guess[1].shape[1])
     before = np.inf
     for attempt in range(ROUNDS):
         least = tolerance * MARGIN / 10**attempt
-        harmonics, full = chosen_harmonics(known, chain, len(seeds), least)
-        equation = InvarianceEquation(chain, seeds, harmonics)
-        none = np.zeros(chain.N - 1)
+        functions = kind.functions(chain)
+        harmonics, full = chosen_harmonics(known, functions, len(seeds), least)
+        equation = kind.equation(chain, seeds, harmonics)
         rows = [known.get(tuple(nu), none) for nu in harmonics.tolist()]
         cosines = np.array(rows, dtype=np.longdouble)
-        tell(f"{len(harmonics)} harmonics, {equation.grid.points} points", NO_FRACTION)
-        guess = np.where(equation.mask, cosines, 0)
-        found = newton(equation, conditions, guess, shifts, tell)
-        refined = _result(torus, equation, found)
+        tell(f"{len(harmonics)} harmonics, {equation.points} points", NO_FRACTION)
+        start = np.where(equation.mask, cosines, 0)
+        found = newton(equation, conditions, start, shifts, tell)
+        frequencies = _frequencies(chain, seeds, found.shifts)
+        refined = kind.result(torus, equation, found, frequencies)
         residual = refined.residual()
         if found.failure:
-            raise NoTorus(found.failure, refined, residual)
+            raise NoTorus(_because(found.failure, refined), refined, residual)
         tell(f"residual {residual:.1e} between the grid points", NO_FRACTION)
         if residual <= tolerance:
             return refined
@@ -334,26 +423,34 @@ def refined_torus(
             left = (
                 f"leave a residual of {residual:.2g}, above the tolerance {tolerance:.0e}"
             )
-            return replace(refined, warnings=(f"{reason} {left}",))
+            return replace(refined, warnings=(_because(f"{reason} {left}", refined),))
         before, shifts = residual, found.shifts
-        known = _rows(harmonics, np.asarray(found.cosines))
+        known = known_rows(harmonics, np.asarray(found.cosines))
     warning = f"the residual is {residual:.2g} after {ROUNDS} choices of harmonics"
     return replace(refined, warnings=(warning,))
 
 
-def _moderate_coefficients(torus: QuasiPeriodic) -> Floats:
-    """The coefficients in doubles; InputError where they are all 0 or of no moderate size."""
+def _because(reason: str, torus: RefinedTorus | RefinedRingTorus) -> str:
+    """With the resonance of a ring that may be the cause."""
+    cause = driven_in_resonance(torus) if isinstance(torus, RefinedRingTorus) else ""
+    return f"{reason}; {cause}" if cause else reason
+
+
+def _cosines(torus: QuasiPeriodic) -> tuple[Ints, Floats]:
     with np.errstate(over="ignore"):
-        coefficients = torus.cosines.astype(float)
+        return torus.harmonics, torus.cosines.astype(float)
+
+
+def _require_moderate(coefficients: Floats) -> None:
+    """InputError where coefficients are all 0 or of no moderate size."""
     largest = float(np.abs(coefficients).max(initial=0))
     if not LEAST_SIZE < largest < 1 / LEAST_SIZE:  # also where it is not a number
         given = f"coefficients up to {largest:.3g}"
         allowed = "coefficients not all 0 and of moderate size"
         raise InputError("torus", given, allowed, "take another guess")
-    return coefficients
 
 
-def shifts_of(torus: QuasiPeriodic) -> Floats:
+def shifts_of(torus: QuasiPeriodic | RingTorus) -> Floats:
     """omega - Omega of the seeds in long doubles; shape (s,)."""
     with mpmath.workdps(2 * DIGITS):
         linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
@@ -362,95 +459,33 @@ def shifts_of(torus: QuasiPeriodic) -> Floats:
     return np.array([long(shift) for shift in shifts])
 
 
-def _rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats]:
-    """Coefficients by harmonic, the first number that is not 0 positive.
-
-    A small part left out.
-    """
-    largest = np.abs(cosines).max()
-    rows: dict[tuple[int, ...], Floats] = {}
-    for nu, row in zip(harmonics.tolist(), cosines, strict=True):
-        if np.abs(row).max() > SMALLEST_KEPT * largest:
-            sign = -1 if next((n for n in nu if n), 1) < 0 else 1
-            rows[tuple(sign * n for n in nu)] = row
-    return rows
-
-
-def chosen_harmonics(
-    known: Mapping[tuple[int, ...], Floats], chain: Chain, s: int, tolerance: float
-) -> tuple[Ints, bool]:
-    """Harmonics whose coefficients are expected above the tolerance.
-
-    The second result says whether more would not fit.
-
-    ln |c[nu]| is fitted by a - sum w_i |nu_i|; all harmonics within the reach of the fit are
-    taken, one of each pair +-nu.
-    """
-    size = {nu: float(np.abs(row).max()) for nu, row in known.items()}
-    largest = max(size.values())
-    used = {nu: x for nu, x in size.items() if x > 1e-16 * largest}
-    table = np.array([[1, *(-abs(n) for n in nu)] for nu in used], dtype=float)
-    heights = np.log([x / largest for x in used.values()])
-    determined = len(used) > s + 1
-    solution = np.full(s + 1, 3.0)
-    if determined:
-        solution = np.linalg.lstsq(table, heights, rcond=None)[0]
-    weights = np.clip(solution[1:], 0.2, 12.0)
-    above = heights - table[:, 1:] @ weights
-    offset = float(np.quantile(above, 0.98)) if determined else 0.0
-    reach = max(-np.log(tolerance) + max(offset, 0.0), 3.5 * weights.max())
-    full = False
-    while not _fits(weights, reach, chain):
-        reach, full = 0.95 * reach, True
-    inside = _inside(tuple(weights.tolist()), reach)
-    chosen = sorted({*inside, *unit_harmonics(s)})
-    return np.array(chosen, dtype=np.int64), full
-
-
-def _fits(weights: Floats, reach: float, chain: Chain) -> bool:
-    """Whether the harmonics fit, and half of the bonds on the points of their lattice.
-
-    The lattice has about twice as many points as the cross-polytope of harmonics.
-    """
-    s, half = len(weights), (chain.N + 1) // 2
-    polytope = float(np.prod(2 * reach / weights + 1)) / math.factorial(s)
-    points = 1.2 * OVERSAMPLING**s / 2**s * polytope
-    return bool(points * half <= LARGEST_GRID and polytope / 2 <= MOST_HARMONICS)
-
-
-def _inside(
-    weights: tuple[float, ...], reach: float, *, positive: bool = True
-) -> Iterator[tuple[int, ...]]:
-    """All harmonics with sum w_i |nu_i| <= reach, the first number that is not 0 positive."""
-    top = int(reach / weights[0])
-    lowest = 0 if positive else -top
-    for n in range(lowest, top + 1):
-        if len(weights) == 1:
-            yield (n,)
-            continue
-        rest = reach - weights[0] * abs(n)
-        for others in _inside(weights[1:], rest, positive=positive and n == 0):
-            yield n, *others
+def _frequencies(
+    chain: Chain, seeds: Sequence[int], shifts: Floats
+) -> tuple[Fraction, ...]:
+    with mpmath.workdps(2 * DIGITS):
+        linear = [chain.linear_frequency(q) for q in seeds]
+        pairs = zip(linear, shifts, strict=True)
+        return tuple(_fraction(w + _mpf(shift)) for w, shift in pairs)
 
 
 def _result(
-    torus: QuasiPeriodic, equation: InvarianceEquation, found: Iterate
+    torus: QuasiPeriodic,
+    equation: InvarianceEquation,
+    found: Iterate,
+    frequencies: tuple[Fraction, ...],
 ) -> RefinedTorus:
-    with mpmath.workdps(2 * DIGITS):
-        linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
-        pairs = zip(linear, found.shifts, strict=True)
-        frequencies = [_fraction(w + _mpf(shift)) for w, shift in pairs]
     amplitudes = map(float, seed_amplitudes(equation, found.cosines))
+    modes = np.array(torus.chain.mode_numbers)
     return RefinedTorus(
         chain=torus.chain,
         seeds=torus.seeds,
-        frequencies=tuple(frequencies),
+        frequencies=frequencies,
         amplitudes=dict(zip(torus.seeds, amplitudes, strict=True)),
         phases={q: float(phi) for q, phi in torus.phases.items()},
         harmonics=equation.harmonics,
         cosines=found.cosines.astype(float),
         steps=found.steps,
-        near_resonances=_near_resonances(equation, found),
+        near_resonances=near_resonances(equation, found.cosines, found.shifts, modes),
     )
 
 
@@ -463,18 +498,5 @@ def _fraction(value: Any) -> Fraction:
     return Fraction(text(value, 25))
 
 
-def _near_resonances(
-    equation: InvarianceEquation, found: Iterate
-) -> tuple[NearResonance, ...]:
-    every = equation.divisors(found.shifts).astype(float)
-    divisors = np.where(equation.mask, every, np.inf)
-    divisors[equation.seed_rows, equation.seed_columns] = np.inf
-    order = np.argsort(np.abs(divisors), axis=None)[:SHOWN_DIVISORS]
-    rows, columns = np.unravel_index(order, divisors.shape)
-    nearest = []
-    for r, q in zip(rows, columns, strict=True):
-        if np.isfinite(divisors[r, q]):
-            harmonic = tuple(equation.harmonics[r].tolist())
-            divisor, coefficient = float(divisors[r, q]), float(found.cosines[r, q])
-            nearest.append(NearResonance(int(q) + 1, harmonic, divisor, coefficient))
-    return tuple(nearest)
+COSINES = Unknowns(_cosines, lambda chain: (chain.N + 1) // 2, InvarianceEquation, _result)
+WAVES = Unknowns(wave_coefficients, lambda chain: 1, WaveEquation, refined_waves)

@@ -9,6 +9,7 @@ import numpy as np
 
 from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
+from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.solution import frequencies_record, solution_record
 from symfpu.reports.tables import fifteen_digits, number_text
@@ -18,7 +19,10 @@ SHOWN_MEMBERS = 8  # besides the first; the last one is among them
 SHOWN_DIVISORS = 5
 
 
-def refined_record(torus: RefinedTorus) -> dict[str, Any]:
+Refined = RefinedTorus | RefinedRingTorus
+
+
+def refined_record(torus: Refined) -> dict[str, Any]:
     """A refined torus for JSON: what all solutions have, and its Newton steps."""
     record = solution_record(torus)
     record["energy_error"] = fifteen_digits(energy_spread(torus))
@@ -28,7 +32,7 @@ def refined_record(torus: RefinedTorus) -> dict[str, Any]:
     return record
 
 
-def _newton_records(torus: RefinedTorus) -> list[dict[str, Any]]:
+def _newton_records(torus: Refined) -> list[dict[str, Any]]:
     records = []
     for step in torus.steps:
         residual = fifteen_digits(step.residual)
@@ -38,7 +42,7 @@ def _newton_records(torus: RefinedTorus) -> list[dict[str, Any]]:
     return records
 
 
-def _divisor_records(torus: RefinedTorus) -> list[dict[str, Any]]:
+def _divisor_records(torus: Refined) -> list[dict[str, Any]]:
     records: list[dict[str, Any]] = []
     for resonance in torus.near_resonances:
         record: dict[str, Any] = {"size": fifteen_digits(resonance.divisor)}
@@ -49,16 +53,16 @@ def _divisor_records(torus: RefinedTorus) -> list[dict[str, Any]]:
     return records
 
 
-def energy_spread(torus: RefinedTorus, periods: int = 25, points: int = 100) -> float:
+def energy_spread(torus: Refined, periods: int = 25, points: int = 100) -> float:
     """Largest relative change of H along the orbit over some periods of the slowest seed."""
     slowest = min(float(w) for w in torus.frequencies)
     period = 2 * np.pi / slowest
     times = np.linspace(0, periods * period, points)
-    errors = torus.energy_error(times)
-    return float(np.abs(errors).max())
+    energies, start = torus.energy(times), torus.energy()
+    return float(np.abs((energies - start) / start).max())
 
 
-def refined_text(torus: RefinedTorus) -> str:
+def refined_text(torus: Refined) -> str:
     """The same for a reader."""
     record = refined_record(torus)
     amplitudes = {q: float(a) for q, a in record["amplitudes"].items()}
@@ -70,6 +74,8 @@ def refined_text(torus: RefinedTorus) -> str:
     lines = [f"verdict: {record['verdict']}"]
     if "potential" in record:
         lines.append(f"potential          {record['potential']}")
+    if "ends" in record:
+        lines.append(f"ends               {record['ends']}")
     for q, w in record["frequencies"].items():
         lines.append(f"seed {q:<4} omega {w:<28} amplitude {amplitudes[q]:.15g}")
     lines.append(f"energy H           {float(record['energy']):.15g}   (at t = 0)")

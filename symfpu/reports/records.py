@@ -24,6 +24,7 @@ from symfpu.localization.laws import ProfileLine
 from symfpu.localization.profiles import ProfileDistance
 from symfpu.numbers.arithmetic import text
 from symfpu.proofs.certificates import PropagationProof
+from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.dynamics import alignment_record, orbit_record
 from symfpu.reports.family import event_record, family_record, member_record, refined_record
@@ -135,6 +136,7 @@ def _distance_record(found: ProfileDistance) -> Json:
 KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (QTorus, torus_record),
     (RefinedTorus, refined_record),
+    (RefinedRingTorus, refined_record),
     (QuasiPeriodic, solution_record),
     (RingTorus, solution_record),
     (LindstedtSeries, series_record),

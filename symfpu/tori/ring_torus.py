@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,6 +39,7 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 
 Floats = NDArray[np.float64]
 Waves = NDArray[np.complex128]
+Value = TypeVar("Value")
 GRID_POINTS = 1024  # angles at which a residual is taken, about
 CHUNK = 256  # angles held at once
 
@@ -186,14 +187,46 @@ class RingTorus(Shown, Gridded):
             for row, column, value in zip(table.row, table.col, table.data, strict=True):
                 yield int(column), sign * rates[row], complex(value * factors[row])
 
+    @property
+    def seed(self) -> int:
+        """The seed mode of a solution of one angle; raises InputError for more."""
+        return self._only("seed", self.seeds)
+
+    @property
+    def frequency(self) -> Fraction:
+        """omega of a solution of one angle, exact; raises InputError for more."""
+        return self._only("frequency", self.frequencies)
+
+    @property
+    def amplitude(self) -> float:
+        """A of a solution of one angle; raises InputError for more."""
+        return self._only("amplitude", tuple(self.amplitudes.values()))
+
+    def _only(self, name: str, values: tuple[Value, ...]) -> Value:
+        if len(self.seeds) > 1:
+            given, allowed = (
+                f"of {len(self.seeds)} angles",
+                "that of a solution of one angle",
+            )
+            raise InputError(name, given, allowed, "use seeds, frequencies and amplitudes")
+        return values[0]
+
     def residual(self, points: int | None = None) -> float:
         """Largest |d^2Q_q/dt^2 - force| on a grid of angles, over the largest force.
 
         points : grid points for each of the s angles; default such that the grid has about 1024.
         """
+        if points is None:
+            return self._residual
+        return self._residual_of(integer(points, "points", 1))
+
+    @cached_property
+    def _residual(self) -> float:
+        """The residual on the default grid, which every sentence on this torus states."""
         s = len(self.seeds)
-        default = max(3, min(64, round(GRID_POINTS ** (1 / s))))
-        number = default if points is None else integer(points, "points", 1)
+        return self._residual_of(max(3, min(64, round(GRID_POINTS ** (1 / s)))))
+
+    def _residual_of(self, number: int) -> float:
         worst = largest = 0.0
         for theta in self._angle_grid(number):
             force = self.chain.accelerations(self._sums(theta))

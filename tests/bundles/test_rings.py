@@ -9,6 +9,7 @@ from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.files.archive import BundleError
+from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.travelling import travelling_waves
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -49,7 +50,11 @@ def test_series_come_back(law, order, tmp_path):
     assert np.array_equal(kept.frequency_terms(squares)[0], series.frequency_terms(squares)[0])
 
 
-@pytest.mark.parametrize("made", [lambda: travelling_torus(waves(), phases={1: 0.3}), standing])
+def newton():
+    return refine(travelling_torus(waves(), phases={1: 0.3}))
+
+
+@pytest.mark.parametrize("made", [lambda: travelling_torus(waves(), phases={1: 0.3}), standing, newton])
 def test_tori_come_back(made, tmp_path):
     torus = made()
     bundle = load(save(tmp_path / "torus", torus))

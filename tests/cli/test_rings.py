@@ -7,7 +7,7 @@ import pytest
 
 from symfpu import Chain, travelling_torus, travelling_waves
 from symfpu.cli.main import main
-from tests.tolerances import COARSE_STEP_ERROR
+from tests.tolerances import COARSE_STEP_ERROR, PROMISED_RESIDUAL
 
 SOLVE = ["solve", "-N", "16", "--ends", "periodic"]
 WAVES = [*SOLVE, "--beta", "1", "--seeds=1,-3", "--omega", "0.3904,1.1116", "--order", "4"]
@@ -64,6 +64,18 @@ def test_show_orbit_and_gali_take_the_file(capsys, saved, tmp_path):
     assert record["ends"] == "periodic"
 
 
+def test_refine_takes_the_file_and_show_what_it_made(capsys, saved, tmp_path):
+    kept = tmp_path / "refined.symfpu"
+    record = json.loads(run(capsys, "refine", saved, "-o", kept, "--json")[1])
+    assert (record["ends"], record["verdict"], record["warnings"]) == ("periodic", "torus", [])
+    assert record["residual"] < PROMISED_RESIDUAL
+    assert record["energy_error"] < PROMISED_RESIDUAL
+    code, out, err = run(capsys, "show", kept)
+    assert (code, err) == (0, "")
+    for word in ("verdict: torus", "ends               periodic", "seed -3", "smallest divisors"):
+        assert word in out
+
+
 def test_propagate(capsys):
     code, out, _ = run(capsys, "propagate", "-N", 16, "--ends", "periodic", "--seeds=1,-3", "--order", 2)
     assert (code, out) == (0, "D_0 = {1, 3}\nD_1 = {2, 4, 6}\nD_2 = {5, 7}\n")
@@ -72,7 +84,6 @@ def test_propagate(capsys):
 
 
 REFUSED = {
-    "refine FILE": "docs/chains.md",
     "export FILE --lang c -o exported.c": "docs/chains.md",
     "breather -N 8 --seed 1 --amplitude 0.1 --alpha 1 --ends periodic": "--ends",
     "family -N 8 --seeds 1 --to-energy 0.1 --alpha 1 --ends periodic": "--ends",

@@ -1,0 +1,92 @@
+"""Which harmonics a torus needs: the fall-off of its coefficients, and what fits into memory."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.invariance import OVERSAMPLING
+
+SMALLEST_KEPT = 1e-18  # of the largest coefficient: smaller ones of a guess are left out
+LARGEST_GRID = 60_000_000  # values of the functions; arrays of 480 MB
+MOST_HARMONICS = 40_000
+
+
+def unit_harmonics(s: int) -> list[tuple[int, ...]]:
+    """e_1 .. e_s."""
+    return [tuple(row) for row in np.eye(s, dtype=np.int64).tolist()]
+
+
+def known_rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats]:
+    """Coefficients by harmonic, the first number that is not 0 positive.
+
+    A small part left out.
+    """
+    largest = np.abs(cosines).max()
+    rows: dict[tuple[int, ...], Floats] = {}
+    for nu, row in zip(harmonics.tolist(), cosines, strict=True):
+        if np.abs(row).max() > SMALLEST_KEPT * largest:
+            sign = -1 if next((n for n in nu if n), 1) < 0 else 1
+            rows[tuple(sign * n for n in nu)] = row
+    return rows
+
+
+def chosen_harmonics(
+    known: Mapping[tuple[int, ...], Floats], functions: int, s: int, tolerance: float
+) -> tuple[Ints, bool]:
+    """Harmonics whose coefficients are expected above the tolerance.
+
+    The second result says whether more would not fit.
+
+    functions : of the angles, those of half of the bonds, or the one of a ring's waves.
+    ln |c[nu]| is fitted by a - sum w_i |nu_i|; all harmonics within the reach of the fit are
+    taken, one of each pair +-nu.
+    """
+    size = {nu: float(np.abs(row).max()) for nu, row in known.items()}
+    largest = max(size.values())
+    used = {nu: x for nu, x in size.items() if x > 1e-16 * largest}
+    table = np.array([[1, *(-abs(n) for n in nu)] for nu in used], dtype=float)
+    heights = np.log([x / largest for x in used.values()])
+    determined = len(used) > s + 1
+    solution = np.full(s + 1, 3.0)
+    if determined:
+        solution = np.linalg.lstsq(table, heights, rcond=None)[0]
+    weights = np.clip(solution[1:], 0.2, 12.0)
+    above = heights - table[:, 1:] @ weights
+    offset = float(np.quantile(above, 0.98)) if determined else 0.0
+    reach = max(-np.log(tolerance) + max(offset, 0.0), 3.5 * weights.max())
+    full = False
+    while not _fits(weights, reach, functions):
+        reach, full = 0.95 * reach, True
+    inside = _inside(tuple(weights.tolist()), reach)
+    chosen = sorted({*inside, *unit_harmonics(s)})
+    return np.array(chosen, dtype=np.int64), full
+
+
+def _fits(weights: Floats, reach: float, functions: int) -> bool:
+    """Whether the harmonics fit, and so many functions on the points of their lattice.
+
+    The lattice has about twice as many points as the cross-polytope of harmonics.
+    """
+    s = len(weights)
+    polytope = float(np.prod(2 * reach / weights + 1)) / math.factorial(s)
+    points = 1.2 * OVERSAMPLING**s / 2**s * polytope
+    return bool(points * functions <= LARGEST_GRID and polytope / 2 <= MOST_HARMONICS)
+
+
+def _inside(
+    weights: tuple[float, ...], reach: float, *, positive: bool = True
+) -> Iterator[tuple[int, ...]]:
+    """All harmonics with sum w_i |nu_i| <= reach, the first number that is not 0 positive."""
+    top = int(reach / weights[0])
+    lowest = 0 if positive else -top
+    for n in range(lowest, top + 1):
+        if len(weights) == 1:
+            yield (n,)
+            continue
+        rest = reach - weights[0] * abs(n)
+        for others in _inside(weights[1:], rest, positive=positive and n == 0):
+            yield n, *others

@@ -1,0 +1,191 @@
+"""The equation of travelling waves on a ring: one function of the angles for all its bonds.
+
+A harmonic nu lives in the wave m = nu.q of the seeds q alone, so that the stretch of bond j is
+r(theta - 2 pi q (j + 1/2)/N) with one even function of the s angles
+
+    r(psi) = N^(-1/2) sum over nu of Omega_m c[nu] cos(nu.psi),
+
+and all particles move by (omega.d/dpsi)^2 r = V'(r) forward - 2 V'(r) + V'(r) backward, the shift
+being 2 pi q/N: ((nu.omega)^2 - Omega_m^2) c = N^(1/2) Omega_m (V'(r) - r)[nu]. There is no lattice
+of modes. Ours. All sums of one kind run in one precision, as in `invariance`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import mpmath
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.chain import bonds
+from symfpu.chain.chain import Chain
+from symfpu.refinement.equation import Floats, Ints, Slopes
+from symfpu.refinement.invariance import (
+    DIGITS,
+    LONG_DOUBLES,
+    Lattice,
+    largest_slopes,
+    long,
+    shifted,
+)
+
+
+class WaveEquation:
+    """The equations of one torus of a ring: divisors and forces of coefficients, all (H, 1).
+
+    Those of the seeds are their amplitudes. `mask` leaves out mode 0, which does not move.
+    """
+
+    def __init__(self, chain: Chain, seeds: Sequence[int], harmonics: Ints) -> None:
+        self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
+        self.grid = Lattice(harmonics)
+        self.waves = harmonics @ np.array(seeds) % chain.N
+        self.mask = self._allowed()
+        units = np.eye(len(seeds), dtype=np.int64)
+        places = [np.flatnonzero((harmonics == e).all(axis=1)) for e in units]
+        self.seed_rows = np.array([int(place[0]) for place in places])
+        self.seed_columns = np.zeros(len(seeds), dtype=np.int64)
+        with mpmath.workdps(2 * DIGITS):
+            linear = [chain.linear_frequency(m) for m in range(chain.N)]
+            root = long(mpmath.sqrt(chain.N))
+        self.linear = np.array([long(w) for w in linear])[self.waves][:, None]
+        self._stretch, self._back = self.linear / root, self.linear * root
+        self._law = chain.law(LONG_DOUBLES)
+        self._set_divisors(linear)
+
+    def _allowed(self) -> NDArray[np.bool_]:
+        """Waves that move; where V is even only those of odd harmonics."""
+        moving = self.waves != 0
+        if self.chain.potential.even:
+            moving &= self.harmonics.sum(axis=1) % 2 == 1
+        return np.asarray(moving[:, None])
+
+    def _set_divisors(self, linear: Sequence[Any]) -> None:
+        """nu.Omega - Omega_m and nu.Omega + Omega_m from twice as many digits as they keep."""
+        of_seeds = [linear[q % self.chain.N] for q in self.seeds]
+        with mpmath.workdps(2 * DIGITS):
+            drives = [mpmath.fdot(nu, of_seeds) for nu in self.harmonics.tolist()]
+            pairs = list(zip(drives, self.waves.tolist(), strict=True))
+            below = [long(drive - linear[m]) for drive, m in pairs]
+            above = [long(drive + linear[m]) for drive, m in pairs]
+        self._below, self._above = np.array(below), np.array(above)
+
+    @property
+    def points(self) -> int:
+        """Of the lattice."""
+        return self.grid.points
+
+    @property
+    def seed_frequencies(self) -> Floats:
+        """Omega of the seeds in long doubles; shape (s,)."""
+        return np.asarray(self.linear[self.seed_rows, 0])
+
+    def divisors(self, shifts: Floats) -> Floats:
+        """(nu.omega)^2 - Omega_m^2 for omega = Omega + shifts of the seeds; shape (H, 1)."""
+        moved = self.harmonics @ shifts
+        return np.asarray((self._below + moved) * (self._above + moved))[:, None]
+
+    def rates(self, shifts: Floats) -> Floats:
+        """nu.omega in long doubles; shape (H,)."""
+        return np.asarray(self.harmonics @ (self.seed_frequencies + shifts))
+
+    def _stretches(self, coefficients: Floats) -> Floats:
+        """The function r at the points, (1, points), in the precision of the coefficients."""
+        return self.grid.values(coefficients * self._stretch.astype(coefficients.dtype))
+
+    def _projected(self, tension: Floats) -> Floats:
+        """What a tension at the points (1, points) drives; shape (H, 1)."""
+        found = self.grid.coefficients(tension)
+        return np.asarray(found * self._back.astype(tension.dtype) * self.mask)
+
+    def force(self, cosines: Floats) -> Floats:
+        """The force of the anharmonic part of V, (H, 1), in the precision of coefficients."""
+        law = bonds.cast(self._law, cosines.dtype)
+        return self._projected(bonds.anharmonic_tension(law, self._stretches(cosines)))
+
+    def slopes(self, cosines: Floats) -> Floats:
+        """V''(r) - 1 at the points, in doubles; shape (1, points)."""
+        r = self._stretches(cosines.astype(float))
+        return np.asarray(bonds.anharmonic_stiffness(self.chain.law(), r))
+
+    def force_change(self, slopes: Floats, change: Floats) -> Floats:
+        """The derivative of the force along a change of the coefficients, in doubles; (H, 1)."""
+        return self._projected(slopes * self._stretches(change))
+
+    def block(self, slopes: Floats, rows: Ints, columns: Ints) -> Floats:
+        """The derivative of the force between chosen unknowns; shape (m, m).
+
+        Of a unit of cos(nu'.psi) the coefficient at nu is slope[nu - nu'] + slope[nu + nu'].
+        """
+        spectrum = self.grid.spectrum(slopes)[0]
+        along = self.harmonics[rows] @ self.grid.generator
+        there = self._stretch[rows, 0].astype(float)
+        back = self._back[rows, 0].astype(float)
+        matrix = np.empty((len(rows), len(rows)))
+        for a in range(len(rows)):
+            both = spectrum[self.grid.folded(along[a] - along)]
+            both += spectrum[self.grid.folded(along[a] + along)]
+            matrix[a] = back[a] * both * there
+        return matrix
+
+    def sparse_derivative(self, slopes: Floats) -> Any:
+        """The derivative of the force by the largest harmonics of the slopes alone.
+
+        A sparse matrix between all unknowns, in the order of the mask.
+        """
+        from scipy import sparse
+
+        spectrum = self.grid.spectrum(slopes)
+        unknowns = int(self.mask.sum())
+        chosen = largest_slopes(self.grid, spectrum, 2 * unknowns)
+        number = np.full(len(self.harmonics), -1, dtype=np.int32)
+        number[self.mask[:, 0]] = np.arange(unknowns)
+        both_signs = np.unique(np.concatenate([chosen, -chosen]), axis=0)
+        parts = [self._coupled_by(kappa, spectrum[0], number) for kappa in both_signs]
+        values, i, j = (np.concatenate(x) for x in zip(*parts, strict=True))
+        return sparse.csr_matrix((values, (i, j)), shape=(unknowns, unknowns))
+
+    def _coupled_by(
+        self, kappa: Ints, spectrum: Floats, number: NDArray[np.int32]
+    ) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
+        """Entries of the derivative by one harmonic of the slopes: values, rows, columns."""
+        rows, columns = shifted(self.harmonics, kappa)
+        slope = spectrum[self.grid.entries(kappa)]
+        out, back = self._stretch[columns, 0], self._back[rows, 0]
+        values = (back * out).astype(float) * slope
+        i, j = number[rows], number[columns]
+        inside = (i >= 0) & (j >= 0)
+        return values[inside], i[inside], j[inside]
+
+    def energy(
+        self, cosines: Floats, shifts: Floats, *, harmonic: bool
+    ) -> tuple[np.longdouble, Slopes]:
+        """H, or the harmonic energy, averaged over the angles, and its derivatives.
+
+        A wave is nowhere at rest; on a torus H is the same everywhere.
+        """
+        c, rates = cosines[:, 0], self.rates(shifts)
+        stiffness = self.linear[:, 0] ** 2
+        kinetic, elastic = (rates**2 * c) @ c / 4, (stiffness * c) @ c / 4
+        by_cosine = (rates**2 + stiffness) * c / 2
+        by_shift = (rates * c**2 / 2) @ self.harmonics
+        if harmonic:
+            return np.longdouble(kinetic + elastic), (by_cosine[:, None], by_shift)
+        r = self._stretches(cosines)
+        mean = self.grid.spectrum(bonds.potential(self._law, r))[0, 0]
+        driven = by_cosine[:, None] + self.force(cosines) / 2
+        return np.longdouble(kinetic + self.chain.N * mean), (driven, by_shift)
+
+    def seed_energy(
+        self, place: int, cosines: Floats, shifts: Floats
+    ) -> tuple[np.longdouble, Slopes]:
+        """E_q of a seed averaged over the angles: half of its waves are in -q, but for N/2."""
+        q, N = self.seeds[place], self.chain.N
+        own = ((self.waves - q) % N == 0) | ((self.waves + q) % N == 0)
+        part = (1 if 2 * q == N else 0.5) * own * self.mask[:, 0]
+        c, rates = cosines[:, 0], self.rates(shifts)
+        sizes = part * (rates**2 + self.linear[:, 0] ** 2) / 4
+        by_shift = (part * rates * c**2 / 2) @ self.harmonics
+        return np.longdouble((sizes * c) @ c), ((2 * sizes * c)[:, None], by_shift)

@@ -1,0 +1,128 @@
+"""The equation of travelling waves: its derivatives, its blocks, and what it makes of the particles of a ring."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from symfpu.refinement.conditions import Amplitude, AmplitudeRatio, Energy, EnergyRatio, FrequencyShift
+from symfpu.refinement.waves import WaveEquation
+from symfpu.tori.ring_torus import RingTorus
+from tests.refinement.test_conditions import RICHARDSON, STEP
+from tests.refinement.test_invariance import ball
+from tests.tolerances import FOURTEEN_DIGITS, ROUNDING
+from tests.tori.test_ring_torus import ring
+
+LAWS = {"both": {"alpha": "0.3", "beta": "0.5"}, "even": {"beta": 1}, "toda": {"potential": "toda:1/2"}}
+SEEDS = (2, -3)
+
+
+@cache
+def made(law, reach=3):
+    """An equation with shifts and random coefficients of all harmonics up to sum |nu| = reach."""
+    equation = WaveEquation(ring(7, **LAWS[law]), SEEDS, ball(2, 3))
+    draw = np.random.default_rng(4)
+    there = equation.mask & (np.abs(equation.harmonics).sum(axis=1) <= reach)[:, None]
+    c = np.where(there, draw.normal(scale=0.03, size=there.shape), 0)
+    c[equation.seed_rows, equation.seed_columns] = 0.3, -0.4
+    return equation, c.astype(np.longdouble), np.array([0.01, -0.02], dtype=np.longdouble)
+
+
+def torus(law):
+    """The particles of these coefficients."""
+    equation, c, shifts = made(law, 1)
+    moving = equation.mask[:, 0]
+    modes = equation.harmonics[moving] @ np.array(SEEDS)
+    signs = np.sign(np.sin(np.pi * modes / 7))
+    omega = tuple(map(float, equation.seed_frequencies + shifts))
+    sines = signs * c[moving, 0].astype(float)
+    return RingTorus(equation.chain, SEEDS, omega, dict.fromkeys(SEEDS, 0.0), {}, equation.harmonics[moving], modes, sines)
+
+
+@pytest.mark.parametrize("law", ["both", "even"])
+def test_force_and_energies_are_those_of_the_particles(law):
+    """By the chain: the mean over all angles of the energies, and of the forces times the waves.
+
+    Of waves of the seeds alone, whose cubes do not fold on the lattice.
+    """
+    equation, c, shifts = made(law, 1)
+    plain, number = torus(law), 12
+    forces, H, harmonic = np.zeros(len(plain.sines)), 0.0, 0.0
+    for theta in plain._angle_grid(number):
+        Q, P = plain._sums(theta), plain._sums(theta, -1j * plain._rates)
+        x = plain.chain.positions(Q)
+        pull = plain.chain.positions(plain.chain.accelerations(Q))
+        r = np.roll(x, -1, axis=1) - x
+        linear = r - np.roll(r, 1, axis=1)
+        j = np.arange(7)
+        phases = 2 * np.pi / 7 * np.multiply.outer(plain.modes, j) - (theta @ plain.harmonics.T)[:, :, None]
+        forces += ((pull - linear)[:, None, :] * np.sin(phases)).sum(axis=(0, 2))
+        H += plain.chain.energy(Q, P).sum()
+        harmonic += plain.chain.harmonic_energies(Q, P).sum()
+    points = number**2
+    expected = -2 * forces / (points * 7**0.5) * np.sign(np.sin(np.pi * plain.modes / 7))
+    found = equation.force(c)[equation.mask].astype(float)
+    assert np.abs(found - expected).max() < FOURTEEN_DIGITS
+    for kind, total in ((False, H), (True, harmonic)):
+        assert np.isclose(float(equation.energy(c, shifts, harmonic=kind)[0]), total / points, rtol=FOURTEEN_DIGITS)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_blocks_and_sparse_parts_are_the_derivative(law):
+    equation, c, _ = made(law)
+    slopes = equation.slopes(c)
+    rows, columns = np.nonzero(equation.mask)
+    block = equation.block(slopes, rows, columns)
+    draw = np.random.default_rng(5)
+    change = np.where(equation.mask, draw.normal(size=equation.mask.shape), 0)
+    along = equation.force_change(slopes, change)[equation.mask]
+    assert np.allclose(block @ change[equation.mask], along, rtol=ROUNDING, atol=FOURTEEN_DIGITS)
+    sparse = equation.sparse_derivative(slopes).toarray()
+    held = sparse != 0
+    assert held.any()
+    pairs = abs(rows[:, None] - rows) > 0
+    heights = equation.grid.spectrum(slopes)[0]
+    mean = heights[0]
+    diagonal = np.isclose(sparse.diagonal(), mean * equation.linear[equation.mask].astype(float) ** 2, rtol=FOURTEEN_DIGITS)
+    assert diagonal.any() or not held[~pairs].any()
+    difference = (equation.force(c + STEP * change) - equation.force(c - STEP * change))[equation.mask]
+    assert np.allclose((difference / (2 * STEP)).astype(float), along, rtol=0, atol=STEP.astype(float))
+
+
+def conditions(law):
+    equation, c, shifts = made(law)
+    H, _ = equation.energy(c, shifts, harmonic=False)
+    return {
+        "frequency": FrequencyShift(1, shifts[1] + 1),
+        "amplitude": Amplitude(1, np.longdouble(0.2)),
+        "amplitude ratio": AmplitudeRatio(1, 0.7),
+        "energy": Energy(H, harmonic=False),
+        "harmonic energy": Energy(H, harmonic=True),
+        "energy ratio": EnergyRatio(1, 1.7),
+    }
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("kind", ["frequency", "amplitude", "amplitude ratio", "energy", "harmonic energy", "energy ratio"])
+def test_gradients_are_derivatives(law, kind):
+    equation, c, shifts = made(law)
+    condition = conditions(law)[kind]
+    by_cosine, by_shift = condition.gradient(equation, c, shifts)
+    draw = np.random.default_rng(6)
+    dc, dw = np.where(equation.mask, draw.normal(size=c.shape), 0), draw.normal(size=2)
+
+    def slope(h):
+        up, down = (condition.value(equation, c + sign * h * dc, shifts + sign * h * dw) for sign in (1, -1))
+        return (up - down) / (2 * h)
+
+    expected = (4 * slope(STEP) - slope(2 * STEP)) / 3
+    given = (by_cosine * dc).sum() + by_shift @ dw
+    assert abs(given - expected) < RICHARDSON * max(1, abs(given)) * 100
+
+
+def test_mode_zero_and_what_an_even_potential_forbids_are_no_unknowns():
+    equation, _, _ = made("even")
+    waves = equation.harmonics @ np.array(SEEDS) % 7
+    assert not equation.mask[waves == 0].any()
+    assert not equation.mask[equation.harmonics.sum(axis=1) % 2 == 0].any()
+    assert made("both")[0].mask[waves != 0].all()
