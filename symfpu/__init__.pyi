@@ -63,6 +63,7 @@ from symfpu.refinement.tori import RefinedTorus as RefinedTorus
 from symfpu.refinement.tori import refine as refine
 from symfpu.refinement.tori import refine_at_amplitudes as refine_at_amplitudes
 from symfpu.refinement.tori import refine_at_energy as refine_at_energy
+from symfpu.refinement.travelling_breather import travelling_breather as travelling_breather
 
 # breathers
 from symfpu.breathers.at_energy import breather_at_energy as breather_at_energy

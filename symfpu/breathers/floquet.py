@@ -1,6 +1,7 @@
 """Floquet multipliers of a q-breather: its tangent map over a period, and its stability.
 
-The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time: half a period gives
+The orbit is even in time, and R = diag(1, -1) on (Q, P) reverses time, on a ring in coordinates of
+its own (symfpu.breathers.paths): half a period gives
 M = R H^-1 R H with the symplectic inverse of H = [[A, B], [C, D]]. Then M = [[a, b], [c, a^T]] with
 a = 1 + 2 B^T C, and M + M^-1 = diag(2a, 2a^T): the multipliers come in pairs with
 lambda + 1/lambda = 2 + 4 kappa, kappa an eigenvalue of B^T C. The pair at 1, a Jordan block of M,
@@ -16,7 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import PeriodicOrbit, as_periodic_orbit
+from symfpu.breathers.paths import PeriodicPath, path_of
 from symfpu.chain import bonds
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import particle_scheme
@@ -27,6 +28,7 @@ from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 Floats = NDArray[np.float64]
 MORE_ANGLES = (
@@ -56,7 +58,8 @@ class Floquet(Shown, Gridded):
         one quadruple).
     kappa : (lambda + 1/lambda - 2)/4; tolerance : how far each may be off because of the errors
         of map and orbit; both (N-1,).
-    monodromy : M in modes, rows and columns Q_1 .., P_1 ..; shape (2(N-1), 2(N-1)).
+    monodromy : M in modes, rows and columns Q_1 .., P_1 ..; shape (2(N-1), 2(N-1)). On a ring by
+        real waves: q > 0 the cosine, -q the sine, normalised.
     symplecticity : largest entry of M^T J M - J. map_error : estimated error of the half-period
         map.
     trivial_error : by how much the trivial pair of the computed map misses kappa = 0.
@@ -72,7 +75,7 @@ class Floquet(Shown, Gridded):
     2     2  on the circle
     """
 
-    orbit: QuasiPeriodic
+    orbit: QuasiPeriodic | RingTorus
     pairs: NDArray[np.complex128] = field(repr=False)
     kinds: tuple[str, ...]
     kappa: NDArray[np.complex128] = field(repr=False)
@@ -148,21 +151,22 @@ class Floquet(Shown, Gridded):
         )
 
 
-def monodromy(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floats:
+def monodromy(orbit: QuasiPeriodic | RingTorus, *, scheme: str = "kahan_li8") -> Floats:
     """Tangent map over one period in mode coordinates and momenta, from a state at rest.
 
     scheme : of the integrator, on T + V. Returns shape (2(N-1), 2(N-1)). Raises InputError.
     """
-    periodic = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
-    half, _ = _half(periodic, particle_scheme(scheme))
-    return _whole(half)
+    path = path_of(orbit, "orbit", MORE_ANGLES)
+    half, _ = _half(path, particle_scheme(scheme))
+    return _in_modes(path, _whole(half))
 
 
-def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
+def floquet(orbit: QuasiPeriodic | RingTorus, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
-    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others; dimensionless. Of
-        a truncated series, multipliers are as good as the orbit is.
+    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others, on a ring from
+        `travelling_breather` or `unfold`; dimensionless. Of a truncated series, multipliers are
+        as good as the orbit is.
     scheme : of the integrator, on T + V; with one of lower order errors and tolerances are larger.
 
     The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time;
@@ -177,13 +181,12 @@ def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
     """
     from scipy.linalg import eig
 
-    periodic = as_periodic_orbit(orbit, "orbit", MORE_ANGLES)
-    half, map_error = _half(periodic, particle_scheme(scheme))
+    path = path_of(orbit, "orbit", MORE_ANGLES)
+    half, map_error = _half(path, particle_scheme(scheme))
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]
-    force = periodic.chain.accelerations(periodic.positions(0.0))
-    # the acceleration, then an orthonormal basis of what is perpendicular to it
-    _, _, basis = np.linalg.svd(force[None, :])
+    # the velocity, then an orthonormal basis of what is perpendicular to it
+    _, _, basis = np.linalg.svd(path.flow[None, :])
     flow, rest = basis.T[:, 0], basis.T[:, 1:]
     trivial = float(np.linalg.norm(C.T @ (B @ flow)))
     sizes = float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2))
@@ -203,7 +206,7 @@ def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
         kinds=(TRIVIAL, *(kinds[i] for i in order)),
         kappa=np.append(0.0, kappa[order]),
         tolerance=np.append(SAFETY * error, tolerance[order]),
-        monodromy=whole,
+        monodromy=_in_modes(path, whole),
         symplecticity=_symplecticity_error(whole),
         map_error=map_error,
         trivial_error=trivial,
@@ -218,21 +221,13 @@ def _symplecticity_error(M: Floats) -> float:
     return float(np.max(np.abs(M.T @ J @ M - J)))
 
 
-def _half(orbit: PeriodicOrbit, scheme: Scheme) -> tuple[Floats, float]:
+def _half(path: PeriodicPath, scheme: Scheme) -> tuple[Floats, float]:
     """The tangent map over half a period and its estimated error, in the spectral norm."""
-    chain, omega = orbit.chain, float(orbit.frequency)
-    duration = np.pi / omega
-    times = np.linspace(0, duration, 2 * len(orbit.cosines))
-    r = chain.stretches(orbit.positions(times))
+    chain, stretches = path.chain, path.stretches
+    duration = np.pi / path.omega
+    r = stretches(np.linspace(0, duration, 2 * path.harmonics))
     stiffest = float(np.max(np.abs(bonds.stiffness(chain.law(), r))))
     steps = int(np.ceil(duration * np.sqrt(stiffest) / FIRST_STEP))
-    coefficients = chain.stretches(orbit.cosines)
-    rates = np.arange(len(coefficients)) * omega
-
-    def stretches(t: Floats) -> Floats:
-        angles = np.multiply.outer(t, rates)
-        return np.asarray(np.cos(angles) @ coefficients)
-
     coarse = tangent_map_along(chain, stretches, duration, steps, scheme=scheme)
     for _ in range(DOUBLINGS):
         steps *= 2
@@ -242,7 +237,14 @@ def _half(orbit: PeriodicOrbit, scheme: Scheme) -> tuple[Floats, float]:
             break
         coarse = fine
     rounding = float(np.finfo(float).eps * np.linalg.norm(fine, 2))
+    if path.frame is not None:
+        fine = path.frame @ fine @ path.frame.T
     return fine, error + np.sqrt(steps) * rounding
+
+
+def _in_modes(path: PeriodicPath, M: Floats) -> Floats:
+    """A map back in the coordinates of the modes."""
+    return M if path.frame is None else path.frame.T @ M @ path.frame
 
 
 def _whole(half: Floats) -> Floats:

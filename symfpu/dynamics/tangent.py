@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain import bonds
 from symfpu.chain.bonds import Law
-from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
 from symfpu.dynamics.scheme import Scheme
@@ -117,21 +117,20 @@ def tangent_map_along(
 
     stretches : bond stretches r_j of the orbit at times (T,), shape (T, N), as often as wanted.
     scheme : on T + V; time runs with its drifts, so that forces given as functions of time keep
-        the order. chain : with fixed ends.
+        the order.
 
-    Returns shape (2(N-1), 2(N-1)); rows and columns are Q_1 .. Q_(N-1), P_1 .. P_(N-1).
-    Raises InputError.
+    Returns shape (2(N-1), 2(N-1)); rows and columns are Q_1 .. Q_(N-1), P_1 .. P_(N-1), on a ring
+    coordinates and momenta of `real_waves`. Raises InputError.
     """
     from symfpu.dynamics.tangent_loops import carry_along
 
-    require_fixed_ends(chain)
     n = chain.N - 1
     count = integer(steps, "steps", 1)
     h = step_length(duration, "duration") / count
     entry, kicks, drifts = scheme.merged(h)
     identity = np.eye(2 * n)
-    dx = _in_lanes(chain, chain.positions(identity[:, :n]))
-    dp = _in_lanes(chain, chain.positions(identity[:, n:]))
+    dx = _in_lanes(chain, _displaced(chain, identity[:, :n]))
+    dp = _in_lanes(chain, _displaced(chain, identity[:, n:]))
     inside = np.cumsum(scheme.drifts[:-1])  # times of the kicks in a step of length 1
     portion = max(1, TABLE // (scheme.stages * chain.N))
     dx += entry * dp
@@ -139,11 +138,40 @@ def tangent_map_along(
         starts = np.arange(first, min(first + portion, count))
         times = h * np.add.outer(starts, inside).reshape(-1)
         slopes = bonds.stiffness(chain.law(), stretches(times))
-        carry_along(dx, dp, slopes, kicks, drifts)
+        carry_along(dx, dp, slopes, kicks, drifts, chain.periodic)
     dx -= entry * dp
-    dQ = _out_of_lanes(chain, dx, 2 * n)
-    dP = _out_of_lanes(chain, dp, 2 * n)
-    return np.vstack([dQ.T, dP.T])
+    rows = [_rows_of_lanes(chain, lanes, 2 * n) for lanes in (dx, dp)]
+    return np.vstack([_undisplaced(chain, particles).T for particles in rows])
+
+
+def real_waves(chain: Chain) -> Floats:
+    """Orthonormal real waves of a ring, a row each, in the order of its modes; (N-1, N).
+
+    Mode q > 0 is the cosine of 2 pi q j / N, -q its sine. The mean is left out.
+
+    >>> real_waves(Chain(N=4, beta=1, ends="periodic")).round(3)
+    array([[ 0.   ,  0.707,  0.   , -0.707],
+           [ 0.707,  0.   , -0.707, -0.   ],
+           [ 0.5  , -0.5  ,  0.5  , -0.5  ]])
+    """
+    N, numbers = chain.N, np.array(chain.mode_numbers)[:, None]
+    angles = 2 * np.pi / N * (np.abs(numbers) * np.arange(N) % N)
+    size = np.where(2 * numbers == N, N**-0.5, (2 / N) ** 0.5)
+    return np.asarray(size * np.where(numbers < 0, np.sin(angles), np.cos(angles)))
+
+
+def _displaced(chain: Chain, rows: Floats) -> Floats:
+    """Particles of real coordinates of the modes."""
+    if chain.periodic:
+        return np.asarray(rows @ real_waves(chain))
+    return np.asarray(chain.positions(rows))
+
+
+def _undisplaced(chain: Chain, rows: Floats) -> Floats:
+    """The way back."""
+    if chain.periodic:
+        return np.asarray(rows @ real_waves(chain).T)
+    return np.asarray(chain.modes(rows))
 
 
 def moving_frame(
@@ -217,6 +245,10 @@ def _in_lanes(chain: Chain, rows: Floats) -> Floats:
 
 def _out_of_lanes(chain: Chain, lanes: Floats, vectors: int) -> Numbers:
     """The first deviations of blocks of lanes in mode coordinates, (vectors, N-1)."""
+    return np.asarray(chain.modes(_rows_of_lanes(chain, lanes, vectors)))
+
+
+def _rows_of_lanes(chain: Chain, lanes: Floats, vectors: int) -> Floats:
+    """The same as displacements of the particles that move."""
     rows = lanes.transpose(0, 2, 1).reshape(-1, chain.N + 1)
-    moving = chain.kind_of_ends.moving(rows[:vectors])
-    return np.asarray(chain.modes(moving))
+    return np.asarray(chain.kind_of_ends.moving(rows[:vectors]))

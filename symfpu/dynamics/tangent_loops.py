@@ -134,10 +134,8 @@ def advance(
 
 
 @_compiled
-def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any) -> None:
+def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any, ring: bool) -> None:
     """Deviations under bonds of stiffness slopes[i, j] at the i-th kick, slopes (kicks in all, N).
-
-    Between walls.
 
     kicks : of one step, drifts : after each of them, as lengths of time.
     """
@@ -148,7 +146,7 @@ def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any) -> None:
     for i in range(slopes.shape[0]):
         stage = i % len(kicks)
         stiffness, drift = kicks[stage] * slopes[i], drifts[stage]
-        move_lanes(flat_dx, flat_dp, stiffness, drift, pull, slope, False)
+        move_lanes(flat_dx, flat_dp, stiffness, drift, pull, slope, ring)
 
 
 @_compiled

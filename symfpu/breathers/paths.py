@@ -1,0 +1,97 @@
+"""A periodic orbit as its linearisation sees it: stretches of the bonds in time, and a symmetry.
+
+A reversal, an involution that turns time round, leaves the orbit at angle 0 where it is. With fixed
+ends it changes the sign of the momenta, and the orbit is at rest then. A wave on a ring is nowhere
+at rest: there x_j -> -x_(-j), p_j -> p_(-j). In canonical coordinates with the reversal
+diag(1, -1) both are the same; these are (Q, P), and on a ring, by sine and cosine waves,
+(x of sines, p of cosines) and (p of sines, -x of cosines).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.breathers.balance import ONE_ANGLE, PeriodicOrbit, as_periodic_orbit
+from symfpu.chain.chain import Chain
+from symfpu.dynamics.tangent import real_waves
+from symfpu.errors import InputError
+from symfpu.tori.ring_torus import RingTorus
+
+Floats = NDArray[np.float64]
+
+
+class PeriodicPath(NamedTuple):
+    """An orbit of a chain through a point that its reversal leaves where it is.
+
+    stretches : of the bonds at times (T,), shape (T, N). harmonics : how many it has. flow : the
+    velocity at t = 0 in the coordinates that the reversal turns round, (N-1,). frame : from the
+    coordinates of tangent maps to those with the reversal diag(1, -1), orthogonal and symplectic,
+    (2(N-1), 2(N-1)); None where they are the same.
+    """
+
+    chain: Chain
+    omega: float
+    stretches: Callable[[Floats], Floats]
+    harmonics: int
+    flow: Floats
+    frame: Floats | None
+
+
+def path_of(solution: object, argument: str, advice: str) -> PeriodicPath:
+    """The path of a solution of one angle, of any ends; InputError for any other.
+
+    advice : what to do with a torus of more angles.
+    """
+    if not isinstance(solution, RingTorus):
+        return _of_cosines(as_periodic_orbit(solution, argument, advice))
+    if len(solution.seeds) > 1:
+        given = f"a torus of {len(solution.seeds)} angles"
+        raise InputError(argument, given, ONE_ANGLE, advice)
+    return _of_waves(solution)
+
+
+def _of_cosines(orbit: PeriodicOrbit) -> PeriodicPath:
+    chain, omega = orbit.chain, float(orbit.frequency)
+    coefficients = chain.stretches(orbit.cosines)
+    rates = np.arange(len(coefficients)) * omega
+
+    def stretches(t: Floats) -> Floats:
+        angles = np.multiply.outer(t, rates)
+        return np.asarray(np.cos(angles) @ coefficients)
+
+    force = chain.accelerations(orbit.positions(0.0))
+    return PeriodicPath(chain, omega, stretches, len(coefficients), force, None)
+
+
+def _of_waves(torus: RingTorus) -> PeriodicPath:
+    chain, (q,) = torus.chain, torus.seeds
+    wave = replace(torus, phases={q: 0.0})
+
+    def stretches(t: Floats) -> Floats:
+        return chain.stretches(wave.mode_coordinates(t))
+
+    Q, P = wave.state()
+    waves, frame = real_waves(chain), reversal_frame(chain)
+    velocity = [chain.positions(P), chain.positions(chain.accelerations(Q))]
+    flow = frame @ np.concatenate([waves @ part for part in velocity])
+    highest = int(np.abs(torus.harmonics).max()) + 1
+    omega = float(torus.frequency)
+    return PeriodicPath(chain, omega, stretches, highest, flow[chain.N - 1 :], frame)
+
+
+def reversal_frame(chain: Chain) -> Floats:
+    """Rows: x of sines, p of cosines, then p of sines, -x of cosines; columns: x, p of waves."""
+    n, numbers = chain.N - 1, np.array(chain.mode_numbers)
+    sines, cosines = np.flatnonzero(numbers < 0), np.flatnonzero(numbers > 0)
+    frame = np.zeros((2 * n, 2 * n))
+    upper = np.concatenate([sines, n + cosines])
+    lower = np.concatenate([n + sines, cosines])
+    signs = np.where(np.arange(n) < len(sines), 1, -1)
+    frame[np.arange(n), upper] = 1
+    frame[n + np.arange(n), lower] = signs
+    return frame
