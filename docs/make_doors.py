@@ -84,6 +84,15 @@ class Case:
     def breather(self) -> Any:
         return symfpu.breather_at_amplitude(self.chain, 1, self.size)
 
+    @property
+    def periodic(self) -> Any:
+        """A breather of its own kind."""
+        return self.wave if self.chain.periodic else self.breather
+
+    @cached_property
+    def wave(self) -> Any:
+        return symfpu.travelling_breather(self.chain, 1, amplitude=self.size)
+
     @cached_property
     def orbit(self) -> Any:
         return symfpu.integrate(self.chain, *self.state, 20.0, step=0.1, averages=True)
@@ -251,7 +260,7 @@ NEWTON: dict[str, Door] = {
     "family, folder=": lambda c: symfpu.family(
         c.chain, (1,), 1e-2 * c.size**2, members=2, folder=c.folder / "family"
     ),
-    "floquet": lambda c: symfpu.floquet(c.breather),
+    "floquet": lambda c: symfpu.floquet(c.periodic),
     "member_at_energy": lambda c: symfpu.member_at_energy(
         c.family, c.family.members[1].torus.energy(), harmonic=False
     ),
@@ -265,6 +274,7 @@ NEWTON: dict[str, Door] = {
     "refine_at_energy": lambda c: symfpu.refine_at_energy(
         c.solution, c.solution.energy(), harmonic=False
     ),
+    "travelling_breather": lambda c: c.wave,
     "shoot": lambda c: symfpu.shoot(c.chain, 1, c.breather.frequency),
 }
 DYNAMICS: dict[str, Door] = {

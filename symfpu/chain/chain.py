@@ -490,7 +490,8 @@ def require_fixed_ends(chain: Chain) -> None:
     if chain.periodic:
         allowed = "a chain with fixed ends: this is not known on a ring"
         advice = (
-            "leave ends= out; what takes a ring, as travelling_waves, is in docs/chains.md"
+            "leave ends= out; what takes a ring, as travelling_waves or travelling_breather, "
+            "is in docs/chains.md"
         )
         raise InputError("chain", chain, allowed, advice)
 

@@ -11,11 +11,12 @@ from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import PeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.breathers.floquet import floquet
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.cli.chains import (
     AlphaOption,
     BetaOption,
     BondsOption,
+    EndsOption,
     PotentialOption,
     chain_of,
 )
@@ -33,6 +34,8 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
 from symfpu.files.writing import output_file
+from symfpu.refinement.ring_tori import RefinedRingTorus
+from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import save
 from symfpu.tori.quasiperiodic import FourierTorus
@@ -50,6 +53,7 @@ def breather(
     alpha: AlphaOption = "0",
     beta: BetaOption = "0",
     potential: PotentialOption = None,
+    ends: EndsOption = "fixed",
     omega: Annotated[
         str | None, typer.Option(help="The breather of this frequency.", metavar="W")
     ] = None,
@@ -73,17 +77,24 @@ def breather(
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """A q-breather, found from exactly one of --omega, --amplitude and --energy."""
-    chain = chain_of(bonds, alpha, beta, potential)
+    """A q-breather, found from exactly one of --omega, --amplitude and --energy.
+
+    On a ring the travelling wave of one seed.
+    """
+    chain = chain_of(bonds, alpha, beta, potential, ends)
     mode, places = whole("seed", seed), optional("digits", digits)
     one_of({"omega": omega, "amplitude": amplitude, "energy": energy})
+    if places is not None:
+        require_fixed_ends(chain)
     file = None if output is None else output_file(path_named("output", output))
     picture = picture_named(plot)
     doubts = (DOUBLE_ENERGY,) if energy is not None and places is not None else ()
-    with progress_bar("harmonic balance") as advance:
-        orbit: FourierTorus = _found(chain, mode, omega, amplitude, energy)
+    with progress_bar("Newton's method") as advance:
+        orbit: FourierTorus | RefinedRingTorus
+        orbit = _found(chain, mode, omega, amplitude, energy)
         if places is not None:
             advance("digits", NO_FRACTION)
+            assert isinstance(orbit, FourierTorus)
             orbit = periodic_orbit_digits(
                 orbit, places, frequency=omega, amplitude=amplitude
             )
@@ -105,7 +116,11 @@ def breather(
 
 def _found(
     chain: Chain, seed: int, omega: str | None, amplitude: str | None, energy: str | None
-) -> PeriodicOrbit:
+) -> PeriodicOrbit | RefinedRingTorus:
+    if chain.periodic:
+        return travelling_breather(
+            chain, seed, frequency=omega, amplitude=amplitude, energy=energy
+        )
     if omega is not None:
         return periodic_orbit(chain, seed, omega)
     if amplitude is not None:

@@ -76,6 +76,16 @@ def test_refine_takes_the_file_and_show_what_it_made(capsys, saved, tmp_path):
         assert word in out
 
 
+def test_breather_finds_a_wave_with_its_multipliers(capsys, tmp_path):
+    kept = tmp_path / "wave.symfpu"
+    words = ["breather", "-N", 5, "--potential", "toda:1/2", "--ends", "periodic", "--seed=-2", "--amplitude", "0.5", "--multipliers"]
+    record = json.loads(run(capsys, *words, "-o", kept, "--json")[1])
+    assert (record["ends"], record["seeds"], record["stable"], record["kind"]) == ("periodic", [-2], True, "RefinedRingTorus")
+    assert record["amplitudes"] == {"-2": "0.5"}
+    code, out, _ = run(capsys, "show", kept)
+    assert (code, "seed -2" in out) == (0, True)
+
+
 def test_propagate(capsys):
     code, out, _ = run(capsys, "propagate", "-N", 16, "--ends", "periodic", "--seeds=1,-3", "--order", 2)
     assert (code, out) == (0, "D_0 = {1, 3}\nD_1 = {2, 4, 6}\nD_2 = {5, 7}\n")
@@ -85,7 +95,7 @@ def test_propagate(capsys):
 
 REFUSED = {
     "export FILE --lang c -o exported.c": "docs/chains.md",
-    "breather -N 8 --seed 1 --amplitude 0.1 --alpha 1 --ends periodic": "--ends",
+    "breather -N 8 --seed 1 --amplitude 0.1 --alpha 1 --ends periodic --digits 30": "docs/chains.md",
     "family -N 8 --seeds 1 --to-energy 0.1 --alpha 1 --ends periodic": "--ends",
     "prove -N 8 --seeds 1 --order 2 --ends periodic": "--ends",
     "sweep --order 1 --ends periodic": "--ends",
