@@ -24,7 +24,7 @@ LONG = [
     (8, 4, "2", {"potential": "morse:1/2"}),
     (8, 2, "-1", {"beta": "-0.1"}),
     (64, 3, "0.5", {"alpha": "0.3", "beta": 1}),
-    (8, 3, "1000", {"beta": 1}),
+    (8, 3, "30", {"beta": 1}),
 ]
 ALL = [*CASES, *(pytest.param(*case, marks=pytest.mark.long) for case in LONG)]
 
