@@ -26,7 +26,7 @@ from symfpu.tori.ring_torus import RingTorus
 
 TRIAL = 1e-9  # relative shift of the frequency of the series whose first correction is read
 REACH = 0.3  # relative change of the amplitude from a guess that stays on the family
-SMALLEST_PART = 1 / 4096  # of the way from rest, in one step
+SMALLEST_PART = 1 / 256  # of the way from rest, in one step
 Target = Callable[[float], Condition]  # of the part of the way that is gone
 
 

@@ -8,7 +8,7 @@ from scipy.optimize import fsolve
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
-from symfpu.refinement.tori import NoTorus, refine
+from symfpu.refinement.tori import refine
 from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.series.travelling import travelling_waves
 from symfpu.tori.ring_torus import travelling_torus
@@ -103,9 +103,3 @@ def test_arguments_are_checked():
         travelling_breather(beta, 1, frequency="0.7")
     with pytest.raises(UndeterminedAmplitudes):
         travelling_breather(ring(8, alpha="0.3"), 4, frequency="2.1")
-
-
-@pytest.mark.long
-def test_beyond_a_wall_there_is_none():
-    with pytest.raises(NoTorus, match="seeds"):
-        travelling_breather(ring(8, potential="lj:12,6"), 1, amplitude=3)
