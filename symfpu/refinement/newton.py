@@ -30,6 +30,7 @@ ACCURACY = 1e-8  # of a Krylov solution
 # relative change to come that ends the iteration, and the one that does when it no longer shrinks
 STEP, ROUNDING_STEP = 1e-16, 1e-9
 ITERATIONS = 15
+CORRECTIONS = 5  # of the solution for a derivative
 GROWTH = 30.0  # factor by which iterates may leave the size of the guess
 
 
@@ -237,7 +238,7 @@ def newton(
         if error < best[0]:
             best = (error, cosines, shifts)
         try:
-            change, products = _solved(system)
+            change, products = _solved(system, _Preconditioner(system), system.right)
         except (np.linalg.LinAlgError, ValueError) as failure:
             return failed(f"the matrix of Newton's method is singular ({failure})")
         moved = np.zeros(cosines.shape)
@@ -270,20 +271,21 @@ def _names(equation: TorusEquation) -> list[str]:
     return ["the largest coefficient", *(f"A_{q}" for q in equation.seeds)]
 
 
-def _solved(system: _System) -> tuple[Floats, int]:
-    """Newton's step and the number of products it took."""
+def _solved(
+    system: _System, preconditioner: _Preconditioner, right: Floats
+) -> tuple[Floats, int]:
+    """The solution of the system for a right-hand side, and the number of products it took."""
     from scipy.sparse.linalg import LinearOperator, gmres
 
-    preconditioner, count = _Preconditioner(system), 0
+    count = 0
     if preconditioner.whole:
-        return preconditioner(system.right), 0
+        return preconditioner(right), 0
 
     def preconditioned(vector: Floats) -> Floats:
         nonlocal count
         count += 1
         return system.product(preconditioner(vector))
 
-    right = system.right
     operator = LinearOperator((len(right), len(right)), matvec=preconditioned, dtype=float)
     limits = {"rtol": ACCURACY, "atol": 0.0, "restart": KRYLOV, "maxiter": RESTARTS}
     solution, info = gmres(operator, right, **limits)
@@ -293,3 +295,43 @@ def _solved(system: _System) -> tuple[Floats, int]:
             what = f"{count} products leave more than half of the right-hand side"
             raise np.linalg.LinAlgError(what)
     return preconditioner(solution), count
+
+
+def responses(
+    equation: InvarianceEquation,
+    conditions: Sequence[Condition],
+    cosines: Floats,
+    shifts: Floats,
+) -> tuple[Floats, Floats]:
+    """Derivatives of a torus by the values of its conditions: of cosines, and of shifts.
+
+    Shapes (s, H, N-1) and (s, s), the condition first: Newton's matrix solved for each of them,
+    with corrections until they no longer shrink. Raises LinAlgError where it is singular.
+    """
+    system = _System(equation, conditions, cosines, shifts)
+    preconditioner = _Preconditioner(system)
+    count, s = int(system.mask.sum()), len(shifts)
+    by_cosine, by_shift = np.zeros((s, *system.mask.shape)), np.zeros((s, s))
+    for place in range(s):
+        right = np.zeros(count + s)
+        right[count + place] = 1.0
+        change = _corrected(system, preconditioner, right)
+        by_cosine[place][system.mask] = change[:count]
+        by_shift[place] = change[count:]
+    return by_cosine, by_shift
+
+
+def _corrected(
+    system: _System, preconditioner: _Preconditioner, right: Floats
+) -> Floats:
+    """The solution to rounding."""
+    total, left, before = np.zeros(len(right)), right, np.inf
+    for _ in range(CORRECTIONS):
+        change, _ = _solved(system, preconditioner, left)
+        total = total + change
+        left = right - system.product(total)
+        size = float(np.abs(left).max())
+        if size > before / 2:
+            break
+        before = size
+    return total

@@ -1,0 +1,79 @@
+"""How frequencies and actions of a torus change with its amplitudes, by Newton's matrix.
+
+The unknowns are the coefficients c and the frequencies, the equations those of invariance with one
+condition for each amplitude. Newton's matrix solved for a unit change of ln A_j gives dc and
+domega; no difference is taken. Where the frequencies turn back, domega/dlnA is singular and the
+matrix is not.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from symfpu.action_angle.actions import half_weighted
+from symfpu.errors import SymfpuError
+from symfpu.refinement.conditions import Amplitude, seed_amplitudes
+from symfpu.refinement.invariance import Floats, InvarianceEquation
+from symfpu.refinement.newton import responses
+from symfpu.refinement.tori import shifts_of, unit_harmonics
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+
+class NoTwist(SymfpuError):
+    """The twist of a torus does not exist or cannot be found: raised by `twist`.
+
+    reason : in words. Ours.
+
+    >>> raise NoTwist("Newton's matrix is singular")
+    Traceback (most recent call last):
+    symfpu.action_angle.newton_twist.NoTwist: no twist: Newton's matrix is singular
+    """
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
+        super().__init__(f"no twist: {reason}")
+
+
+def changes_by_newton(torus: QuasiPeriodic) -> tuple[Floats, Floats]:
+    """Derivatives of the frequencies and of the actions by ln A_j, (s, s), j last.
+
+    torus : that solves the equations of motion, in doubles. Raises NoTwist.
+    """
+    equation, cosines = _equation(torus)
+    shifts = shifts_of(torus)
+    amplitudes = seed_amplitudes(equation, cosines)
+    conditions = [Amplitude(i, a) for i, a in enumerate(amplitudes)]
+    try:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            by_cosine, by_shift = responses(equation, conditions, cosines, shifts)
+    except (np.linalg.LinAlgError, ValueError) as failure:
+        raise NoTwist(f"Newton's matrix is singular ({failure})") from failure
+    omega = np.array([float(w) for w in torus.frequencies])
+    known = cosines.astype(float)
+    by_action = []
+    for change, turned in zip(by_cosine, by_shift, strict=True):
+        mixed = 2 * (known * change).sum(axis=1)
+        squares = (known**2).sum(axis=1)
+        moved = half_weighted(equation.harmonics, omega, mixed)
+        faster = half_weighted(equation.harmonics, turned, squares)
+        by_action.append(moved + faster)
+    return by_shift.T, np.array(by_action).T
+
+
+def _equation(torus: QuasiPeriodic) -> tuple[InvarianceEquation, Floats]:
+    """The equation on the harmonics of a torus, the seeds' own among them, and its cosines."""
+    signs = [_sign(nu) for nu in torus.harmonics.tolist()]
+    harmonics = torus.harmonics * np.array(signs)[:, None]
+    rows = {tuple(nu): row for nu, row in zip(harmonics.tolist(), torus.cosines, strict=True)}
+    none = np.zeros(torus.chain.N - 1)
+    for unit in unit_harmonics(len(torus.seeds)):
+        rows.setdefault(unit, none)
+    listed = sorted(rows)
+    equation = InvarianceEquation(torus.chain, torus.seeds, np.array(listed, dtype=np.int64))
+    cosines = np.array([rows[nu] for nu in listed], dtype=np.longdouble)
+    return equation, np.where(equation.mask, cosines, 0)
+
+
+def _sign(nu: list[int]) -> int:
+    """-1 where the first number that is not 0 is negative."""
+    return -1 if next((n for n in nu if n), 1) < 0 else 1
