@@ -32,8 +32,8 @@ def actions(solution: QuasiPeriodic | RingTorus) -> dict[int, Any]:
     InputError for what is no solution.
 
     >>> from symfpu import Chain, breather_at_amplitude
-    >>> {q: round(I, 9) for q, I in actions(breather_at_amplitude(Chain(8, beta=1), 1, "0.4")).items()}
-    {1: 0.031298559}
+    >>> round(actions(breather_at_amplitude(Chain(8, beta=1), 1, "0.4"))[1], 9)
+    0.031268297
     """
     if isinstance(solution, RingTorus):
         return _by_seed(solution.seeds, _of_waves(solution))

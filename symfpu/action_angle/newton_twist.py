@@ -64,12 +64,16 @@ def _equation(torus: QuasiPeriodic) -> tuple[InvarianceEquation, Floats]:
     """The equation on the harmonics of a torus, the seeds' own among them, and its cosines."""
     signs = [_sign(nu) for nu in torus.harmonics.tolist()]
     harmonics = torus.harmonics * np.array(signs)[:, None]
-    rows = {tuple(nu): row for nu, row in zip(harmonics.tolist(), torus.cosines, strict=True)}
+    rows = {
+        tuple(nu): row for nu, row in zip(harmonics.tolist(), torus.cosines, strict=True)
+    }
     none = np.zeros(torus.chain.N - 1)
     for unit in unit_harmonics(len(torus.seeds)):
         rows.setdefault(unit, none)
     listed = sorted(rows)
-    equation = InvarianceEquation(torus.chain, torus.seeds, np.array(listed, dtype=np.int64))
+    equation = InvarianceEquation(
+        torus.chain, torus.seeds, np.array(listed, dtype=np.int64)
+    )
     cosines = np.array([rows[nu] for nu in listed], dtype=np.longdouble)
     return equation, np.where(equation.mask, cosines, 0)
 

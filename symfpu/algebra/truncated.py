@@ -36,7 +36,7 @@ class Truncated:
         return Truncated(parts, self.size)
 
     @property
-    def _origin(self) -> Exponents:
+    def origin(self) -> Exponents:
         """The exponents of 1."""
         return (0,) * self.size
 
@@ -65,7 +65,7 @@ class Truncated:
         if isinstance(other, Truncated):
             pairs = zip(self.parts, other.parts, strict=True)
             return self._with([_sum(a, b) for a, b in pairs])
-        constant = _sum(self.parts[0], {self._origin: other})
+        constant = _sum(self.parts[0], {self.origin: other})
         return self._with([constant, *self.parts[1:]])
 
     __radd__ = __add__
@@ -99,8 +99,8 @@ class Truncated:
         """1 / series, degree by degree; ZeroDivisionError where the constant is zero."""
         if not self.parts[0]:
             raise ZeroDivisionError("the series has no constant")
-        head = 1 / self.parts[0][self._origin]
-        found: list[Part] = [{self._origin: head}]
+        head = 1 / self.parts[0][self.origin]
+        found: list[Part] = [{self.origin: head}]
         for degree in range(1, len(self.parts)):
             part: Part = {}
             for j in range(1, degree + 1):
@@ -118,6 +118,11 @@ class Truncated:
             left = _sum(self.parts[degree], _times(products, -1))
             found.append({e: c / 2 for e, c in left.items()})
         return self._with(found)
+
+    def cut(self, top: int) -> Truncated:
+        """Up to another degree; nothing is there beyond the one it has."""
+        more: list[Part] = [{} for _ in range(top - self.top)]
+        return self._with([*self.parts[: top + 1], *more])
 
     def derivative(self, place: int) -> Truncated:
         """By a variable; one degree less is known."""

@@ -321,9 +321,7 @@ def responses(
     return by_cosine, by_shift
 
 
-def _corrected(
-    system: _System, preconditioner: _Preconditioner, right: Floats
-) -> Floats:
+def _corrected(system: _System, preconditioner: _Preconditioner, right: Floats) -> Floats:
     """The solution to rounding."""
     total, left, before = np.zeros(len(right)), right, np.inf
     for _ in range(CORRECTIONS):

@@ -262,7 +262,7 @@ class SampledSeries(Tabled):
         amplitudes : (s,), or (P, s), in the order of the seeds. Raises InputError.
         """
         A = self._amplitudes(amplitudes)
-        sums = _Cosines(self.series, A)
+        sums = CosineSums(self.series, A)
         cosines = sums.of(self.coordinates)
         energies = self._energies(sums.harmonics, cosines, cosines)
         by_amplitudes, by_frequencies = [], []
@@ -339,7 +339,7 @@ def _averages(harmonics: Ints) -> Floats:
     return np.asarray(np.where((harmonics != 0).any(axis=1), 0.25, 0.5))
 
 
-class _Cosines:
+class CosineSums:
     """Sums of tables of coordinates over monomials: cosine coefficients of Q_q, all orders.
 
     harmonics : those of all orders, (H, s).

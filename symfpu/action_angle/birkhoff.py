@@ -1,0 +1,392 @@
+"""Birkhoff's normal form restricted to the modes of a torus: H as a polynomial in the actions.
+
+The series of a torus with linear frequencies in all divisors gives frequencies and actions as
+power series in the squared amplitudes. Inverted, omega(I). As omega = dH/dI, and the part
+omega_(n-1) is homogeneous of degree n - 1 in the actions, Euler's theorem gives the part of H:
+
+    H_n(I) = sum_i I_i omega_(i, n-1)(I) / n.
+
+Its gradient is omega again, exactly, if and only if d omega_i / d I_j is symmetric: that is the
+theorem the tests prove, in two fields: that of 2 cos(pi / 2N), where the chain's own Omega_q are,
+and the rational functions of the Omega_q of all modes, taken as independent symbols.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import mpmath
+import symengine as se
+
+from symfpu.action_angle.expanded import ExpandedSeries
+from symfpu.algebra.formulas import Multiplier
+from symfpu.algebra.quotients import monomials_of, quotient_field
+from symfpu.algebra.real_cyclotomic import RealCyclotomic, double_cosines
+from symfpu.algebra.truncated import Exponents, Truncated, inverted, variables
+from symfpu.chain.chain import Chain, require_chain
+from symfpu.chain.symbols import amplitude_symbol, linear_symbol
+from symfpu.errors import InputError, ResonantDivisor
+from symfpu.files.progress import Progress, unheard
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table, joined
+from symfpu.frames.tabled import Tabled
+from symfpu.notebook import Shown
+from symfpu.numbers.arithmetic import MULTIPRECISION, with_digits
+from symfpu.numbers.typed import integer
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.series import LindstedtSeries
+
+SPARE_DIGITS = 5  # of the working precision, to which a divisor may be zero
+WAY_OUT = (
+    "the normal form has no finite coefficient here: take other seeds or a lower degree"
+)
+
+
+@dataclass(frozen=True)
+class BirkhoffForm(Shown, Tabled):
+    """H = sum over e of h_e I^e, the normal form of a chain on the torus of its seeds.
+
+    Made by `birkhoff_form`; dimensionless. Ours.
+
+    chain, seeds : the model and its modes. degree : the highest in the actions, half of that in
+    the coordinates. digits : of coefficients that are mpf; None where they are expressions.
+    coefficients : h_e by exponents e of the actions, those that are not zero.
+
+    >>> from symfpu import Chain, birkhoff_form
+    >>> form = birkhoff_form(Chain("N", beta=1), (1,), 2)
+    >>> form
+    BirkhoffForm(N='N', beta=1, seeds=1, degree 2 in the actions, 2 terms)
+    >>> form.coefficients[2,]
+    (9/16)*Omega_1**2/N
+    >>> form.hamiltonian()
+    I1*Omega_1 + (9/16)*I1**2*Omega_1**2/N
+    >>> birkhoff_form(Chain(8, beta=1), (1,), 2, digits=12).to_frame().coefficient.tolist()
+    [mpf('0.390180644032'), mpf('0.0107043...')]
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    degree: int
+    digits: int | None
+    coefficients: Mapping[Exponents, Any]
+
+    def __repr__(self) -> str:
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        listed = ",".join(map(str, self.seeds))
+        count = f"degree {self.degree} in the actions, {len(self.coefficients)} terms"
+        return f"BirkhoffForm({chain}, seeds={listed}, {count})"
+
+    def hamiltonian(self) -> Any:
+        """H as a SymEngine expression in the actions I_q and the linear frequencies Omega_q."""
+        symbols = [action_symbol(q) for q in self.seeds]
+        return se.Add(*(_term(c, e, symbols) for e, c in self.coefficients.items()))
+
+    def frequencies(self) -> dict[int, Any]:
+        """omega_q = dH/dI_q by seed, as SymEngine expressions."""
+        H = self.hamiltonian()
+        return {q: se.expand(H.diff(action_symbol(q))) for q in self.seeds}
+
+    def energy_at(self, actions: Mapping[int, Any]) -> Any:
+        """H at actions by seed, of coefficients with digits; mpf. Raises InputError."""
+        values = self._values(actions)
+        with MULTIPRECISION.context(self.digits):
+            total = mpmath.fsum(
+                c * _product(values, e) for e, c in self.coefficients.items()
+            )
+        return with_digits(total, self.digits)
+
+    def frequencies_at(self, actions: Mapping[int, Any]) -> dict[int, Any]:
+        """omega_q = dH/dI_q at actions by seed, of coefficients with digits; mpf."""
+        values = self._values(actions)
+        found = {}
+        with MULTIPRECISION.context(self.digits):
+            for place, q in enumerate(self.seeds):
+                total = mpmath.mpf(0)
+                for e, c in self.coefficients.items():
+                    if e[place]:
+                        lowered = [n - (i == place) for i, n in enumerate(e)]
+                        total += c * e[place] * _product(values, lowered)
+                found[q] = total
+        return with_digits(found, self.digits)
+
+    def _values(self, actions: Mapping[int, Any]) -> list[Any]:
+        if self.digits is None:
+            advice = "make the form with digits="
+            raise InputError("digits", None, "a form with numbers", advice)
+        if not isinstance(actions, Mapping) or set(actions) != set(self.seeds):
+            allowed = f"an action for each of the seeds {self.seeds}"
+            raise InputError("actions", actions, allowed, "write it as {seed: number}")
+        with MULTIPRECISION.context(self.digits):
+            return list(MULTIPRECISION.array([actions[q] for q in self.seeds]))
+
+    def _table(self) -> Table:
+        """One row for each monomial."""
+        columns: dict[str, Any] = {"exponents": list(map(joined, self.coefficients))}
+        columns["degree"] = list(map(sum, self.coefficients))
+        columns["coefficient"] = list(self.coefficients.values())
+        known = attributes(
+            self, self.chain, seeds=self.seeds, degree=self.degree, digits=self.digits
+        )
+        return Table(columns, known)
+
+
+def action_symbol(q: int) -> Any:
+    """I_q, written I1 or I_{N-1}."""
+    name = str(amplitude_symbol(q))
+    return se.Symbol(f"I{name.removeprefix('A')}")
+
+
+def _term(coefficient: Any, exponents: Exponents, symbols: Sequence[Any]) -> Any:
+    powers = [x**n for x, n in zip(symbols, exponents, strict=True)]
+    return se.Mul(se.sympify(coefficient), *powers)
+
+
+def _product(values: Sequence[Any], exponents: Sequence[int]) -> Any:
+    return mpmath.fprod(x**n for x, n in zip(values, exponents, strict=True))
+
+
+def birkhoff_form(
+    chain: Chain,
+    seeds: Sequence[int | str],
+    degree: int,
+    *,
+    over: str | None = None,
+    digits: int | None = None,
+    progress: Progress | None = None,
+) -> BirkhoffForm:
+    """H as a polynomial in the actions of the seeds: Birkhoff's normal form on their torus.
+
+    chain : of any potential, N a number or "N" for all large ones; fixed ends. seeds : any modes.
+    degree : in the actions; 2 is the fourth order in the coordinates.
+    over : of exact coefficients. "chain" for numbers of this chain, sums of cosines of k pi / 2N;
+        "symbols" for rational functions of Omega_q of all modes that are driven, as they come from
+        the recursion: degree 2 is short, degree 3 of one seed. Default: the chain's where N is a
+        number.
+    digits : for mpf at the chain's frequencies instead; None for exact coefficients.
+    progress : called as (label, fraction done).
+
+    Dimensionless; the rest of the modes is on the torus, at rest beyond what the seeds drive. From
+    the series (Eqs. qser, omeser) with linear frequencies in all divisors; ours. The second
+    derivatives of the part of degree 2 are those of `twist_at_rest`. Raises InputError;
+    ResonantDivisor where linear frequencies of the chain resonate, for numbers.
+
+    >>> from symfpu import Chain
+    >>> form = birkhoff_form(Chain(3, alpha=1), (1,), 3)
+    >>> form.coefficients
+    {(1,): 1, (2,): 1/24, (3,): 109/1728}
+    >>> birkhoff_form(Chain(3, beta=1), (1, 2), 2, over="symbols").coefficients[1, 1]
+    (1/4)*Omega_1*Omega_2
+    """
+    require_chain(chain)
+    top = integer(degree, "degree", 1)
+    if digits is not None:
+        integer(digits, "digits", 1)
+    field = _field(chain, over, digits)
+    tell = progress or unheard
+    tell("series", 0.0)
+    series = lindstedt(chain, seeds, order=_series_order(chain, top), ring="nested")
+    if digits is None:
+        coefficients = FIELDS[field](series, top, tell)
+    else:
+        with MULTIPRECISION.context(digits):
+            coefficients = with_digits(_in_numbers(series, top, tell), digits)
+    return BirkhoffForm(chain, series.seeds, top, digits, coefficients)
+
+
+def _field(chain: Chain, over: str | None, digits: int | None) -> str:
+    """The name of the field; InputError for one that does not fit."""
+    if chain.symbolic:
+        for name, value, fitting in (("digits", digits, None), ("over", over, "symbols")):
+            if value is not None and value != fitting:
+                advice = "leave it out, or put a number for N: chain.at(N=32)"
+                raise InputError(name, value, f"{fitting} while N is a symbol", advice)
+    if digits is not None and over is not None:
+        raise InputError("over", over, "None where digits are given", "leave one out")
+    found = over or ("symbols" if chain.symbolic else "chain")
+    if found not in FIELDS:
+        raise InputError("over", over, ", ".join(FIELDS), "leave it out")
+    return found
+
+
+def _series_order(chain: Chain, degree: int) -> int:
+    """Of the frequencies: degree - 1 in the actions."""
+    return 2 * (degree - 1) // chain.degree_step
+
+
+def normal_form(
+    expanded: ExpandedSeries, degree: int, tell: Progress = unheard
+) -> tuple[Truncated, list[Truncated]]:
+    """kappa^2 H and omega as power series in J = kappa^2 I, over the field of the series."""
+    chain, one = expanded.series.chain, expanded.one
+    top = max(1, degree - 1)
+    rest = [one * 0 for _ in expanded.linear]
+    y = variables(rest, top, one)
+    omega = [x * 0 + w for x, w in zip(y, expanded.linear, strict=True)]
+    # the recursion's divisors hold the frequencies: each pass is right to one degree more
+    for known in range(1, degree):
+        tell("frequencies", known / degree)
+        shorter = [w.cut(known) for w in omega]
+        order = _series_order(chain, known + 1)
+        omega = _roots(expanded, shorter, variables(rest, known, one), order)
+    coordinates = max(0, 2 * (degree - 2) // chain.degree_step - 1)
+    J = expanded.scaled_actions(omega, y, coordinates)
+    tell("actions", (degree - 1) / degree)
+    of_actions = inverted(J)
+    rates = [w.composed(of_actions) for w in omega]
+    return _by_euler(rates, degree, one), rates
+
+
+def _roots(
+    expanded: ExpandedSeries, omega: list[Truncated], y: list[Truncated], order: int
+) -> list[Truncated]:
+    """omega_i = Omega_i sqrt(1 + sum W_i y^e), with the divisors of frequencies before."""
+    terms = expanded.squared_frequencies(omega, y, order)
+    found = []
+    for i, linear in enumerate(expanded.linear):
+        total = y[0] * 0 + linear * linear
+        for row in terms:
+            total = total + row[i]
+        relative = total * (1 / (linear * linear))
+        found.append(relative.root() * linear)
+    return found
+
+
+def _by_euler(rates: Sequence[Truncated], degree: int, one: Any) -> Truncated:
+    """sum_i I_i omega_i, the part of degree n over n."""
+    size = len(rates)
+    parts: list[dict[Exponents, Any]] = [{} for _ in range(degree + 1)]
+    for place, rate in enumerate(rates):
+        for e, c in rate.items():
+            raised = tuple(n + (i == place) for i, n in enumerate(e))
+            n = sum(raised)
+            if n <= degree:
+                parts[n][raised] = parts[n].get(raised, one * 0) + c / n
+    kept = [{e: c for e, c in part.items() if c} for part in parts]
+    return Truncated(kept, size)
+
+
+def _driven(series: LindstedtSeries) -> list[int]:
+    """All modes that the coefficients speak of, the seeds first."""
+    program = series.node_tables()[0].program
+    named = {s.mode for s in program.symbols if isinstance(s, Multiplier)}
+    others = sorted(named - set(series.seeds), key=lambda q: (q < 0, q))
+    return [*series.seeds, *others]
+
+
+def symbolic_series(series: LindstedtSeries) -> tuple[ExpandedSeries, list[int]]:
+    """A universal series over the rational functions of Omega_q, and the q of its variables."""
+    modes = _driven(series)
+    field = quotient_field([f"x{i}" for i in range(len(modes))])
+    linear = dict(zip(modes, field, strict=True))
+    squares = {q: x * x for q, x in linear.items()}
+    own = [linear[q] for q in series.seeds]
+    one = field[0] * 0 + 1
+    return ExpandedSeries(series, own, _Squares(squares, one), one), modes
+
+
+class _Squares(dict[int, Any]):
+    """Omega_q^2 by mode; 1 for modes that are not driven."""
+
+    def __init__(self, known: Mapping[int, Any], one: Any) -> None:
+        super().__init__(known)
+        self.one = one
+
+    def __missing__(self, q: int) -> Any:
+        return self.one
+
+
+def _in_symbols(
+    series: LindstedtSeries, degree: int, tell: Progress
+) -> dict[Exponents, Any]:
+    expanded, modes = symbolic_series(series)
+    H, _ = normal_form(expanded, degree, tell)
+    symbols = list(map(linear_symbol, modes))
+    kappa, found = _kappa_square(series.chain), {}
+    for e, c in H.items():
+        top, bottom = (_expression(part, symbols) for part in (c.top, c.bottom))
+        found[e] = kappa ** (sum(e) - 1) * top / bottom
+    return found
+
+
+def _kappa_square(chain: Chain) -> Any:
+    """mu^(2/step): alpha^2/2N, or beta/2N where V is even."""
+    length = se.Symbol("N") if chain.symbolic else se.Integer(chain.N)
+    unit = chain.unit_coupling ** (2 // chain.degree_step)
+    return se.Integer(unit.numerator) / (se.Integer(unit.denominator) * 2 * length)
+
+
+def chain_series(series: LindstedtSeries) -> ExpandedSeries:
+    """A universal series over the field of 2 cos(pi / 2N), with Omega_q = 2 cos((N-q) pi / 2N)."""
+    N = series.chain.N
+    cosines = double_cosines(4 * N)
+    linear = {q: cosines[N - q] for q in series.chain.mode_numbers}
+    squares = {q: x * x for q, x in linear.items()}
+    own = [linear[q] for q in series.seeds]
+    return _GuardedSeries(series, own, squares, cosines[0] / 2)
+
+
+def _in_chain(series: LindstedtSeries, degree: int, tell: Progress) -> dict[Exponents, Any]:
+    H, _ = normal_form(chain_series(series), degree, tell)
+    kappa = _kappa_square(series.chain)
+    N = series.chain.N
+    return {e: se.expand(kappa ** (sum(e) - 1) * _cosines(c, N)) for e, c in H.items()}
+
+
+def _cosines(value: RealCyclotomic, N: int) -> Any:
+    """A number of the field as a rational sum of cosines of k pi / 2N."""
+    terms = []
+    for k, (p, q) in enumerate(value.by_cosines()):
+        factor = 2 if k else 1
+        terms.append(se.Rational(factor * p, q) * se.cos(k * se.pi / (2 * N)))
+    return se.Add(*terms)
+
+
+def _expression(polynomial: Any, symbols: Sequence[Any]) -> Any:
+    terms = []
+    for powers, number in monomials_of(polynomial):
+        factors = [x**e for x, e in zip(symbols, powers, strict=True)]
+        terms.append(se.Mul(se.Integer(number), *factors))
+    return se.Add(*terms)
+
+
+class _GuardedSeries(ExpandedSeries):
+    """Over numbers, where a divisor may vanish."""
+
+    def multiplier(self, symbol: Multiplier, omega: Sequence[Truncated]) -> Truncated:
+        pairs = zip(self.linear, symbol.harmonic, strict=True)
+        drive = sum((w * n for w, n in pairs), start=self.one * 0)
+        divisor = self.squares[symbol.mode] - drive * drive
+        if self._vanishes(divisor):
+            seeds, order = self.series.seeds, self.series.order
+            where = (symbol.mode, symbol.harmonic, seeds, order)
+            raise ResonantDivisor(*where, exact=not self._rounded, way_out=WAY_OUT)
+        return super().multiplier(symbol, omega)
+
+    @property
+    def _rounded(self) -> bool:
+        return isinstance(self.one, mpmath.mpf)
+
+    def _vanishes(self, divisor: Any) -> bool:
+        if self._rounded:
+            return bool(abs(divisor) < mpmath.mpf(10) ** (SPARE_DIGITS - mpmath.mp.dps))
+        return not divisor
+
+
+def _in_numbers(
+    series: LindstedtSeries, degree: int, tell: Progress
+) -> dict[Exponents, Any]:
+    """At the working precision of mpmath."""
+    chain = series.chain
+    linear = {q: chain.linear_frequency(q) for q in chain.mode_numbers}
+    squares = {q: w**2 for q, w in linear.items()}
+    own = [linear[q] for q in series.seeds]
+    expanded = _GuardedSeries(series, own, squares, mpmath.mpf(1))
+    H, _ = normal_form(expanded, degree, tell)
+    unit = chain.unit_coupling ** (2 // chain.degree_step) / chain.turn
+    kappa = MULTIPRECISION.number(unit)
+    return {e: c * kappa ** (sum(e) - 1) for e, c in H.items()}
+
+
+FIELDS = {"chain": _in_chain, "symbols": _in_symbols}
