@@ -57,7 +57,7 @@ class ExpandedSeries:
             # y^e vanishes at rest where it is a variable: its factor is needed to fewer degrees
             needed = y[0].top - (sum(rows[0]) if rows and not y[0].parts[0] else 0)
             shorter = [w.cut(needed) for w in omega]
-            values = self._values(table, shorter) if rows else None
+            values: Any = self._values(table, shorter) if rows else None
             sums = [y[0] * 0 for _ in self.linear]
             for number, row in enumerate(rows):
                 monomial = _monomial(y, row)
@@ -141,7 +141,8 @@ class ExpandedSeries:
         if symbol.mode in self.series.seeds:
             chosen = omega[self.series.seeds.index(symbol.mode)]
             base = chosen * chosen
-        return (base - drive * drive).inverse() * own
+        multiplier: Truncated = (base - drive * drive).inverse() * own
+        return multiplier
 
 
 def _as_long(value: Any, top: int) -> Any:

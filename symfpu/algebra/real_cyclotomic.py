@@ -76,7 +76,7 @@ class RealCyclotomic:
         return self._with(self.value / other)
 
     def __rtruediv__(self, other: Any) -> RealCyclotomic:
-        return self.inverse() * other
+        return self.inverse().__mul__(other)
 
     def by_cosines(self) -> list[tuple[int, int]]:
         """c_0, c_1, ... of c_0 + sum over k of c_k 2 cos(2 pi k / m): numerators, denominators."""

@@ -71,13 +71,13 @@ class Truncated:
     __radd__ = __add__
 
     def __neg__(self) -> Truncated:
-        return self * -1
+        return self.__mul__(-1)
 
     def __sub__(self, other: Any) -> Truncated:
-        return self + other * -1
+        return self.__add__(other * -1)
 
     def __rsub__(self, other: Any) -> Truncated:
-        return self * -1 + other
+        return self.__mul__(-1).__add__(other)
 
     def __mul__(self, other: Any) -> Truncated:
         if not isinstance(other, Truncated):
@@ -93,7 +93,7 @@ class Truncated:
     __rmul__ = __mul__
 
     def __rtruediv__(self, number: Any) -> Truncated:
-        return self.inverse() * number
+        return self.inverse().__mul__(number)
 
     def inverse(self) -> Truncated:
         """1 / series, degree by degree; ZeroDivisionError where the constant is zero."""

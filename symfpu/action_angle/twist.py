@@ -1,0 +1,228 @@
+"""The twist of a torus, Lambda = d omega / d I: how its frequencies turn with its actions.
+
+Neighbouring tori turn against each other by t Lambda dI. KAM theory wants Lambda or the
+isoenergetic determinant, of Lambda bordered by omega, not to vanish; where Lambda is definite H is
+convex in the actions, and Nekhoroshev's estimates are at their best.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from symfpu.action_angle.actions import actions
+from symfpu.action_angle.newton_twist import NoTwist, changes_by_newton
+from symfpu.action_angle.series_twist import changes_of_series, solved
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from symfpu.frames.attributes import attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.tabled import Gridded
+from symfpu.notebook import Shown
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text, with_digits
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.torus import QTorus
+
+SOLVED = 1e-8  # relative residual above which a torus is not refined
+SHOWN_DIGITS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Twist(Shown, Gridded):
+    """Lambda_ij = d omega_i / d I_j of a torus with its actions; made by `twist`, dimensionless.
+
+    chain, seeds : of the torus. frequencies, actions : of every angle, (s,). matrix : Lambda as it
+    was computed, (s, s), symmetric on a torus: see `asymmetry`.
+    method : "series" or "Newton". digits : of numbers that are mpf; None for doubles. Ours.
+
+    >>> from symfpu import Chain, refine, torus_at_amplitudes, twist
+    >>> twist(refine(torus_at_amplitudes(Chain(8, beta=1), {1: "0.1", 3: "0.1"}, 4)))
+    Twist(N=8, beta=1, seeds=1,3, indefinite (1 positive, 1 negative), smallest eigenvalue
+    -0.0283..., isoenergetic determinant 0.0...)
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: Numbers = field(repr=False)
+    actions: Numbers = field(repr=False)
+    matrix: Numbers = field(repr=False)
+    method: str
+    digits: int | None = None
+
+    def __repr__(self) -> str:
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        seeds = ",".join(map(str, self.seeds))
+        smallest = text(self.smallest_eigenvalue, SHOWN_DIGITS)
+        determinant = text(self.isoenergetic_determinant, SHOWN_DIGITS)
+        return (
+            f"Twist({chain}, seeds={seeds}, {self.definiteness}, smallest eigenvalue {smallest}, "
+            f"isoenergetic determinant {determinant})"
+        )
+
+    def _context(self) -> Any:
+        numbers = MULTIPRECISION if self.digits is not None else None
+        return numbers.context(self.digits) if numbers else np.errstate()
+
+    @property
+    def asymmetry(self) -> float:
+        """Largest |Lambda_ij - Lambda_ji|, over the largest entry: what the torus lacks."""
+        largest = float(np.abs(self.matrix).max())
+        difference = float(np.abs(self.matrix - self.matrix.T).max())
+        return difference / largest if largest else 0.0
+
+    @cached_property
+    def eigenvalues(self) -> Numbers:
+        """Of the symmetric part, ascending; (s,)."""
+        with self._context():
+            symmetric = (self.matrix + self.matrix.T) / 2
+            if self.digits is None:
+                return np.asarray(np.linalg.eigvalsh(symmetric))
+            found = mpmath.eigsy(mpmath.matrix(symmetric.tolist()), eigvals_only=True)
+            values = np.array(sorted(found), dtype=object)
+        return with_digits(values, self.digits)
+
+    @property
+    def smallest_eigenvalue(self) -> Any:
+        """The one of smallest modulus, which tells how far the twist is from degenerate."""
+        return min(self.eigenvalues, key=abs)
+
+    @property
+    def signature(self) -> tuple[int, int, int]:
+        """How many eigenvalues are positive, negative, and not told from zero."""
+        level = max(self.asymmetry, _rounding(self.digits)) * float(abs(self.matrix).max())
+        values = [float(x) for x in self.eigenvalues]
+        positive = sum(x > level for x in values)
+        negative = sum(x < -level for x in values)
+        return positive, negative, len(values) - positive - negative
+
+    @property
+    def definiteness(self) -> str:
+        """The signature in words."""
+        positive, negative, zero = self.signature
+        if zero:
+            return f"degenerate ({positive} positive, {negative} negative, {zero} zero)"
+        if positive and negative:
+            return f"indefinite ({positive} positive, {negative} negative)"
+        return "positive definite" if positive else "negative definite"
+
+    @property
+    def determinant(self) -> Any:
+        """det Lambda."""
+        return self._determinant(self.matrix)
+
+    @property
+    def isoenergetic_determinant(self) -> Any:
+        """The determinant of Lambda bordered by omega, with 0 in the corner; (s+1, s+1)."""
+        s = len(self.seeds)
+        bordered = np.zeros((s + 1, s + 1), dtype=self.matrix.dtype)
+        bordered[:s, :s] = self.matrix
+        bordered[s, :s] = bordered[:s, s] = self.frequencies
+        return self._determinant(bordered)
+
+    def _determinant(self, matrix: Numbers) -> Any:
+        with self._context():
+            if self.digits is None:
+                return float(np.linalg.det(matrix))
+            return with_digits(mpmath.det(mpmath.matrix(matrix.tolist())), self.digits)
+
+    def _grid(self) -> Grid:
+        return Grid(
+            axes={"seed": self.seeds, "by": self.seeds},
+            variables={
+                "frequency": Variable(("seed",), self.frequencies, "frequency omega_q"),
+                "action": Variable(("seed",), self.actions, "action I_q"),
+                "eigenvalue": Variable(("seed",), self.eigenvalues, "of Lambda, ascending"),
+                "twist": Variable(
+                    ("seed", "by"),
+                    self.matrix,
+                    "derivative of omega of the seed by an action",
+                ),
+            },
+            attributes=attributes(
+                self,
+                self.chain,
+                seeds=self.seeds,
+                method=self.method,
+                signature=self.signature,
+                determinant=self.determinant,
+                isoenergetic_determinant=self.isoenergetic_determinant,
+                digits=self.digits,
+            ),
+            rows=("seed", "by"),
+        )
+
+
+def _rounding(digits: int | None) -> float:
+    return 1e-10 if digits is None else 10.0**-digits
+
+
+def twist(solution: QuasiPeriodic) -> Twist:
+    """Lambda = d omega / d I of a torus or breather, its signature and determinants.
+
+    solution : a torus of a series, whose truncated sums are differentiated exactly, to all its
+        digits; or any refined solution (`refine`, breathers), by Newton's matrix in doubles.
+        Dimensionless.
+
+    Nothing is a difference of two tori. Lambda of an exact torus is symmetric; that of a truncated
+    series as far as it is a torus. Returns Twist. Ours. Raises InputError for a solution that is
+    neither, and for a torus of a ring; NoTwist where the amplitudes do not tell the actions;
+    TooLarge for series whose program does not fit: refine the torus.
+
+    >>> from symfpu import Chain, breather_at_amplitude
+    >>> twist(breather_at_amplitude(Chain(8, beta=1), 1, "0.01"))
+    Twist(N=8, beta=1, seeds=1, positive definite, smallest eigenvalue 0.0214..., ...)
+    """
+    if isinstance(solution, RingTorus):
+        advice = "actions(solution) takes it; the twist needs fixed ends"
+        raise InputError("solution", "a RingTorus", "a torus of fixed ends", advice)
+    by_angle = actions(solution)
+    places = solution.digits if isinstance(solution, QTorus) else None
+    matrix, method = _lambda(solution)
+    frequencies = _rounded(list(solution.frequencies), places)
+    return Twist(
+        chain=solution.chain,
+        seeds=solution.seeds,
+        frequencies=frequencies,
+        actions=_rounded(list(by_angle.values()), places),
+        matrix=with_digits(matrix, places),
+        method=method,
+        digits=places,
+    )
+
+
+def _rounded(values: list[Any], digits: int | None) -> Numbers:
+    if digits is None:
+        return np.array([float(x) for x in values])
+    with MULTIPRECISION.context(digits):
+        numbers = [
+            x if isinstance(x, mpmath.mpf) else MULTIPRECISION.number(x) for x in values
+        ]
+        return with_digits(np.array(numbers, dtype=object), digits)
+
+
+def _lambda(solution: QuasiPeriodic) -> tuple[Numbers, str]:
+    """d omega / d I, and how it was found."""
+    if isinstance(solution, QTorus):
+        by_amplitude, method = changes_of_series(solution), "series"
+    else:
+        _require_refined(solution)
+        by_amplitude, method = changes_by_newton(solution.in_doubles()), "Newton"
+    frequencies, of_actions = by_amplitude
+    with solution.numbers.context(solution.digits):
+        try:
+            return solved(of_actions.T, frequencies.T).T, method
+        except np.linalg.LinAlgError as failure:
+            raise NoTwist("the actions do not change with the amplitudes") from failure
+
+
+def _require_refined(solution: QuasiPeriodic) -> None:
+    residual = solution.residual()
+    if not residual <= SOLVED:
+        given = f"a {type(solution).__name__} with residual {residual:.2g}"
+        allowed = f"a torus of a series, or one refined to a residual below {SOLVED:g}"
+        raise InputError("solution", given, allowed, "pass refine(solution)")
