@@ -77,6 +77,15 @@ from symfpu.breathers.floquet import floquet as floquet
 from symfpu.breathers.shooting import ShotOrbit as ShotOrbit
 from symfpu.breathers.shooting import shoot as shoot
 
+# actions, twist and Birkhoff's normal form
+from symfpu.action_angle.actions import actions as actions
+from symfpu.action_angle.at_rest import TwistAtRest as TwistAtRest
+from symfpu.action_angle.at_rest import twist_at_rest as twist_at_rest
+from symfpu.action_angle.birkhoff import BirkhoffForm as BirkhoffForm
+from symfpu.action_angle.birkhoff import birkhoff_form as birkhoff_form
+from symfpu.action_angle.twist import Twist as Twist
+from symfpu.action_angle.twist import twist as twist
+
 # families in energy
 from symfpu.families.continuation import Event as Event
 from symfpu.families.continuation import Member as Member
@@ -173,6 +182,7 @@ from symfpu import plots as plots
 from symfpu.notebook import init_printing as init_printing
 
 # errors
+from symfpu.action_angle.newton_twist import NoTwist as NoTwist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy as NoBreatherAtEnergy
 from symfpu.breathers.balance import NoPeriodicOrbit as NoPeriodicOrbit
 from symfpu.breathers.shooting import ShootingFailed as ShootingFailed

@@ -600,3 +600,8 @@ LINE_OF_RECORD = 1e-12
 
 # Amplitudes follow the frequencies, which carry some 1e-14 of the integrator, by dA / domega of some hundred.
 AMPLITUDE_FROM_LINES = 1e-10
+# Actions and twist of a torus whose residual is some 1e-14 of the largest acceleration, over divisors of some 1e-2.
+NEWTON_TWIST = 1e-11
+
+# Central differences of frequencies with step 1e-8 in actions of some 1e-3, at 30 digits; the actions are those of doubles.
+TWIST_DIFFERENCE = 1e-9

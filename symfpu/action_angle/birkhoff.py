@@ -32,7 +32,6 @@ from symfpu.files.progress import Progress, unheard
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table, joined
 from symfpu.frames.tabled import Tabled
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import MULTIPRECISION, with_digits
 from symfpu.numbers.typed import integer
 from symfpu.series.lindstedt import lindstedt
@@ -45,7 +44,7 @@ WAY_OUT = (
 
 
 @dataclass(frozen=True)
-class BirkhoffForm(Shown, Tabled):
+class BirkhoffForm(Tabled):
     """H = sum over e of h_e I^e, the normal form of a chain on the torus of its seeds.
 
     Made by `birkhoff_form`; dimensionless. Ours.
@@ -115,9 +114,10 @@ class BirkhoffForm(Shown, Tabled):
         if self.digits is None:
             advice = "make the form with digits="
             raise InputError("digits", None, "a form with numbers", advice)
-        if not isinstance(actions, Mapping) or set(actions) != set(self.seeds):
+        given: object = actions
+        if not isinstance(given, Mapping) or set(given) != set(self.seeds):
             allowed = f"an action for each of the seeds {self.seeds}"
-            raise InputError("actions", actions, allowed, "write it as {seed: number}")
+            raise InputError("actions", given, allowed, "write it as {seed: number}")
         with MULTIPRECISION.context(self.digits):
             return list(MULTIPRECISION.array([actions[q] for q in self.seeds]))
 

@@ -22,7 +22,6 @@ from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text, with_digits
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -33,7 +32,7 @@ SHOWN_DIGITS = 10
 
 
 @dataclass(frozen=True, eq=False)
-class Twist(Shown, Gridded):
+class Twist(Gridded):
     """Lambda_ij = d omega_i / d I_j of a torus with its actions; made by `twist`, dimensionless.
 
     chain, seeds : of the torus. frequencies, actions : of every angle, (s,). matrix : Lambda as it

@@ -26,6 +26,7 @@ VERBS = {
     "breather": "breather",
     "refine": "families",
     "family": "families",
+    "actions": "actions",
     "orbit": "orbit",
     "gali": "gali",
     "export": "export",

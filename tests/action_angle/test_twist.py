@@ -1,0 +1,100 @@
+"""The twist: symmetric, and that of Toda's spectral curve; series and Newton agree as far as the series is a torus."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu import (
+    Chain,
+    FourierTorus,
+    InputError,
+    actions,
+    breather_at_amplitude,
+    refine,
+    toda_torus,
+    torus_at_amplitudes,
+    travelling_torus,
+    travelling_waves,
+    twist,
+    twist_at_rest,
+)
+from tests.action_angle.test_actions import SEEDS, refined_toda
+from tests.tolerances import NEWTON_TWIST, ROUNDING, SLOPE, TWIST_DIFFERENCE
+
+CASES = {"alpha": {"alpha": "0.3"}, "beta": {"beta": "-0.3"}, "both": {"alpha": "0.3", "beta": "0.2"}}
+
+
+@pytest.mark.long
+def test_toda_by_its_spectral_curve():
+    torus = refined_toda()
+    found = twist(torus)
+    exact = {q: mpmath.mpf(x) for q, x in actions(torus).items()}
+    step = mpmath.mpf("1e-8")
+    for column, q in enumerate(SEEDS):
+        ends = []
+        for sign in (1, -1):
+            with mpmath.workdps(40):
+                moved = [exact[n] + sign * step * (n == q) for n in SEEDS]
+                typed = [mpmath.nstr(x, 30) for x in moved]
+            ends.append(toda_torus(torus.chain, SEEDS, actions=typed, digits=30).frequencies)
+        slopes = [float((ends[0][n] - ends[1][n]) / (2 * step)) for n in SEEDS]
+        assert found.matrix[:, column] == pytest.approx(slopes, rel=TWIST_DIFFERENCE)
+    assert found.definiteness == "positive definite"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("law", ["alpha", "beta", "both"])
+def test_symmetry_and_the_series(law):
+    """The series' twist misses symmetry, and Newton's twist, by the order it is cut at."""
+    misses, asymmetries = [], []
+    for size in ("0.1", "0.2"):
+        torus = torus_at_amplitudes(Chain(8, **CASES[law]), {1: size, 2: size}, 4)
+        exact, series = twist(refine(torus)), twist(torus)
+        assert exact.asymmetry < NEWTON_TWIST
+        misses.append(np.abs(series.matrix - exact.matrix).max())
+        asymmetries.append(series.asymmetry)
+    order = 4 if law != "beta" else 8  # of the first frequency correction left out, in the amplitudes, less 2
+    assert np.log2(misses[1] / misses[0]) > order - SLOPE
+    assert np.log2(asymmetries[1] / asymmetries[0]) > order - SLOPE
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seeds", [(1,), (1, 2)])
+def test_digits_of_a_series(seeds):
+    """The program in power series agrees with the compiled one."""
+    amplitudes = dict.fromkeys(seeds, "0.2")
+    chain = Chain(4, alpha="0.3", beta="0.2")
+    doubles, precise = (twist(torus_at_amplitudes(chain, amplitudes, 4, digits=n)) for n in (None, 30))
+    assert precise.matrix.astype(float) == pytest.approx(doubles.matrix, rel=NEWTON_TWIST)
+    assert precise.eigenvalues.astype(float) == pytest.approx(doubles.eigenvalues, rel=NEWTON_TWIST)
+    assert float(precise.isoenergetic_determinant) == pytest.approx(doubles.isoenergetic_determinant, rel=NEWTON_TWIST)
+    assert precise.matrix[0, 0].digits == 30
+
+
+@pytest.mark.parametrize("N", [2, 5])
+def test_a_small_breather_has_the_twist_at_rest(N):
+    chain = Chain(N, alpha="0.3", beta="0.5")
+    at_rest = twist_at_rest(chain, (1,)).matrix
+    misses = [abs(twist(breather_at_amplitude(chain, 1, A)).matrix[0, 0] - at_rest[0, 0]) for A in ("0.05", "0.1")]
+    assert np.log2(misses[1] / misses[0]) == pytest.approx(2, abs=SLOPE)
+
+
+def test_determinants_of_two_angles():
+    found = twist(refine(torus_at_amplitudes(Chain(4, beta=1), {1: "0.1", 2: "0.1"}, 2)))
+    (a, b), (_, d) = found.matrix
+    assert found.asymmetry < NEWTON_TWIST
+    first, second = found.frequencies
+    bordered = 2 * first * second * b - first**2 * d - second**2 * a
+    assert found.isoenergetic_determinant == pytest.approx(bordered, rel=ROUNDING)
+    assert found.determinant == pytest.approx(np.prod(found.eigenvalues), rel=ROUNDING)
+    assert found.signature == (1, 1, 0)
+
+
+def test_what_is_not_refined_is_refused():
+    torus = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.8"}, 4)
+    rough = FourierTorus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines)
+    with pytest.raises(InputError, match="refine"):
+        twist(rough)
+    waves = travelling_waves(Chain(8, alpha="0.3", ends="periodic"), (1,), ("0.766",), 4)
+    with pytest.raises(InputError, match="fixed ends"):
+        twist(travelling_torus(waves))
