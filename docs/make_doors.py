@@ -222,6 +222,7 @@ METHODS: dict[str, Door] = {
 SERIES: dict[str, Door] = {
     "amplitude_history": lambda c: symfpu.amplitude_history(c.series),
     "assess": lambda c: symfpu.assess(c.series, c.solved),
+    "birkhoff_form": lambda c: symfpu.birkhoff_form(c.chain, SEEDS, 2),
     "closed_form": lambda c: symfpu.closed_form(c.symbolic.term(3, 2), c.chain, SEEDS),
     "expandable_term": lambda c: symfpu.expandable_term(c.symbolic, 3, 2),
     "frequency_expansion": lambda c: symfpu.frequency_expansion(c.chain, SEEDS, 1, 2),
@@ -253,6 +254,7 @@ SERIES: dict[str, Door] = {
     "unfold": lambda c: symfpu.unfold(c.of(lambda: c.torus)),
 }
 NEWTON: dict[str, Door] = {
+    "actions": lambda c: symfpu.actions(c.solution),
     "appendix_a": lambda c: appendix_a(c.chain, SEEDS, c.amplitudes, 3, members=2),
     "breather_at_amplitude": lambda c: c.breather,
     "breather_at_energy": lambda c: symfpu.breather_at_energy(c.chain, 1, c.size**2 / 20),
@@ -276,6 +278,8 @@ NEWTON: dict[str, Door] = {
     ),
     "travelling_breather": lambda c: c.wave,
     "shoot": lambda c: symfpu.shoot(c.chain, 1, c.breather.frequency),
+    "twist": lambda c: symfpu.twist(c.breather),
+    "twist_at_rest": lambda c: symfpu.twist_at_rest(c.chain, SEEDS),
 }
 DYNAMICS: dict[str, Door] = {
     "alignment_indices": lambda c: symfpu.alignment_indices(
@@ -370,6 +374,7 @@ FILES: dict[str, Door] = {
     ),
 }
 VERBS: dict[str, Door] = {
+    "symfpu actions": lambda c: c.verb("actions", c.file),
     "symfpu breather": lambda c: c.verb(
         "breather", "-N", N, "--seed", 1, "--amplitude", c.size, *c.words
     ),

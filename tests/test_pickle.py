@@ -15,6 +15,10 @@ import numpy as np
 import pytest
 
 import symfpu
+from symfpu.action_angle.at_rest import twist_at_rest
+from symfpu.action_angle.birkhoff import birkhoff_form
+from symfpu.action_angle.newton_twist import NoTwist
+from symfpu.action_angle.twist import twist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy
 from symfpu.breathers.balance import Balance, NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
@@ -236,6 +240,10 @@ RESULTS = {
     "TodaTorus": (lambda _: toda_torus(Chain(4, alpha="1/2"), (1, 3), actions=("0.1", "0.2"), digits=20), lambda x: x.state({3: 1})),
     "FrequencyAnalysis": (lambda _: lines_found(), lambda x: (x.drift, x.count(0.1))),
     "SpectralLine": (lambda _: lines_found().lines[0], repr),
+    "BirkhoffForm": (lambda _: birkhoff_form(PAIR, (1, 2), 2), lambda x: x.hamiltonian()),
+    "BirkhoffForm, digits": (lambda _: birkhoff_form(PAIR, (1, 2), 2, digits=20), lambda x: x.frequencies_at({1: 0.1, 2: 0.1})),
+    "Twist": (lambda _: twist(orbit()), lambda x: (x.matrix, x.signature)),
+    "TwistAtRest": (lambda _: twist_at_rest(PAIR, (1, 2)), lambda x: (x.matrix, x.formula())),
     "Trend": (lambda _: invariance().slope_rate, lambda x: x.rate),
 }
 
@@ -336,6 +344,7 @@ ERRORS = {
     BandsTooNarrow: lambda: BandsTooNarrow(2),
     NoTodaTorus: lambda: NoTodaTorus((1, 2), (0.1, 3.0), 0.5),
     NoRecurrence: lambda: NoRecurrence(10.0, 0.5),
+    NoTwist: lambda: NoTwist("Newton's matrix is singular"),
     NotInFamily: lambda: NotInFamily("H", 1.0, (0.1, 0.5), "ended"),
     NoFurtherMember: lambda: NoFurtherMember("no root", (1,), (0.4,), "a reason"),
     NoTorus: lambda: NoTorus("a reason", refined(), 0.1),

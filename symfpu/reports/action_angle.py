@@ -54,9 +54,11 @@ def actions_text(record: dict[str, Any]) -> str:
         lines.append(f"mode {q:<4} I = {_short(action, places)}   omega = {omega}")
     if "twist" not in record:
         return "\n".join(lines)
-    lines.append(f"twist d omega / d I ({record['twist_method']}): {record['definiteness']}")
-    for row in record["twist"]:
-        lines.append("  " + "  ".join(_short(x, places) for x in row))
+    lines.append(
+        f"twist d omega / d I ({record['twist_method']}): {record['definiteness']}"
+    )
+    rows = [[_short(x, places) for x in row] for row in record["twist"]]
+    lines += ["  " + "  ".join(row) for row in rows]
     eigenvalues = ", ".join(_short(x, places) for x in record["eigenvalues"])
     lines.append(f"asymmetry          {record['asymmetry']:.2g}")
     lines.append(f"eigenvalues        {eigenvalues}")

@@ -7,7 +7,6 @@ import symengine as se
 from symfpu import (
     Chain,
     InputError,
-    ResonantDivisor,
     actions,
     birkhoff_form,
     frequency_expansion,
