@@ -605,3 +605,6 @@ NEWTON_TWIST = 1e-11
 
 # Central differences of frequencies with step 1e-8 in actions of some 1e-3, at 30 digits; the actions are those of doubles.
 TWIST_DIFFERENCE = 1e-9
+
+# Ends of a definite range are enclosed to 1e-10 by an exact signature on both sides, from a guess rounded to 12 decimals.
+RANGE_END = 1.01e-10

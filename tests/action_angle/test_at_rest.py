@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from symfpu import Chain, InputError, frequency_shift, twist_at_rest
 from symfpu.action_angle.at_rest import definite_range
-from tests.tolerances import ROUNDING
+from tests.tolerances import RANGE_END, ROUNDING
 
 
 @st.composite
@@ -74,7 +74,7 @@ def test_the_range_of_two_neighbours():
     a, b = (2 * np.sin(np.pi * q / 64) for q in (1, 2))
     mean, root = 3 / 8 * (a**2 + b**2), np.sqrt((3 / 8 * (a**2 - b**2)) ** 2 + (a * b) ** 2)
     expected = [2 / 3 - 2 / (3 * (mean + root)), 2 / 3 - 2 / (3 * (mean - root))]
-    assert definite_range(32, (1, 2)) == pytest.approx(expected, rel=1e-9)
+    assert definite_range(32, (1, 2)) == pytest.approx(expected, abs=RANGE_END)
     inside, outside = (twist_at_rest(Chain(32, alpha=1, beta=b), (1, 2)).definiteness for b in (-15, -17))
     assert (inside, outside) == ("positive definite", "indefinite (1 positive, 1 negative)")
 
