@@ -119,7 +119,11 @@ class BirkhoffForm(Tabled):
             allowed = f"an action for each of the seeds {self.seeds}"
             raise InputError("actions", given, allowed, "write it as {seed: number}")
         with MULTIPRECISION.context(self.digits):
-            return list(MULTIPRECISION.array([actions[q] for q in self.seeds]))
+            try:
+                return list(MULTIPRECISION.array([given[q] for q in self.seeds]))
+            except (TypeError, ValueError) as error:
+                allowed = "numbers by seed"
+                raise InputError("actions", given, allowed, "pass real numbers") from error
 
     def _table(self) -> Table:
         """One row for each monomial."""

@@ -116,3 +116,5 @@ def test_bad_input_is_named():
         birkhoff_form(Chain("N", alpha=1), (1,), 2, digits=10)
     with pytest.raises(InputError, match="digits"):
         birkhoff_form(Chain(4, alpha=1), (1,), 2).energy_at({1: "0.1"})
+    with pytest.raises(InputError, match="actions"):
+        birkhoff_form(Chain(4, alpha=1), (1,), 1, digits=10).energy_at({1: "x"})
