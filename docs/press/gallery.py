@@ -16,7 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 EXAMPLES = Path(__file__).parents[1] / "gallery"
-DPI = 110
+STYLE, DPI = "symfpu.plots.symfpu", 110
 
 INDEX = """# Gallery
 
@@ -103,11 +103,12 @@ def run(example: Example, picture: Path) -> str:
 
     plt.close("all")
     printed = StringIO()
-    with _elsewhere(), redirect_stdout(printed):
+    with _elsewhere(), redirect_stdout(printed), plt.style.context(STYLE):
         exec(compile(example.code, f"{example.name}.py", "exec"), {"__name__": "__main__"})  # noqa: S102
-    if len(plt.get_fignums()) != 1:
-        raise ValueError(f"docs/gallery/{example.name}.py draws {len(plt.get_fignums())} figures, not one")
-    plt.gcf().savefig(picture, dpi=DPI)
+        drawn = plt.get_fignums()
+        if len(drawn) != 1:
+            raise ValueError(f"docs/gallery/{example.name}.py draws {len(drawn)} figures, not one")
+        plt.gcf().savefig(picture, dpi=DPI)
     plt.close("all")
     return printed.getvalue()
 
