@@ -8,6 +8,7 @@ FOLDER/html/index.html is its first page. --links : ask the network whether link
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -21,6 +22,7 @@ sys.path.insert(0, str(DOCS))
 from press import gallery, topics  # noqa: E402
 
 SAME = ("*.md", "*.png", "conf.py")
+CONTENTS = re.compile(r"^:::\{toctree\}\n(.*?)^:::$", re.MULTILINE | re.DOTALL)
 STRICT = ["-W", "--keep-going", "-n", "-q"]
 TUTORIALS = """# Tutorials
 
@@ -44,10 +46,21 @@ def lay_out(folder: Path) -> Path:
         for path in DOCS.glob(pattern):
             shutil.copy2(path, pages)
     shutil.copytree(DOCS / "_static", pages / "_static")
+    _add_pages_of_no_section(pages)
     _write_api(pages / "api")
     _copy_notebooks(pages / "tutorials")
     gallery.write(pages / "gallery")
     return pages
+
+
+def _add_pages_of_no_section(pages: Path) -> None:
+    """A page that no table of contents names goes to the end of the guide's."""
+    found = "\n".join(path.read_text() for path in pages.glob("*.md"))
+    named = {line.strip() for block in CONTENTS.findall(found) for line in block.splitlines()}
+    others = sorted(path.stem for path in pages.glob("*.md") if path.stem not in {*named, "index"})
+    guide = pages / "guide.md"
+    text = guide.read_text().rstrip().removesuffix(":::")
+    guide.write_text("\n".join([text.rstrip(), *others, ":::", ""]))
 
 
 def _write_api(folder: Path) -> None:

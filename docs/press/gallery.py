@@ -102,7 +102,7 @@ def run(example: Example, picture: Path) -> str:
     import matplotlib.pyplot as plt
 
     plt.close("all")
-    printed = StringIO()
+    picture, printed = picture.resolve(), StringIO()
     with _elsewhere(), redirect_stdout(printed), plt.style.context(STYLE):
         exec(compile(example.code, f"{example.name}.py", "exec"), {"__name__": "__main__"})  # noqa: S102
         drawn = plt.get_fignums()
