@@ -13,28 +13,12 @@ from typing import Any
 
 import symfpu
 
+from press.plain import prose
 from press.topics import bases_of
 
 ROOT = Path(symfpu.__file__).parents[1]
-CODE = re.compile(r"`([^`\n]+)`")
-SPECIAL = re.compile(r"([\\*`|_])")
 HEAD = re.compile(r"\*{0,2}\w+(?:, \*{0,2}\w+)* : ")
 SEVERAL = re.compile(rf"(?<=[.;]) (?={HEAD.pattern})")  # entries that follow each other on a line
-
-
-def prose(text: str) -> str:
-    """A line of plain text; what stands in backticks becomes a literal."""
-    pieces = CODE.split(text)
-    kept = [SPECIAL.sub(r"\\\1", piece) if i % 2 == 0 else f"``{piece}``" for i, piece in enumerate(pieces)]
-    return "".join(_apart(kept))
-
-
-def _apart(pieces: list[str]) -> list[str]:
-    """Literals keep a boundary to letters beside them."""
-    for i in range(2, len(pieces), 2):
-        if re.match(r"\w", pieces[i]):
-            pieces[i] = "\\ " + pieces[i]
-    return pieces
 
 
 def names_of(thing: Any) -> set[str]:

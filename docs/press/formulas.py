@@ -23,6 +23,7 @@ SAID_OTHERWISE = {
     r"\nonumber": "",
     "&&": "&",
 }
+APPLIED, SPACED = "<mo>&ApplyFunction;</mo>", '<mo rspace="0.17em">&ApplyFunction;</mo>'
 ROWS = re.compile(r"\\begin\{(align|eqnarray|gather)(\*?)\}(.*?)\\end\{\1\2\}", re.DOTALL)
 
 
@@ -32,7 +33,7 @@ def mathml(latex: str, *, block: bool) -> str:
         latex = re.sub(rf"{re.escape(theirs)}(?![A-Za-z])", lambda _, ours=ours: ours, latex)
     latex = latex.strip().strip("$").strip()
     latex = ROWS.sub(lambda found: rf"\begin{{aligned}}{found[3]}\end{{aligned}}", latex)
-    return str(tex2mathml(latex, as_block=block))
+    return str(tex2mathml(latex, as_block=block)).replace(APPLIED, SPACED)
 
 
 def _written(translator: Any, node: nodes.Element, *, block: bool) -> None:

@@ -36,6 +36,7 @@ LABEL = "|".join(LABELS)
 CITED = re.compile(rf"\bEqs?\. (?:{LABEL})\b(?:(?:, and |, | and | to )(?:{LABEL})\b)*")
 ONE = re.compile(rf"\b(?:{LABEL})\b")
 UNTOUCHED = (nodes.reference, nodes.title, addnodes.desc_signature, addnodes.pending_xref, nodes.literal_block, nodes.raw)
+SHARED = "api/what-results-share"
 MODULES = {"plots": ("symfpu.plots.", "symfpu."), "api/pictures": ("symfpu.plots.", "symfpu.")}
 COLOURED, SHOWN = 60_000, 400_000  # bytes up to which a file has colours, and is shown
 LINES = HtmlFormatter(linenos="inline", lineanchors="line", anchorlinenos=True)
@@ -106,13 +107,19 @@ class NameLinks(SphinxPostTransform):
 
     def _api(self, words: str) -> nodes.reference | None:
         found = CALLED.fullmatch(words)
+        entry = self._entry(found[1]) if found else None
+        if entry is None:
+            return None
+        uri = self.app.builder.get_relative_uri(self.env.docname, entry.docname)
+        return nodes.reference("", "", internal=True, refuri=f"{uri}#{entry.node_id}")
+
+    def _entry(self, name: str) -> Any:
+        """The place of a public name, or of a class or method that results share."""
         objects = self.env.domains["py"].objects
-        for prefix in MODULES.get(self.env.docname, ("symfpu.",)) if found else ():
-            entry = objects.get(prefix + found[1])
-            if entry is not None:
-                uri = self.app.builder.get_relative_uri(self.env.docname, entry.docname)
-                return nodes.reference("", "", internal=True, refuri=f"{uri}#{entry.node_id}")
-        return None
+        prefixes = MODULES.get(self.env.docname, ("symfpu.",))
+        public = (objects.get(prefix + name) for prefix in prefixes)
+        shared = (entry for full, entry in objects.items() if full.endswith(f".{name}") and entry.docname == SHARED)
+        return next((entry for entry in [*public, *shared] if entry is not None), None)
 
     def _file(self, words: str) -> nodes.reference | None:
         lined = LINED.fullmatch(words)

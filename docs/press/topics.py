@@ -18,6 +18,8 @@ from typing import Any
 
 import symfpu
 
+from press.plain import prose
+
 STUB = Path(symfpu.__file__).with_name("__init__.pyi")
 COMMENT = re.compile(r"^# (.+)$", re.MULTILINE)
 SHARED = "What results share"
@@ -26,15 +28,26 @@ SHARED_WORDS = "Classes that results are made from. A result has its own methods
 
 @dataclass(frozen=True)
 class Topic:
-    """A group of public names. names : as they are written in Python, "symfpu.lindstedt"."""
+    """A group of public names. words : of the stub. names : as in Python, "symfpu.lindstedt"."""
 
-    title: str
+    words: str
     names: tuple[str, ...]
 
     @property
+    def title(self) -> str:
+        """The words up to the first comma or colon."""
+        first = re.split("[,:]", self.words)[0]
+        return first[0].upper() + first[1:]
+
+    @property
+    def rest(self) -> str:
+        """What the words say after the title, as a sentence."""
+        more = re.sub("^[,: ]+(and )?", "", self.words[len(self.title) :])
+        return more[:1].upper() + more[1:] + "." * bool(more)
+
+    @property
     def slug(self) -> str:
-        words = re.split("[,:]", self.title.lower().replace("'", ""))[0]
-        return "-".join(words.split())
+        return "-".join(self.title.lower().replace("'", "").split())
 
 
 def topics(stub: str | None = None) -> list[Topic]:
@@ -47,7 +60,7 @@ def topics(stub: str | None = None) -> list[Topic]:
     for (start, words), end in zip(heads, ends, strict=True):
         within = [line for line in imports if start < line.lineno < end]
         names = [name for line in within for alias in line.names for name in _names(line.module, alias.name)]
-        found.append(Topic(words[0].upper() + words[1:], tuple(names)))
+        found.append(Topic(words, tuple(names)))
     return [topic for topic in found if topic.names]
 
 
@@ -93,7 +106,7 @@ def pages() -> dict[str, str]:
     found = topics()
     everything = [name for topic in found for name in topic.names]
     shared = Topic(SHARED, tuple(shared_classes(everything)))
-    written = {topic.slug: _page(topic, "") for topic in found} | {shared.slug: _page(shared, SHARED_WORDS)}
+    written = {topic.slug: _page(topic, topic.rest) for topic in found} | {shared.slug: _page(shared, SHARED_WORDS)}
     return {"index": _index([*found, shared])} | written
 
 
@@ -105,7 +118,7 @@ def _index(found: list[Topic]) -> str:
     """All topics, with their names."""
     lines = [*_headed("Public names"), "Every public name of symfpu, by what it is about.", ""]
     for topic in found:
-        listed = ", ".join(f"``{name.removeprefix('symfpu.') if topic.title != SHARED else name.rpartition('.')[2]}``" for name in topic.names)
+        listed = ", ".join(f":py:obj:`~{name}`" for name in topic.names)
         lines += [f":doc:`{topic.title} <{topic.slug}>`", f"    {listed}", ""]
     lines += [".. toctree::", "   :hidden:", ""]
     return "\n".join([*lines, *(f"   {topic.slug}" for topic in found), ""])
@@ -113,7 +126,7 @@ def _index(found: list[Topic]) -> str:
 
 def _page(topic: Topic, words: str) -> str:
     """A table of the names, then each of them in full."""
-    lines = [*_headed(topic.title), words, "", ".. list-table::", "   :class: names", "   :widths: 30 70", ""]
+    lines = [*_headed(topic.title), prose(words), "", ".. list-table::", "   :class: names", "   :widths: 30 70", ""]
     for name in topic.names:
         lines += [f"   * - :py:obj:`~{name}`", f"     - {first_line(name)}"]
     for name in topic.names:
@@ -127,6 +140,4 @@ def _page(topic: Topic, words: str) -> str:
 
 def first_line(name: str) -> str:
     """What a name gives, in reStructuredText."""
-    from press.docstrings import prose  # press.docstrings names its bases by this module
-
     return prose((inspect.getdoc(thing(name)) or "").split("\n")[0])
