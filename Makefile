@@ -5,7 +5,7 @@ OUT ?= out
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 # workers of pytest share the cores
 OLD := -W ignore::DeprecationWarning -W ignore::PendingDeprecationWarning # old releases call newer ones of each other
 
-.PHONY: install reproduce test lowest bench sweeps long generated equations citation doors clean
+.PHONY: install reproduce test lowest bench sweeps long generated equations doors docs links clean
 
 install: .venv/installed
 
@@ -55,6 +55,12 @@ citation: install  ## CITATION.cff from symfpu/reports/citation.py
 
 doors: install  ## the table of docs/chains.md, by calling every door
 	$(BIN)/python docs/make_doors.py
+
+docs: install  ## the site, build/site/html/index.html; warnings are errors
+	$(BIN)/python docs/make_site.py build/site
+
+links: install  ## whether the links of the site to elsewhere lead somewhere; asks the network
+	$(BIN)/python docs/make_site.py build/site --links
 
 clean:
 	rm -rf .venv .venv-lowest out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

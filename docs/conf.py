@@ -3,7 +3,8 @@
 import symfpu
 
 project = "symfpu"
-author = copyright = "the symfpu developers"
+author = "the symfpu developers"
+project_copyright = author
 version = release = symfpu.__version__
 
 extensions = [

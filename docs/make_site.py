@@ -56,8 +56,12 @@ def lay_out(folder: Path) -> Path:
 def _add_pages_of_no_section(pages: Path) -> None:
     """A page that no table of contents names goes to the end of the guide's."""
     found = "\n".join(path.read_text() for path in pages.glob("*.md"))
-    named = {line.strip() for block in CONTENTS.findall(found) for line in block.splitlines()}
-    others = sorted(path.stem for path in pages.glob("*.md") if path.stem not in {*named, "index"})
+    named = {
+        line.strip() for block in CONTENTS.findall(found) for line in block.splitlines()
+    }
+    others = sorted(
+        path.stem for path in pages.glob("*.md") if path.stem not in {*named, "index"}
+    )
     guide = pages / "guide.md"
     text = guide.read_text().rstrip().removesuffix(":::")
     guide.write_text("\n".join([text.rstrip(), *others, ":::", ""]))
@@ -74,7 +78,9 @@ def _copy_notebooks(folder: Path) -> None:
     found = sorted((ROOT / "notebooks").glob("*.ipynb"))
     for path in found:
         shutil.copy2(path, folder)
-    (folder / "index.md").write_text(TUTORIALS.format(names="\n".join(path.stem for path in found)))
+    (folder / "index.md").write_text(
+        TUTORIALS.format(names="\n".join(path.stem for path in found))
+    )
 
 
 def build(folder: Path, builder: str = "html") -> int:
@@ -82,9 +88,21 @@ def build(folder: Path, builder: str = "html") -> int:
     pages = lay_out(folder / "pages")
     output = folder / builder
     shutil.rmtree(output, ignore_errors=True)
-    command = [sys.executable, "-m", "sphinx", "-b", builder, "-d", str(folder / "trees"), "-E", *STRICT]
+    command = [
+        sys.executable,
+        "-m",
+        "sphinx",
+        "-b",
+        builder,
+        "-d",
+        str(folder / "trees"),
+        "-E",
+        *STRICT,
+    ]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(DOCS)])}
-    return subprocess.run([*command, str(pages), str(output)], env=environment, check=False).returncode
+    words = [*command, str(pages), str(output)]
+    built = subprocess.run(words, env=environment, check=False)  # noqa: S603, our own words
+    return built.returncode
 
 
 if __name__ == "__main__":

@@ -15,4 +15,4 @@ for energy in ("0.1", "5"):
     print(f"E = {energy}: {found.dimension().verdict}")
     ax.loglog(found.times, abs(found.lyapunov), label=f"E = {energy}")
 ax.set(xlabel="$t$", ylabel=r"$\log|v(t)|/t$")
-ax.legend();
+ax.legend()

@@ -10,6 +10,11 @@ chains = {
     "Toda": Chain(16, potential="toda:0.33"),
     "Lennard-Jones": Chain(16, potential="lj:12,6"),
 }
-sizes = {name: 0.3 / abs(float(chain.potential.coefficient(3))) for name, chain in chains.items()}
-tori = [torus_at_amplitudes(chains[name], {1: A, 2: A / 2}, order=6) for name, A in sizes.items()]
+sizes = {
+    name: 0.3 / abs(float(chain.potential.coefficient(3))) for name, chain in chains.items()
+}
+tori = [
+    torus_at_amplitudes(chains[name], {1: A, 2: A / 2}, order=6)
+    for name, A in sizes.items()
+]
 plots.spectrum(tori, labels=list(chains))

@@ -12,19 +12,21 @@ from pathlib import Path
 from typing import Any
 
 import symfpu
-
 from press.plain import prose
 from press.topics import bases_of
 
 ROOT = Path(symfpu.__file__).parents[1]
 HEAD = re.compile(r"\*{0,2}\w+(?:, \*{0,2}\w+)* : ")
-SEVERAL = re.compile(rf"(?<=[.;]) (?={HEAD.pattern})")  # entries that follow each other on a line
+# entries that follow each other on a line
+SEVERAL = re.compile(rf"(?<=[.;]) (?={HEAD.pattern})")
 
 
 def names_of(thing: Any) -> set[str]:
     """Arguments of a function, fields and attributes of a class."""
     if inspect.isclass(thing):
-        fields = {name for base in inspect.getmro(thing) for name in base.__dict__.get("__annotations__", {})}
+        fields = {
+            name for base in inspect.getmro(thing) for name in inspect.get_annotations(base)
+        }
         stored = set(re.findall(r"self\.(\w+)", _source(thing)))
         return fields | set(dir(thing)) | stored | _arguments(thing)
     return _arguments(getattr(thing, "fget", None) or thing)
@@ -60,7 +62,7 @@ def rest(lines: list[str], names: set[str]) -> list[str]:
             text = line if kind == "field" else f"    {prose(line.strip())}"
         else:
             new, text = "prose", prose(line)
-        if written and new != kind and before.strip():
+        if text and new != kind and before.strip():
             written.append("")
         written += _field(text, names) if new == "field" else [text]
         kind = new
@@ -86,12 +88,18 @@ def _field(line: str, names: set[str]) -> list[str]:
     return written
 
 
-def process(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
+def process(
+    app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]
+) -> None:
     """The event autodoc-process-docstring."""
     written = rest(list(lines), names_of(obj))
     if what == "class":
-        bases = [f":py:class:`~{base.__module__}.{base.__name__}`" for base in bases_of(obj)]
-        written += ["", f"It also has the methods of {', '.join(bases)}.", ""] if bases else []
+        bases = [
+            f":py:class:`~{base.__module__}.{base.__name__}`" for base in bases_of(obj)
+        ]
+        written += (
+            ["", f"It also has the methods of {', '.join(bases)}.", ""] if bases else []
+        )
     if what in ("class", "function", "exception"):
         written += ["", f"Source: ``{home(obj)}``", ""]
     lines[:] = written
@@ -105,7 +113,13 @@ def home(thing: Any) -> str:
 
 
 def signature(
-    app: Any, what: str, name: str, obj: Any, options: Any, arguments: str | None, returned: str | None
+    app: Any,
+    what: str,
+    name: str,
+    obj: Any,
+    options: Any,
+    arguments: str | None,
+    returned: str | None,
 ) -> tuple[str, str] | None:
     """The event autodoc-process-signature: arguments without types, and the result where it is a public name."""
     if what not in ("class", "function", "method", "exception"):
@@ -116,7 +130,9 @@ def signature(
         return None
     if what == "exception":
         return "", ""
-    bare = [one.replace(annotation=inspect.Parameter.empty) for one in found.parameters.values()]
+    bare = [
+        one.replace(annotation=inspect.Parameter.empty) for one in found.parameters.values()
+    ]
     if what == "method" and bare and bare[0].name in ("self", "cls"):
         bare = bare[1:]
     gives = str(found.return_annotation)

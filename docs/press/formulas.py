@@ -30,7 +30,9 @@ ROWS = re.compile(r"\\begin\{(align|eqnarray|gather)(\*?)\}(.*?)\\end\{\1\2\}", 
 def mathml(latex: str, *, block: bool) -> str:
     """A formula as MathML. Raises MathError."""
     for theirs, ours in SAID_OTHERWISE.items():
-        latex = re.sub(rf"{re.escape(theirs)}(?![A-Za-z])", lambda _, ours=ours: ours, latex)
+        latex = re.sub(
+            rf"{re.escape(theirs)}(?![A-Za-z])", lambda _, ours=ours: ours, latex
+        )
     latex = latex.strip().strip("$").strip()
     latex = ROWS.sub(lambda found: rf"\begin{{aligned}}{found[3]}\end{{aligned}}", latex)
     return str(tex2mathml(latex, as_block=block)).replace(APPLIED, SPACED)

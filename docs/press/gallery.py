@@ -107,7 +107,9 @@ def run(example: Example, picture: Path) -> str:
         exec(compile(example.code, f"{example.name}.py", "exec"), {"__name__": "__main__"})  # noqa: S102
         drawn = plt.get_fignums()
         if len(drawn) != 1:
-            raise ValueError(f"docs/gallery/{example.name}.py draws {len(drawn)} figures, not one")
+            raise ValueError(
+                f"docs/gallery/{example.name}.py draws {len(drawn)} figures, not one"
+            )
         plt.gcf().savefig(picture, dpi=DPI)
     plt.close("all")
     return printed.getvalue()
@@ -120,8 +122,15 @@ def write(folder: Path) -> None:
     for example in found:
         printed = run(example, folder / f"{example.name}.png")
         text = PRINTED.format(text=printed.rstrip()) if printed else ""
-        fields = {"name": example.name, "title": example.title, "words": example.words, "code": example.code}
+        fields = {
+            "name": example.name,
+            "title": example.title,
+            "words": example.words,
+            "code": example.code,
+        }
         (folder / f"{example.name}.md").write_text(PAGE.format(**fields, printed=text))
     cards = "\n".join(CARD.format(name=one.name, title=one.title) for one in found)
     names = "\n".join(one.name for one in found)
-    (folder / "index.md").write_text(INDEX.format(number=len(found), cards=cards, names=names))
+    (folder / "index.md").write_text(
+        INDEX.format(number=len(found), cards=cards, names=names)
+    )

@@ -14,7 +14,6 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-import symfpu
 from docutils import nodes
 from make_equations import items
 from pygments import highlight
@@ -24,6 +23,8 @@ from pygments.lexers import TextLexer, get_lexer_for_filename
 from pygments.util import ClassNotFound
 from sphinx import addnodes
 from sphinx.transforms.post_transforms import SphinxPostTransform
+
+import symfpu
 
 ROOT = Path(symfpu.__file__).parents[1]
 FILES = "_files"  # pages that show files of the repository
@@ -35,9 +36,19 @@ LABELS = sorted((label for label in items() if " " not in label), key=len, rever
 LABEL = "|".join(LABELS)
 CITED = re.compile(rf"\bEqs?\. (?:{LABEL})\b(?:(?:, and |, | and | to )(?:{LABEL})\b)*")
 ONE = re.compile(rf"\b(?:{LABEL})\b")
-UNTOUCHED = (nodes.reference, nodes.title, addnodes.desc_signature, addnodes.pending_xref, nodes.literal_block, nodes.raw)
+UNTOUCHED = (
+    nodes.reference,
+    nodes.title,
+    addnodes.desc_signature,
+    addnodes.pending_xref,
+    nodes.literal_block,
+    nodes.raw,
+)
 SHARED = "api/what-results-share"
-MODULES = {"plots": ("symfpu.plots.", "symfpu."), "api/pictures": ("symfpu.plots.", "symfpu.")}
+MODULES = {
+    "plots": ("symfpu.plots.", "symfpu."),
+    "api/pictures": ("symfpu.plots.", "symfpu."),
+}
 COLOURED, SHOWN = 60_000, 400_000  # bytes up to which a file has colours, and is shown
 LINES = HtmlFormatter(linenos="inline", lineanchors="line", anchorlinenos=True)
 
@@ -118,13 +129,22 @@ class NameLinks(SphinxPostTransform):
         objects = self.env.domains["py"].objects
         prefixes = MODULES.get(self.env.docname, ("symfpu.",))
         public = (objects.get(prefix + name) for prefix in prefixes)
-        shared = (entry for full, entry in objects.items() if full.endswith(f".{name}") and entry.docname == SHARED)
+        shared = (
+            entry
+            for full, entry in objects.items()
+            if full.endswith(f".{name}") and entry.docname == SHARED
+        )
         return next((entry for entry in [*public, *shared] if entry is not None), None)
 
     def _file(self, words: str) -> nodes.reference | None:
         lined = LINED.fullmatch(words)
         path, line = (lined[1], lined[2]) if lined else (words.rstrip("/"), "")
-        known = "/" in path and " " not in path and ".." not in path and not path.startswith("/")
+        known = (
+            "/" in path
+            and " " not in path
+            and ".." not in path
+            and not path.startswith("/")
+        )
         if not known or not (ROOT / path).exists() or path.startswith("docs/gallery"):
             return None
         return _link(self.app, self.env.docname, path, line)
@@ -143,17 +163,21 @@ def _link(app: Any, docname: str, path: str, line: str) -> nodes.reference:
     page = page_of(path)
     if page.startswith(FILES):
         app.shown_files.add(path)
-        (ROOT / path).is_dir() and app.shown_files.update(inside(path))
+        app.shown_files.update(inside(path) if (ROOT / path).is_dir() else ())
     elif page not in app.env.found_docs:
         raise LookupError(f"{docname}: {path} has no page {page}")
     uri = app.builder.get_relative_uri(docname, page)
-    return nodes.reference("", "", internal=True, refuri=uri + (f"#line-{line}" if line else ""))
+    return nodes.reference(
+        "", "", internal=True, refuri=uri + (f"#line-{line}" if line else "")
+    )
 
 
 def _cite(app: Any, docname: str, text: nodes.Text) -> None:
     """Labels of equations in a text become links to the index."""
     words, parts, last = str(text), [], 0
-    places = [one for cited in CITED.finditer(words) for one in ONE.finditer(words, *cited.span())]
+    places = [
+        one for cited in CITED.finditer(words) for one in ONE.finditer(words, *cited.span())
+    ]
     for one in places:
         uri = f"{app.builder.get_relative_uri(docname, INDEX)}#{identifier(one[0])}"
         link = nodes.reference("", one[0], internal=True, refuri=uri)
@@ -179,19 +203,26 @@ def mark_equations(app: Any, doctree: nodes.document) -> None:
 def inside(path: str) -> list[str]:
     """What a folder of the repository shows: the files right in it."""
     found = sorted((ROOT / path).iterdir())
-    return [f"{path}/{one.name}" for one in found if one.is_file() and not one.name.startswith(".")]
+    return [
+        f"{path}/{one.name}"
+        for one in found
+        if one.is_file() and not one.name.startswith(".")
+    ]
 
 
 def file_pages(app: Any) -> Iterator[tuple[str, dict[str, str], str]]:
     """The event html-collect-pages: files and folders of the repository that the pages name."""
     for path in sorted(app.shown_files):
         page = f"{FILES}/{path}"
-        if (ROOT / path).is_dir():
-            body = _folder(app, path, page)
-        else:
-            body = _coloured(ROOT / path)
+        body = (
+            _folder(app, path, page) if (ROOT / path).is_dir() else _coloured(ROOT / path)
+        )
         title = f"<h1><code>{escape(path)}</code></h1>"
-        yield page, {"title": path, "body": f'<div class="repository-file">{title}{body}</div>'}, "page.html"
+        yield (
+            page,
+            {"title": path, "body": f'<div class="repository-file">{title}{body}</div>'},
+            "page.html",
+        )
 
 
 def _folder(app: Any, path: str, page: str) -> str:

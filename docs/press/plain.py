@@ -11,7 +11,10 @@ SPECIAL = re.compile(r"([\\*`|_])")
 def prose(text: str) -> str:
     """A line of plain text; what stands in backticks becomes a literal."""
     pieces = CODE.split(text)
-    kept = [SPECIAL.sub(r"\\\1", piece) if i % 2 == 0 else f"``{piece}``" for i, piece in enumerate(pieces)]
+    kept = [
+        SPECIAL.sub(r"\\\1", piece) if i % 2 == 0 else f"``{piece}``"
+        for i, piece in enumerate(pieces)
+    ]
     return "".join(_apart(kept))
 
 

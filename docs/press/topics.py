@@ -12,12 +12,11 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import symfpu
-
 from press.plain import prose
 
 STUB = Path(symfpu.__file__).with_name("__init__.pyi")
@@ -53,27 +52,37 @@ class Topic:
 def topics(stub: str | None = None) -> list[Topic]:
     """The topics in the order of the stub. stub : its text; default that of the package."""
     text = STUB.read_text() if stub is None else stub
-    heads = [(text.count("\n", 0, match.start()) + 1, match[1]) for match in COMMENT.finditer(text)]
+    heads = [
+        (text.count("\n", 0, match.start()) + 1, match[1])
+        for match in COMMENT.finditer(text)
+    ]
     imports = [line for line in ast.parse(text).body if isinstance(line, ast.ImportFrom)]
     ends = [line for line, _ in heads[1:]] + [text.count("\n") + 2]
     found = []
     for (start, words), end in zip(heads, ends, strict=True):
         within = [line for line in imports if start < line.lineno < end]
-        names = [name for line in within for alias in line.names for name in _names(line.module, alias.name)]
+        names = [
+            name
+            for line in within
+            for alias in line.names
+            for name in _names(line.module, alias.name)
+        ]
         found.append(Topic(words, tuple(names)))
     return [topic for topic in found if topic.names]
 
 
 def _names(module: str | None, name: str) -> Iterator[str]:
     """A public name, or those of a public module."""
-    thing = getattr(import_module(str(module)), name) if module == "symfpu" else None
-    if not isinstance(thing, ModuleType):
+    room = find_spec(f"{module}.{name}") if module == "symfpu" else None
+    if room is None:
         yield f"symfpu.{name}"
         return
-    tree = ast.parse(Path(str(thing.__file__)).read_text())
+    tree = ast.parse(Path(str(room.origin)).read_text())
     for line in tree.body:
         if isinstance(line, ast.ImportFrom):
-            yield from (f"{thing.__name__}.{alias.asname}" for alias in line.names if alias.asname)
+            yield from (
+                f"{room.name}.{alias.asname}" for alias in line.names if alias.asname
+            )
 
 
 def thing(name: str) -> Any:
@@ -94,11 +103,17 @@ def bases_of(one: type) -> list[type]:
     """The bases of a class that belong to symfpu and say what they are."""
     above = inspect.getmro(one)[1:]
     ours = [base for base in above if base.__module__.startswith("symfpu.")]
-    return [base for base in ours if not base.__name__.startswith("_") and _public_members(base)]
+    return [
+        base for base in ours if not base.__name__.startswith("_") and _public_members(base)
+    ]
 
 
 def _public_members(base: type) -> list[str]:
-    return [name for name in vars(base) if not name.startswith("_") and inspect.getdoc(vars(base)[name])]
+    return [
+        name
+        for name in vars(base)
+        if not name.startswith("_") and inspect.getdoc(vars(base)[name])
+    ]
 
 
 def pages() -> dict[str, str]:
@@ -106,7 +121,9 @@ def pages() -> dict[str, str]:
     found = topics()
     everything = [name for topic in found for name in topic.names]
     shared = Topic(SHARED, tuple(shared_classes(everything)))
-    written = {topic.slug: _page(topic, topic.rest) for topic in found} | {shared.slug: _page(shared, SHARED_WORDS)}
+    written = {topic.slug: _page(topic, topic.rest) for topic in found} | {
+        shared.slug: _page(shared, SHARED_WORDS)
+    }
     return {"index": _index([*found, shared])} | written
 
 
@@ -116,7 +133,11 @@ def _headed(title: str) -> list[str]:
 
 def _index(found: list[Topic]) -> str:
     """All topics, with their names."""
-    lines = [*_headed("Public names"), "Every public name of symfpu, by what it is about.", ""]
+    lines = [
+        *_headed("Public names"),
+        "Every public name of symfpu, by what it is about.",
+        "",
+    ]
     for topic in found:
         listed = ", ".join(f":py:obj:`~{name}`" for name in topic.names)
         lines += [f":doc:`{topic.title} <{topic.slug}>`", f"    {listed}", ""]
@@ -126,7 +147,15 @@ def _index(found: list[Topic]) -> str:
 
 def _page(topic: Topic, words: str) -> str:
     """A table of the names, then each of them in full."""
-    lines = [*_headed(topic.title), prose(words), "", ".. list-table::", "   :class: names", "   :widths: 30 70", ""]
+    lines = [
+        *_headed(topic.title),
+        prose(words),
+        "",
+        ".. list-table::",
+        "   :class: names",
+        "   :widths: 30 70",
+        "",
+    ]
     for name in topic.names:
         lines += [f"   * - :py:obj:`~{name}`", f"     - {first_line(name)}"]
     for name in topic.names:

@@ -1,0 +1,213 @@
+"""The site: public names by topic, docstrings, formulas, links, the gallery, and the whole of it without a warning."""
+
+import re
+import subprocess
+import sys
+import time
+from collections import Counter
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+import symfpu
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "docs"))
+
+from docutils.utils.math import MathError  # noqa: E402
+from press import docstrings, formulas, gallery, links, plain, topics  # noqa: E402
+
+SECONDS = 6.0  # of processor time, where others use the processor; alone an example takes less than one or two
+VERDICTS = ("holds", "holds in part", "does not hold", "undecided")
+
+
+def test_every_public_name_is_in_one_topic():
+    names = [name for topic in topics.topics() for name in topic.names]
+    pictures = re.findall(r"import (\w+) as \1$", (ROOT / "symfpu/plots/__init__.py").read_text(), re.MULTILINE)
+    assert sorted(names) == sorted([*(f"symfpu.{name}" for name in symfpu.__all__), *(f"symfpu.plots.{name}" for name in pictures)])
+
+
+def test_a_new_group_and_a_new_name_are_taken_from_the_stub():
+    first_group = "# the first, and more\nfrom symfpu.a import b as b\nfrom symfpu.a import (\n    c as c,\n)\n"
+    stub = first_group + "\n# second\nfrom symfpu.d import e as e\n"
+    first, second = topics.topics(stub)
+    assert (first.title, first.rest, first.slug, first.names) == ("The first", "More.", "the-first", ("symfpu.b", "symfpu.c"))
+    assert (second.title, second.rest, second.names) == ("Second", "", ("symfpu.e",))
+
+
+def test_every_topic_has_a_page_of_its_own():
+    found = topics.topics()
+    assert len({topic.slug for topic in found}) == len(found)
+
+
+def test_what_results_inherit_is_shared_and_not_public():
+    shared = topics.shared_classes(["symfpu.QTorus", "symfpu.RefinedTorus", "symfpu.Orbit"])
+    assert "symfpu.tori.quasiperiodic.QuasiPeriodic" in shared
+    assert not {name.rpartition(".")[2] for name in shared} & set(symfpu.__all__)
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("|Q_q|^2 and 2 * EPS", r"\|Q\_q\|^2 and 2 \* EPS"),
+        ("as `save` does; omega_", r"as ``save`` does; omega\_"),
+        ("`refine`d", r"``refine``\ d"),
+    ],
+)
+def test_plain_text_stays_what_it_is(text, written):
+    assert plain.prose(text) == written
+
+
+def test_parameter_lists_become_definitions():
+    lines = ["What it gives.", "", "a, b : two numbers,", "    both real. c : a third.", "Not d : which is prose.", "", ">>> 1", "1"]
+    assert docstrings.rest(lines, {"a", "b", "c"}) == [
+        "What it gives.",
+        "",
+        "**a**, **b**",
+        "    two numbers,",
+        "    both real.",
+        "**c**",
+        "    a third.",
+        "",
+        "Not d : which is prose.",
+        "",
+        ">>> 1",
+        "1",
+    ]
+
+
+def test_a_formula_is_drawn_by_the_browser():
+    assert formulas.mathml(r"$\dots \log t / t$", block=False).startswith("<math")
+    with pytest.raises(MathError):
+        formulas.mathml(r"\nosuchcommand{x}", block=False)
+
+
+@pytest.mark.parametrize(
+    ("target", "docname", "page"),
+    [
+        ("../symfpu/chain/chain.py", "equations", "_files/symfpu/chain/chain.py"),
+        ("../notebooks/02_torus.ipynb", "plots", "tutorials/02_torus"),
+        ("docs/errata.md", "index", "errata"),
+        ("../docs/toda.md", "tutorials/06_potentials_and_rings", "toda"),
+        ("../generated", "export", "_files/generated"),
+    ],
+)
+def test_links_of_a_code_host_are_links_of_the_site(target, docname, page):
+    assert links.page_of(links.repository_path(target, docname)) == page
+
+
+def test_a_link_to_nothing_is_none():
+    assert links.repository_path("../symfpu/nowhere.py", "equations") is None
+
+
+def test_equations_are_found_where_they_are_cited():
+    assert [found[0] for found in links.CITED.finditer("(Eqs. moda, modb) or Eq. omeser; Eq. nothing")] == ["Eqs. moda, modb", "Eq. omeser"]
+
+
+def test_the_gallery_has_its_twenty():
+    found = gallery.examples()
+    assert len(found) >= 20
+    assert len({example.title for example in found}) == len(found)
+    assert all(example.words for example in found)
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("example", gallery.examples(), ids=lambda one: one.name)
+def test_example_runs(example, tmp_path):
+    gallery.run(example, tmp_path / "first.png")  # compiles what it needs
+    start = time.process_time()
+    gallery.run(example, tmp_path / "picture.png")
+    assert time.process_time() - start < SECONDS
+    assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore")
+def test_what_an_example_prints_and_draws_is_kept(tmp_path):
+    one = gallery.Example("line", "A line", "", "import matplotlib.pyplot as plt\nplt.plot([0, 1])\nprint(1)")
+    assert gallery.run(one, tmp_path / "line.png") == "1\n"
+    assert (tmp_path / "line.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore")
+def test_an_example_without_a_picture_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="draws 0 figures"):
+        gallery.run(gallery.Example("none", "None", "", "a = 1"), tmp_path / "none.png")
+
+
+def test_the_paper_s_page_counts_its_verdicts():
+    claims = (ROOT / "docs/errata.md").read_text().split("## Claims of sections")[1]
+    kinds = "|".join(sorted(VERDICTS, key=len, reverse=True))
+    counts = [Counter(re.findall(rf"\| \**({kinds})\** \|", part)) for part in claims.split("\n### ")[1:]]
+    rows = re.findall(r"^\| \[[^]]+\]\(errata\.md#\S+\) \|(.*)\|$", (ROOT / "docs/paper.md").read_text(), re.MULTILINE)
+    printed = [[int(cell.strip() or 0) for cell in row.split("|")] for row in rows]
+    assert printed == [[found[verdict] for verdict in VERDICTS] for found in counts]
+
+
+class Page(HTMLParser):
+    """Links and targets of a page, and what it loads."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.links, self.targets, self.loaded = [], set(), []
+        self.feed(path.read_text())
+
+    def handle_starttag(self, tag, attrs):
+        known = dict(attrs)
+        self.targets |= {known[name] for name in ("id", "name") if known.get(name)}
+        if tag == "a" and known.get("href"):
+            self.links.append(known["href"])
+        if tag in ("script", "img", "link"):
+            self.loaded += [known[name] for name in ("src", "href") if known.get(name)]
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The whole site, built as `make docs` does."""
+    folder = tmp_path_factory.mktemp("site")
+    command = [sys.executable, str(ROOT / "docs/make_site.py"), str(folder)]
+    built = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert built.returncode == 0, built.stderr[-3000:]
+    return {path.relative_to(folder / "html").as_posix(): Page(path) for path in (folder / "html").rglob("*.html")}
+
+
+@pytest.mark.long
+def test_the_site_has_its_pages(site):
+    names = {page.removesuffix(".html") for page in site}
+    written = {path.stem for path in (ROOT / "docs").glob("*.md")}
+    tutorials = {f"tutorials/{path.stem}" for path in (ROOT / "notebooks").glob("*.ipynb")}
+    examples = {f"gallery/{example.name}" for example in gallery.examples()}
+    assert names >= written | tutorials | examples | {f"api/{topic.slug}" for topic in topics.topics()} | {"search"}
+    documented = set.union(*(page.targets for page in site.values()))
+    assert {f"symfpu.{name}" for name in symfpu.__all__} <= documented
+
+
+@pytest.mark.long
+def test_links_within_the_site_lead_to_targets(site):
+    lost = []
+    for name, page in site.items():
+        for link in page.links:
+            file, _, anchor = unquote(link).partition("#")
+            if re.match(r"\w+:", file):
+                continue
+            target = (Path("/") / name).parent.joinpath(file).resolve().relative_to("/").as_posix() if file else name
+            if target.endswith(".html") and (target not in site or (anchor and anchor not in site[target].targets)):
+                lost.append((name, link))
+    assert lost == []
+
+
+@pytest.mark.long
+def test_pages_load_nothing_from_elsewhere(site):
+    assert {one for page in site.values() for one in page.loaded if re.match(r"(https?:)?//", one)} == set()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("text", "code"), [("[a](index.md#title)", 0), ("[a](nowhere.md)", 1), ("[a](index.md#none)", 1)])
+def test_a_lost_link_is_an_error(text, code, tmp_path):
+    (tmp_path / "index.md").write_text(f"# Title\n\n{text}\n")
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "-n", "-C", "-D", "extensions=myst_parser", "-D", "myst_heading_anchors=3"]
+    assert subprocess.run([*command, str(tmp_path), str(tmp_path / "out")], capture_output=True, check=False).returncode == code
