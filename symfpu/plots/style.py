@@ -6,6 +6,7 @@ Matplotlib is loaded when the first picture is drawn.
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
@@ -30,6 +31,7 @@ COLOURS = 5  # of the style file; then they come round
 MARKERS = "osD^v<>*P"
 SHADES = ("0.95", "0.885")  # of neighbouring groups
 MARK = "#d55e00"  # the colour of what stands out
+NTH = re.compile("C[0-9]+")  # a colour of the style, by its place
 QUIET = "0.45"  # and of what does not
 EPS = 2.0**-52
 MOVED = 0.55  # of the distance of two samples: by how much one may be moved to a step
@@ -65,7 +67,28 @@ def axes_for(ax: Axes | None, projection: str | None = None) -> Iterator[Axes]:
     projection : "3d" where three dimensions are drawn. Raises InputError for what are no axes.
     """
     with styled():
-        yield _new_axes(projection) if ax is None else _given_axes(ax, projection)
+        axes = _new_axes(projection) if ax is None else _given_axes(ax, projection)
+        before = set(_lines(axes))
+        yield axes
+        for line in set(_lines(axes)) - before:
+            _keep_colours(line)
+
+
+def _lines(axes: Axes) -> list[Any]:
+    """All lines of the picture that the axes are in, those of legends and second axes too."""
+    from matplotlib.lines import Line2D
+
+    return list(axes.figure.findobj(Line2D))
+
+
+def _keep_colours(line: Any) -> None:
+    """The n-th colour of a style is read when a picture is drawn, which may be outside of it."""
+    from matplotlib.colors import to_hex
+
+    for part in ("color", "markerfacecolor", "markeredgecolor"):
+        colour = getattr(line, f"get_{part}")()
+        if isinstance(colour, str) and NTH.fullmatch(colour):
+            getattr(line, f"set_{part}")(to_hex(colour))
 
 
 def _new_axes(projection: str | None) -> Axes:

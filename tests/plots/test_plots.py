@@ -95,6 +95,14 @@ def test_every_picture_labels_its_axes(ax):
 # colours
 
 
+def test_colours_stay_those_of_the_style_when_it_is_left(ax):
+    own = ax.plot([0, 1], color="C3")[0]
+    plots.propagation(excitation_sequence(8, (1, 4), 2), ax)
+    drawn = [line for line in ax.get_lines() if line is not own]
+    assert own.get_color() == "C3"
+    assert {line.get_color() for line in drawn} <= {entry['color'] for entry in parameters()["axes.prop_cycle"]}
+
+
 def linear(colour):
     value = np.array([int(colour.strip("#")[i : i + 2], 16) / 255 for i in (0, 2, 4)])
     return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
