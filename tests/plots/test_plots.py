@@ -100,7 +100,7 @@ def test_colours_stay_those_of_the_style_when_it_is_left(ax):
     plots.propagation(excitation_sequence(8, (1, 4), 2), ax)
     drawn = [line for line in ax.get_lines() if line is not own]
     assert own.get_color() == "C3"
-    assert {line.get_color() for line in drawn} <= {entry['color'] for entry in parameters()["axes.prop_cycle"]}
+    assert {line.get_color() for line in drawn} <= {entry["color"] for entry in parameters()["axes.prop_cycle"]}
 
 
 def linear(colour):
