@@ -53,11 +53,17 @@ def parameters() -> Any:
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Inside of it pictures have the project's style; outside nothing is changed."""
+    """Inside of it pictures have the project's style; outside nothing is changed.
+
+    But for what the first figure changes: the backend of notebooks makes itself interactive with
+    it, and else would show no second one.
+    """
     import matplotlib as mpl
 
     with mpl.rc_context(parameters()):
         yield
+        interactive = mpl.is_interactive()
+    mpl.interactive(interactive)
 
 
 @contextmanager

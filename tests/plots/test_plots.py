@@ -17,7 +17,7 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.integrable.invariants import toda_gaps
 from symfpu.localization.floors import spectrum_floor
-from symfpu.plots.style import COLOURS, EPS, MARKERS, look, parameters
+from symfpu.plots.style import COLOURS, EPS, MARKERS, look, parameters, styled
 from symfpu.series.lindstedt import lindstedt
 from tests.plots import cases
 from tests.tolerances import LAST_DIGIT, ROUNDING
@@ -101,6 +101,20 @@ def test_colours_stay_those_of_the_style_when_it_is_left(ax):
     drawn = [line for line in ax.get_lines() if line is not own]
     assert own.get_color() == "C3"
     assert {line.get_color() for line in drawn} <= {entry["color"] for entry in parameters()["axes.prop_cycle"]}
+
+
+def test_a_backend_that_makes_itself_interactive_stays_so():
+    """That of notebooks does with the first figure; else the second one is not shown."""
+    import matplotlib as mpl
+
+    before = mpl.is_interactive()
+    try:
+        mpl.interactive(False)
+        with styled():
+            mpl.interactive(True)
+        assert mpl.is_interactive()
+    finally:
+        mpl.interactive(before)
 
 
 def linear(colour):
