@@ -31,6 +31,7 @@ VERBS = {
     "gali": "gali",
     "export": "export",
     "reproduce": "reproduce",
+    "workbench": "workbench",
 }
 
 

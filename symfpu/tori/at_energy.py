@@ -159,11 +159,25 @@ class _Target:
         last_place = 10.0 ** -(digits + SPARE_DIGITS)
         return last_place, last_place
 
-    def solved(self) -> _Member:
-        """The member with the whole energy, by continuation from rest, in doubles.
+    def from_torus(self, torus: QTorus) -> _Member:
+        """The member with the whole energy near a torus, in doubles; raises NotFound."""
+        point = self.search.point_of(torus)
+        unknowns = point.squares / self.linear_squares
+        if self.by_amplitude:
+            unknowns = unknowns[:1]
+        start = _Member(unknowns, np.eye(len(unknowns)), point, torus)
+        return self.near(start, 1.0)
+
+    def solved(self, near: QTorus | None = None) -> _Member:
+        """The member with the whole energy, in doubles: near a torus, else from rest.
 
         Raises NoTorusAtEnergy.
         """
+        if near is not None:
+            try:
+                return self.from_torus(near)
+            except NotFound:
+                pass  # too far: the way from rest decides
         unknowns = 1 if self.by_amplitude else len(self.search.seeds)
         rest = _Member(np.ones(unknowns), np.eye(unknowns), self.search.rest, None)
         end, failure = walk(rest, self.near)
@@ -216,6 +230,7 @@ def torus_at_energy(
     coordinate_order: int | None = None,
     phases: Mapping[int, Number] | None = None,
     digits: int | None = None,
+    near: QTorus | None = None,
 ) -> QTorus:
     """The q-torus of a given energy and ratio of seed amplitudes or mode energies.
 
@@ -235,6 +250,8 @@ def torus_at_energy(
         order.
     phases : by seed, radians; default 0.
     digits : of all results; None for doubles.
+    near : a torus of the same chain and seeds, of an energy and ratio near to these, from which
+        the way begins; default rest. It saves time and decides nothing else.
 
     Solves Eq. omeser with the energy as a further equation; the paper's Appendix A steers the
     linear energy instead. The energy is met to some 1e-13 of itself, or to `digits`. Of several
@@ -263,7 +280,7 @@ def torus_at_energy(
     by_amplitude = amplitude_ratio is not None
     target = _Target(plan, search, total, harmonic, weights, by_amplitude)
     refuse_tiny(search, target.linear_squares, "energy", energy)
-    member = target.solved()
+    member = target.solved(near)
     if digits is not None:
         member = target.polished(member)
     assert member.torus is not None

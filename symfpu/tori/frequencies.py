@@ -41,7 +41,7 @@ from symfpu.tori.amplitudes import (
 )
 from symfpu.tori.broyden import Found, NotFound, solve, walk
 from symfpu.tori.root_certificate import certify_root
-from symfpu.tori.torus import QTorus
+from symfpu.tori.torus import QTorus, require_series_torus
 
 LARGEST_NUMBER = 10**60  # size of an amplitude or a weight
 SMALLEST_SHIFT = 1e-30  # of a frequency; what `shifts` still sees in doubles
@@ -172,6 +172,20 @@ class Frequencies:
         if failure is not None:
             raise NoSelfConsistentFrequencies(self, squares, end.squares, failure)
         return end
+
+    def point_of(self, torus: QTorus) -> Point:
+        """The solution that a torus is, in doubles; InputError for one of other seeds or chain."""
+        series = require_series_torus(torus, "near").series
+        same = series.chain == self.chain and tuple(sorted(series.seeds)) == self.seeds
+        if not same or series.order < self.frequency_order:
+            allowed = "a torus of this chain, these seeds and this frequency order at least"
+            raise InputError("near", torus.seeds, allowed, "leave it out")
+        squares = np.array([float(torus.amplitudes[q]) ** 2 for q in self.seeds])
+        by_mode = dict(zip(series.seeds, shifts(series).astype(float), strict=True))
+        y = np.array([by_mode[q] for q in self.seeds]) / self.linear
+        _, slopes = series.frequency_terms(squares, self.frequency_order)
+        relative = slopes[1:].sum(axis=0).astype(float) / self.linear[:, None]
+        return Point(squares, y, relative, self.rest.inverse)
 
     def near(self, point: Point, squares: Numbers) -> Point:
         """The solution at other amplitudes near a solution; raises NotFound."""
@@ -333,6 +347,7 @@ def torus_at_amplitudes(
     coordinate_order: int | None = None,
     phases: Mapping[int, Number] | None = None,
     digits: int | None = None,
+    near: QTorus | None = None,
 ) -> QTorus:
     """The q-torus with these seed amplitudes; its frequencies are found (Eq. omeser).
 
@@ -346,6 +361,8 @@ def torus_at_amplitudes(
     coordinate_order : where Q_q(t) is cut, up to order; default order.
     phases : by seed, radians; default 0.
     digits : of all results; None for doubles.
+    near : a torus of the same chain and seeds, such as the one at amplitudes a little smaller, from
+        which the way begins; default rest. It saves time and decides nothing else.
 
     The paper chooses the frequencies and solves for the amplitudes. Here the divisors are those
     of the frequencies found, so that `solve_amplitudes` at them gives the amplitudes back. Of
@@ -365,7 +382,7 @@ def torus_at_amplitudes(
     search = Frequencies(chain, seeds, plan.frequency_order)
     squares = np.array([float(a) ** 2 for a in numbers.values()])
     refuse_tiny(search, squares, "amplitudes", amplitudes)
-    point = search.at(squares)
+    point = search.at(squares, None if near is None else search.point_of(near))
     if digits is not None:
         with MULTIPRECISION.context(digits):
             exact_squares = np.array(

@@ -1,0 +1,153 @@
+"""From a choice to its torus, by the functions that its lines of Python call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from symfpu.bundles.bundle import load
+from symfpu.errors import InputError
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
+from symfpu.numbers.typed import decimal
+from symfpu.refinement.tori import RefinedTorus, refine
+from symfpu.series.lindstedt import lindstedt
+from symfpu.series.series import LindstedtSeries
+from symfpu.series.travelling import TravellingSeries, travelling_waves
+from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.at_energy import torus_at_energy
+from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus, travelling_torus
+from symfpu.tori.ring_verdict import assess_waves
+from symfpu.tori.torus import QTorus
+from symfpu.tori.verdict import Assessment, assess
+from symfpu.workbench.choice import AMPLITUDES, ENERGY, FREQUENCIES, Choice
+
+Torus = QuasiPeriodic | RingTorus
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A torus, its series where it has one, and that of Newton's method where it was wished."""
+
+    choice: Choice
+    torus: Torus
+    series: LindstedtSeries | TravellingSeries | None
+    refined: RefinedTorus | None = None
+
+    @property
+    def best(self) -> Torus:
+        """What is kept and exported."""
+        return self.torus if self.refined is None else self.refined
+
+
+def solved(
+    choice: Choice, near: Solved | None = None, progress: Progress | None = None
+) -> Solved:
+    """The torus of a choice; raises the errors of the functions that make it.
+
+    near : what was solved before, from which amplitudes and energies are followed where it is of
+        the same chain and seeds. progress : called as (label, fraction done).
+    """
+    tell = progress or unheard
+    if near is not None and near.choice == unrefined(choice):
+        found = near
+    elif choice.bundle:
+        found = _held(choice)
+    elif choice.chain.periodic and choice.given == FREQUENCIES:
+        found = _waves(choice, tell)
+    else:
+        found = _fixed(choice, near, tell)
+    if not choice.refined:
+        return found
+    tell("Newton's method", NO_FRACTION)
+    torus = found.torus
+    refined = refine(torus, progress=tell)  # type: ignore[arg-type]  # a ring is refused by name
+    return Solved(choice, torus, found.series, refined)
+
+
+def unrefined(choice: Choice) -> Choice:
+    """The same choice before Newton's method."""
+    return choice.changed(bundle=choice.bundle)
+
+
+def _held(choice: Choice) -> Solved:
+    bundle = load(choice.bundle)
+    if bundle.torus is None:
+        allowed = "a file with a torus or a breather in it"
+        advice = "write one with save, or symfpu solve -o"
+        raise InputError("bundle", "a series without a torus", allowed, advice)
+    return Solved(choice, bundle.torus, bundle.series)
+
+
+def _waves(choice: Choice, tell: Progress) -> Solved:
+    typed = choice.by_seed
+    series = travelling_waves(
+        choice.chain, tuple(typed), tuple(typed.values()), choice.last_order, progress=tell
+    )
+    return Solved(choice, travelling_torus(series), series)
+
+
+def _fixed(choice: Choice, near: Solved | None, tell: Progress) -> Solved:
+    chain, typed, order = choice.chain, choice.by_seed, choice.last_order
+    if choice.given == FREQUENCIES:
+        omega = tuple(typed.values())
+        series = lindstedt(chain, tuple(typed), omega, order, progress=tell)
+        return Solved(choice, solve_amplitudes(series), series)
+    start = _start(choice, near)
+    tell("frequencies", NO_FRACTION)
+    if choice.given == AMPLITUDES:
+        torus = torus_at_amplitudes(chain, typed, order, near=start)
+    elif choice.given == ENERGY:
+        torus = torus_at_energy(
+            chain,
+            tuple(typed),
+            choice.energy,
+            harmonic=False,
+            order=order,
+            energy_ratio=typed,
+            near=start,
+        )
+    else:
+        raise InputError("given", choice.given, "a known one", "choose it on the page")
+    return Solved(choice, torus, torus.series)
+
+
+def _start(choice: Choice, near: Solved | None) -> QTorus | None:
+    """The torus before, where amplitudes or energies lead from it to the wished one."""
+    if near is None or near.choice.bundle or near.choice.given == FREQUENCIES:
+        return (
+            None  # one of chosen frequencies may be on another family than that from rest
+        )
+    before = near.torus
+    seeds = set(choice.seed_modes)
+    same = before.chain == choice.chain and set(before.seeds) == seeds
+    if not same or not isinstance(before, QTorus):
+        return None
+    return before if before.order == choice.last_order else None
+
+
+def judged(found: Solved, progress: Progress | None = None) -> Assessment | None:
+    """The verdict on the series; None where there is none."""
+    if isinstance(found.torus, QTorus):
+        return assess(found.torus.series, found.torus, progress=progress)
+    if isinstance(found.torus, RingTorus) and isinstance(found.series, TravellingSeries):
+        return assess_waves(found.series, found.torus, progress=progress)
+    return None
+
+
+def described(torus: Torus, bundle: str) -> Choice:
+    """A choice that says what a torus from a file is; the file itself stays what is shown."""
+    law: dict[str, Any] = {"alpha": "0", "beta": "0", "potential": ""}
+    law |= torus.chain.typed_law
+    order = getattr(torus, "order", None)
+    return Choice(
+        N=str(torus.chain.N),
+        **law,
+        ends=torus.chain.ends,
+        seeds=",".join(map(str, torus.seeds)),
+        given=FREQUENCIES,
+        values=tuple(decimal(w) for w in torus.frequencies),
+        order=str(8 if order is None else order),
+        bundle=bundle,
+    )
