@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Annotated
 
 import typer
@@ -29,8 +30,8 @@ def workbench(
     Nobody else can open it: it answers this machine only, and only with the token of its address.
     Ends with the interrupt key.
     """
-    panel()  # says what to install before anything is started
     guard = Guard(free_port(whole("port", port)))
+    panel()  # says what to install before anything is started
 
     # lazy: pages need panel, which is an extra
     from symfpu.workbench.page import page
@@ -45,3 +46,4 @@ def workbench(
 
 def _say_address(address: str) -> None:
     say(f"workbench: {address}")
+    sys.stdout.flush()  # whoever reads a pipe waits for it

@@ -46,7 +46,7 @@ TITLES = {
 }
 GRID = {
     "display": "grid",
-    "grid-template-columns": "repeat(auto-fit, minmax(min(100%, 360px), 1fr))",
+    "grid-template-columns": "repeat(auto-fit, minmax(min(100%, 400px), 1fr))",
     "gap": "10px",
     "align-items": "stretch",
 }

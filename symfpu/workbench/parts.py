@@ -209,6 +209,7 @@ def _surface(torus: Any) -> Picture:
 
 def _image(draw: Callable[[Axes], object], name: str, projection: str | None = None) -> str:
     """A picture as matplotlib renders it, with everything it can draw."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     stream = io.BytesIO()
@@ -218,7 +219,7 @@ def _image(draw: Callable[[Axes], object], name: str, projection: str | None = N
         figure.set_layout_engine("none")
         ax = figure.add_axes((0.0, 0.04, 1.0, 0.96), projection=projection)
         draw(ax)
-        figure.savefig(stream, format="png", dpi=SURFACE_DPI, bbox_inches=None)
+        FigureCanvasAgg(figure).print_png(stream)  # savefig would cut the margins off
     content = base64.b64encode(stream.getvalue()).decode()
     return (
         f'<img class="picture" alt="{escape(name)}" src="data:image/png;base64,{content}">'

@@ -15,7 +15,8 @@ CSS = """
 .card-title { font-weight: 600; margin: 0 0 4px; }
 .quiet { color: var(--quiet); font-weight: 400; }
 table.seeds { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-table.seeds th, table.seeds td { text-align: right; padding: 2px 14px 2px 0; }
+table.seeds th, table.seeds td { text-align: right; padding: 2px 14px 2px 0;
+  white-space: nowrap; }
 table.seeds th { font-weight: 400; color: var(--quiet); }
 dl.numbers { display: flex; flex-wrap: wrap; gap: 4px 22px; margin: 8px 0 0; }
 dl.numbers div { white-space: nowrap; }

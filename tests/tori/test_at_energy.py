@@ -8,7 +8,7 @@ from symfpu.errors import InputError, SymfpuError
 from symfpu.tori import at_energy
 from symfpu.tori.at_energy import NoTorusAtEnergy, torus_at_energy
 from symfpu.tori.frequencies import torus_at_amplitudes
-from tests.tolerances import FIXED_ENERGY, LAST_DIGIT, RELATIVE_SHIFT, TEN_ROUNDINGS
+from tests.tolerances import FIXED_ENERGY, LAST_DIGIT, RELATIVE_SHIFT, ROUNDING, TEN_ROUNDINGS
 
 CASES = [
     (Chain(16, alpha="0.33"), (1, 2), "0.01", 4),
@@ -123,3 +123,15 @@ def test_bad_arguments_are_refused_by_name(arguments, named):
 def test_the_kind_of_energy_must_be_said():
     with pytest.raises(TypeError, match="harmonic"):
         torus_at_energy(Chain(8, alpha="0.3"), (1, 2), "0.01", order=4)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("ratio", [{}, {"amplitude_ratio": {1: 2, 2: 1}}, {"energy_ratio": {1: 3, 2: 1}}], ids=str)
+@pytest.mark.parametrize("energy", ["0.0021", "0.02", "0.00001"])
+def test_a_torus_nearby_or_far_away_decides_nothing(ratio, energy):
+    chain, seeds = Chain(16, alpha="0.33"), (1, 2)
+    start = torus_at_energy(chain, seeds, "0.002", harmonic=False, order=6)
+    nearby = torus_at_energy(chain, seeds, energy, harmonic=False, order=6, near=start, **ratio)
+    from_rest = torus_at_energy(chain, seeds, energy, harmonic=False, order=6, **ratio)
+    found = [float(w) for w in nearby.frequencies]
+    assert found == pytest.approx([float(w) for w in from_rest.frequencies], rel=ROUNDING)

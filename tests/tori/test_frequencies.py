@@ -194,3 +194,46 @@ def test_bad_arguments_are_refused_by_name(arguments, named):
     with pytest.raises(InputError) as caught:
         torus_at_amplitudes(**{"chain": Chain(8, alpha="0.3"), "amplitudes": {1: 0.1}, "order": 4} | arguments)
     assert caught.value.argument == named
+
+
+NEIGHBOURS = [
+    (Chain(8, alpha="0.33"), {1: "0.2", 2: "0.1"}, {1: "0.22", 2: "0.1"}, 4),
+    pytest.param(Chain(16, beta="-0.3"), {3: "0.3", 5: "0.2"}, {3: "0.2", 5: "0.25"}, 5, marks=pytest.mark.long),
+    pytest.param(Chain(2, beta=1), {1: "0.3"}, {1: "0.6"}, 6, marks=pytest.mark.long),
+]
+
+
+@pytest.mark.parametrize(("chain", "first", "second", "order"), NEIGHBOURS, ids=str)
+def test_a_torus_nearby_saves_series_and_decides_nothing(chain, first, second, order, monkeypatch):
+    counted = []
+
+    def counting(*arguments, **options):
+        counted.append(1)
+        return lindstedt(*arguments, **options)
+
+    monkeypatch.setattr(frequencies, "lindstedt", counting)
+    start = torus_at_amplitudes(chain, first, order)
+    counted.clear()
+    from_rest = torus_at_amplitudes(chain, second, order)
+    needed = len(counted)
+    counted.clear()
+    nearby = torus_at_amplitudes(chain, second, order, near=start)
+    assert 0 < len(counted) <= needed
+    assert nearby.amplitudes == from_rest.amplitudes
+    shifts = [[float(w) for w in torus.frequencies] for torus in (nearby, from_rest)]
+    assert shifts[0] == pytest.approx(shifts[1], rel=ROUNDING)
+    counted.clear()
+    again = torus_at_amplitudes(chain, second, order, near=nearby)
+    assert len(counted) < needed
+    assert [float(w) for w in again.frequencies] == pytest.approx(shifts[1], rel=ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("chain", "seeds", "order"),
+    [(Chain(8, alpha="0.4"), {1: "0.2"}, 4), (Chain(8, alpha="0.33"), {2: "0.2"}, 4), (Chain(8, alpha="0.33"), {1: "0.2"}, 8)],
+    ids=str,
+)
+def test_a_torus_of_something_else_is_not_nearby(chain, seeds, order):
+    start = torus_at_amplitudes(Chain(8, alpha="0.33"), {1: "0.2"}, 4)
+    with pytest.raises(InputError, match="near"):
+        torus_at_amplitudes(chain, seeds, order, near=start)
