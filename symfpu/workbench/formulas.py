@@ -19,7 +19,7 @@ EXPANDED, FACTORED, CLOSED, NUMBERS = "expanded", "factored", "closed", "with nu
 FORMS = (EXPANDED, FACTORED, CLOSED, NUMBERS)
 COORDINATE, FREQUENCY = "Q", "omega"
 LONGEST, MOST_LINES = 12_000, 40  # characters of an expression and lines that are typeset
-LINE, SIZE = 0.5, 15  # inches of a line; points
+LINE, SIZE = 0.55, 12  # inches of a line; points
 
 
 @dataclass(frozen=True)

@@ -143,6 +143,7 @@ class Page:
         self.problem.object = ""
         self._show_lines(choice, "")
         self._mark_stale(True)
+        self.busy.css_classes = ["busy"]
         self.asker.ask(TORUS, choice)
         self._ask_term()
 
@@ -215,7 +216,10 @@ class Page:
         self._document.add_next_tick_callback(partial(self._show, kind, part))
 
     def _show(self, kind: str, part: Any) -> None:
-        if part == DONE or isinstance(part, Told):
+        if part == DONE:
+            if kind == TORUS:
+                self.busy.css_classes = ["idle"]
+        elif isinstance(part, Told):
             self._tell(part)
         elif kind == TORUS:
             self._mark_stale(False)
@@ -225,8 +229,8 @@ class Page:
         else:
             self._show_file(part)
 
-    def _tell(self, part: Any) -> None:
-        if isinstance(part, Told) and self.asker.seconds() > SLOW:
+    def _tell(self, part: Told) -> None:
+        if self.asker.seconds() > SLOW:
             known = part.fraction == part.fraction
             share = f", {part.fraction:.0%}" if known else ""
             self.busy.object = (
