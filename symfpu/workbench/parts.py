@@ -219,7 +219,8 @@ def _image(draw: Callable[[Axes], object], name: str, projection: str | None = N
         figure.set_layout_engine("none")
         ax = figure.add_axes((0.0, 0.04, 1.0, 0.96), projection=projection)
         draw(ax)
-        FigureCanvasAgg(figure).print_png(stream)  # savefig would cut the margins off
+        canvas: Any = FigureCanvasAgg(figure)
+        canvas.print_png(stream)  # savefig would cut the margins off
     content = base64.b64encode(stream.getvalue()).decode()
     return (
         f'<img class="picture" alt="{escape(name)}" src="data:image/png;base64,{content}">'
