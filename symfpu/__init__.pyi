@@ -85,6 +85,12 @@ from symfpu.action_angle.birkhoff import BirkhoffForm as BirkhoffForm
 from symfpu.action_angle.birkhoff import birkhoff_form as birkhoff_form
 from symfpu.action_angle.twist import Twist as Twist
 from symfpu.action_angle.twist import twist as twist
+# stability of tori: normal frequencies
+from symfpu.normal.modes import NoNormalModes as NoNormalModes
+from symfpu.normal.modes import NormalMode as NormalMode
+from symfpu.normal.modes import NormalModes as NormalModes
+from symfpu.normal.modes import normal_modes as normal_modes
+from symfpu.normal.resonances import ParametricResonance as ParametricResonance
 
 # families in energy
 from symfpu.families.continuation import Event as Event

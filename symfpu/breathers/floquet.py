@@ -32,8 +32,7 @@ from symfpu.tori.ring_torus import RingTorus
 
 Floats = NDArray[np.float64]
 MORE_ANGLES = (
-    "normal frequencies of tori of more angles are not available; take a breather of one seed, "
-    "or let alignment_indices tell whether the orbit is regular"
+    "take normal_modes(solution), which tells the stability of tori of any number of angles"
 )
 ACCURACY = 1e-12  # of the tangent map, relative to its largest entry
 # over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12

@@ -10,6 +10,7 @@ from symfpu.plots.lines import lines as lines
 from symfpu.plots.motion import animation as animation
 from symfpu.plots.motion import space_time as space_time
 from symfpu.plots.motion import time_series as time_series
+from symfpu.plots.normal import normal_frequencies as normal_frequencies
 from symfpu.plots.rule import propagation as propagation
 from symfpu.plots.series import amplitudes as amplitudes
 from symfpu.plots.series import coefficients as coefficients

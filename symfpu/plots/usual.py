@@ -17,12 +17,14 @@ from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.families.family import Family
 from symfpu.integrable.invariants import TodaInvariants
+from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import decimal
 from symfpu.plots.families import family_frequencies
 from symfpu.plots.indices import alignment
 from symfpu.plots.lines import lines
 from symfpu.plots.motion import time_series
+from symfpu.plots.normal import normal_frequencies
 from symfpu.plots.rule import propagation
 from symfpu.plots.series import amplitudes, residuals, small_divisors
 from symfpu.plots.spectra import spectrum
@@ -39,6 +41,7 @@ from symfpu.tori.verdict import Assessment
 
 SIZE, DPI = (4.2, 2.9), 75  # of the picture beside an answer
 PLACES = 12  # digits of numbers in doubles
+MOST_MODES = 8  # normal frequencies that are shown
 LONGEST = 44  # characters of a number; longer ones are cut
 Rows = Iterator[tuple[str, str]]
 PAGE = """<div class="symfpu-answer" style="display: flex; flex-wrap: wrap; gap: 1.5em">
@@ -176,6 +179,16 @@ def _floquet_rows(found: Floquet) -> Rows:
         yield "unstable", f"{count} {kind}"
 
 
+def _normal_rows(found: NormalModes) -> Rows:
+    yield "chain", _model(found.torus.chain)
+    yield "seeds", _listed(found.torus.seeds)
+    for mode in found.modes[:MOST_MODES]:
+        yield f"\N{GREEK SMALL LETTER SIGMA} of mode {mode.mode}", mode.text
+    if found.resonances:
+        yield "nearest resonance", repr(found.resonances[0])
+    yield "residual", f"{found.residual:.2g}"
+
+
 def _family_rows(found: Family) -> Rows:
     energies = [m.energy for m in found.members]
     yield "chain", _model(found.chain)
@@ -253,6 +266,7 @@ USUAL = (
         lambda found: "stable" if found.stable else "unstable",
         _floquet_rows,
     ),
+    Usual(NormalModes, normal_frequencies, lambda found: found.verdict, _normal_rows),
     Usual(Family, family_frequencies, lambda found: f"it {found.ending}", _family_rows),
     Usual(PropagationProof, propagation, lambda proof: proof.verdict, _proof_rows),
     Usual(

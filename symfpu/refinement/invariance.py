@@ -270,6 +270,13 @@ class InvarianceEquation:
         self._back = self._stretch * np.where(own_image, 1, 2)
         self._law = self.chain.law(LONG_DOUBLES)
 
+    def stretches_of_half(self) -> tuple[Floats, Floats]:
+        """Stretches of half of the bonds by a unit of each mode, and the way back, in doubles.
+
+        Both (N-1, bonds).
+        """
+        return self._stretch.astype(float), self._back.astype(float)
+
     def _set_divisors(self, linear: Sequence[Any]) -> None:
         """nu.Omega - Omega_q and nu.Omega + Omega_q from twice as many digits as they keep."""
         of_seeds = [linear[q - 1] for q in self.seeds]

@@ -1,0 +1,1 @@
+"""Normal frequencies of tori: the linearised flow reduced to constant coefficients."""

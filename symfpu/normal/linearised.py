@@ -1,0 +1,141 @@
+"""The equations of motion linearised about a torus, in harmonics of its angles.
+
+A solution exp(i sigma t) p(theta) with p_q(theta) = sum over nu of p_q[nu] exp(i nu.theta) has
+
+    (Omega_q^2 - (sigma + nu.omega)^2) p_q[nu] + (K p)_q[nu] = 0,
+
+K the products with V''(r) - 1 on the bonds: L(sigma) p = 0. The torus is even in its angles, so
+that K is real and symmetric, and so are the coefficients p for real sigma. Reflection of the
+chain splits the unknowns as it does those of the torus, and where V is even only nu of even
+length occur.
+"""
+
+from __future__ import annotations
+
+from copy import copy
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.refinement.invariance import WORKERS, Floats, Ints, InvarianceEquation
+from symfpu.refinement.tori import shifts_of
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+Values = NDArray[Any]  # doubles or complex doubles
+Mask = NDArray[np.bool_]
+
+
+class LinearisedFlow:
+    """K and the frequencies of one torus, for all of its normal modes.
+
+    harmonics : those chosen and their negatives, shape (F, s), the first one 0.
+    rates : nu.omega in long doubles, shape (F,).
+    """
+
+    def __init__(self, torus: QuasiPeriodic, harmonics: Ints) -> None:
+        self.chain, self.seeds = torus.chain, torus.seeds
+        self._equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
+        self._grid = self._equation.grid
+        moving = harmonics[(harmonics != 0).any(axis=1)]
+        still = np.zeros((1, len(self.seeds)), dtype=np.int64)
+        self.harmonics = np.concatenate([still, moving, -moving])
+        self.linear = self._equation.linear
+        self.omega = self.linear[self._equation.seed_columns] + shifts_of(torus)
+        self.rates = self.harmonics @ self.omega
+        self._stretch, self._back = self._equation.stretches_of_half()
+        self.slopes = self._equation.slopes(_coefficients(torus, harmonics))
+        self._place = self.harmonics @ self._grid.generator % self._grid.period
+
+    def scaled(self, factor: float) -> LinearisedFlow:
+        """With K times a factor: what a solution is continued in, from 0 to 1."""
+        result = copy(self)
+        result.slopes = factor * self.slopes
+        for name in ("_spectrum", "means"):
+            result.__dict__.pop(name, None)
+        return result
+
+    def allowed(self, q: int) -> Mask:
+        """The unknowns of the normal mode that starts in the mode q; shape (F, N-1)."""
+        modes = np.arange(1, self.chain.N)
+        parity = (self.harmonics @ np.array(self.seeds) + q) % 2
+        mask = parity[:, None] == modes % 2
+        if self.chain.potential.even:
+            even = self.harmonics.sum(axis=1) % 2 == 0
+            mask &= even[:, None]
+        return np.asarray(mask)
+
+    def coupling(self, p: Values) -> Values:
+        """K p of coefficients (F, N-1), real or complex."""
+        if np.iscomplexobj(p):
+            return self.coupling(p.real) + 1j * self.coupling(p.imag)
+        sums = self._products(p)
+        return np.asarray(sums[:, self._place].T @ self._back.T)
+
+    def left_out(self, p: Values) -> float:
+        """The norm of K p at all harmonics of the lattice that are not chosen."""
+        if np.iscomplexobj(p):
+            return float(np.hypot(self.left_out(p.real), self.left_out(p.imag)))
+        sums = self._products(p)
+        sums[:, self._place] = 0
+        return float(np.linalg.norm(self._back @ sums))
+
+    def _products(self, p: Floats) -> Floats:
+        """Of slopes and stretches by the bond, as coefficients by place; shape (bonds, M).
+
+        With real coefficients the values at opposite angles are conjugate: half are enough.
+        """
+        from scipy import fft
+
+        spectrum = np.zeros((self._stretch.shape[1], self._grid.period))
+        spectrum[:, self._place] = (p @ self._stretch).T
+        values = fft.rfft(spectrum, workers=WORKERS)
+        values *= self.slopes
+        sums = fft.irfft(values, n=self._grid.period, workers=WORKERS, overwrite_x=True)
+        return np.asarray(sums)
+
+    @cached_property
+    def _spectrum(self) -> Floats:
+        """Coefficients of exp(i nu.theta) in the slopes, by place; shape (points, bonds)."""
+        return np.ascontiguousarray(self._grid.spectrum(self.slopes).T)
+
+    @cached_property
+    def means(self) -> Floats:
+        """The diagonal of K, by mode; shape (N-1,)."""
+        return np.asarray((self._stretch * self._back) @ self._spectrum[0])
+
+    def block(self, rows: Ints, columns: Ints) -> Floats:
+        """K between chosen unknowns, given by harmonic and mode; shape (m, m)."""
+        along = self._place[rows]
+        there, back = self._stretch[columns], self._back[columns]
+        matrix = np.empty((len(rows), len(rows)))
+        for a in range(len(rows)):
+            slope = self._spectrum[self._grid.folded(along[a] - along)]
+            matrix[a] = (slope * there) @ back[a]
+        return matrix
+
+    def divisors(self, sigma: complex) -> Values:
+        """Omega_q^2 - (sigma + nu.omega)^2 in doubles, from long doubles; shape (F, N-1)."""
+        unreal = isinstance(sigma, complex)
+        long: Any = np.clongdouble(sigma) if unreal else np.longdouble(sigma)
+        rate = (long + self.rates)[:, None]
+        exact = (self.linear - rate) * (self.linear + rate)
+        return np.asarray(exact.astype(complex if unreal else float))
+
+
+def _coefficients(torus: QuasiPeriodic, harmonics: Ints) -> Floats:
+    """Those of the torus at chosen harmonics, 0 where it has none; shape (H, N-1)."""
+    nothing = np.zeros(torus.chain.N - 1)
+    rows = coefficients_by_harmonic(torus)
+    return np.array([rows.get(tuple(nu), nothing) for nu in harmonics.tolist()])
+
+
+def coefficients_by_harmonic(torus: QuasiPeriodic) -> dict[tuple[int, ...], Floats]:
+    """The rows of a torus, the first number of every harmonic that is not 0 positive."""
+    rows: dict[tuple[int, ...], Floats] = {}
+    cosines = torus.cosines.astype(float)
+    for nu, row in zip(torus.harmonics.tolist(), cosines, strict=True):
+        sign = -1 if next((n for n in nu if n), 1) < 0 else 1
+        rows[tuple(sign * n for n in nu)] = row
+    return rows

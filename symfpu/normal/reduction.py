@@ -1,0 +1,344 @@
+"""One normal frequency, by Newton's method on a small matrix.
+
+With r orthonormal vectors W, let X solve W^T X = 1 with L(sigma) X in the span of W. Then L is
+singular where the r by r matrix E(sigma) = X^T L X is, and E' = X^T L' X: as L is symmetric,
+errors of X enter E by their square. A step solves (E + d E') v = 0 for d. W comes from a block,
+the unknowns with the smallest divisors, which also preconditions the Krylov solutions for X: it
+holds what is nearest to the mode itself, and where that does not do, all that the block nearly
+annihilates. So near-resonant unknowns are treated together, as a small invariant subspace, and
+what remains is well conditioned.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from symfpu.normal.linearised import LinearisedFlow, Mask, Values
+from symfpu.refinement.invariance import Floats
+
+LARGEST_BLOCK, SMALLEST_BLOCK = 1000, 300  # unknowns
+NEARNESS = 1.0  # divisors up to so many times the largest slope belong to the block
+# eigenvalues of the block up to these parts of Omega_q^2 are deflated, one try after the other
+DEFLATED = (0.0, 1e-3, 0.1, 0.3)
+MOST_DEFLATED = 16
+KRYLOV, RESTARTS = 60, 4
+ROUGH, FINE = 1e-4, 1e-11  # accuracies of Krylov solutions, over Omega_q^2
+ITERATIONS = 9
+STEP = 1e-14  # relative change of sigma that ends the iteration
+NEARLY = 1e-4  # change from which on Krylov solutions are fine
+REAL = 1e-9  # imaginary parts up to this, over |sigma|, are rounding
+LARGEST_STEP = 0.2  # of sigma, relative, that a step may take
+SURE = 0.5  # share of the main coefficient in the eigenfunction that tells the mode
+# of the coupling: the first step of a continuation, and the least
+FIRST_PART, LEAST_PART = 1 / 8, 1 / 512
+LEAST_OVERLAP = 0.6  # of the eigenfunctions of two steps
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """A normal frequency with its eigenfunction.
+
+    coefficients : p (F, N-1), of norm 1. residual : of L p, at all harmonics of the lattice, over
+    Omega_q^2. action : sum of (sigma + nu.omega) |p|^2. deflated : r. products : with L.
+    """
+
+    mode: int
+    sigma: complex
+    coefficients: Values
+    residual: float
+    action: float
+    deflated: int
+    products: int
+
+    @property
+    def share(self) -> float:
+        """|p_q[0]| of the mode that it is named after, of 1."""
+        return float(abs(self.coefficients[0, self.mode - 1]))
+
+
+class Block:
+    """L among the unknowns with the smallest divisors, the main one first of all.
+
+    mask : of all unknowns, shape (F, N-1). inside : places of the block's among them.
+    """
+
+    def __init__(self, flow: LinearisedFlow, q: int, sigma: float) -> None:
+        self.flow, self.q, self.mask = flow, q, flow.allowed(q)
+        linear = flow.linear.astype(float)
+        self.size = float(linear[q - 1]) ** 2
+        diagonal = flow.divisors(sigma) + flow.means
+        weights = np.where(self.mask, np.abs(diagonal) / linear**2, np.inf)
+        weights[0, q - 1] = 0
+        near = int((weights < NEARNESS * np.abs(flow.slopes).max()).sum())
+        count = min(max(near, SMALLEST_BLOCK), LARGEST_BLOCK, int(self.mask.sum()))
+        chosen = np.sort(np.argpartition(weights, count - 1, axis=None)[:count])
+        self.rows, self.columns = np.unravel_index(chosen, self.mask.shape)
+        self.inside = (np.cumsum(self.mask, axis=None) - 1)[chosen]
+        main = (self.rows == 0) & (self.columns == q - 1)
+        self.main = int(np.flatnonzero(main)[0])
+        self.coupling = flow.block(self.rows, self.columns)
+
+    def matrix(self, sigma: complex) -> Values:
+        """L(sigma) within the block."""
+        divisors = self.flow.divisors(sigma)[self.rows, self.columns]
+        return np.asarray(self.coupling + np.diag(divisors))
+
+    def guess(self, sigma: float) -> float:
+        """A zero of the block near sigma, by Rayleigh's quotient; sigma itself if it runs away."""
+        from scipy import linalg
+
+        rates = self.flow.rates[self.rows].astype(float)
+        found = sigma
+        for _ in range(ITERATIONS):
+            values, vectors = linalg.eigh(self.matrix(found))
+            at = int(np.argmax(np.abs(vectors[self.main])))
+            v = vectors[:, at]
+            change = float(values[at] / (v @ (2 * (found + rates) * v)))
+            found += change
+            if abs(found - sigma) > 0.05 * sigma:
+                return sigma
+            if abs(change) < NEARLY**2 * sigma:
+                break
+        return found
+
+    def deflation(self, sigma: float, part: float, like: Values) -> Floats:
+        """Orthonormal vectors W within the block, the likest to a vector first; shape (m, r)."""
+        from scipy import linalg
+
+        values, vectors = linalg.eigh(self.matrix(sigma))
+        own = int(np.argmax(np.abs(like.conj() @ vectors)))
+        small = np.flatnonzero(np.abs(values) < part * self.size)
+        others = sorted(set(small.tolist()) - {own}, key=lambda i: abs(values[i]))
+        return np.asarray(vectors[:, [own, *others[: MOST_DEFLATED - 1]]])
+
+
+class Bordered:
+    """L(sigma) among what is perpendicular to W; vectors hold the unknowns of the mask."""
+
+    def __init__(self, block: Block, W: Floats) -> None:
+        self.block, self.flow, self.mask, self.W = block, block.flow, block.mask, W
+        self.products = 0
+        self.n = int(self.mask.sum())
+        self._outside = np.setdiff1d(np.arange(self.n), block.inside)
+        self._means = np.broadcast_to(self.flow.means, self.mask.shape)[self.mask]
+        rates = self.flow.rates.astype(float)[:, None]
+        self.rates = np.broadcast_to(rates, self.mask.shape)[self.mask]
+
+    def take(self, sigma: complex) -> None:
+        """From now on L is that of this sigma."""
+        from scipy import linalg
+
+        self._divisors = self.flow.divisors(sigma)[self.mask]
+        m, r = self.W.shape
+        matrix = np.zeros((m + r, m + r), dtype=self._divisors.dtype)
+        matrix[:m, :m] = self.block.matrix(sigma)
+        matrix[:m, m:] = self.W
+        matrix[m:, :m] = self.W.T
+        self._factors = linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
+        diagonal = self._divisors + self._means
+        diagonal[diagonal == 0] = self.block.size
+        self._inverse = 1 / diagonal[self._outside]
+
+    def multiply(self, vector: Values) -> Values:
+        """L v."""
+        self.products += 1
+        coupled = self.flow.coupling(self.table(vector))
+        return np.asarray(self._divisors * vector + coupled[self.mask])
+
+    def table(self, vector: Values) -> Values:
+        """The unknowns as coefficients (F, N-1)."""
+        table = np.zeros(self.mask.shape, dtype=vector.dtype)
+        table[self.mask] = vector
+        return table
+
+    def start(self) -> Floats:
+        """W among all unknowns; shape (n, r)."""
+        X = np.zeros((self.n, self.W.shape[1]))
+        X[self.block.inside] = self.W
+        return X
+
+    def _project(self, vector: Values) -> Values:
+        """Without the part in W."""
+        inside = self.block.inside
+        result = vector.copy()
+        result[inside] -= self.W @ (self.W.T @ vector[inside])
+        return result
+
+    def _precondition(self, vector: Values) -> Values:
+        """Nearly the inverse among what is perpendicular to W."""
+        from scipy import linalg
+
+        inside, (m, r) = self.block.inside, self.W.shape
+        right = np.concatenate([vector[inside], np.zeros(r, dtype=vector.dtype)])
+        near = linalg.lu_solve(self._factors, right, check_finite=False)
+        result = np.empty(self.n, dtype=np.result_type(vector, near))
+        result[inside] = near[:m]
+        result[self._outside] = self._inverse * vector[self._outside]
+        return result
+
+    def improved(self, X: Values, accuracy: float) -> tuple[Values, Values]:
+        """X that solves to the accuracy, over Omega_q^2, and L X."""
+        X = X.astype(self._divisors.dtype)
+        images = np.empty_like(X)
+        for k in range(X.shape[1]):
+            image = self.multiply(X[:, k])
+            left = -self._project(image)
+            goal = accuracy * self.block.size / float(np.linalg.norm(left))
+            if goal < 1:
+                X[:, k] += self._solution(left, goal)
+                image = self.multiply(X[:, k])
+            images[:, k] = image
+        return X, images
+
+    def _solution(self, right: Values, accuracy: float) -> Values:
+        from scipy.sparse.linalg import LinearOperator, gmres
+
+        def product(vector: Values) -> Values:
+            return self._project(self.multiply(self._precondition(vector)))
+
+        operator = LinearOperator((self.n, self.n), matvec=product, dtype=right.dtype)
+        limits = {"rtol": accuracy, "atol": 0.0, "restart": KRYLOV, "maxiter": RESTARTS}
+        found, _ = gmres(operator, right, **limits)
+        return self._precondition(found)
+
+
+def reduced(flow: LinearisedFlow, q: int, guess: float) -> Reduced | None:
+    """The normal mode that continues the linear mode q; None where no way leads to one.
+
+    guess : of its frequency, in real numbers.
+    """
+    for part in DEFLATED:
+        found = _found(flow, _Aim(q, guess), part)
+        if found and found.share > SURE:
+            return found
+    return _continued(flow, q)
+
+
+def _continued(flow: LinearisedFlow, q: int) -> Reduced | None:
+    """The same from no coupling to the whole one, step by step; every one begins with the last."""
+    aim = _Aim(q, float(flow.linear[q - 1]))
+    part, step = 0.0, FIRST_PART
+    last: Reduced | None = None
+    while part < 1:
+        step = min(step, 1 - part)
+        found = _found(flow.scaled(part + step), aim, DEFLATED[-2])
+        if found is None or aim.overlap(found) < LEAST_OVERLAP:
+            step /= 2
+            if step < LEAST_PART:
+                return None
+            continue
+        part, last = part + step, found
+        aim = _Aim(q, found.sigma, found.coefficients)
+        step *= 1.5
+    return last
+
+
+class _Aim:
+    """What is looked for: a mode near a frequency, most like a function."""
+
+    def __init__(self, q: int, sigma: complex, like: Values | None = None) -> None:
+        self.q, self.sigma, self._like = q, sigma, like
+
+    def vector(self, mask: Mask) -> Values:
+        """The function as a vector of the unknowns, of norm 1."""
+        if self._like is not None:
+            return np.asarray(self._like[mask])
+        table = np.zeros(mask.shape)
+        table[0, self.q - 1] = 1
+        return table[mask]
+
+    def overlap(self, found: Reduced) -> float:
+        """Of what was found with the function."""
+        if self._like is None:
+            return found.share
+        return float(abs(np.vdot(self._like, found.coefficients)))
+
+
+def _found(flow: LinearisedFlow, aim: _Aim, part: float) -> Reduced | None:
+    """With a part of the block deflated; None where Newton's method does not converge."""
+    near = float(complex(aim.sigma).real)
+    if not part:
+        near = Block(flow, aim.q, near).guess(near)
+    block = Block(flow, aim.q, near)
+    like = aim.vector(block.mask)
+    W = block.deflation(near, part, like[block.inside])
+    return _iterated(Bordered(block, W), aim.sigma if part else near, like)
+
+
+def _iterated(system: Bordered, guess: complex, like: Values) -> Reduced | None:
+    """Newton's method from a guess to what is most like a vector."""
+    sigma, size = guess, abs(guess)
+    X: Values = system.start()
+    accuracy = ROUGH
+    for step in range(ITERATIONS):
+        system.take(sigma)
+        fine = accuracy == FINE
+        X, images = system.improved(X, accuracy)
+        slope = -2 * (sigma + system.rates)
+        steps, vectors = _steps(X.T @ images, X.T @ (slope[:, None] * X))
+        shares = _shares(X, vectors, like)
+        at = _nearest(steps, shares, first=step == 0)
+        change, v = steps[at], vectors[:, at]
+        if not np.isfinite(change) or abs(change) > LARGEST_STEP * size:
+            return None
+        sigma = _tidied(sigma + complex(change))
+        if fine and abs(change) < STEP * size:
+            return _result(system, sigma, X @ v, images @ v)
+        accuracy = FINE if abs(change) < NEARLY * size else ROUGH
+    return None
+
+
+def _steps(E: Values, slope: Values) -> tuple[Values, Values]:
+    """All d and v with (E + d E') v = 0, v of norm 1."""
+    from scipy import linalg
+
+    steps, vectors = linalg.eig(-E, slope)
+    return steps, vectors / np.linalg.norm(vectors, axis=0)
+
+
+def _shares(X: Values, vectors: Values, like: Values) -> Floats:
+    """How much of a vector is in p = X v, for each v."""
+    gram = X.conj().T @ X
+    norms = np.sqrt(np.einsum("ri,rs,si->i", vectors.conj(), gram, vectors).real)
+    return np.asarray(np.abs((like.conj() @ X) @ vectors) / norms)
+
+
+def _nearest(steps: Values, shares: Floats, *, first: bool) -> int:
+    """The one that is most alike, then the nearest; of a conjugate pair the growing one."""
+    if first:
+        falling = steps.imag < 0
+        return int(np.argmax(np.where(falling, 0.999, 1.0) * shares))
+    candidates = shares > 0.5 * shares.max()
+    return int(np.argmin(np.where(candidates, np.abs(steps), np.inf)))
+
+
+def _tidied(sigma: complex) -> complex:
+    """As a float where the imaginary part is rounding."""
+    sigma = complex(sigma)
+    return sigma if abs(sigma.imag) > REAL * abs(sigma) else float(sigma.real)
+
+
+def _result(system: Bordered, sigma: complex, vector: Values, image: Values) -> Reduced:
+    size = float(np.linalg.norm(vector))
+    p = system.table(vector / size)
+    p = p / _phase(p[0, system.block.q - 1])
+    inside = float(np.linalg.norm(image)) / size
+    outside = system.flow.left_out(p)
+    weights = np.abs(vector / size) ** 2
+    action = float(((complex(sigma).real + system.rates) * weights).sum())
+    return Reduced(
+        mode=system.block.q,
+        sigma=sigma,
+        coefficients=p,
+        residual=float(np.hypot(inside, outside)) / system.block.size,
+        action=action,
+        deflated=system.W.shape[1],
+        products=system.products,
+    )
+
+
+def _phase(value: complex) -> complex:
+    """The factor of modulus 1 that makes the main coefficient positive."""
+    return value / abs(value) if value else 1.0

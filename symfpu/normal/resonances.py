@@ -1,0 +1,102 @@
+"""Resonances of the normal frequencies of a torus with its own, by their distances.
+
+Two modes may couple where sigma_q -+ sigma_q' = nu.omega: with the difference both turn the same
+way and stay elliptic, with the sum, 2 sigma_q = nu.omega among them, energy can flow into both.
+sigma_q = nu.omega makes reduction to constant coefficients impossible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from symfpu.chain.chain import Chain
+from symfpu.refinement.invariance import Ints, dilated
+
+PARAMETRIC, SUM, DIFFERENCE, OWN = "parametric", "sum", "difference", "own"
+KINDS = (PARAMETRIC, SUM, DIFFERENCE, OWN)
+
+
+@dataclass(frozen=True)
+class ParametricResonance:
+    """How far a combination of normal frequencies is from one of the torus.
+
+    kind : "parametric", 2 sigma_q = nu.omega; "sum", sigma_q + sigma_q' = nu.omega; "difference",
+    sigma_q - sigma_q' = nu.omega; "own", sigma_q = nu.omega. modes : q, or q and q'.
+    harmonic : nu. distance : left side minus right side, of the real parts, dimensionless.
+
+    >>> ParametricResonance("parametric", (4,), (0, 2), 1e-3)
+    2 sigma_4 = (0,2).omega, off by 0.001
+    """
+
+    kind: str
+    modes: tuple[int, ...]
+    harmonic: tuple[int, ...]
+    distance: float
+
+    def __repr__(self) -> str:
+        return f"{self.condition}, off by {self.distance:.3g}"
+
+    @property
+    def condition(self) -> str:
+        """The equation, in words."""
+        harmonic = ",".join(map(str, self.harmonic))
+        return f"{self.left} = ({harmonic}).omega"
+
+    @property
+    def left(self) -> str:
+        """Its left side."""
+        q, other = self.modes[0], self.modes[-1]
+        sign = "+" if self.kind == SUM else "-"
+        if self.kind in (SUM, DIFFERENCE):
+            return f"sigma_{q} {sign} sigma_{other}"
+        return f"2 sigma_{q}" if self.kind == PARAMETRIC else f"sigma_{q}"
+
+
+def resonances_of(
+    chain: Chain,
+    seeds: tuple[int, ...],
+    omega: tuple[float, ...],
+    sigma: Mapping[int, float],
+    length: int,
+) -> list[ParametricResonance]:
+    """The nearest harmonic of each combination, with sum |nu_i| <= length; by their distance.
+
+    Only harmonics that the selection rules let couple.
+    """
+    harmonics = harmonics_up_to(len(seeds), length)
+    rates = harmonics @ np.array(omega)
+    even = harmonics.sum(axis=1) % 2 == 0
+    parity = harmonics @ np.array(seeds) % 2
+    found = []
+    for kind, modes, value, odd in _combinations(sigma):
+        allowed = parity == odd
+        if chain.potential.even:
+            allowed &= even if kind != OWN else ~even
+        if allowed.any():
+            distances = np.where(allowed, value - rates, np.inf)
+            at = int(np.argmin(np.abs(distances)))
+            harmonic = tuple(harmonics[at].tolist())
+            found.append(ParametricResonance(kind, modes, harmonic, float(distances[at])))
+    return sorted(found, key=lambda r: abs(r.distance))
+
+
+def harmonics_up_to(s: int, length: int) -> Ints:
+    """All nu with sum |nu_i| <= length, of both signs; shape (H, s)."""
+    return dilated(np.eye(s, dtype=np.int64), float(length))
+
+
+def _combinations(
+    sigma: Mapping[int, float],
+) -> Iterator[tuple[str, tuple[int, ...], float, int]]:
+    """Kind, modes, left side, and the parity of nu.seeds that couples them."""
+    modes = list(sigma)
+    for i, q in enumerate(modes):
+        yield OWN, (q,), sigma[q], q % 2
+        yield PARAMETRIC, (q,), 2 * sigma[q], 0
+        for other in modes[i + 1 :]:
+            odd = (q + other) % 2
+            yield SUM, (q, other), sigma[q] + sigma[other], odd
+            yield DIFFERENCE, (q, other), sigma[q] - sigma[other], odd
