@@ -89,8 +89,8 @@ from symfpu.action_angle.twist import twist as twist
 from symfpu.normal.modes import NoNormalModes as NoNormalModes
 from symfpu.normal.modes import NormalMode as NormalMode
 from symfpu.normal.modes import NormalModes as NormalModes
-from symfpu.normal.modes import normal_modes as normal_modes
 from symfpu.normal.resonances import ParametricResonance as ParametricResonance
+from symfpu.normal.search import normal_modes as normal_modes
 
 # families in energy
 from symfpu.families.continuation import Event as Event

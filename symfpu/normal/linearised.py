@@ -118,7 +118,8 @@ class LinearisedFlow:
     def divisors(self, sigma: complex) -> Values:
         """Omega_q^2 - (sigma + nu.omega)^2 in doubles, from long doubles; shape (F, N-1)."""
         unreal = isinstance(sigma, complex)
-        long: Any = np.clongdouble(sigma) if unreal else np.longdouble(sigma)
+        value: Any = sigma
+        long: Any = np.clongdouble(value) if unreal else np.longdouble(value)
         rate = (long + self.rates)[:, None]
         exact = (self.linear - rate) * (self.linear + rate)
         return np.asarray(exact.astype(complex if unreal else float))

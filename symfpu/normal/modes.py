@@ -1,4 +1,4 @@
-"""Normal frequencies of a torus: the linearised flow reduced to constant coefficients.
+"""Normal frequencies of a torus, as results.
 
 In the directions normal to a torus of s angles every solution is a sum of N-1-s quasi-periodic
 ones, exp(i sigma_q t) p(theta), and their conjugates. Real sigma: elliptic; complex ones, in
@@ -8,7 +8,6 @@ from Omega_q at rest: the largest coefficient of p is that of mode q without any
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -16,34 +15,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.chain.chain import require_fixed_ends
-from symfpu.chain.frequency_shift import shift_coefficients
 from symfpu.errors import InputError, SymfpuError
-from symfpu.files.progress import Progress, unheard
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
-from symfpu.normal.linearised import LinearisedFlow, coefficients_by_harmonic
-from symfpu.normal.reduction import Reduced, reduced
-from symfpu.normal.resonances import ParametricResonance, resonances_of
+from symfpu.normal.resonances import ParametricResonance
 from symfpu.notebook import Shown
-from symfpu.numbers.typed import integer, seed_modes
-from symfpu.refinement.invariance import Ints
-from symfpu.refinement.tori import chosen_harmonics
-from symfpu.tori.quasiperiodic import (
-    QuasiPeriodic,
-    amplitudes_of,
-    require_solution,
-)
+from symfpu.refinement.invariance import Floats, Ints
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
-REFINED = 1e-9  # residual of a torus, relative, above which it is refused
-# coefficients of the torus above these parts of its largest, and what their harmonics may leave
-HEIGHTS, TOLERANCE = (1e-8, 1e-11, 1e-14, 1e-17), 1e-10
-SMALLEST_KEPT = (
-    1e-18  # coefficients of the torus below this part of its largest are rounding
-)
-SHOWN_DIVISORS = 5
-LENGTH = 12  # sum |nu_i| of the resonances that are listed
 ELLIPTIC, HYPERBOLIC = "elliptic", "hyperbolic"
 
 
@@ -85,8 +65,8 @@ class NormalMode:
 
     mode : q that it continues. sigma : a float, or complex with a positive imaginary part: then
         conj(sigma) belongs to another, the growing one. Dimensionless.
-    harmonics : nu, of both signs, shape (F, s). coefficients : p_q[nu], of norm 1, (F, N-1), real
-        for real sigma.
+    harmonics : nu, of both signs, shape (F, s). rates : nu.omega, shape (F,).
+    coefficients : p_q[nu], shape (F, N-1), of norm 1, real for real sigma.
     action : sum (sigma + nu.omega) |p|^2; its sign is Krein's. residual : of the linearised
         equations at all harmonics, over Omega_q^2.
     divisors : the smallest. deflated : how many near-resonant vectors were treated together.
@@ -96,6 +76,7 @@ class NormalMode:
     mode: int
     sigma: complex
     harmonics: Ints = field(repr=False)
+    rates: Floats = field(repr=False)
     coefficients: NDArray[Any] = field(repr=False)
     action: float
     residual: float
@@ -130,6 +111,10 @@ class NormalMode:
     def signature(self) -> int:
         """Krein's: the sign of the action, of what turns with positive sigma; 0 if hyperbolic."""
         return 0 if self.growth else int(np.sign(self.action))
+
+    def rate(self, row: int) -> float:
+        """sigma + nu.omega of a harmonic, its real part."""
+        return complex(self.sigma).real + float(self.rates[row])
 
     def variation(self, theta: ArrayLike) -> NDArray[np.complex128]:
         """p at angles (T, s) or (s,), radians, phases included: complex, (T, N-1) or (N-1,)."""
@@ -252,169 +237,3 @@ class NormalModes(Shown, Gridded):
             ),
             rows=rows,
         )
-
-
-def normal_modes(
-    solution: QuasiPeriodic,
-    *,
-    modes: Iterable[int] | None = None,
-    resonance_length: int = LENGTH,
-    progress: Progress | None = None,
-) -> NormalModes:
-    """Normal frequencies of a torus or breather, their eigenfunctions, signatures and resonances.
-
-    solution : of any potential with fixed ends and of any number of angles, refined: its residual
-        is at most 1e-9. Dimensionless; one of many digits is rounded to doubles.
-    modes : which of the N-1-s modes; default all.
-    resonance_length : largest sum |nu_i| of the resonances listed.
-    progress : called as (label, fraction), once a mode.
-
-    The equations of motion (Eq. eqmo) linearised about the torus are solved by exp(i sigma t)
-    p(theta), in harmonics of the angles: Newton's method from Omega_q with its closed shift of
-    second order, products on the lattice that `refine` uses. Of a breather, exp(2 pi i
-    sigma/omega) are the Floquet multipliers. Ours: the paper has none. Raises InputError, and
-    NoNormalModes where a resonance does not let a mode be told from others.
-
-    >>> from symfpu import Chain, refine_at_amplitudes, torus_at_amplitudes
-    >>> amplitudes = {1: "0.2", 2: "0.1"}
-    >>> guess = torus_at_amplitudes(Chain(N=4, alpha="0.3"), amplitudes, order=4)
-    >>> round(normal_modes(refine_at_amplitudes(guess, amplitudes)).frequencies[3], 9)
-    1.847...
-    """
-    torus = _checked(solution)
-    chosen = _checked_modes(torus, modes)
-    length = integer(resonance_length, "resonance_length", 1)
-    tell = progress or unheard
-    guesses = _guesses(torus)
-    flows = _flows(torus)
-    found = []
-    for number, q in enumerate(chosen):
-        tell(f"normal mode {q}", number / len(chosen))
-        mode = _normal_mode(flows, q, guesses[q])
-        if mode is None:
-            nearest = _resonances(torus, {q: guesses[q]}, length)[0]
-            raise NoNormalModes(q, guesses[q], nearest)
-        found.append(mode)
-    real = {mode.mode: complex(mode.sigma).real for mode in found}
-    return NormalModes(
-        torus=solution,
-        modes=tuple(found),
-        guesses={q: guesses[q] for q in chosen},
-        resonances=tuple(_resonances(torus, real, length)),
-    )
-
-
-def _checked(solution: object) -> QuasiPeriodic:
-    """The solution in doubles; InputError for what is no refined torus of fixed ends."""
-    require_solution(solution, "solution")
-    assert isinstance(solution, QuasiPeriodic)
-    require_fixed_ends(solution.chain)
-    torus = solution.in_doubles()
-    residual = solution.residual()
-    if not residual <= REFINED:
-        given = f"a torus whose residual is {residual:.2g}"
-        allowed = f"one that solves the equations of motion to {REFINED:.0e}"
-        raise InputError("solution", given, allowed, "refine it first: refine(solution)")
-    return torus
-
-
-def _checked_modes(torus: QuasiPeriodic, modes: Iterable[int] | None) -> tuple[int, ...]:
-    normal = [q for q in torus.chain.mode_numbers if q not in torus.seeds]
-    if modes is None:
-        return tuple(normal)
-    given = seed_modes(modes, torus.chain.N)
-    if set(given) - set(normal):
-        allowed = f"modes that are no seeds, of {normal}"
-        raise InputError("modes", given, allowed, "leave the seeds out")
-    return tuple(sorted(given))
-
-
-def _guesses(torus: QuasiPeriodic) -> dict[int, float]:
-    """Omega_q with the closed shift of second order by the amplitudes of the seeds, by mode."""
-    chain = torus.chain
-    squares = chain.frequencies() ** 2
-    cubic, quartic = (float(chain.potential.coefficient(n)) for n in (3, 4))
-    guesses = {}
-    for q in chain.mode_numbers:
-        shift = 0.0
-        for n, A in amplitudes_of(torus).items():
-            (a, b), c = shift_coefficients(chain.N, q, n)
-            square = float(squares[n - 1])
-            by_cubic = cubic**2 * (float(a) + float(b) * square)
-            shift += A**2 / (2 * chain.N) * (by_cubic + quartic * float(c) * square)
-        guesses[q] = float(np.sqrt(squares[q - 1])) * (1 + shift)
-    return guesses
-
-
-Flows = Callable[[int], LinearisedFlow | None]
-
-
-def _flows(torus: QuasiPeriodic) -> Flows:
-    """Linearised flows with ever more harmonics, by the place in HEIGHTS; None beyond the last."""
-    known = coefficients_by_harmonic(torus)
-    largest = max(float(np.abs(row).max()) for row in known.values())
-    kept = {nu: c for nu, c in known.items() if np.abs(c).max() > SMALLEST_KEPT * largest}
-    made: list[LinearisedFlow] = []
-
-    def flow(place: int) -> LinearisedFlow | None:
-        if place == len(HEIGHTS):
-            return None
-        if place == len(made):
-            chosen, _ = chosen_harmonics(
-                kept, torus.chain, len(torus.seeds), HEIGHTS[place]
-            )
-            made.append(LinearisedFlow(torus, chosen))
-        return made[place]
-
-    return flow
-
-
-def _normal_mode(flows: Flows, q: int, guess: float) -> NormalMode | None:
-    """With as many harmonics as the tolerance needs; the best one met where that cannot be."""
-    best: NormalMode | None = None
-    place = 0
-    while flow := flows(place):
-        found = reduced(flow, q, guess)
-        if found and (best is None or found.residual < best.residual):
-            best = _mode_of(flow, found)
-        if best and best.residual < TOLERANCE:
-            break
-        place += 1
-    return best
-
-
-def _mode_of(flow: LinearisedFlow, found: Reduced) -> NormalMode:
-    return NormalMode(
-        mode=found.mode,
-        sigma=found.sigma,
-        harmonics=flow.harmonics,
-        coefficients=found.coefficients,
-        action=found.action,
-        residual=found.residual,
-        divisors=_smallest_divisors(flow, found),
-        deflated=found.deflated,
-        products=found.products,
-    )
-
-
-def _smallest_divisors(flow: LinearisedFlow, found: Reduced) -> tuple[NormalDivisor, ...]:
-    every = flow.divisors(found.sigma)
-    sizes = np.where(flow.allowed(found.mode), np.abs(every), np.inf)
-    sizes[0, found.mode - 1] = np.inf
-    order = np.argsort(sizes, axis=None)[:SHOWN_DIVISORS]
-    places = zip(*np.unravel_index(order, sizes.shape), strict=True)
-    nearest = []
-    for row, column in places:
-        if np.isfinite(sizes[row, column]):
-            harmonic = tuple(flow.harmonics[row].tolist())
-            divisor = every[row, column].item()
-            coefficient = found.coefficients[row, column].item()
-            nearest.append(NormalDivisor(int(column) + 1, harmonic, divisor, coefficient))
-    return tuple(nearest)
-
-
-def _resonances(
-    torus: QuasiPeriodic, sigma: dict[int, float], length: int
-) -> list[ParametricResonance]:
-    omega = tuple(float(w) for w in torus.frequencies)
-    return resonances_of(torus.chain, torus.seeds, omega, sigma, length)

@@ -21,8 +21,12 @@ from symfpu.refinement.invariance import Floats
 LARGEST_BLOCK, SMALLEST_BLOCK = 1000, 300  # unknowns
 NEARNESS = 1.0  # divisors up to so many times the largest slope belong to the block
 # eigenvalues of the block up to these parts of Omega_q^2 are deflated, one try after the other
-DEFLATED = (0.0, 1e-3, 0.1, 0.3)
-MOST_DEFLATED = 16
+DEFLATED = (0.0, 1e-4, 0.1)
+MOST_DEFLATED = 12
+MIXED = (
+    4  # vectors, deflated too, into which the mode is mixed most, over their eigenvalues
+)
+TINY = 1e-300
 KRYLOV, RESTARTS = 60, 4
 ROUGH, FINE = 1e-4, 1e-11  # accuracies of Krylov solutions, over Omega_q^2
 ITERATIONS = 9
@@ -108,10 +112,16 @@ class Block:
         from scipy import linalg
 
         values, vectors = linalg.eigh(self.matrix(sigma))
-        own = int(np.argmax(np.abs(like.conj() @ vectors)))
-        small = np.flatnonzero(np.abs(values) < part * self.size)
-        others = sorted(set(small.tolist()) - {own}, key=lambda i: abs(values[i]))
-        return np.asarray(vectors[:, [own, *others[: MOST_DEFLATED - 1]]])
+        overlaps = np.abs(like.conj() @ vectors)
+        own = int(np.argmax(overlaps))
+        if not part:
+            return np.asarray(vectors[:, [own]])
+        sizes = np.abs(values)
+        nearest = np.argsort(sizes)[:MOST_DEFLATED]
+        small = [i for i in nearest.tolist() if sizes[i] < part * self.size]
+        mixed = np.argsort(-(overlaps**2) / np.maximum(sizes, TINY))[:MIXED].tolist()
+        others = [i for i in dict.fromkeys([*mixed, *small]) if i != own]
+        return np.asarray(vectors[:, [own, *others]])
 
 
 class Bordered:
@@ -213,17 +223,17 @@ def reduced(flow: LinearisedFlow, q: int, guess: float) -> Reduced | None:
         found = _found(flow, _Aim(q, guess), part)
         if found and found.share > SURE:
             return found
-    return _continued(flow, q)
+    return continued(flow, q)
 
 
-def _continued(flow: LinearisedFlow, q: int) -> Reduced | None:
-    """The same from no coupling to the whole one, step by step; every one begins with the last."""
+def continued(flow: LinearisedFlow, q: int) -> Reduced | None:
+    """The same from no coupling to the whole one, step by step; each begins with the last."""
     aim = _Aim(q, float(flow.linear[q - 1]))
     part, step = 0.0, FIRST_PART
     last: Reduced | None = None
     while part < 1:
         step = min(step, 1 - part)
-        found = _found(flow.scaled(part + step), aim, DEFLATED[-2])
+        found = _found(flow.scaled(part + step), aim, DEFLATED[-1])
         if found is None or aim.overlap(found) < LEAST_OVERLAP:
             step /= 2
             if step < LEAST_PART:
