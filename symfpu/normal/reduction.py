@@ -18,7 +18,7 @@ import numpy as np
 from symfpu.normal.linearised import LinearisedFlow, Mask, Values
 from symfpu.refinement.invariance import Floats
 
-LARGEST_BLOCK, SMALLEST_BLOCK = 1000, 300  # unknowns
+LARGEST_BLOCK, SMALLEST_BLOCK = 600, 150  # unknowns
 NEARNESS = 1.0  # divisors up to so many times the largest slope belong to the block
 # eigenvalues of the block up to these parts of Omega_q^2 are deflated, one try after the other
 DEFLATED = (0.0, 1e-4, 0.1)
@@ -80,8 +80,7 @@ class Block:
         chosen = np.sort(np.argpartition(weights, count - 1, axis=None)[:count])
         self.rows, self.columns = np.unravel_index(chosen, self.mask.shape)
         self.inside = (np.cumsum(self.mask, axis=None) - 1)[chosen]
-        main = (self.rows == 0) & (self.columns == q - 1)
-        self.main = int(np.flatnonzero(main)[0])
+        self.rates = flow.rates[self.rows].astype(float)
         self.coupling = flow.block(self.rows, self.columns)
 
     def matrix(self, sigma: complex) -> Values:
@@ -89,23 +88,22 @@ class Block:
         divisors = self.flow.divisors(sigma)[self.rows, self.columns]
         return np.asarray(self.coupling + np.diag(divisors))
 
-    def guess(self, sigma: float) -> float:
-        """A zero of the block near sigma, by Rayleigh's quotient; sigma itself if it runs away."""
-        from scipy import linalg
-
-        rates = self.flow.rates[self.rows].astype(float)
-        found = sigma
+    def guess(self, sigma: float, like: Values) -> tuple[float, Floats]:
+        """Newton's method within the block, from what is likest to a vector; W of one column."""
+        w = self.deflation(sigma, 0, like)
+        rates, found = self.rates, sigma
         for _ in range(ITERATIONS):
-            values, vectors = linalg.eigh(self.matrix(found))
-            at = int(np.argmax(np.abs(vectors[self.main])))
-            v = vectors[:, at]
-            change = float(values[at] / (v @ (2 * (found + rates) * v)))
+            bordered = np.block([[self.matrix(found), w], [w.T, np.zeros((1, 1))]])
+            right = np.append(np.zeros(len(w)), 1.0)
+            x = np.linalg.solve(bordered, right)
+            v, E = x[:-1], -x[-1]
+            change = float(E / (v @ (2 * (found + rates) * v)))
             found += change
-            if abs(found - sigma) > 0.05 * sigma:
-                return sigma
+            if not abs(found - sigma) < 0.05 * sigma:
+                return sigma, w
             if abs(change) < NEARLY**2 * sigma:
                 break
-        return found
+        return found, (v / np.linalg.norm(v))[:, None]
 
     def deflation(self, sigma: float, part: float, like: Values) -> Floats:
         """Orthonormal vectors W within the block, the likest to a vector first; shape (m, r)."""
@@ -268,13 +266,15 @@ class _Aim:
 
 def _found(flow: LinearisedFlow, aim: _Aim, part: float) -> Reduced | None:
     """With a part of the block deflated; None where Newton's method does not converge."""
-    near = float(complex(aim.sigma).real)
-    if not part:
-        near = Block(flow, aim.q, near).guess(near)
+    sigma, near = aim.sigma, float(complex(aim.sigma).real)
     block = Block(flow, aim.q, near)
     like = aim.vector(block.mask)
-    W = block.deflation(near, part, like[block.inside])
-    return _iterated(Bordered(block, W), aim.sigma if part else near, like)
+    inside = like[block.inside]
+    if part:
+        W = block.deflation(near, part, inside)
+    else:
+        sigma, W = block.guess(near, inside)
+    return _iterated(Bordered(block, W), sigma, like)
 
 
 def _iterated(system: Bordered, guess: complex, like: Values) -> Reduced | None:
