@@ -59,6 +59,7 @@ from symfpu.localization.laws import fit_profile, profile_law
 from symfpu.localization.profiles import fpu_trajectory, profile_distance
 from symfpu.localization.recurrence import NoRecurrence, recurrence
 from symfpu.localization.trials import profile_invariance
+from symfpu.normal.search import normal_modes
 from symfpu.paper.corrected import TimeIsUp
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.proofs.leading import leading_terms
@@ -105,6 +106,11 @@ def refined():
 @cache
 def orbit():
     return periodic_orbit(SINGLE, 3, breather_at_amplitude(SINGLE, 3, "0.3").frequency)
+
+
+@cache
+def stability():
+    return normal_modes(orbit(), modes=[5])
 
 
 @cache
@@ -218,6 +224,9 @@ RESULTS = {
     "SeriesForAllN": (lambda _: lindstedt(Chain("N", alpha=1), (1, "N-1"), order=2), lambda x: (repr(x), str(x.term(2, 1)))),
     "LindstedtSeries, asked": (lambda _: torus(30).series, terms),
     "Member": (lambda _: breathers().members[0], lambda x: (x.multipliers.stable, motion(x.torus))),
+    "NormalModes": (lambda _: stability(), lambda x: (x.frequencies, x.multipliers(), x.mode(5).variation([0.3]))),
+    "NormalMode": (lambda _: stability().modes[0], lambda x: (x.kind, x.signature)),
+    "ParametricResonance": (lambda _: stability().resonances[0], lambda x: x.condition),
     "Orbit": (lambda _: trajectory(), energies),
     "PadeSum": (lambda _: pade_frequencies(series(30), torus(30).amplitudes), lambda x: x.values),
     "PeriodicOrbit": (lambda _: orbit(), motion),

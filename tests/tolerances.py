@@ -608,3 +608,15 @@ TWIST_DIFFERENCE = 1e-9
 
 # Ends of a definite range are enclosed to 1e-10 by an exact signature on both sides, from a guess rounded to 12 decimals.
 RANGE_END = 1.01e-10
+# A normal frequency is exact to the square of the eigenfunction's residual, 1e-20; what is left is the rounding of divisors
+# and of the frequencies of the torus, some EPS, over the part of the eigenfunction in its mode.
+NORMAL_CONVERGED = 1e-12
+
+# The eigenfunction has the residual 1e-10, of which a hundred time units make as much as they are long times the frequency.
+NORMAL_VARIATION = 1e-8
+
+# Printed with six places.
+NORMAL_PRINTED = 1e-6
+
+# The multipliers of both routes: the integrated map's error of 1e-12, and some hundred EPS of the largest multiplier.
+NORMAL_MULTIPLIER = 1e-11

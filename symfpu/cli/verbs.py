@@ -27,6 +27,7 @@ VERBS = {
     "refine": "families",
     "family": "families",
     "actions": "actions",
+    "stability": "stability",
     "orbit": "orbit",
     "gali": "gali",
     "export": "export",

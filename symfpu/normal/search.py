@@ -14,7 +14,7 @@ from symfpu.normal.linearised import LinearisedFlow, coefficients_by_harmonic
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.reduction import Reduced, continued, reduced
 from symfpu.normal.resonances import ParametricResonance, resonances_of
-from symfpu.numbers.typed import integer, seed_modes
+from symfpu.numbers.typed import integer
 from symfpu.refinement.tori import chosen_harmonics
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 
@@ -97,10 +97,13 @@ def _checked_modes(torus: QuasiPeriodic, modes: Iterable[int] | None) -> tuple[i
     normal = [q for q in torus.chain.mode_numbers if q not in torus.seeds]
     if modes is None:
         return tuple(normal)
-    given = seed_modes(modes, torus.chain.N)
-    if set(given) - set(normal):
-        allowed = f"modes that are no seeds, of {normal}"
-        raise InputError("modes", given, allowed, "leave the seeds out")
+    allowed = f"different modes that are no seeds, of {normal}"
+    try:
+        given = [integer(q, "modes", 1) for q in modes]
+    except TypeError as error:
+        raise InputError("modes", modes, allowed, "pass a list of modes") from error
+    if set(given) - set(normal) or len(set(given)) < len(given):
+        raise InputError("modes", given, allowed, "name other modes")
     return tuple(sorted(given))
 
 

@@ -1,0 +1,62 @@
+"""Normal frequencies of a torus, for JSON and for the terminal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from symfpu.normal.modes import NormalMode, NormalModes
+from symfpu.normal.resonances import ParametricResonance
+from symfpu.numbers.typed import decimal
+from symfpu.reports.tables import fifteen_digits
+
+SHOWN_RESONANCES = 10
+
+
+def normal_record(found: NormalModes) -> dict[str, Any]:
+    """Keys of the command line; real frequencies as strings, complex ones as [re, im]."""
+    torus = found.torus
+    frequencies = zip(torus.seeds, torus.frequencies, strict=True)
+    return {
+        **torus.chain.typed,
+        "seeds": list(torus.seeds),
+        "frequencies": {str(q): decimal(w) for q, w in frequencies},
+        "stable": found.stable,
+        "growth": fifteen_digits(found.growth),
+        "normal_frequencies": {str(mode.mode): _sigma(mode) for mode in found.modes},
+        "signatures": {str(mode.mode): mode.signature for mode in found.modes},
+        "resonances": [_resonance(one) for one in found.resonances[:SHOWN_RESONANCES]],
+        "residual": fifteen_digits(found.residual),
+    }
+
+
+def _sigma(mode: NormalMode) -> str | list[str]:
+    value = complex(mode.sigma)
+    if not mode.growth:
+        return repr(value.real)
+    return [repr(value.real), repr(value.imag)]
+
+
+def _resonance(one: ParametricResonance) -> dict[str, Any]:
+    return {
+        "kind": one.kind,
+        "modes": list(one.modes),
+        "harmonic": list(one.harmonic),
+        "distance": fifteen_digits(one.distance),
+    }
+
+
+def normal_text(found: NormalModes) -> str:
+    """Verdict, a line a mode, and the nearest resonances."""
+    chain = repr(found.torus.chain).removeprefix("Chain(").removesuffix(")")
+    seeds = ",".join(map(str, found.torus.seeds))
+    lines = [f"{chain}, seeds {seeds}: {found.verdict}"]
+    linear = found.torus.chain.frequencies()
+    lines.append("  mode  normal frequency                   shift        kind, residual")
+    for mode in found.modes:
+        shift = complex(mode.sigma).real - linear[mode.mode - 1]
+        kind = f"{mode.kind}, {mode.residual:.0e}"
+        lines.append(f"  {mode.mode:4d}  {mode.text:33}  {shift:+.4e}  {kind}")
+    if found.resonances:
+        lines.append("nearest resonances:")
+    lines += [f"  {one!r}" for one in found.resonances[:SHOWN_RESONANCES]]
+    return "\n".join(lines)
