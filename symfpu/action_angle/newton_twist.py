@@ -13,9 +13,11 @@ import numpy as np
 from symfpu.action_angle.actions import half_weighted
 from symfpu.errors import SymfpuError
 from symfpu.refinement.conditions import Amplitude, seed_amplitudes
-from symfpu.refinement.invariance import Floats, InvarianceEquation
+from symfpu.refinement.equation import Floats
+from symfpu.refinement.harmonics import unit_harmonics
+from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.newton import responses
-from symfpu.refinement.tori import shifts_of, unit_harmonics
+from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 

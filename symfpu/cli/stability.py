@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from symfpu.bundles.bundle import load
-from symfpu.cli.chains import with_fixed_ends
+from symfpu.cli.chains import solution_of
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     FileArgument,
@@ -38,7 +38,7 @@ def stability(
     as_json: JsonOption = False,
 ) -> None:
     """Normal frequencies of a refined torus or breather: is it stable, what is it near?"""
-    torus = with_fixed_ends(load(path_named("FILE", file)), file)
+    torus = solution_of(load(path_named("FILE", file)), file)
     chosen = None if modes is None else whole_numbers("modes", modes)
     length = whole("resonance-length", resonance_length)
     picture = picture_named(plot)

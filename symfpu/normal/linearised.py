@@ -19,7 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.refinement.invariance import WORKERS, Floats, Ints, InvarianceEquation
+from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.invariance import WORKERS, InvarianceEquation
 from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 

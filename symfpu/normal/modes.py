@@ -21,7 +21,7 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.notebook import Shown
-from symfpu.refinement.invariance import Floats, Ints
+from symfpu.refinement.equation import Floats, Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 ELLIPTIC, HYPERBOLIC = "elliptic", "hyperbolic"

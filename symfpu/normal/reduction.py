@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from symfpu.normal.linearised import LinearisedFlow, Mask, Values
-from symfpu.refinement.invariance import Floats
+from symfpu.refinement.equation import Floats
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 600, 150  # unknowns
 NEARNESS = 1.0  # divisors up to so many times the largest slope belong to the block

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from symfpu.chain.chain import Chain
-from symfpu.refinement.invariance import Ints, dilated
+from symfpu.refinement.equation import Ints
+from symfpu.refinement.invariance import dilated
 
 PARAMETRIC, SUM, DIFFERENCE, OWN = "parametric", "sum", "difference", "own"
 KINDS = (PARAMETRIC, SUM, DIFFERENCE, OWN)

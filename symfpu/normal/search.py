@@ -15,7 +15,7 @@ from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, Normal
 from symfpu.normal.reduction import Reduced, continued, reduced
 from symfpu.normal.resonances import ParametricResonance, resonances_of
 from symfpu.numbers.typed import integer
-from symfpu.refinement.tori import chosen_harmonics
+from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 
 REFINED = 1e-9  # residual of a torus, relative, above which it is refused
@@ -173,7 +173,8 @@ class _Search:
     def _flow(self, place: int) -> LinearisedFlow:
         if place == len(self._flows):
             torus, height = self._torus, HEIGHTS[place]
-            chosen, _ = chosen_harmonics(self._known, torus.chain, len(torus.seeds), height)
+            functions = (torus.chain.N + 1) // 2
+            chosen, _ = chosen_harmonics(self._known, functions, len(torus.seeds), height)
             self._flows.append(LinearisedFlow(torus, chosen))
         return self._flows[place]
 

@@ -298,7 +298,7 @@ def _solved(
 
 
 def responses(
-    equation: InvarianceEquation,
+    equation: TorusEquation,
     conditions: Sequence[Condition],
     cosines: Floats,
     shifts: Floats,

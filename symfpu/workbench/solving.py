@@ -9,6 +9,7 @@ from symfpu.bundles.bundle import load
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import decimal
+from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus, refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
@@ -33,7 +34,7 @@ class Solved:
     choice: Choice
     torus: Torus
     series: LindstedtSeries | TravellingSeries | None
-    refined: RefinedTorus | None = None
+    refined: RefinedTorus | RefinedRingTorus | None = None
 
     @property
     def best(self) -> Torus:
@@ -62,7 +63,7 @@ def solved(
         return found
     tell("Newton's method", NO_FRACTION)
     torus = found.torus
-    refined = refine(torus, progress=tell)  # type: ignore[arg-type]  # a ring is refused by name
+    refined = refine(torus, progress=tell)
     return Solved(choice, torus, found.series, refined)
 
 
