@@ -59,6 +59,7 @@ from symfpu.localization.laws import fit_profile, profile_law
 from symfpu.localization.profiles import fpu_trajectory, profile_distance
 from symfpu.localization.recurrence import NoRecurrence, recurrence
 from symfpu.localization.trials import profile_invariance
+from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
 from symfpu.paper.corrected import TimeIsUp
 from symfpu.proofs.certificates import prove_propagation
@@ -357,6 +358,7 @@ ERRORS = {
     NotInFamily: lambda: NotInFamily("H", 1.0, (0.1, 0.5), "ended"),
     NoFurtherMember: lambda: NoFurtherMember("no root", (1,), (0.4,), "a reason"),
     NoTorus: lambda: NoTorus("a reason", refined(), 0.1),
+    NoNormalModes: lambda: NoNormalModes(3, 1.1, stability().resonances[0]),
     NoTorusAtEnergy: no_torus_at_energy,
     NoSelfConsistentFrequencies: no_frequencies,
     NoPeriodicOrbit: no_periodic_orbit,

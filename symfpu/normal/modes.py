@@ -70,7 +70,12 @@ class NormalMode:
     action : sum (sigma + nu.omega) |p|^2; its sign is Krein's. residual : of the linearised
         equations at all harmonics, over Omega_q^2.
     divisors : the smallest. deflated : how many near-resonant vectors were treated together.
-    products : with the linearised force.
+    products : with the linearised force. Ours.
+
+    >>> from symfpu import Chain, breather_at_amplitude, normal_modes
+    >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
+    >>> found.mode(3)
+    NormalMode(sigma_3=1.86..., elliptic, signature +1, residual ...)
     """
 
     mode: int
@@ -113,7 +118,7 @@ class NormalMode:
         return 0 if self.growth else int(np.sign(self.action))
 
     def rate(self, row: int) -> float:
-        """sigma + nu.omega of a harmonic, its real part."""
+        """sigma + nu.omega of a harmonic, its real part; row : its place among the harmonics."""
         return complex(self.sigma).real + float(self.rates[row])
 
     def variation(self, theta: ArrayLike) -> NDArray[np.complex128]:

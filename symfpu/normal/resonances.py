@@ -27,6 +27,7 @@ class ParametricResonance:
     kind : "parametric", 2 sigma_q = nu.omega; "sum", sigma_q + sigma_q' = nu.omega; "difference",
     sigma_q - sigma_q' = nu.omega; "own", sigma_q = nu.omega. modes : q, or q and q'.
     harmonic : nu. distance : left side minus right side, of the real parts, dimensionless.
+    Ours.
 
     >>> ParametricResonance("parametric", (4,), (0, 2), 1e-3)
     2 sigma_4 = (0,2).omega, off by 0.001

@@ -19,6 +19,8 @@ WITHOUT = {
     "Event": "one row of a family's data set",
     "ExpandableTerm": "an expression",
     "NamedParts": "an expression",
+    "NormalMode": "a row of NormalModes",
+    "ParametricResonance": "a line of NormalModes",
     "ProfileDistance": "one number and its mode",
     "ProfileLine": "three numbers",
     "SpectralLine": "a row of FrequencyAnalysis",
