@@ -171,6 +171,11 @@ class Case:
             )
 
     @cached_property
+    def refined_file(self) -> Path:
+        """A saved breather."""
+        return Path(symfpu.save(self.folder / "breather.symfpu", self.breather))
+
+    @cached_property
     def file(self) -> Path:
         """A saved torus, by the command line."""
         path = self.folder / "solved.symfpu"
@@ -263,6 +268,7 @@ NEWTON: dict[str, Door] = {
         c.chain, (1,), 1e-2 * c.size**2, members=2, folder=c.folder / "family"
     ),
     "floquet": lambda c: symfpu.floquet(c.periodic),
+    "normal_modes": lambda c: symfpu.normal_modes(c.breather),
     "member_at_energy": lambda c: symfpu.member_at_energy(
         c.family, c.family.members[1].torus.energy(), harmonic=False
     ),
@@ -404,6 +410,7 @@ VERBS: dict[str, Door] = {
     "symfpu refine": lambda c: c.verb("refine", c.file),
     "symfpu show": lambda c: c.verb("show", c.file),
     "symfpu solve": lambda c: c.file,
+    "symfpu stability": lambda c: c.verb("stability", c.refined_file),
     "symfpu sweep": lambda c: c.verb(
         "sweep", "--order", 1, "--longest", 3, "--largest", 1, *c.rule_words
     ),

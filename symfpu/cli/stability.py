@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from symfpu.bundles.bundle import load
+from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import solution_of
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
@@ -22,6 +23,7 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.normal.search import LENGTH, normal_modes
 from symfpu.reports.normal import normal_record, normal_text
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 
 @app.command("stability", epilog="Example: symfpu stability refined.symfpu")
@@ -39,6 +41,8 @@ def stability(
 ) -> None:
     """Normal frequencies of a refined torus or breather: is it stable, what is it near?"""
     torus = solution_of(load(path_named("FILE", file)), file)
+    require_fixed_ends(torus.chain)
+    assert isinstance(torus, QuasiPeriodic)
     chosen = None if modes is None else whole_numbers("modes", modes)
     length = whole("resonance-length", resonance_length)
     picture = picture_named(plot)
