@@ -85,6 +85,7 @@ from symfpu.action_angle.birkhoff import BirkhoffForm as BirkhoffForm
 from symfpu.action_angle.birkhoff import birkhoff_form as birkhoff_form
 from symfpu.action_angle.twist import Twist as Twist
 from symfpu.action_angle.twist import twist as twist
+
 # stability of tori: normal frequencies
 from symfpu.normal.modes import NoNormalModes as NoNormalModes
 from symfpu.normal.modes import NormalMode as NormalMode

@@ -620,3 +620,6 @@ NORMAL_PRINTED = 1e-6
 
 # The multipliers of both routes: the integrated map's error of 1e-12, and some hundred EPS of the largest multiplier.
 NORMAL_MULTIPLIER = 1e-11
+
+# What a frequency of a long regular orbit is known to: the integrator's phase.
+EXACT_LINE = 1e-13

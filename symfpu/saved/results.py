@@ -65,7 +65,7 @@ def save(
 
 
 def load(path: Path | str) -> Bundle:
-    """What `save` wrote, exactly as it was: the `result` of the Bundle. Executes nothing.
+    """What `save` wrote, exactly as it was: `Bundle.result`. Executes nothing.
 
     path : of the file. Everything in it is dimensionless but for the date. The format is ours.
 

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symfpu.spectral.combinations import Basis, combinations_within, widest
+from tests.tolerances import EXACT_LINE
 
 OMEGA = (1.0, math.sqrt(2), math.pi / 2)
-EXACT = 1e-13
 COARSE = 0.01
 RATE = 4 * math.pi
 
@@ -20,7 +20,7 @@ RATE = 4 * math.pi
 def basis():
     found = Basis(RATE)
     for omega in OMEGA:
-        found.add(omega, EXACT)
+        found.add(omega, EXACT_LINE)
     return found
 
 
@@ -39,7 +39,7 @@ def test_all_combinations_are_there_once(s, order):
 @settings(max_examples=20, deadline=None)
 @given(st.tuples(*[st.integers(-3, 3)] * 3).filter(any))
 def test_a_combination_is_found(nu):
-    assert basis().combination(float(np.dot(nu, OMEGA)), EXACT) == nu
+    assert basis().combination(float(np.dot(nu, OMEGA)), EXACT_LINE) == nu
 
 
 def test_weak_frequencies_take_part_in_low_sums_alone():
@@ -51,12 +51,12 @@ def test_weak_frequencies_take_part_in_low_sums_alone():
 
 
 def test_an_image_of_a_high_one_is_known():
-    assert basis().combination(RATE - 9.0, EXACT) == (-9, 0, 0)
+    assert basis().combination(RATE - 9.0, EXACT_LINE) == (-9, 0, 0)
 
 
 def test_an_unknown_frequency_is_none_and_a_coarse_one_cannot_be_told():
     known = basis()
-    assert known.combination(math.e, EXACT) is None
-    assert known.can_tell(EXACT)
+    assert known.combination(math.e, EXACT_LINE) is None
+    assert known.can_tell(EXACT_LINE)
     assert not known.can_tell(COARSE)
     assert known.combination(sum(OMEGA), COARSE) is None, "would be met by accident"
