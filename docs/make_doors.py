@@ -98,6 +98,11 @@ class Case:
         return symfpu.integrate(self.chain, *self.state, 20.0, step=0.1, averages=True)
 
     @cached_property
+    def lines(self) -> Any:
+        orbit = symfpu.integrate(self.chain, *self.state, 200.0, step=0.1, samples=2)
+        return symfpu.frequency_analysis(orbit)
+
+    @cached_property
     def waves(self) -> Any:
         frequencies = self.chain.frequencies()[
             [self.chain.mode_numbers.index(q) for q in SEEDS]
@@ -291,6 +296,7 @@ DYNAMICS: dict[str, Door] = {
     "alignment_indices": lambda c: symfpu.alignment_indices(
         c.chain, *c.state, 100.0, vectors=2
     ),
+    "frequency_analysis": lambda c: c.lines,
     **{
         f"integrate, {name}": lambda c, name=name: symfpu.integrate(
             c.chain, *c.state, 5.0, step=0.1, scheme=name
@@ -301,6 +307,7 @@ DYNAMICS: dict[str, Door] = {
         c.chain, *c.state, 5.0, step=0.1, file=c.folder / "orbit"
     ),
     "packet_state": lambda c: symfpu.packet_state(c.chain, SEEDS, c.size**2 / 20),
+    "torus_near": lambda c: symfpu.torus_near(c.lines),
     "particle_state": lambda c: symfpu.particle_state(
         c.chain, *map(c.chain.positions, c.state)
     ),

@@ -46,7 +46,7 @@ def test_every_public_function_is_a_door_or_takes_no_chain():
 
 def test_every_verb_is_a_door():
     named = " ".join(name for name in EVERY if name.startswith("symfpu "))
-    assert {verb for verb in VERBS if verb not in named} == {"reproduce"}  # the paper's own chains
+    assert {verb for verb in VERBS if verb not in named} == {"reproduce", "workbench"}  # the paper's own chains; any that is typed
 
 
 def test_the_page_has_every_door():

@@ -42,7 +42,7 @@ class Twist(Gridded):
     >>> from symfpu import Chain, refine, torus_at_amplitudes, twist
     >>> twist(refine(torus_at_amplitudes(Chain(8, beta=1), {1: "0.1", 3: "0.1"}, 4)))
     Twist(N=8, beta=1, seeds=1,3, indefinite (1 positive, 1 negative), smallest eigenvalue
-    -0.0283..., isoenergetic determinant 0.0...)
+    -0.01375..., isoenergetic determinant 0.01756...)
     """
 
     chain: Chain

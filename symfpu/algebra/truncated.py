@@ -7,6 +7,7 @@ degree 1, a series is a number with its derivatives.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from typing import Any
 
 Exponents = tuple[int, ...]
@@ -99,7 +100,8 @@ class Truncated:
         """1 / series, degree by degree; ZeroDivisionError where the constant is zero."""
         if not self.parts[0]:
             raise ZeroDivisionError("the series has no constant")
-        head = 1 / self.parts[0][self.origin]
+        constant = self.parts[0][self.origin]
+        head = Fraction(1, constant) if isinstance(constant, int) else 1 / constant
         found: list[Part] = [{self.origin: head}]
         for degree in range(1, len(self.parts)):
             part: Part = {}

@@ -154,7 +154,8 @@ def _in_doubles(targets: Floats, start: Floats, heights: Numbers) -> tuple[Float
         while damping > SMALLEST_STEP:
             trial = c - damping * step
             if (np.diff(trial) < 0).all():
-                residual, jacobian = _equations(trial, targets)
+                with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+                    residual, jacobian = _equations(trial, targets)  # too far: not finite
                 if np.linalg.norm(residual) < size:
                     break
             damping /= 2

@@ -75,7 +75,7 @@ class NormalMode:
     >>> from symfpu import Chain, breather_at_amplitude, normal_modes
     >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
     >>> found.mode(3)
-    NormalMode(sigma_3=1.86..., elliptic, signature +1, residual ...)
+    NormalMode(sigma_3=1.854..., elliptic, signature +1, residual ...)
     """
 
     mode: int
@@ -138,7 +138,7 @@ class NormalModes(Shown, Gridded):
     >>> from symfpu import Chain, breather_at_amplitude, normal_modes
     >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
     >>> found
-    NormalModes(N=4, beta=1, omega_2=1.42..., stable, sigma_1=0.77..., sigma_3=1.86...,
+    NormalModes(N=4, beta=1, omega_2=1.41..., stable, sigma_1=0.768..., sigma_3=1.854...,
     residual ...)
     >>> found.to_frame()[["mode", "kind", "signature"]]
        mode      kind  signature

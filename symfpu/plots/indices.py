@@ -37,7 +37,7 @@ def alignment(result: Any, ax: Axes | None = None) -> Axes:
         for i, slope in enumerate(found.slopes()):
             y = found.log10_gali[:, i]
             style = look(i) | {"marker": None}
-            fitted = rf"{slope.value:.2f} \pm {slope.error:.2f}"
+            fitted = rf"{slope.value:z.2f} \pm {slope.error:.2f}"
             axes.plot(x, y, label=rf"$G_{{{slope.k}}}$: ${fitted}$", **style)
             line = y[late].mean() + slope.value * (x[late] - x[late].mean())
             axes.plot(x[late], line, color="black", ls=(0, (4, 3)), lw=0.9)

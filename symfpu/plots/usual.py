@@ -166,7 +166,7 @@ def _index_rows(found: AlignmentIndices) -> Rows:
     yield "chain", _model(found.chain)
     yield "to t", f"{found.times[-1]:.10g}"
     for slope in found.slopes():
-        yield f"slope of G_{slope.k}", f"{slope.value:.2f} \u00b1 {slope.error:.2f}"
+        yield f"slope of G_{slope.k}", f"{slope.value:z.2f} \u00b1 {slope.error:.2f}"
     yield "Lyapunov exponent", f"{found.lyapunov[-1]:.2g}"
     yield "energy error", f"{found.energy_error:.1g}"
 

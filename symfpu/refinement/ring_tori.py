@@ -44,8 +44,8 @@ class RefinedRingTorus(RingTorus):
     >>> from symfpu import Chain, refine, travelling_torus, travelling_waves
     >>> chain = Chain(N=8, alpha="0.3", ends="periodic")
     >>> refine(travelling_torus(travelling_waves(chain, (1,), ("0.766",), 4)))
-    RefinedRingTorus(N=8, alpha=0.3, ends='periodic', omega_1=0.766, A_1=0.272...,
-    H=..., 15 waves, residual ..., smallest divisor 0.35 at mode 2, harmonic (2), coefficient ...)
+    RefinedRingTorus(N=8, alpha=0.3, ends='periodic', omega_1=0.766, A_1=0.2938896094153,
+    H=0.02547126..., 10 waves, residual ..., smallest divisor 0.35 at mode 2, ...)
     """
 
     steps: tuple[NewtonStep, ...] = field(default=(), repr=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from symfpu.action_angle.twist import Twist
 from symfpu.breathers.floquet import Floquet
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
@@ -17,6 +18,8 @@ from symfpu.localization.laws import ProfileFit, ProfileLine
 from symfpu.localization.profiles import ProfileDistance
 from symfpu.localization.recurrence import Recurrence
 from symfpu.localization.trials import ProfileInvariance, Trend
+from symfpu.normal.modes import NormalDivisor, NormalMode, NormalModes
+from symfpu.normal.resonances import ParametricResonance
 from symfpu.proofs.certificates import (
     PropagationProof,
     RuleException,
@@ -27,6 +30,7 @@ from symfpu.proofs.certificates import (
 from symfpu.proofs.sweeps import Sweep, SweepCase
 from symfpu.series.sample import EnergyChanges, FrequencyChanges, SampledSeries
 from symfpu.series.series import ResiduePoint
+from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.resummation import PadeSum
 from symfpu.tori.torus import RootCertificate
@@ -41,10 +45,12 @@ RESULTS: tuple[type[Any], ...] = (
     Event,
     Family,
     Floquet,
+    FrequencyAnalysis,
     FrequencyChanges,
     GroupGrowth,
     GrowthExponents,
     Member,
+    NormalModes,
     Orbit,
     PadeSum,
     ProfileDistance,
@@ -59,13 +65,18 @@ RESULTS: tuple[type[Any], ...] = (
     TodaInvariants,
     TodaTorus,
     Trend,
+    Twist,
 )
 # what they hold
 PARTS: tuple[type[Any], ...] = (
     Edges,
     LargestTerm,
+    NormalDivisor,
+    NormalMode,
+    ParametricResonance,
     ResiduePoint,
     RuleException,
+    SpectralLine,
     SweepCase,
     Undecided,
     Vanishing,

@@ -133,5 +133,5 @@ def test_real_waves_are_orthonormal_and_the_reversal_turns_time(N):
 
 def test_tori_of_more_angles_are_refused():
     series = travelling_waves(ring(8, beta=1), (1, 2), ("0.78", "1.43"), 1)
-    with pytest.raises(InputError, match="alignment_indices"):
+    with pytest.raises(InputError, match="normal_modes"):
         floquet(travelling_torus(series))

@@ -28,9 +28,10 @@ ARGUMENTS = {
 }  # fmt: skip
 # results: the functions that make them are tested instead
 RESULTS = {"AlignmentIndices", "Family", "LindstedtSeries", "Orbit", "ProfileInvariance", "RefinedTorus", "ShotOrbit"}
-RESULTS |= {"RingTorus", "TravellingSeries", "BirkhoffForm", "Twist", "TwistAtRest"}
+RESULTS |= {"RingTorus", "TravellingSeries", "BirkhoffForm", "Twist", "TwistAtRest", "FrequencyAnalysis", "RefinedRingTorus"}
 TAKE_RINGS = {"travelling_waves", "integrate", "alignment_indices", "seconds_needed"}
-TAKE_RINGS |= {"toda_gaps", "toda_invariants", "toda_torus"}
+TAKE_RINGS |= {"toda_gaps", "toda_invariants", "toda_torus", "travelling_breather"}
+TAKE_RINGS |= {"packet_state", "particle_state", "random_state", "read_state"}
 
 
 def takes_a_chain(name):

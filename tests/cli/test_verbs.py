@@ -103,4 +103,4 @@ def test_the_help_of_export_names_every_language():
     from symfpu.cli import export as verb
     from symfpu.codegen.export import LANGUAGES
 
-    assert verb.LANGUAGES.split(", ") == list(LANGUAGES)
+    assert list(verb.LANGUAGES) == list(LANGUAGES)

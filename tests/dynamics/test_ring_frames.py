@@ -6,7 +6,7 @@ import pytest
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import _first_frame, alignment_indices, seconds_needed
 from symfpu.dynamics.frame_run import OrbitLost, carried
-from symfpu.dynamics.tangent import moving_frame, tangent_map_along, tangent_steps
+from symfpu.dynamics.tangent import moving_frame, tangent_steps
 from symfpu.errors import InputError
 from symfpu.series.travelling import travelling_waves
 from symfpu.tori.ring_torus import travelling_torus
@@ -116,8 +116,6 @@ def test_what_rings_do_not_have_is_refused():
         alignment_indices(chain, *drawn(chain, 0.1), 200.0, vectors=11)
     with pytest.raises(InputError, match=r"Q_\(-q\) = conj Q_q"):
         alignment_indices(chain, np.arange(5.0), np.zeros(5), 200.0)
-    with pytest.raises(InputError, match="periodic"):
-        tangent_map_along(chain, lambda t: np.zeros((len(t), 6)), 1.0, 10)
     p = np.array([-3.0, 0, 0, 0, 0, 3.0])
     with pytest.raises(OrbitLost, match="bond 0"):
         alignment_indices(chain, np.zeros(5), chain.modes(p), 200.0)

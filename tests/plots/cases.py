@@ -13,6 +13,7 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.families.family import family
 from symfpu.integrable.invariants import toda_gaps, toda_invariants
 from symfpu.localization.profiles import fpu_trajectory
+from symfpu.normal.search import normal_modes
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
@@ -72,6 +73,16 @@ def refined():
 @cache
 def ring():
     return travelling_torus(travelling_waves(RING, (1,), ("0.69",), 6))
+
+
+@cache
+def normal():
+    return normal_modes(one_of_five())
+
+
+@cache
+def one_of_five():
+    return breather_at_amplitude(Chain(N=6, alpha="0.3"), 2, "0.2")
 
 
 @cache

@@ -11,7 +11,6 @@ from symfpu.chain.potentials.toda import Toda
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import coupling_sequence
 from symfpu.errors import InputError
-from symfpu.proofs.asymptotics import asymptotic_energy
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.proofs.leading import leading_term, leading_terms, lemma_holds
 from symfpu.proofs.sweeps import sweep_propagation
@@ -183,7 +182,6 @@ def test_what_proves_nothing_is_refused_by_name(law, argument):
         lambda chain: leading_terms(chain, (1,), 2),
         lambda chain: leading_term(chain, (1,), 2),
         lambda chain: lemma_holds(chain, (1,), 2),
-        lambda chain: asymptotic_energy(Chain("N", potential=chain.potential), (1,), 2),
     ],
 )
 def test_closed_forms_of_both_models_refuse_other_chains_by_name(closed_form):

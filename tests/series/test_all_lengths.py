@@ -220,6 +220,10 @@ PUBLIC = {
     "slope_by_energy": lambda: symfpu.slope_by_energy(SYMBOLIC, 2, [0.1, 0.2, 0.3], np.ones((3, 3))),
     "small_parameter": lambda: SYMBOLIC.small_parameter(),
     "stretches": lambda: SYMBOLIC.stretches(ONES),
+    "twist_at_rest": lambda: symfpu.twist_at_rest(SYMBOLIC, (1,)),
+    "packet_state": lambda: symfpu.packet_state(SYMBOLIC, (1,), 0.1),
+    "particle_state": lambda: symfpu.particle_state(SYMBOLIC, ONES, ONES),
+    "random_state": lambda: symfpu.random_state(SYMBOLIC, 0.1, 1),
     "toda_gaps": lambda: symfpu.toda_gaps(Chain("N", potential="toda:1/2"), ONES, ONES),
     "toda_invariants": lambda: symfpu.toda_invariants(Chain("N", potential="toda:1/2"), ONES, ONES),
     "toda_torus": lambda: symfpu.toda_torus(Chain("N", potential="toda:1/2"), (1,), actions=(0.1,)),
@@ -257,7 +261,11 @@ def test_every_function_of_a_chain_is_on_the_list():
         "asymptotic_group_energy",
         "frequency_expansion",
         "frequency_shift_formula",
+        "asymptotic_profile",
+        "birkhoff_form",
         "lindstedt",
+        "read_state",  # says first whether there is a file
+        "travelling_breather",  # of a ring, whose length is a number
         "profile_invariance",
         "travelling_waves",  # of a ring, whose length is a number
     }

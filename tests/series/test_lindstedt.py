@@ -192,7 +192,7 @@ def test_long_chains_are_counted_before_anything_is_allocated(N):
     assert predicted_bytes(N, 1, 2, powers=1) > 16 * N * N
 
 
-@pytest.mark.parametrize("frequencies", [{1: "0.4"}, "0.4", 0.4])
+@pytest.mark.parametrize("frequencies", [{2: "0.4"}, "0.4", 0.4])
 def test_frequencies_are_a_sequence(frequencies):
     with pytest.raises(InputError, match="frequencies"):
         lindstedt(Chain(8, alpha=1), (1,), frequencies, 1)

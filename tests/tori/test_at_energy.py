@@ -120,9 +120,10 @@ def test_bad_arguments_are_refused_by_name(arguments, named):
     assert caught.value.argument == named
 
 
-def test_the_kind_of_energy_must_be_said():
-    with pytest.raises(TypeError, match="harmonic"):
-        torus_at_energy(Chain(8, alpha="0.3"), (1, 2), "0.01", order=4)
+def test_the_total_energy_is_meant_where_nothing_is_said():
+    chain = Chain(8, alpha="0.3")
+    torus = torus_at_energy(chain, (1,), "0.01", order=4)
+    assert torus.amplitudes == torus_at_energy(chain, (1,), "0.01", order=4, harmonic=False).amplitudes
 
 
 @pytest.mark.long
