@@ -39,7 +39,7 @@ def test_there_are_notebooks():
 
 
 def marked(path):
-    return pytest.param(path, id=path.name, marks=[pytest.mark.long] * (path != NOTEBOOKS[0]))
+    return pytest.param(path, id=path.name, marks=pytest.mark.long)
 
 
 @pytest.mark.filterwarnings("ignore")

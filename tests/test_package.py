@@ -80,6 +80,7 @@ def test_type_checkers_know_the_types_of_public_names(tmp_path):
     assert finished.returncode == 0
 
 
+@pytest.mark.long
 def test_no_public_name_is_hidden_by_a_module_of_the_same_name():
     rooms = {path.stem for path in ROOT.iterdir()}
     assert not rooms & set(symfpu.__all__)

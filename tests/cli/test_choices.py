@@ -27,6 +27,7 @@ def completed(line):
     return found.stdout.split()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("line", "words"),
     [

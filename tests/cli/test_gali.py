@@ -109,6 +109,7 @@ def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, kept, tmp_
     assert "is a checkpoint of alignment indices" in err
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("verb", "options"), [("gali", ["--samples", "64"]), pytest.param("orbit", ["--samples", "9"], marks=pytest.mark.long)]
 )

@@ -31,6 +31,7 @@ def python(*words, **changes):
     return subprocess.run([sys.executable, *words], capture_output=True, text=True, check=False, env=surroundings)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("verb", [pytest.param(verb, marks=[pytest.mark.long] * (verb not in ("solve", "orbit"))) for verb in SHORT])
 def test_a_general_verb_loads_neither_the_paper_nor_pictures(verb):
     code = f"""
@@ -90,6 +91,7 @@ def test_help_fits_eighty_columns_with_its_example_on_one_line(verb, monkeypatch
     assert not any(line.strip() for line in after)
 
 
+@pytest.mark.long
 def test_the_package_is_a_program():
     """python -m symfpu is the console script: same output, same codes."""
     script = "import sys; sys.argv[0] = 'symfpu'; from symfpu.cli.main import run; run()"

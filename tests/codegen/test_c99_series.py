@@ -99,6 +99,7 @@ def corrected(library, form, case, amplitudes, frequencies):
     return omega, jacobian
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("form", "name"), EVERY)
 def test_values_are_those_of_the_series_at_forty_digits(form, name, shared):
     case = case_of(form, name)

@@ -223,6 +223,7 @@ def test_tables_in_several_statements_are_whole(build, large):
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.long
 def test_lines_respect_the_limits_of_the_standard(large):
     facts = {"made by": "a long command " * 20 + "out/*.F90 \\", "tricky": "first\ncall exit() é"}
     lines = FORTRAN.torus(torus_program(large, "example", facts)).splitlines()

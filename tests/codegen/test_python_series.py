@@ -57,6 +57,7 @@ def test_numpy_values_are_those_of_the_series(name, form, tmp_path, monkeypatch)
     assert np.allclose(ours.positions(1.5, A), ours.positions([1.5], A, [0] * len(A), ours.corrected_frequencies(A)[0])[0], rtol=LAST_DIGIT)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", UNIVERSAL)
 def test_numpy_values_of_a_universal_series(name, tmp_path):
     case = UNIVERSAL[name]
@@ -102,6 +103,7 @@ def test_mpmath_of_a_universal_series_has_any_digits(name, tmp_path):
     assert ours.self_test() <= ours.TOLERANCE
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_the_file_runs_by_itself_and_sees_a_changed_number(emitter, tmp_path):
     case = CASES["wrapped modes"]

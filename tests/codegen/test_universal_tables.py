@@ -183,6 +183,7 @@ def broken(language, pattern):
     return wrong
 
 
+@pytest.mark.long
 def test_self_tests_see_a_changed_operation(tmp_path, build):
     c = compile_c(tmp_path, {"a.c": broken("c", r"(factor\[\d+\] = \{\n)-?\d+")}, "-Dsample_SELF_TEST")
     assert subprocess.run([c], capture_output=True, check=False).returncode == 1

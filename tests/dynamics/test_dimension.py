@@ -63,6 +63,7 @@ def test_a_chaotic_orbit_is_not_called_regular_before_its_chaos_shows(seed, T, f
     assert "take a longer time" in found.reason
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 6))])
 def test_it_is_called_chaotic_once_it_shows_with_two_vectors_too(seed):
     said = verdicts(mixed(seed), 1e5)

@@ -49,6 +49,7 @@ def same(one, other):
     assert one.energy_error == other.energy_error
 
 
+@pytest.mark.long
 def test_a_killed_run_goes_on_bitwise(tmp_path):
     """Killed at random moments, also inside a write, and started again until it ends."""
     run = Chain(16, alpha="0.3", beta="0.1"), *np.random.default_rng(8).normal(scale=0.3, size=(2, 15)), 1e5

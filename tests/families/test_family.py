@@ -118,6 +118,7 @@ ENDS = {
 SLOW_ENDS = ("alpha, far from linear", "appendix-a, near")  # seconds each
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("harmonic", [False, True])
 @pytest.mark.parametrize("case", [pytest.param(case, marks=[pytest.mark.long] * (case in SLOW_ENDS)) for case in ENDS])
 def test_both_ends_have_the_energies_asked_for(case, harmonic):
@@ -174,6 +175,7 @@ def averages(torus):
     return torus.chain.harmonic_energies(Q, P).mean(axis=0)
 
 
+@pytest.mark.long
 def test_members_keep_the_ratio_of_their_averaged_energies():
     for m in folded().members[::4]:
         mine = averages(m.torus)

@@ -2,6 +2,7 @@
 
 from functools import lru_cache
 
+import pytest
 from matplotlib.figure import Figure
 
 from symfpu.chain.chain import Chain
@@ -20,6 +21,7 @@ def pair():
     return family(Chain(8, alpha="0.3"), (1, 2), "0.005", from_energy="0.001")
 
 
+@pytest.mark.long
 def test_there_is_a_panel_more_with_multipliers(tmp_path, monkeypatch):
     """Drawn, and not written: tests of the command line do that."""
 

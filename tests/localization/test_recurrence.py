@@ -63,6 +63,7 @@ def test_a_record_that_ends_on_its_way_back_has_no_recurrence():
         recurrence(t, np.stack([1 - t / 10, t / 10], axis=-1))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("energy", "time", "returned"), [(None, 14004.3, 0.98626), ("0.014915", 12172.3, 0.98423)])
 def test_recurrence_of_the_original_fpu_trajectory(energy, time, returned):
     """Fig. 9(b), "nearly complete return at t = 12000": so for the printed E = 0.014915, not for the printed A_1, where E = 0.00815."""

@@ -106,6 +106,7 @@ def test_at_the_pole_the_frequency_of_mode_3_is_that_of_the_harmonic(torus):
     assert terms[1:, 2].sum() == pytest.approx(shift, rel=TERM_RATIO)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("frequencies", "digits"),
     [(TWO_TORUS.frequencies, 40), (INCOMMENSURABLE_FREQUENCIES, 40), (INCOMMENSURABLE_FREQUENCIES, None)],

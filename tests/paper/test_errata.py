@@ -72,6 +72,7 @@ def test_two_breathers_are_not_met(label, true, ratio):
     assert "met at no frequency order" in found.verdict
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("label", ["Fig. 2", pytest.param("Fig. 9", marks=pytest.mark.long)])
 def test_two_energies_are_harmonic(label):
     assert row(label).energy_matches == ("harmonic energy at t = 0",)

@@ -59,6 +59,7 @@ def test_a_spectrum_persists_from_a_hundredth_of_the_time_on(decades, verdict):
     assert "from t = 1e+04 to 1e+06" in found.ours
 
 
+@pytest.mark.long
 def test_figure_3_over_a_short_time(monkeypatch, tmp_path):
     """2e4, in place of 1e6: the first stage is over by then."""
     monkeypatch.setattr(fig3, "TIME", 2e4)

@@ -181,6 +181,7 @@ def test_reproduce_convergence_writes_page_data_and_pictures(cancellation, breat
     assert figure_markdown(figure) in (tmp_path / "out" / "report.md").read_text()
 
 
+@pytest.mark.long
 def test_reproduce_fig6_writes_its_orders(capsys, tmp_path):
     """The whole target, nothing replaced: packets excite every mode, the seeds at order 0."""
     assert main(["reproduce", "fig6", "-o", str(tmp_path)]) == 0

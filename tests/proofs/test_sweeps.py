@@ -154,6 +154,7 @@ def test_a_case_that_fails_in_a_worker_costs_no_other(tmp_path, threads):
     assert sweep_propagation(range(2, 6), 2, 1, executor=threads, file=file) == whole
 
 
+@pytest.mark.long
 def test_workers_that_die_cost_only_what_they_had_not_decided(tmp_path):
     file = tmp_path / "sweep.jsonl"
     message = "the worker processes died: in a script"

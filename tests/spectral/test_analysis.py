@@ -42,6 +42,7 @@ def errors(analysis):
     return [abs(by_seed[q] - float(omega)) for q, omega in exact]
 
 
+@pytest.mark.long
 def test_a_breather_has_one_frequency():
     breather = breather_at_amplitude(Chain(N=4, beta=1), 2, "0.3")
     orbit = integrate(breather.chain, *breather.state(), 2000, step=0.1)
@@ -121,6 +122,7 @@ def test_an_error_is_what_two_parts_differ_by_and_covers_the_truth():
         assert error < 3 * claimed[q]
 
 
+@pytest.mark.long
 def test_a_chaotic_orbit_drifts():
     chain = Chain(N=8, alpha=1)
     start = fpu_trajectory(chain, {1: 0.6, 5: 0.3})

@@ -47,6 +47,7 @@ def test_energy_and_amplitude_ratio_are_met(chain, seeds, energy, order, harmoni
         assert torus.amplitudes[q] / torus.amplitudes[seeds[0]] == pytest.approx(1 / (i + 1), rel=LAST_DIGIT)
 
 
+@pytest.mark.long
 def test_the_two_energies_are_not_one():
     by_H, by_sum = (torus_at_energy(*CASES[0][:3], harmonic=h, order=6) for h in (False, True))
     assert by_sum.energy() / by_H.energy() > 1.005
@@ -73,6 +74,7 @@ def test_many_digits(harmonic):
     assert [float(a) for a in torus.amplitudes.values()] == pytest.approx(list(doubles.amplitudes.values()), rel=FIXED_ENERGY)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("chain", "seeds", "energy"),
     [

@@ -39,6 +39,7 @@ def test_the_frequencies_give_the_amplitudes_back(chain, amplitudes, order):
     assert torus.history == back.history
 
 
+@pytest.mark.long
 def test_many_digits_go_there_and_back():
     torus = torus_at_amplitudes(Chain(16, alpha="0.33"), {1: "0.2", 2: "0.1"}, 6, digits=40)
     assert torus.certificate.certified
@@ -71,6 +72,7 @@ def test_the_lowest_shift_is_met_with_an_error_of_the_fourth_power(chain, seeds,
     assert np.polyfit(np.log(sizes), np.log(differences), 1)[0] == pytest.approx(4, abs=2 * SLOPE)
 
 
+@pytest.mark.long
 def test_printed_amplitudes_of_figure_2_have_the_printed_frequencies():
     """At frequency order 4, which the amplitudes belong to; omega - Omega is 1.6e-6 .. 1.6e-7 and met to 1e-10 of it."""
     printed = APPENDIX_F[0]
@@ -79,6 +81,7 @@ def test_printed_amplitudes_of_figure_2_have_the_printed_frequencies():
     assert (torus.frequency_order, torus.order) == (4, 6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("printed", "order", "tolerance"),
     [(APPENDIX_F[1], 6, 1e-10), (APPENDIX_F[4], 4, 1e-10), (TWO_TORUS, 14, 1e-4)],
