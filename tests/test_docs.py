@@ -59,7 +59,8 @@ RUNNING = [page for page in PAGES if any(word == "" for _, word, _ in blocks(pag
 LONG = [page for page in PAGES if any(word == "long" for _, word, _ in blocks(page))]
 
 
-SLOW_PAGES = ("README.md", "programs.md", "tables.md", "export.md", "dynamics.md", "localization.md", "plots.md", "families.md")  # seconds of compilers, orbits, pictures
+# seconds of compilers, orbits, pictures
+SLOW_PAGES = ("README.md", "programs.md", "tables.md", "export.md", "dynamics.md", "localization.md", "plots.md", "families.md")
 
 
 @pytest.mark.parametrize(
