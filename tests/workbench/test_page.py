@@ -68,6 +68,7 @@ def page(shared):
     shared.get_by_role("button", name="frequencies \u03c9").click()
     typed(shared, "or another potential V(r)", "")
     typed(shared, "seeds D\u2080", "1,2")
+    typed(shared, "mode q", "3")
     for N, linear in (("16", "0.1960342807"), ("32", "0.09813534865")):
         typed(shared, "N, bonds", N)
         shared.wait_for_function(TEXT, arg=["table.seeds tbody tr", linear])
