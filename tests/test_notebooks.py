@@ -55,6 +55,7 @@ def test_notebook_runs(path, tmp_path):
     assert float(seconds) < MINUTE
 
 
+@pytest.mark.long
 def test_an_error_in_a_cell_is_seen(tmp_path):
     cells = [nbformat.v4.new_code_cell("a = 1"), nbformat.v4.new_code_cell("a / 0")]
     nbformat.write(nbformat.v4.new_notebook(cells=cells), tmp_path / "wrong.ipynb")

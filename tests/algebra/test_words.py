@@ -96,6 +96,7 @@ def test_the_ends_of_the_promised_range_pass(size, sign):
     assert of_limbs(BASIS.limbs(BASIS.of_integers(row([sign * size])))) == [sign * size]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("bits", "largest"), [(40, 2**40), (400, 2**40), (4000, 2**40), (12_000, 2**40), (400, 2**33), (4000, 5_000_011)])
 def test_round_trips_at_every_size_of_the_basis(bits, largest):
     """Three hundred primes: sums of limbs stay exact in doubles."""

@@ -203,6 +203,7 @@ def test_laws_are_pickled_with_their_class():
     assert type(law) is not type(from_expression(LJ).law(DOUBLES))
 
 
+@pytest.mark.long
 def test_particles_move_alike():
     """Toda's chain, by its own law and by its expression."""
     ends = []

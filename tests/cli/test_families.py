@@ -221,6 +221,7 @@ def test_ratios_go_by_the_seeds_as_they_are_written(capsys):
     assert amplitudes["1"] == pytest.approx(2 * amplitudes["3"], rel=CONDITION)
 
 
+@pytest.mark.long
 def test_family_by_appendix_a(capsys):
     options = ["--method", "appendix-a", "--order", "4"]
     code, out, _ = run(capsys, *FAMILY, *options, "--json")

@@ -68,6 +68,7 @@ def test_frequency_order_is_its_own_option(capsys):
 BREATHER = {"-N": "32", "--alpha": "0.33", "--seeds": "25", "--omega": "1.8830741847088537", "--order": "8"}
 
 
+@pytest.mark.long
 def test_solve_with_digits_is_certified_and_judged(capsys):
     code, out, err = run(capsys, *arguments("solve", BREATHER, digits="30"), "--json")
     record = json.loads(out)
@@ -83,6 +84,7 @@ def test_solve_with_digits_is_certified_and_judged(capsys):
     assert record["residual"] < SERIES_RESIDUAL
 
 
+@pytest.mark.long
 def test_solve_prints_the_verdict_first_and_its_evidence_last(capsys):
     code, out, err = run(capsys, *arguments("solve", BREATHER, digits="30"))
     lines = out.splitlines()
@@ -335,6 +337,7 @@ def test_reproduce_table_has_every_row_and_its_verdict(capsys, monkeypatch, tmp_
         assert "met at no frequency order" in rows[label]["verdict"]
 
 
+@pytest.mark.long
 def test_the_console_script_returns_the_code():
     command = [sys.executable, "-c", "import sys; sys.argv = ['symfpu', 'propagate']; from symfpu.cli.main import run; run()"]
     finished = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -70,6 +70,7 @@ def cells(page, header):
     return [line.split("|") for i in starts for line in lines[i : i + 3]]
 
 
+@pytest.mark.long
 def test_json_is_strict_and_alone_on_standard_output(capsys, tmp_path):
     code, out, err = run(capsys, "section5", "-o", str(tmp_path), "--json")
     assert (code, err) == (0, "")

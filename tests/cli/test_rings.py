@@ -47,6 +47,7 @@ def test_the_json_of_a_ring_names_its_ends(capsys):
     assert "ends" not in fixed
 
 
+@pytest.mark.long
 def test_show_orbit_and_gali_take_the_file(capsys, saved, tmp_path):
     code, out, _ = run(capsys, "show", saved)
     assert code == 0

@@ -125,6 +125,7 @@ def test_phases_are_zero_by_default_and_far_times_keep_their_digits(form, name, 
         assert_close(values, expected)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("form", "name"), NUMERIC)
 def test_frequencies_are_the_corrected_ones_by_default(form, name, shared):
     case = case_of(form, name)
@@ -145,6 +146,7 @@ def test_divisors_need_frequencies(shared):
     assert Q[0] == 7
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("form", "name"), EVERY)
 def test_self_test_of_the_file(form, name, tmp_path):
     binary = compile_c(tmp_path, {"sample.c": source_of(form, name)}, "-Dsample_SELF_TEST", "-O0")

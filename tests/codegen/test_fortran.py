@@ -135,6 +135,7 @@ def numbers(done):
     return np.array(done.stdout.split(), dtype=float)
 
 
+@pytest.mark.long
 def test_the_self_test_passes(build, text):
     done = build(text, flags=["-DEXAMPLE_SELF_TEST"])()
     assert done.returncode == 0, done.stderr
@@ -154,6 +155,7 @@ def test_the_self_test_fails_for_a_wrong_coefficient(build):
     assert "above" in done.stderr
 
 
+@pytest.mark.long
 def test_values_are_those_of_forty_digits(build, torus, text):
     rng = np.random.default_rng(5)
     times = [0.0, *rng.uniform(-2000, 2000, BLOCK + 4).tolist(), 123456789.125]

@@ -27,6 +27,8 @@ from tests.codegen.series_cases import (
     universal,
 )
 
+pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
+
 build, numbers = test_fortran.build, test_fortran.numbers  # a fixture and a function
 
 LIMIT = "symfpu.codegen.series_program.STRAIGHT_LINE"
@@ -127,6 +129,7 @@ def driver(case, required):
     return text
 
 
+@pytest.mark.long
 def test_values_are_those_of_forty_digits(build, form):
     case, _, text, required = form
     amplitudes, phases, frequencies, times = drawn(case)

@@ -25,6 +25,8 @@ from tests.codegen.series_cases import (
 )
 from tests.tolerances import LAST_DIGIT
 
+pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
+
 FORMS = {"straight": 10**9, "tables": 0}
 NUMERIC = [(name, form) for name in CASES for form in FORMS if form == "tables" or name in ("order 0", "one mode", "wrapped modes")]
 
@@ -42,6 +44,7 @@ def emitted(emitter, series, case, folder):
     return module(emitter.series(program), folder / "my_series.py"), program
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "form"), NUMERIC)
 def test_numpy_values_are_those_of_the_series(name, form, tmp_path, monkeypatch):
     monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", FORMS[form])

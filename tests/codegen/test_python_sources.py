@@ -64,6 +64,7 @@ def check(ours, exact):
     assert all(e <= TAIL * o for e, o in zip(error.max(axis=0), own, strict=True))
 
 
+@pytest.mark.long
 def test_numpy_agrees_with_40_digits(torus, tmp_path):
     loaded = module(source(torus, NUMPY), tmp_path / "my_torus.py")
     times = np.concatenate([np.random.default_rng(3).uniform(0, 2000, 12), [0.0, 98765.4321]])
@@ -88,6 +89,7 @@ def test_numbers_and_arrays_of_times_have_the_shapes_of_the_torus(torus, tmp_pat
         loaded.positions(1.0, [0.0] * (len(torus.seeds) + 1))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_a_file_tests_itself_without_symfpu(torus, emitter, tmp_path):
     path = tmp_path / "my_torus.py"

@@ -23,6 +23,8 @@ from tests.codegen.test_python_series import module
 from tests.codegen.universal_cases import CASES, TIMES, expected, given, program, series
 from tests.tolerances import OF_LARGEST
 
+pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
+
 build = test_fortran.build  # a fixture
 KINDS = ("Q", "P", "omega", "jacobian", "dQ", "dP", "slopes")
 
@@ -146,6 +148,7 @@ def pairs():
             yield pytest.param(language, name, marks=[pytest.mark.long] * slow)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("language", "name"), list(pairs()))
 def test_values_and_derivatives_are_those_of_the_series(language, name, tmp_path, request):
     more = [request.getfixturevalue("build")] if language == "fortran" else []

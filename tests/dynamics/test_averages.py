@@ -45,6 +45,7 @@ def test_averages_at_few_samples_are_those_at_many(start):
     assert few.averages == pytest.approx(many.averages[[0, 300, 800]], rel=THOUSAND_ROUNDINGS)
 
 
+@pytest.mark.long
 def test_averages_of_a_torus_are_its_closed_form(torus):
     """The trapezoid rule is off by look^2/12 (E'(T) - E'(0)) / T at most."""
     made = integrate(torus.chain, torus.positions(0.0), torus.momenta(0.0), 1000.0, step=0.25, samples=30, averages=True)

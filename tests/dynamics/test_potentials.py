@@ -181,6 +181,7 @@ def test_checkpoints_of_the_papers_chains_name_alpha_and_beta_alone(tmp_path):
 # alignment indices
 
 
+@pytest.mark.long
 def test_a_toda_chain_is_regular_where_that_of_alpha_is_chaotic():
     """The same state at the same c_3; |v| of the integrable chain grows as the time."""
     draws = np.random.default_rng(0)

@@ -131,6 +131,7 @@ def test_the_momentum_is_kept_to_rounding():
     assert abs(moved[0, 0, :-1].sum()) < 10_000 * HUNDRED_ROUNDINGS * 10  # for the time it took
 
 
+@pytest.mark.long
 def test_many_orbits_and_the_way_back():
     chain = ring(6, potential="lj:12,6")
     Q, P = state(chain, 0.02, count=(2, 3))

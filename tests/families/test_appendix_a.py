@@ -96,6 +96,7 @@ def test_printed_bracket_misses_the_trial_amplitudes():
             assert max(abs(found[q] / amplitudes[q] - 1) for q in seeds) > error
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("index", range(len(CASES)))
 def test_energies_grow_by_the_stated_increment(families, index):
     """Delta epsilon_l of the linear specific energy and N Delta epsilon_l of H (not Delta epsilon_l, as the text has it)."""

@@ -200,6 +200,7 @@ def test_the_goal_may_be_a_harmonic_energy():
     assert found.members[-1].energy != pytest.approx(found.members[-1].harmonic_energy, rel=DISTINCTION)
 
 
+@pytest.mark.long
 def test_a_fold_of_a_frequency_is_passed_and_located():
     """omega_2 has a minimum, seen over tori of given energies; its shift changes sign later, and the family goes on beyond both."""
     (fold,) = folded().events
@@ -222,6 +223,7 @@ def test_a_fold_of_a_frequency_is_passed_and_located():
     assert folded().members[signs.index(True)].energy > 2 * fold.energy
 
 
+@pytest.mark.long
 def test_a_resonance_is_named_and_located():
     """15 omega = Omega_17 on the breather of harmonic balance with the energy of the event; d(15 omega)/d ln H is some 0.005 there."""
     event = next(e for e in resonant().events if e.kind == "resonance")

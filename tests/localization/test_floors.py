@@ -128,6 +128,7 @@ def test_coefficients_know_their_errors(case):
     assert coefficient_errors(refined).shape == refined.cosines.shape
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", SERIES)
 def test_floors_of_series_in_doubles_are_above_their_errors(case):
     chain, seeds, frequencies, order = SERIES[case]

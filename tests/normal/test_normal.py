@@ -119,6 +119,7 @@ def test_what_follows_the_closed_shift_is_of_fourth_order():
     assert np.log2(np.divide(left[1], left[0])) == pytest.approx(4, abs=OBSERVED_ORDER)
 
 
+@pytest.mark.long
 def test_a_hyperbolic_torus_is_found_with_its_quartet():
     found = hyperbolic()
     assert not found.stable

@@ -211,6 +211,7 @@ PUBLIC = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", PUBLIC)
 @pytest.mark.parametrize("digits", [15, 8, 77])
 def test_the_working_precision_is_put_back(name, digits, torus):

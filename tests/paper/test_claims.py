@@ -20,6 +20,8 @@ from symfpu.paper.claims_page import (
     write_panel_csv,
 )
 
+pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
+
 X = np.array([1.0, 2.0, 4.0])
 
 
@@ -68,6 +70,7 @@ def test_csv_files_hold_all_points_also_those_not_drawn(figure, tmp_path):
     ]
 
 
+@pytest.mark.long
 def test_every_panel_is_written_as_png_and_pdf(figure, tmp_path):
     paths = draw_panels(figure, tmp_path)
     assert [path.name for path in paths] == ["figXa.png", "figXa.pdf", "figXb.png", "figXb.pdf"]

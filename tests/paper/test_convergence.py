@@ -44,6 +44,8 @@ from tests.tolerances import (
     THERE_AND_BACK,
 )
 
+pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
+
 RATIO = 1.494248  # by how much the harmonic (5,-4) of mode 3 grows every two orders, from orders 36 .. 42
 END = 1.2869859  # amplitude at which the breather's series ends: 30 digits, order 242
 PERIODIC = 1.27153895251  # amplitude of the periodic orbit with the printed frequency
@@ -74,6 +76,7 @@ def heights(sums):
     return [float(sums[first : first + 7].max()) for first in (10, 17, 24)]
 
 
+@pytest.mark.long
 def test_one_harmonic_grows_by_a_constant_ratio(torus):
     ratios = growth_ratios(torus)
     assert list(ratios) == list(range(10, 31, 2))
@@ -120,10 +123,12 @@ def test_neither_digits_nor_incommensurable_frequencies_change_how_amplitudes_se
         assert delta == pytest.approx(theirs[k], rel=ALIKE)
 
 
+@pytest.mark.long
 def test_incommensurable_frequencies_leave_the_terms_as_they_are(torus):
     assert sizes(torus_of(INCOMMENSURABLE_FREQUENCIES)) == pytest.approx(sizes(torus), rel=ALIKE)
 
 
+@pytest.mark.long
 def test_printed_frequencies_grow_and_detuned_ones_fall(torus):
     """omega_2 = 0.39056 makes one divisor eleven times larger: the terms of mode 1 fall to the last order."""
     printed, detuned = heights(sizes(torus)), heights(sizes(torus_of(DETUNED_FREQUENCIES)))

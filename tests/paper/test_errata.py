@@ -84,6 +84,7 @@ def test_energy_of_example_4():
     assert row("Fig. 5d").energy_orders == {"harmonic energy, time average": (2, 3)}
 
 
+@pytest.mark.long
 def test_energy_of_figure_1():
     assert row("Fig. 1").energy_matches == ()
     assert row("Fig. 1").energy_orders["H(0)"] == (8, 10, 12, 16, 18, 20)
@@ -111,6 +112,7 @@ def test_energy_error_of_figure_1(two_torus):
     assert errors[24] > 1e-3
 
 
+@pytest.mark.long
 def test_energies_are_three_numbers():
     values = energies(row("Fig. 2").torus)
     assert len({f"{v:.6g}" for v in values.values()}) == 3

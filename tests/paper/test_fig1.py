@@ -11,6 +11,8 @@ from symfpu.paper import fig1_claims
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from tests.paper.cases import exponential
 
+pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
+
 
 @dataclass(frozen=True)
 class Torus:

@@ -13,6 +13,8 @@ from symfpu.paper.starts import printed_row
 from tests.paper.cases import exponential
 from tests.tolerances import PICTURE
 
+pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
+
 SEQUENCE = [25, 14, 11, 28, 3, 22, 17]
 
 
@@ -89,6 +91,7 @@ def test_a_trajectory_leaves_the_breather_at_later_modes():
     assert breather_profiles.hierarchy_claim(spectra([0, 0, 4, 0, 0, 0, 0]), SEQUENCE).verdict == FAILS
 
 
+@pytest.mark.long
 def test_figure_7_over_a_short_time(monkeypatch, tmp_path):
     monkeypatch.setattr(fig7, "TIME", 2e3)
     figure = fig7.figure7(tmp_path, unheard)

@@ -11,12 +11,15 @@ from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.fig6 import excited_by_packets, intervals_claim
 from symfpu.paper.printed import EXCITATIONS
 
+pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
+
 
 @pytest.fixture(scope="module")
 def section(tmp_path_factory):
     return section5.section5(tmp_path_factory.mktemp("section5"), unheard)
 
 
+@pytest.mark.long
 def test_every_example_of_section_5_is_judged(section):
     verdicts = {claim.text.split(":")[0] + claim.text[-12:]: claim.verdict for claim in section.claims}
     assert sum(claim.section == "5" for claim in section.claims) == 14

@@ -43,6 +43,8 @@ from tests.tolerances import (
     TERM_RATIO,
 )
 
+pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
+
 RATIOS = {"alpha": 1.494248, "alpha and beta": -2.106769, "Toda": -2.104606}  # of terms two orders apart
 TODA_ENERGY = 0.0202615057699360800  # of the torus of Fig. 1's frequencies, by the spectral curve
 RETURNS = {"alpha": 12172.356, "alpha and beta": 12171.333, "Toda": 12171.303}  # of energies every 0.2, kahan_li8, step 0.1
@@ -66,6 +68,7 @@ def test_chains_of_the_same_cubic_term(chains):
     assert both == integrable == [c3, 2 * c3**2 / 3]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", RATIOS)
 def test_the_series_of_every_chain_has_its_pole(chains, name):
     study = series_study(chains[name], 24)
@@ -135,6 +138,7 @@ def test_the_series_of_toda_s_breather_ends_before_it():
     assert float(orbit.energy()) == pytest.approx(float(exact.energy), rel=100 * ROUNDING)
 
 
+@pytest.mark.long
 def test_gaps_drift_in_alpha_and_not_in_toda():
     chains = chains_of(FIG9_BREATHER.chain)
     alpha, exact = (trajectory_study(name, chains[name], T=1e3) for name in ("alpha", "Toda"))

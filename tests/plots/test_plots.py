@@ -167,6 +167,7 @@ def test_a_spectrum_is_normalised_and_leaves_out_rounding(ax):
     assert (ax.get_yscale(), ax.get_xlabel()) == ("log", "$q$")
 
 
+@pytest.mark.long
 def test_orbits_of_particles_have_a_floor_and_those_of_modes_none(ax):
     plots.spectrum([cases.orbit(), cases.orbit("aba864_modes")], ax, labels=("particles", "modes"))
     particles, modes = labelled(ax).values()
@@ -393,6 +394,7 @@ def test_amplitudes_are_differences_by_order(ax):
         assert other.get_lines()[0].get_ydata().tolist() == line.get_ydata().tolist()
 
 
+@pytest.mark.long
 def test_orders_without_a_root_are_shaded(ax):
     failed = sorted(cases.lost().failures)
     assert failed

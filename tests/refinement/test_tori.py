@@ -93,6 +93,7 @@ def changed(torus, shifts):
         return replace(torus, frequencies=tuple(Fraction(mpmath.nstr(w, 20)) for w in omega))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES)
 def test_the_residual_is_that_of_rounding(case):
     torus, series = refined(case), series_torus(case)
@@ -169,6 +170,7 @@ def integration(torus, T):
     return t, y[:, : len(Q)], np.abs(energy / energy[0] - 1).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("T", [300, pytest.param(1e4, marks=pytest.mark.long)])
 def test_the_torus_is_the_orbit_of_the_chain(T):
     """The integrator's errors move the orbit between tori and along them, about as much: by the error d of the energy, an angle of

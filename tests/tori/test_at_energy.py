@@ -53,6 +53,7 @@ def test_the_two_energies_are_not_one():
     assert by_sum.energy() / by_H.energy() > 1.005
 
 
+@pytest.mark.long
 def test_equal_mode_energies_are_the_default_and_phases_count():
     torus = torus_at_energy(*CASES[0][:3], harmonic=True, order=6, phases={1: 1, 2: 2})
     modes = torus.average_spectrum()[:2]

@@ -266,6 +266,7 @@ def test_too_few_terms_have_no_poles():
     assert len(pade_poles(frequency_series([1.0, 0.5]), 1, {1: 1.0})) == 0
 
 
+@pytest.mark.long
 def test_the_nearest_pole_of_the_duffing_oscillator_is_where_its_terms_end():
     """Mode N/2 of beta: the ratios of its terms tend to 1 / r as 1/k (Domb and Sykes); r is negative, as for a softer spring."""
     torus = solve_amplitudes(lindstedt(Chain(12, beta="0.5"), (6,), ("1.43",), 26, digits=30))
