@@ -61,8 +61,17 @@ LONG = [page for page in PAGES if any(word == "long" for _, word, _ in blocks(pa
 
 # seconds of compilers, orbits, pictures
 SLOW_PAGES = {
-    "README.md", "figures.md", "asymptotics.md", "actions.md", "programs.md", "tables.md",
-    "export.md", "dynamics.md", "localization.md", "plots.md", "families.md",
+    "README.md",
+    "figures.md",
+    "asymptotics.md",
+    "actions.md",
+    "programs.md",
+    "tables.md",
+    "export.md",
+    "dynamics.md",
+    "localization.md",
+    "plots.md",
+    "families.md",
 }
 
 
