@@ -49,8 +49,8 @@ class NormalDivisor:
 
     mode: int
     harmonic: tuple[int, ...]
-    divisor: complex
-    coefficient: complex
+    divisor: float | complex
+    coefficient: float | complex
 
     def __repr__(self) -> str:
         harmonic = ",".join(map(str, self.harmonic))
@@ -79,7 +79,7 @@ class NormalMode:
     """
 
     mode: int
-    sigma: complex
+    sigma: float | complex
     harmonics: Ints = field(repr=False)
     rates: Floats = field(repr=False)
     coefficients: NDArray[Any] = field(repr=False)
