@@ -43,6 +43,20 @@ PLACES = 10**12  # of the ends of the range
 EDGE = Fraction(1, 10**10)  # half width of the enclosure of an end of the range
 
 
+def in_words(signature: tuple[int, int, int]) -> str:
+    """How many eigenvalues are positive, negative and zero, as a word.
+
+    >>> in_words((2, 0, 0)), in_words((1, 1, 0))
+    ('positive definite', 'indefinite (1 positive, 1 negative)')
+    """
+    positive, negative, zero = signature
+    if zero:
+        return f"degenerate ({positive} positive, {negative} negative, {zero} zero)"
+    if positive and negative:
+        return f"indefinite ({positive} positive, {negative} negative)"
+    return "positive definite" if positive else "negative definite"
+
+
 @dataclass(frozen=True)
 class TwistAtRest(Tabled):
     """Lambda = d omega / d I of some modes as their amplitudes vanish; made by `twist_at_rest`.
@@ -74,12 +88,7 @@ class TwistAtRest(Tabled):
     @property
     def definiteness(self) -> str:
         """The signature in words."""
-        positive, negative, zero = self.signature
-        if zero:
-            return f"degenerate ({positive} positive, {negative} negative, {zero} zero)"
-        if positive and negative:
-            return f"indefinite ({positive} positive, {negative} negative)"
-        return "positive definite" if positive else "negative definite"
+        return in_words(self.signature)
 
     @property
     def matrix(self) -> Floats:

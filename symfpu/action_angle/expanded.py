@@ -12,11 +12,12 @@ With kappa^2 = mu^(2/step) and y_i = kappa^2 (Omega_i A_i / 2)^2 every sum is in
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import partial
 from math import prod
 from typing import Any
 
-from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
-from symfpu.algebra.program_values import ancestors, values_in
+from symfpu.algebra.formulas import Multiplier, NodeTable
 from symfpu.algebra.truncated import Truncated
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.series import LindstedtSeries
@@ -118,19 +119,12 @@ class ExpandedSeries:
             yield tuple(row), exponents
 
     def _values(self, table: NodeTable, omega: Sequence[Truncated]) -> Any:
-        program = table.program
-        needed = set(ancestors(program, table.nodes.ravel()).tolist())
-        leaves: list[Any] = []
-        for leaf, symbol in zip(program.leaves, program.symbols, strict=True):
-            if leaf not in needed:
-                leaves.append(None)
-            elif isinstance(symbol, Multiplier):
-                leaves.append(self.multiplier(symbol, omega))
-            else:
-                assert isinstance(symbol, Coupling)
-                coupling = self.one * symbol.value.numerator / symbol.value.denominator
-                leaves.append(omega[0] * 0 + coupling)
-        return values_in(program, leaves, table.nodes)
+        def coupling(value: Fraction) -> Truncated:
+            number = self.one * value.numerator / value.denominator
+            constant: Truncated = omega[0] * 0 + number
+            return constant
+
+        return table.values(partial(self.multiplier, omega=omega), coupling)
 
     def multiplier(self, symbol: Multiplier, omega: Sequence[Truncated]) -> Truncated:
         """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2)."""

@@ -15,6 +15,7 @@ import mpmath
 import numpy as np
 
 from symfpu.action_angle.actions import actions
+from symfpu.action_angle.at_rest import in_words
 from symfpu.action_angle.newton_twist import NoTwist, changes_by_newton
 from symfpu.action_angle.series_twist import changes_of_series, solved
 from symfpu.chain.chain import Chain
@@ -102,12 +103,7 @@ class Twist(Gridded):
     @property
     def definiteness(self) -> str:
         """The signature in words."""
-        positive, negative, zero = self.signature
-        if zero:
-            return f"degenerate ({positive} positive, {negative} negative, {zero} zero)"
-        if positive and negative:
-            return f"indefinite ({positive} positive, {negative} negative)"
-        return "positive definite" if positive else "negative definite"
+        return in_words(self.signature)
 
     @property
     def determinant(self) -> Any:

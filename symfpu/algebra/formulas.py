@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.expansion import Expansion
 from symfpu.algebra.program import ZERO, Ints, Program
-from symfpu.algebra.program_values import ancestors, terms_of
+from symfpu.algebra.program_values import ancestors, terms_of, values_in
 
 Objects = NDArray[np.object_]
 
@@ -87,6 +87,26 @@ class NodeTable(NDArrayOperatorsMixin):
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         arrays = [np.asarray(x) if isinstance(x, NodeTable) else x for x in inputs]
         return getattr(ufunc, method)(*arrays, **options)
+
+    def values(
+        self, multiplier: Callable[[Multiplier], Any], coupling: Callable[[Fraction], Any]
+    ) -> Objects:
+        """The nodes in any arithmetic that adds and multiplies, by integers too.
+
+        multiplier, coupling : what stands for a symbol; asked for those that are needed alone.
+        """
+        program = self.program
+        needed = set(ancestors(program, self.nodes.ravel()).tolist())
+        leaves: list[Any] = []
+        for leaf, symbol in zip(program.leaves, program.symbols, strict=True):
+            if leaf not in needed:
+                leaves.append(None)
+            elif isinstance(symbol, Multiplier):
+                leaves.append(multiplier(symbol))
+            else:
+                assert isinstance(symbol, Coupling)
+                leaves.append(coupling(symbol.value))
+        return values_in(program, leaves, self.nodes)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Objects:
         return expressions(self.program, self.nodes, expanded=self.expanded)

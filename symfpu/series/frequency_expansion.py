@@ -26,6 +26,8 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from fractions import Fraction
+from functools import partial
 from itertools import count, pairwise, product
 from math import prod
 from typing import Any, NamedTuple
@@ -33,8 +35,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import symengine as se
 
-from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
-from symfpu.algebra.program_values import ancestors, values_in
+from symfpu.algebra.formulas import Multiplier, NodeTable
 from symfpu.algebra.quotients import monomials_of, quotient_field
 from symfpu.algebra.selection import fold
 from symfpu.chain.chain import Chain, require_chain
@@ -303,19 +304,11 @@ class _Expanded(ABC):
         return found
 
     def _values(self, table: NodeTable, roots: Sequence[PowerSeries]) -> Any:
-        program = table.program
-        needed = set(ancestors(program, table.nodes.ravel()).tolist())
-        leaves: list[Any] = []
-        for leaf, symbol in zip(program.leaves, program.symbols, strict=True):
-            if leaf not in needed:
-                leaves.append(None)
-            elif isinstance(symbol, Multiplier):
-                leaves.append(self._multiplier(symbol, roots))
-            else:
-                assert isinstance(symbol, Coupling)
-                number = self.one * symbol.value.numerator / symbol.value.denominator
-                leaves.append(PowerSeries([number, *[0] * (len(roots[0]) - 1)]))
-        return values_in(program, leaves, table.nodes)
+        def coupling(value: Fraction) -> PowerSeries:
+            number = self.one * value.numerator / value.denominator
+            return PowerSeries([number, *[0] * (len(roots[0]) - 1)])
+
+        return table.values(partial(self._multiplier, roots=roots), coupling)
 
     def _multiplier(self, symbol: Multiplier, roots: Sequence[PowerSeries]) -> PowerSeries:
         """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2)."""
