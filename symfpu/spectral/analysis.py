@@ -32,6 +32,7 @@ FIRST = 2**13  # samples in which the channels of a longer orbit are looked for
 VALUES = 2048  # of a channel, at most
 MIRROR = 12  # turns over a channel's window between a line and its mirror image, at least
 ROUNDING = 16 * float(np.finfo(float).eps)  # of a mode's coordinate along an orbit
+EPS = float(np.finfo(float).eps)
 HALF = 0.5  # of a frequency: named so far from where it was seen, a line is an image
 PARTS = ((0.0, 0.75), (0.25, 1.0))  # of the record, whose difference is the error
 
@@ -201,7 +202,12 @@ def _kept(lines: list[SpectralLine], level: float, T: float) -> list[SpectralLin
     strongest = lines[0].amplitude
     kept = [line for line in lines if line.amplitude > level * strongest]
     noise = ROUNDING * strongest / T
-    return [replace(line, error=line.error + noise / line.amplitude) for line in kept]
+    return [replace(line, error=_whole_error(line, noise)) for line in kept]
+
+
+def _whole_error(line: SpectralLine, noise: float) -> float:
+    """With the rounding of the orbit, and of the frequency itself."""
+    return line.error + noise / line.amplitude + EPS * line.frequency
 
 
 def _require_one_orbit(orbit: Orbit) -> None:

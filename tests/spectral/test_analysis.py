@@ -161,3 +161,9 @@ def test_orbits_that_cannot_be_analysed_are_refused():
 def test_the_picture_takes_an_analysis_only():
     with pytest.raises(InputError, match="FrequencyAnalysis"):
         plots.lines(3)
+
+
+def test_no_error_is_below_the_spacing_of_doubles():
+    single = Chain(N=2, beta="1/2")
+    found = frequency_analysis(integrate(single, [0.2], [0.0], 500, step=0.1))
+    assert all(line.error >= np.spacing(line.frequency) / 2 for line in found.lines)
