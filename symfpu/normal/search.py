@@ -17,7 +17,6 @@ from symfpu.normal.resonances import ParametricResonance, resonances_of
 from symfpu.numbers.typed import integer
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
-from symfpu.tori.ring_torus import RingTorus
 
 REFINED = 1e-9  # residual of a torus, relative, above which it is refused
 # coefficients of the torus above these parts of its largest, and what their harmonics may leave
@@ -82,8 +81,6 @@ def normal_modes(
 
 def _checked(solution: object) -> QuasiPeriodic:
     """The solution in doubles; InputError for what is no refined torus of fixed ends."""
-    if isinstance(solution, RingTorus):
-        require_fixed_ends(solution.chain)
     require_solution(solution, "solution")
     assert isinstance(solution, QuasiPeriodic)
     require_fixed_ends(solution.chain)

@@ -17,7 +17,6 @@ from symfpu.normal.resonances import DIFFERENCE, PARAMETRIC, SUM, resonances_of
 from symfpu.normal.search import normal_modes, second_order
 from symfpu.paper.starts import printed_row, printed_torus
 from symfpu.refinement.tori import refine, refine_at_amplitudes
-from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
@@ -213,9 +212,3 @@ def test_fig1_all_thirteen():
     assert len(found.modes) == 13
     assert found.stable
     assert all(error < NORMAL_VARIATION for error in carried(solution, found, 100.0))
-
-
-def test_a_ring_is_refused_by_name():
-    chain = Chain(5, beta=1, ends="periodic")
-    with pytest.raises(InputError, match=r"Chain\(N=5, beta=1, ends='periodic'\).*fixed ends"):
-        normal_modes(travelling_breather(chain, 1, amplitude="0.1"))
