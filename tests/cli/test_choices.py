@@ -47,7 +47,7 @@ def test_shells_complete(line, words):
 
 @pytest.mark.long
 def test_the_completion_of_a_shell_is_printed():
-    shown = run("--show-completion", "bash")
+    shown = run(_SYMFPU_COMPLETE="source_bash")  # `--show-completion` asks which shell runs it: in a test that may be any, or none
     assert shown.returncode == 0
     assert "_SYMFPU_COMPLETE=complete_bash" in shown.stdout
 
