@@ -28,7 +28,6 @@ from symfpu.files.checkpoint import (
 )
 from symfpu.files.interruption import kept_run
 from symfpu.files.progress import Progress
-from symfpu.numbers.arithmetic import Numbers
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -169,7 +168,7 @@ class FrameRun:
                 )
 
     def _move_to(self, end: int) -> None:
-        steps, before = end - self.done, self.frame.orbit()
+        steps, before = end - self.done, self.frame.remembered()
         product = (self.columns, self.diagonal, self.norms)
         self.block = carried(self.frame, steps, self.block, self.longest, *product)
         if not np.isfinite(self.norms).all():
@@ -180,12 +179,12 @@ class FrameRun:
             self.volumes[place] = self.diagonal - self.norms
             self.growth[place] = self.diagonal[0]
 
-    def _lost(self, before: tuple[Numbers, Numbers], end: int) -> OrbitLost:
+    def _lost(self, before: MovingFrame, end: int) -> OrbitLost:
         """Why, by the orbit alone from the last state that was well."""
         frame, steps = self.frame, end - self.done
         T, scheme = steps * self.step, frame.scheme.name
         try:
-            integrate(frame.chain, *before, T, step=self.step, scheme=scheme, samples=1)
+            integrate(frame.chain, *before.orbit(), T, step=self.step, scheme=scheme, samples=1)
         except OrbitStopped as stopped:
             steps = round(stopped.time / self.step) + 1
             return OrbitLost((self.done + steps) * self.step, self.step, stopped.bond)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any
 
@@ -58,6 +58,10 @@ class MovingFrame:
         """What the loops take first."""
         state = self.x, self.p, self.dx, self.dp
         return *state, self.law, self.kicks, self.drifts, self.chain.periodic
+
+    def remembered(self) -> MovingFrame:
+        """One whose orbit stays where this one's is now."""
+        return replace(self, x=self.x.copy(), p=self.p.copy())
 
     def orbit(self) -> tuple[Numbers, Numbers]:
         """Mode coordinates and momenta of the orbit, (N-1,) each."""

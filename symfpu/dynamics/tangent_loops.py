@@ -21,7 +21,8 @@ LANES = 8  # deviation vectors moved by one instruction stream
 LONGER_BLOCK, SHORTER_BLOCK = 1e-3, 1e-5
 
 _compiled = compiled(error_model="numpy")
-# a call at every kick costs some per cent of a short chain
+# a call at every kick costs some per cent of a short chain; so does asking there for the ends,
+# which a literal inlined with the loops decides when they are compiled
 _always_inlined = compiled(error_model="numpy", forceinline=True)
 
 
@@ -60,7 +61,7 @@ def move_lanes(
                 dx[b, last + LANES + c] = dx[b, c]
 
 
-@_compiled
+@_always_inlined
 def kick_and_drift(
     x: Any,
     p: Any,
@@ -130,7 +131,10 @@ def advance(
             drift = drifts[i + 1]
             if i == len(kicks) - 1 and step < steps - 1:
                 drift += drifts[0]
-            kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces, ring)
+            if ring:
+                kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces, True)
+            else:
+                kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces, False)
 
 
 @_compiled
