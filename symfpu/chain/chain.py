@@ -230,6 +230,18 @@ class Chain:
         powers = count(2)
         return next(n for n in powers if self.potential.coefficient(n + 1))
 
+    def shift_degrees(self, highest: int) -> tuple[int, ...]:
+        """The even degrees in the amplitudes, up to the highest, that frequencies can shift with.
+
+        A force r^n raises the degree by n - 1, alone or together with others.
+        """
+        powers = self.relative_couplings(highest + 1)
+        reached = {0}
+        for degree in range(1, highest + 1):
+            if any(degree - (n - 1) in reached for n in powers):
+                reached.add(degree)
+        return tuple(degree for degree in sorted(reached) if degree and degree % 2 == 0)
+
     @property
     def unit_coupling(self) -> Fraction:
         """The coupling in the small parameter: c_3, or c_4 where V is even; 1 where it is zero."""

@@ -143,8 +143,22 @@ class AmplitudeHistory(Shown, Tabled):
 
 def frequency_orders(series: FrequencySeries) -> tuple[int, ...]:
     """Orders k at which omega^(k) need not vanish: even ones with alpha, all with beta alone."""
-    step = 2 // series.chain.degree_step
-    return tuple(range(step, series.order + 1, step))
+    chain = series.chain
+    step = chain.degree_step
+    return tuple(degree // step for degree in chain.shift_degrees(step * series.order))
+
+
+def steps_of_frequencies(series: FrequencySeries) -> int:
+    """The largest step from one of these orders to the next: 2 with alpha, 1 with beta alone."""
+    orders = (0, *frequency_orders(series))
+    following = orders[1:] or (first_shifting_order(series.chain),)
+    return max(b - a for a, b in zip(orders, following, strict=False))
+
+
+def first_shifting_order(chain: Chain) -> int:
+    """The order of the lowest frequency corrections: 2 with alpha, 1 with beta alone."""
+    by_the_lowest_force = 2 * (chain.lowest_force - 1)
+    return chain.shift_degrees(by_the_lowest_force)[0] // chain.degree_step
 
 
 def amplitude_history(series: LindstedtSeries | QTorus) -> AmplitudeHistory:
@@ -232,7 +246,7 @@ def solve_amplitudes(
     angles = at_rest | by_seed("phases", phases, series)
     orders = [k for k in frequency_orders(series) if k <= K]
     if not orders:
-        first = 2 // series.chain.degree_step
+        first = first_shifting_order(series.chain)
         allowed = f"{first} or more, the order of the first frequency correction"
         advice = (
             "compute a longer series" if series.order < first else f"take {first} or more"
@@ -360,16 +374,22 @@ def shifts(series: FrequencySeries) -> Numbers:
 
 
 def _lowest_order(series: FrequencySeries) -> Floats:
-    """A^2 from the lowest correction, which is linear in A^2; it may be negative."""
+    """A^2 by the lowest correction, a form of the A^2 of some degree; it may be negative.
+
+    Exact where the form is linear. For a degree p above it is a first guess, exact for a sum of
+    the A_j^(2p): by its derivatives at A = 1, which sum up to p times the form.
+    """
     first = frequency_orders(series)[0]
-    at_rest = np.zeros(len(series.seeds))
-    _, jacobian = series.frequency_terms(at_rest, first)
-    matrix = jacobian[first].astype(float)
+    degree = series.chain.degree_step * first // 2
+    equal = np.full(len(series.seeds), 1.0 if degree > 1 else 0.0)
+    _, jacobian = series.frequency_terms(equal, first)
+    matrix = jacobian[first].astype(float) / degree
     largest_condition = 1 / np.finfo(float).eps
     if not np.any(matrix) or np.linalg.cond(matrix) > largest_condition:
         raise UndeterminedAmplitudes(series.seeds, first)
     target = shifts(series).astype(float)
-    return np.asarray(np.linalg.solve(matrix, target))
+    powers = np.linalg.solve(matrix, target)
+    return np.asarray(np.sign(powers) * np.abs(powers) ** (1 / degree))
 
 
 def root_squares(series: FrequencySeries, K: int, start: Numbers) -> tuple[Numbers, float]:

@@ -24,7 +24,12 @@ from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import Numbers, with_digits
 from symfpu.numbers.typed import integer
 from symfpu.series.series import LindstedtSeries, require_series
-from symfpu.tori.amplitudes import FrequencySeries, frequency_orders, shifts
+from symfpu.tori.amplitudes import (
+    FrequencySeries,
+    first_shifting_order,
+    frequency_orders,
+    shifts,
+)
 from symfpu.tori.quasiperiodic import FourierTorus
 from symfpu.tori.torus import QTorus, require_series_torus
 
@@ -218,7 +223,7 @@ def _checked(series: Series, frequency_order: int | None) -> tuple[Series, list[
         top = integer(frequency_order, "frequency_order", 1)
     orders = [k for k in frequency_orders(series) if k <= top]
     if not orders or top > series.order:
-        first = 2 // series.chain.degree_step
+        first = first_shifting_order(series.chain)
         allowed = f"{first}..{series.order}, orders with a frequency correction"
         raise InputError(
             "frequency_order", top, allowed, "take another or compute a longer series"

@@ -27,6 +27,7 @@ from symfpu.numbers.typed import integer
 from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.amplitudes import (
     by_seed,
+    first_shifting_order,
     frequency_orders,
     history_of,
     order_argument,
@@ -330,7 +331,7 @@ def travelling_torus(
     last = order_argument("order", order, series)
     orders = [k for k in frequency_orders(series) if k <= K]
     if not orders:
-        first = 2 // series.chain.degree_step
+        first = first_shifting_order(series.chain)
         allowed = f"{first} or more, the order of the first frequency correction"
         raise InputError("frequency_order", K, allowed, "compute a longer series")
     history = history_of(series)

@@ -10,7 +10,11 @@ import numpy as np
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.series.travelling import TravellingSeries
-from symfpu.tori.amplitudes import AmplitudeHistory, history_of
+from symfpu.tori.amplitudes import (
+    AmplitudeHistory,
+    history_of,
+    steps_of_frequencies,
+)
 from symfpu.tori.resummation import pade_poles
 from symfpu.tori.ring_torus import RingTorus, cut_waves
 from symfpu.tori.verdict import (
@@ -43,7 +47,7 @@ def assess_waves(
     """
     _require_made_from(torus, series)
     assert torus.order is not None
-    tell, step = progress or unheard, 2 // series.chain.degree_step
+    tell, step = progress or unheard, steps_of_frequencies(series)
     residuals, energy_errors = [], []
     for k in range(torus.order + 1):
         cut = cut_waves(series, torus, k)
@@ -77,7 +81,8 @@ def _evidence(
     assert torus.frequency_order is not None
     differences = history.differences()
     terms, sums = _terms(series, torus)
-    growth = growth_of(terms, 2 // series.chain.degree_step)
+    step = steps_of_frequencies(series)
+    growth = growth_of(terms, step)
     poles = {q: pade_poles(series, q, torus.amplitudes) for q in torus.seeds}
     return Assessment(
         word="undecided",
@@ -93,7 +98,7 @@ def _evidence(
         sums={q: (np.array(sums[q]), np.array(sums[q])) for q in series.seeds},
         terms=tuple(terms),
         growth=growth,
-        pole_radius=pole_radius_of(poles, 2 // series.chain.degree_step),
+        pole_radius=pole_radius_of(poles, step),
         poles=poles,
         residuals=np.zeros(0),
         energy_errors=np.zeros(0),

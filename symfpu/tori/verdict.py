@@ -26,7 +26,11 @@ from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, text
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders
+from symfpu.tori.amplitudes import (
+    AmplitudeHistory,
+    frequency_orders,
+    steps_of_frequencies,
+)
 from symfpu.tori.quasiperiodic import DOUBLES_RESIDUAL, GRID_POINTS_DIGITS
 from symfpu.tori.resummation import pade_poles, resum
 from symfpu.tori.torus import QTorus, RootCertificate, require_series_torus
@@ -277,7 +281,7 @@ def assess(
     found = _orders(torus, steps, tell)
     evidence = _evidence(torus, found, resummed)
     tell("verdict", 1.0)
-    step = 2 // series.chain.degree_step
+    step = steps_of_frequencies(series)
     floor = FLOOR if series.digits is None else min(FLOOR, 10.0**-series.digits)
     return judged(evidence, torus.residual(), step, floor)
 
@@ -316,7 +320,7 @@ def _evidence(torus: QTorus, found: list[_Order], resummed: bool) -> Assessment:
     residuals = [order.residual for order in found]
     energy_errors = [order.energy_error for order in found]
     terms = [order.largest for order in found if order.largest]
-    step = 2 // series.chain.degree_step
+    step = steps_of_frequencies(series)
     orders = frequency_orders(series)
     history = AmplitudeHistory(series.seeds, orders, torus.history, {})
     differences = history.differences()
@@ -542,8 +546,8 @@ def _word(evidence: Assessment, step: int, floor: float) -> tuple[str, tuple[str
     """
     least = float(evidence.residuals[evidence.best_order])
     uncertainty = evidence.root_uncertainty
-    one_root_only = not math.isfinite(uncertainty)
-    if evidence.order < 2 * step or (one_root_only and least > floor):
+    one_root_only = len(evidence.differences) < 2
+    if evidence.order < 2 * step or one_root_only:
         return "undecided", ("too few orders to compare",)
     falling = evidence.best_order > evidence.order - step
     shrinking = falling and evidence.growth < 1

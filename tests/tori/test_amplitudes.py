@@ -8,6 +8,7 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import amplitude_history, frequency_orders, shifts, solve_amplitudes
+from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.oracles.oscillators import cubic_oscillator, duffing
 from tests.reference import BETA_BREATHER, PERIODIC_ORBITS, TWO_TORUS
 from tests.tolerances import AMPLITUDE, DIFFERENCE_OF_DOUBLES, ELLIPTIC, PERIODIC_ORBIT, ROUNDING, THOUSAND_ROUNDINGS
@@ -156,6 +157,20 @@ def test_a_harmonic_mode_leaves_the_amplitude_undetermined():
     with pytest.raises(UndeterminedAmplitudes) as caught:
         solve_amplitudes(series)
     assert caught.value.seeds == (8,)
+
+
+@pytest.mark.parametrize(
+    ("potential", "orders"),
+    [("poly:0,0,0,1/3", [2, 4, 6]), ("poly:0,0,1/4", [6]), ("poly:1/2,0,1/4", [2, 4, 6]), ("poly:0,0,0,0,0,1/5", [3, 6])],
+)
+@pytest.mark.parametrize("seeds", [(1,), (2, 5, 7)])
+def test_amplitudes_come_back_where_the_lowest_force_is_no_square_or_cube(potential, orders, seeds):
+    """A force r^5 shifts frequencies with A^4, r^4 only by pairs, with A^6: orders between do not, and are none."""
+    wanted = {q: 0.3 / n for n, q in enumerate(seeds, 1)}
+    made = torus_at_amplitudes(Chain(8, potential=potential), wanted, order=6)
+    torus = solve_amplitudes(lindstedt(made.chain, seeds, tuple(made.frequencies), 6))
+    assert torus.amplitudes == pytest.approx(wanted, rel=AMPLITUDE)
+    assert list(torus.history) == orders
 
 
 def test_neighbouring_orders_that_disagree_are_told():

@@ -242,7 +242,7 @@ def frequency_series(coefficients):
         return terms, None
 
     return SimpleNamespace(
-        chain=SimpleNamespace(degree_step=1),
+        chain=Chain(8, alpha=1),
         seeds=(1,),
         order=2 * len(coefficients),
         digits=None,
