@@ -511,6 +511,9 @@ GAP_DRIFT = 1e-11
 # The lowest term of an expansion in amplitudes of 1e-6, or actions of 1e-10 and less.
 TODA_LINEAR = 1e-5
 
+# Actions by frequencies of the fourth order, in units of the actions themselves: the sixth order is divided by the twist.
+NEXT_ORDER_OF_ACTIONS = 15
+
 # A number printed with twelve decimal places.
 LAST_OF_TWELVE = 0.5001e-12
 

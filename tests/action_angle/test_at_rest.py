@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symfpu import Chain, InputError, frequency_shift, twist_at_rest
+from symfpu import Chain, InputError, actions, frequency_shift, travelling_torus, travelling_waves, twist_at_rest
 from symfpu.action_angle.at_rest import definite_range
-from tests.tolerances import RANGE_END, ROUNDING
+from tests.tolerances import NEXT_ORDER_OF_ACTIONS, RANGE_END, ROUNDING
 
 
 @st.composite
@@ -82,3 +82,42 @@ def test_the_range_of_two_neighbours():
 def test_a_linear_chain_is_refused():
     with pytest.raises(InputError, match="birkhoff_form"):
         twist_at_rest(Chain(8, potential="poly:0,0,1"))
+
+
+def published_hessian(N, alpha, beta, modes):
+    """Of odd periodic chains at rest, in our units: Henrici and Kappeler, arXiv:nlin/0611063, Theorem 1.1.
+
+    Theirs is V = x^2/2 - alpha' x^3/3! + beta' x^4/4!, so that alpha'^2 = 4 alpha^2 and beta' = 6 beta, and
+    H_4 = 1/(4N) sum (alpha'^2 + g s_k^2) I_k^2 + g/(2N) sum_(l != m) s_l s_m I_l I_m, g = beta' - alpha'^2, s_k = |sin k pi/N|.
+    """
+    squared = 4 * alpha**2
+    g, s = 6 * beta - squared, np.abs(np.sin(np.pi * np.array(modes) / N))
+    return (g * np.outer(s, s) + np.diag((squared - g * s**2) / 2)) / N
+
+
+@pytest.mark.parametrize(("alpha", "beta"), [(0.3, 0.0), (0.0, 0.5), (0.3, 0.2)])
+@pytest.mark.parametrize(("N", "modes"), [(5, (1, 2)), (7, (1, -1)), (9, (2, -3)), (11, (1, 2, -2))])
+def test_waves_of_rings_have_the_published_hessian(N, modes, alpha, beta):
+    """Frequencies by their normal form, actions by our series: what is left falls with the actions."""
+    chain = Chain(N, alpha=str(alpha), beta=str(beta), ends="periodic")
+    linear = 2 * np.abs(np.sin(np.pi * np.array(modes) / N))
+    for size in (1e-3, 1e-4):
+        wanted = size * np.arange(1.0, len(modes) + 1)
+        omega = linear + published_hessian(N, alpha, beta, modes) @ wanted
+        series = travelling_waves(chain, modes, tuple(f"{w:.17f}" for w in omega), 2)
+        found = actions(travelling_torus(series))
+        assert [float(found[q]) for q in modes] == pytest.approx(wanted, rel=NEXT_ORDER_OF_ACTIONS * size)
+
+
+@pytest.mark.parametrize(("alpha", "beta"), [(0.3, 0.0), (0.0, 0.5), (0.3, 0.2)])
+@pytest.mark.parametrize(("N", "modes"), [(7, (1, 2, 4)), (8, (1, 2, 3)), (32, (3, 9, 30, 31))])
+def test_fixed_ends_are_the_published_form_folded(N, modes, alpha, beta):
+    """A standing wave is two waves of its action each, and the ring of 2N bonds has twice the energy: Lambda_(q,n) + Lambda_(q,-n).
+
+    The formula is theirs of odd rings; in the even ring of 2N it holds where no two modes add up to N.
+    """
+    ring = published_hessian(2 * N, alpha, beta, (*modes, *(-q for q in modes)))
+    half = len(modes)
+    folded = ring[:half, :half] + ring[:half, half:]
+    found = twist_at_rest(Chain(N, alpha=str(alpha), beta=str(beta)), modes)
+    assert found.matrix == pytest.approx(folded, rel=ROUNDING)
