@@ -121,11 +121,14 @@ def advance(
     on_orbit = np.empty(bonds), np.empty(bonds)
     on_lanes = np.empty(bonds * LANES), np.empty(bonds * LANES)
     forces = (on_orbit[0], on_lanes[0], on_orbit[1], on_lanes[1])
-    x += drifts[0] * p
-    dx += drifts[0] * dp
     # a reshape is a call: once, not at every kick
     flat_dx = dx.reshape(blocks, (bonds + 1) * LANES)
     flat_dp = dp.reshape(blocks, (bonds + 1) * LANES)
+    for j in range(bonds + 1):
+        x[j] += drifts[0] * p[j]
+    for b in range(blocks):
+        for i in range((bonds + 1) * LANES):
+            flat_dx[b, i] += drifts[0] * flat_dp[b, i]
     for step in range(steps):
         for i in range(len(kicks)):
             drift = drifts[i + 1]
@@ -153,6 +156,24 @@ def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any, ring: bo
         move_lanes(flat_dx, flat_dp, stiffness, drift, pull, slope, ring)
 
 
+# loops, not expressions of arrays: those take seconds each to compile
+@_compiled
+def _length(v: Any) -> float:
+    squares = 0.0
+    for k in range(len(v)):
+        squares += v[k] * v[k]
+    return np.sqrt(squares)  # type: ignore[no-any-return]
+
+
+@_compiled
+def _without_mean(v: Any) -> None:
+    total = 0.0
+    for k in range(len(v)):
+        total += v[k]
+    for k in range(len(v)):
+        v[k] -= total / len(v)
+
+
 @_compiled
 def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any, ring: bool) -> float:
     """Replace the first m vectors by their orthonormal basis, V = basis R.
@@ -172,9 +193,10 @@ def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any, ring: bool) -> float:
             v[k] = dx[j // LANES, k + first, j % LANES]
             v[n + k] = dp[j // LANES, k + first, j % LANES]
         if ring:
-            v[:n] -= np.sum(v[:n]) / n
-            v[n:] -= np.sum(v[n:]) / n
-        R[:, j] = 0.0
+            _without_mean(v[:n])
+            _without_mean(v[n:])
+        for i in range(len(rows)):
+            R[i, j] = 0.0
         for _ in range(2):
             for i in range(j):
                 overlap = 0.0
@@ -183,9 +205,10 @@ def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any, ring: bool) -> float:
                 R[i, j] += overlap
                 for k in range(2 * n):
                     v[k] -= overlap * rows[i, k]
-        R[j, j] = np.sqrt(np.sum(v * v))
-        least = min(least, R[j, j] / np.sqrt(np.sum(R[: j + 1, j] ** 2)))
-        v /= R[j, j]
+        R[j, j] = _length(v)
+        least = min(least, R[j, j] / _length(R[: j + 1, j]))
+        for k in range(2 * n):
+            v[k] /= R[j, j]
         for k in range(n):
             dx[j // LANES, k + first, j % LANES] = v[k]
             dp[j // LANES, k + first, j % LANES] = v[n + k]
@@ -211,8 +234,9 @@ def accumulate(R: Any, columns: Any, diagonal: Any, norms: Any) -> None:
             for k in range(i, j + 1):
                 entry += R[i, k] * column[k]
             column[i] = entry
-        length = np.sqrt(np.sum(column * column))
-        column /= length
+        length = _length(column)
+        for i in range(len(column)):
+            column[i] /= length
         norms[j] += np.log(length)
 
 
