@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.digits import PreciseOrbit
-from symfpu.breathers.fixed_force import highest_product
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
+from symfpu.chain.tension_terms import highest_product
 from symfpu.refinement.invariance import OVERSAMPLING, InvarianceEquation, dilated
 from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
