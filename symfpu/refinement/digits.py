@@ -73,7 +73,7 @@ class PreciseTorus(FourierTorus):
     error : of a coefficient, relative to the largest: an estimate, what one more step of Newton's
         method would change, at harmonics that were left out too. No proof: that takes a bound of
         the inverse, for all small divisors.
-    sweeps : corrections made, with all choices of harmonics.
+    sweeps : corrections made, those with fewer harmonics too.
 
     >>> from symfpu import Chain, refine, torus_at_amplitudes
     >>> guess = torus_at_amplitudes(Chain(N=4, beta="0.5"), {1: "0.1", 2: "0.1"}, order=3)
@@ -109,7 +109,7 @@ class Guess(NamedTuple):
     """Where the sweeps begin: coefficients by harmonic (N-1,), and what is held.
 
     frequencies : exact; found anew where amplitudes are given. amplitudes : None, or of the seeds.
-    phases : of the result. digits : of the coefficients, None for doubles.
+    phases : of the result. digits : of the coefficients, None for doubles. sweeps : made so far.
     """
 
     chain: Chain
@@ -119,6 +119,7 @@ class Guess(NamedTuple):
     amplitudes: tuple[Fraction, ...] | None
     phases: dict[int, Any]
     digits: int | None
+    sweeps: int = 0
 
 
 def require_digits(chain: Chain, digits: int) -> None:
@@ -158,14 +159,12 @@ def precise_torus(guess: Guess, digits: int, tell: Progress) -> PreciseTorus:
         guess = _reached(guess, digits // 2, tell)
     with mpmath.workdps(digits + CARRIED_DIGITS):
         harmonics = _fitted(guess, digits)
-        number = 0
         for _ in range(ROUNDS):
             sweeps = _converged(guess, harmonics, digits, tell)
-            number += sweeps.number
             left = sweeps.left_over()
             tell(f"residual below {mpmath.nstr(left.bound, 2)}", NO_FRACTION)
             if left.error < mpmath.mpf(10) ** -digits:
-                return sweeps.result(digits, number, left)
+                return sweeps.result(digits, left)
             guess = sweeps.guess(digits)
             more = _fitted(guess, digits), left.needed(digits)
             harmonics = np.unique(np.concatenate([harmonics, *more]), axis=0)
@@ -241,7 +240,7 @@ class TorusSweeps:
     def __init__(self, guess: Guess, harmonics: Ints) -> None:
         self.start, self.chain, self.harmonics = guess, guess.chain, harmonics
         chain, seeds = guess.chain, guess.seeds
-        self.number = 0  # of sweeps
+        self.number = guess.sweeps
         self.equation = InvarianceEquation(chain, seeds, harmonics)
         none = np.zeros(chain.N - 1)
         rows = [guess.coefficients.get(tuple(nu), none) for nu in harmonics.tolist()]
@@ -347,7 +346,10 @@ class TorusSweeps:
         rows = map(tuple, self.harmonics.tolist())
         reached = dict(zip(rows, self.coefficients(), strict=True))
         return self.start._replace(
-            coefficients=reached, frequencies=self.frequencies, digits=digits
+            coefficients=reached,
+            frequencies=self.frequencies,
+            digits=digits,
+            sweeps=self.number,
         )
 
     def left_over(self) -> LeftOver:
@@ -413,7 +415,7 @@ class TorusSweeps:
             guess.chain, guess.seeds, self.frequencies, self.harmonics, cosines, {}, digits
         )
 
-    def result(self, digits: int, sweeps: int, left: LeftOver) -> PreciseTorus:
+    def result(self, digits: int, left: LeftOver) -> PreciseTorus:
         """The torus, without harmonics that are zero in fixed point."""
         kept = self.c.any(axis=1)
         guess = self.start
@@ -427,7 +429,7 @@ class TorusSweeps:
             digits=digits,
             bound=left.bound,
             error=left.error,
-            sweeps=sweeps,
+            sweeps=self.number,
         )
 
 

@@ -49,49 +49,53 @@ class Box:
 
     @cached_property
     def harmonics(self) -> Ints:
-        """All harmonics of the box whose place is 0 or more, one of each pair +-nu."""
+        """All harmonics of the box, one of each pair +-nu, by place; shape (B, s)."""
         axes = [np.arange(-m, m + 1) for m in self.highest]
         grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
         rows = grid.reshape(-1, len(axes))
-        return np.asarray(rows[rows @ self.strides >= 0])
+        places = rows @ self.strides
+        order = np.argsort(places, kind="stable")
+        return np.asarray(rows[order[len(rows) // 2 :]])
 
     @cached_property
     def _inside(self) -> Ints:
         return self.places(self.harmonics)
 
-    def packed(self, places: Ints, values: Any) -> Any:
-        """The polynomial of d at places 0 or more."""
+    def rows(self, harmonics: Ints) -> Ints:
+        """Where harmonics (M, s), or their opposites, stand among those of the box; shape (M,)."""
+        return np.searchsorted(self._inside, self.places(harmonics))
+
+    def packed(self, values: Integers) -> Any:
+        """The polynomial of d at the harmonics of the box."""
         upper = np.zeros(self.middle + 1, dtype=object)
-        upper[places] = values
-        return flint.fmpz_poly([*upper[:0:-1].tolist(), *upper.tolist()])
+        upper[self._inside] = values
+        half = upper.tolist()
+        return flint.fmpz_poly([*half[:0:-1], *half])
 
-    def upper(self, polynomial: Any, middle: int) -> Integers:
-        """d of a polynomial from its middle on."""
-        return np.array(polynomial.coeffs()[middle:], dtype=object)
-
-    def cut(self, product: Any, shift: int) -> tuple[Any, int]:
-        """A product times 2^-shift within the box.
+    def product(self, one: Any, other: Any, shift: int) -> tuple[Integers, int]:
+        """d of a product times 2^-shift within the box, from the lower half of its places.
 
         The second result: above the largest value of what was cut off or rounded, if `whole`.
         """
-        upper = self.upper(product, 2 * self.middle)
-        places = self._inside[self._inside < len(upper)]
-        kept = upper[places]
+        count = 2 * self.middle + 1
+        lower = np.zeros(count, dtype=object)
+        low = one.mul_low(other, count).coeffs()
+        lower[: len(low)] = low
+        kept = lower[2 * self.middle - self._inside]
         lost = 0
         if self.whole:
-            cut_off = abs(upper).sum() - abs(kept).sum()
-            lost = (int(cut_off) >> shift) + 1 + len(self._inside)
-        rounded = (kept + (1 << (shift - 1))) >> shift
-        return self.packed(places, rounded), lost
+            cut_off = int(abs(lower).sum() - abs(kept).sum())
+            lost = (cut_off >> shift) + 1 + len(kept)
+        return np.asarray((kept + (1 << (shift - 1))) >> shift), lost
 
 
 class Series(NamedTuple):
-    """A function in a box: twice it as a polynomial, and what its values are off by at most.
+    """A function in a box: twice it at the harmonics of the box, and what it is off by at most.
 
     size : above the largest value. Integers times 2^-bits; size and error are of `whole` boxes.
     """
 
-    polynomial: Any
+    values: Integers
     size: int = 0
     error: int = 0
 
@@ -155,28 +159,25 @@ class KroneckerForce:
         of each mode is off by, with harmonics that are not wanted left out as if they were none,
         (N-1,).
         """
-        places, to = self.box.places(harmonics), self.box.places(wanted)
+        rows, to = self.box.rows(harmonics), self.box.rows(wanted)
         stretches = self.stretches(c)
         tension = np.zeros((len(wanted), stretches.shape[1]), dtype=object)
         errors = np.zeros(stretches.shape[1], dtype=object)
         for j, r in enumerate(stretches.T):
-            found = self._tension(places, r)
-            upper = self.box.upper(found.polynomial, self.box.middle)
-            present = to < len(upper)
-            tension[present, j] = upper[to[present]]
-            errors[j] = found.error
+            found = self._tension(rows, r)
+            tension[:, j], errors[j] = found.values[to], found.error
         still = to == 0
         tension[still] = tension[still] // 2
         back = flint.fmpz_mat(self._back.tolist())
         off = (abs(self._back).T @ errors) >> self.bits
         return self._times(tension, back), off + len(wanted)
 
-    def _tension(self, places: Ints, r: Integers) -> Series:
+    def _tension(self, rows: Ints, r: Integers) -> Series:
         """V'(r) - r of one bond by its Taylor series, powers in blocks, blocks by Horner's rule.
 
         About twice the root of the degree as many products (Paterson and Stockmeyer).
         """
-        powers = self._powers(places, r)
+        powers = self._powers(rows, r)
         width, last = len(powers) - 1, self.highest + 1
         if self.highest <= width:
             total = self._block(powers, range(last))
@@ -189,13 +190,13 @@ class KroneckerForce:
         rest = self.fixed(self.terms.rest) + 1
         return total._replace(error=total.error + rest)
 
-    def _powers(self, places: Ints, r: Integers) -> list[Series]:
+    def _powers(self, rows: Ints, r: Integers) -> list[Series]:
         """1, g, g^2, .. of g = r / 2^scale, as many as a block has."""
-        doubled = np.where(places == 0, 2 * r, r)
-        g = _shifted(doubled, -self._scale)
-        size = int(abs(g).sum())
-        first = Series(self.box.packed(places, g), size, len(g) + 1)
-        one = flint.fmpz_poly([0] * self.box.middle + [2 << self.bits])
+        g = np.zeros(len(self.box.harmonics), dtype=object)
+        g[rows] = _shifted(np.where(rows == 0, 2 * r, r), -self._scale)
+        one = np.zeros(len(g), dtype=object)
+        one[0] = 2 << self.bits
+        first = Series(g, int(abs(g).sum()), len(r) + 1)
         width = min(self.highest, max(3, math.isqrt(self.highest)))
         powers = [Series(one, 1 << self.bits), first]
         while len(powers) <= width:
@@ -204,29 +205,30 @@ class KroneckerForce:
 
     def _block(self, powers: Sequence[Series], block: range) -> Series:
         """sum of c_k 2^(scale k) g^k of one block of powers k, over g to its first."""
-        polynomial, size, error = flint.fmpz_poly([]), 0, 0
+        values, size, error = 0 * powers[0].values, 0, 0
         for power, n in zip(powers, block, strict=False):
             coupling = self.terms.couplings.get(n)
             if coupling:
                 factor = self.fixed(coupling * Fraction(2) ** (self._scale * n))
-                polynomial += power.polynomial * factor
+                values = values + power.values * factor
                 size += power.size * abs(factor)
                 error += power.error * abs(factor) + power.size
-        upper = self.box.upper(polynomial, self.box.middle) >> self.bits
-        rounding = len(upper)
-        packed = self.box.packed(np.arange(len(upper)), upper)
-        return Series(packed, (size >> self.bits) + 1, (error >> self.bits) + rounding)
+        rounding = len(values)
+        size, error = (size >> self.bits) + 1, (error >> self.bits) + 1 + rounding
+        return Series(values >> self.bits, size, error)
 
     def _product(self, left: Series, right: Series) -> Series:
-        polynomial, lost = self.box.cut(left.polynomial * right.polynomial, self.bits + 1)
+        one = self.box.packed(left.values)
+        other = one if right is left else self.box.packed(right.values)
+        values, lost = self.box.product(one, other, self.bits + 1)
         off = left.size * right.error + right.size * left.error + left.error * right.error
         size = (left.size * right.size) >> self.bits
-        return Series(polynomial, size + 1, (off >> self.bits) + 1 + lost)
+        return Series(values, size + 1, (off >> self.bits) + 1 + lost)
 
 
 def _sum(left: Series, right: Series) -> Series:
     return Series(
-        left.polynomial + right.polynomial,
+        left.values + right.values,
         left.size + right.size,
         left.error + right.error,
     )
