@@ -58,6 +58,7 @@ from symfpu.tori.verdict import Assessment as Assessment
 from symfpu.tori.verdict import assess as assess
 
 # tori by Newton's method
+from symfpu.refinement.digits import PreciseTorus as PreciseTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus as RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus as RefinedTorus
 from symfpu.refinement.tori import refine as refine

@@ -231,6 +231,7 @@ RESULTS = {
     "Orbit": (lambda _: trajectory(), energies),
     "PadeSum": (lambda _: pade_frequencies(series(30), torus(30).amplitudes), lambda x: x.values),
     "PeriodicOrbit": (lambda _: orbit(), motion),
+    "PreciseTorus": (lambda _: refine(orbit(), digits=20), lambda x: (x.amplitudes, x.error, motion(x))),
     "PreciseOrbit": (lambda _: precise(), lambda x: (x.amplitude, motion(x))),
     "ProfileDistance": (lambda _: profile_distance([1, 1e-2], [1, 1e-3], 1e-12), lambda x: x.distance),
     "ProfileFit": (lambda _: fitted(), lambda x: x.line(0.3)),

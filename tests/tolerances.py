@@ -626,3 +626,6 @@ NORMAL_MULTIPLIER = 1e-11
 
 # What a frequency of a long regular orbit is known to: the integrator's phase.
 EXACT_LINE = 1e-13
+
+# What a box of four or eight harmonics an angle cuts off of powers of a small torus: third powers of stretches of 0.1 with three angles.
+KRONECKER_BOUND = 1e-2

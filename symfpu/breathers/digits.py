@@ -29,9 +29,15 @@ from symfpu.breathers.balance import (
     relative_heights,
     unknowns,
 )
-from symfpu.breathers.fixed_force import FixedForce, Integers, has_terms
+from symfpu.breathers.fixed_force import FixedForce, Integers
+from symfpu.chain.tension_terms import has_terms
 from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers
+from symfpu.numbers.arithmetic import (
+    GUARD_DIGITS,
+    doubles_as_integers,
+    fraction_of,
+    from_integers,
+)
 from symfpu.numbers.typed import Number, exact, integer
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, show
 
@@ -237,8 +243,8 @@ class Sweeps:
             block : block + 1
         ].copy()  # its place is the end of the block for now
         changes[block:-1] = scaled[block:] / self.diagonal
-        self.c[self.n, self.q] -= _integers(changes[:-1], bits)
-        self.squared -= int(_integers(sigma, bits)[0])
+        self.c[self.n, self.q] -= doubles_as_integers(changes[:-1], bits)
+        self.squared -= int(doubles_as_integers(sigma, bits)[0])
 
     def tail(self) -> int:
         """Largest coefficient of the last harmonics."""
@@ -250,7 +256,7 @@ class Sweeps:
         seed, bits = self.orbit.seed, self.force.bits
         omega = self.orbit.frequency
         if self.by_amplitude:
-            omega = _fraction(mpmath.sqrt(mpmath.ldexp(self.squared, -bits)))
+            omega = fraction_of(mpmath.sqrt(mpmath.ldexp(self.squared, -bits)))
         last = max(n for n, row in enumerate(self.c) if any(row))
         c = self.c[: last + 1]
         return PreciseOrbit(
@@ -284,19 +290,3 @@ def _reach(orbit: PeriodicOrbit) -> Any:
     chain = orbit.chain
     bonds = Balance(chain, orbit.seed, 1).stretch
     return mpmath.mpf(NEAR_REACH * np.abs(orbit.cosines @ bonds).sum(axis=0).max())
-
-
-def _integers(values: Floats, exponent: int) -> Integers:
-    """Doubles times 2^exponent as integers."""
-    mantissas, exponents = np.frexp(values)
-    shifts = exponents.astype(object) + (exponent - 53)
-    whole = np.ldexp(mantissas, 53).astype(np.int64).astype(object)
-    pairs = zip(whole, shifts, strict=True)
-    shifted = [m << s if s >= 0 else m >> -s for m, s in pairs]
-    return np.array(shifted, dtype=object)
-
-
-def _fraction(value: Any) -> Fraction:
-    """An mpf as a fraction."""
-    sign, mantissa, exponent, _ = value._mpf_
-    return Fraction((-1) ** sign * int(mantissa)) * Fraction(2) ** int(exponent)

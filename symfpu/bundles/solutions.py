@@ -25,6 +25,7 @@ from symfpu.errors import InputError
 from symfpu.files.archive import Archive, Json
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
+from symfpu.refinement.digits import PreciseTorus
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 from symfpu.tori.resummation import ResummedTorus
 
@@ -203,6 +204,20 @@ def _read_sweeps(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeri
     )
 
 
+def _made_precise(torus: PreciseTorus) -> tuple[Json, Arrays]:
+    limits = {"bound": number_entry(torus.bound), "error": number_entry(torus.error)}
+    return {**limits, "sweeps": torus.sweeps}, {}
+
+
+def _read_precise(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
+    return PreciseTorus(
+        **_fields(parts),
+        bound=number(made["bound"]),
+        error=number(made["error"]),
+        sweeps=integer(made["sweeps"], "sweeps", 0),
+    )
+
+
 def _made_by_shooting(orbit: ShotOrbit) -> tuple[Json, Arrays]:
     history = [number_entry(x) for x in orbit.history]
     entries = {
@@ -234,5 +249,6 @@ KINDS = {
     ResummedTorus.__name__: Kind(_made_by_sums, _read_sums),
     PeriodicOrbit.__name__: Kind(_made_by_balance, _read_balance),
     PreciseOrbit.__name__: Kind(_made_by_sweeps, _read_sweeps),
+    PreciseTorus.__name__: Kind(_made_precise, _read_precise),
     ShotOrbit.__name__: Kind(_made_by_shooting, _read_shooting),
 }

@@ -40,6 +40,7 @@ from symfpu.errors import InputError
 from symfpu.families.family import METHODS, Family, family
 from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_file, output_folder
+from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import (
     RefinedTorus,
@@ -52,6 +53,7 @@ from symfpu.reports.family import (
     family_text,
     refined_text,
 )
+from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import load, save
 
 
@@ -83,6 +85,10 @@ def refine_file(
             help="The torus of these amplitudes, one for each seed.", metavar="A,A,..."
         ),
     ] = None,
+    digits: Annotated[
+        str | None,
+        typer.Option(help="Any number of digits.  Default: doubles.", metavar="D"),
+    ] = None,
     tolerance: Annotated[
         str,
         typer.Option(
@@ -96,6 +102,11 @@ def refine_file(
 
     It has the same frequencies, or a given energy or amplitudes.
     """
+    places = optional("digits", digits)
+    if energy is not None and places is not None:
+        allowed = "frequencies or --amplitudes, which are met in all digits"
+        advice = "refine to the energy first, and the file that it writes to the digits"
+        raise InputError("energy", energy, f"with --digits {allowed}", advice)
     torus = solution_of(load(path_named("FILE", file)), file)
     picture = picture_named(plot)
     if energy is not None and amplitudes is not None:
@@ -118,9 +129,11 @@ def refine_file(
             )
         elif amplitudes is not None:
             chosen = by_seed("amplitudes", amplitudes, torus.seeds)
-            refined = refine_at_amplitudes(torus, chosen, tolerance=goal, progress=advance)
+            refined = refine_at_amplitudes(
+                torus, chosen, digits=places, tolerance=goal, progress=advance
+            )
         else:
-            refined = refine(torus, tolerance=goal, progress=advance)
+            refined = refine(torus, digits=places, tolerance=goal, progress=advance)
         if kept:
             command = shlex.join(["symfpu", *context.obj])
             save(kept, refined, verdict=verdict_of(refined), command=command)
@@ -128,14 +141,19 @@ def refine_file(
     if as_json:
         print_json(refined.record())
     else:
-        say(refined_text(refined))
+        if isinstance(refined, PreciseTorus):
+            say(solution_text(solution_record(refined)))
+        else:
+            say(refined_text(refined))
         if kept:
             print(f"written: {kept}")
         say_drawn(picture)
 
 
-def verdict_of(torus: RefinedTorus | RefinedRingTorus) -> dict[str, Any]:
+def verdict_of(torus: RefinedTorus | RefinedRingTorus | PreciseTorus) -> dict[str, Any]:
     """What a file says of a refined torus."""
+    if isinstance(torus, PreciseTorus):
+        return {"verdict": "torus", "reasons": []}
     return {"verdict": torus.verdict, "reasons": list(torus.warnings)}
 
 

@@ -9,7 +9,7 @@ Every kind of solution knows its errors:
 - series in doubles: rounding relative to the largest force of a harmonic, since products over the
   bonds mix modes, over the divisor;
 - series with digits: the proved radii of the tables;
-- orbits with digits: the bound of their residual over the divisors.
+- orbits and tori with digits: the bound of their residual over the divisors.
 An error of the amplitudes changes all coefficients along the family: one of degree d in the
 amplitudes by d times its relative size.
 """
@@ -22,9 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.digits import PreciseOrbit
-from symfpu.breathers.fixed_force import highest_product
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
+from symfpu.chain.tension_terms import highest_product
+from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.invariance import OVERSAMPLING, InvarianceEquation, dilated
 from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
@@ -38,6 +39,10 @@ WIDENING = (
     1.5  # times the largest harmonic of one angle: up to there left out ones are solved for
 )
 SAFETY = 2.0  # on errors of first order
+PERIODS, SAMPLES = (
+    50,
+    512,
+)  # of the slowest angle, and times in all, for a largest acceleration
 CORRECTIONS = 3  # times that the rest of Newton's matrix is applied
 
 
@@ -106,6 +111,8 @@ def _errors(solution: QuasiPeriodic) -> _Errors:
         return _of_series(solution)
     if isinstance(solution, PreciseOrbit):
         return _of_digits(solution)
+    if isinstance(solution, PreciseTorus):
+        return _of_many_angles(solution)
     return _of_newton(solution)
 
 
@@ -317,3 +324,33 @@ def _of_digits(orbit: PreciseOrbit) -> _Errors:
     own = slice(len(cosines))
     sizes[own] += _along_the_family(chain, orbit.seeds, n[own], cosines, relative)
     return _Errors(n, omega * n[:, 0], sizes)
+
+
+def _of_many_angles(torus: PreciseTorus) -> _Errors:
+    """The same of a torus, at harmonics next to its own, too."""
+    chain, seeds = torus.chain, torus.seeds
+    equation = InvarianceEquation(chain, seeds, _canonical_signs(torus.harmonics))
+    around = np.unique(_canonical_signs(dilated(torus.harmonics, WIDENING)), axis=0)
+    own = {nu: i for i, nu in enumerate(map(tuple, around.tolist()))}
+    rows = np.array([own[tuple(nu)] for nu in equation.harmonics.tolist()])
+    rates = around @ (equation.linear[equation.seed_columns] + shifts_of(torus))
+    divisors = np.abs(
+        (rates[:, None] - equation.linear) * (rates[:, None] + equation.linear)
+    )
+    divisors[rows] = np.abs(equation.divisors(shifts_of(torus)))
+    left = SAFETY * float(torus.bound) * _largest_acceleration(torus)
+    with np.errstate(divide="ignore"):
+        sizes = np.where(equation.allowed(around), left / divisors, 0.0)
+    cosines = torus.cosines.astype(float)
+    seed = equation.seed_rows, equation.seed_columns
+    relative = float(np.max(sizes[rows][seed] / np.abs(cosines[seed])))
+    sizes[rows] += _along_the_family(chain, seeds, equation.harmonics, cosines, relative)
+    return _Errors(around, rates, sizes)
+
+
+def _largest_acceleration(torus: PreciseTorus) -> float:
+    """Of a mode, at some times."""
+    doubles = torus.in_doubles()
+    slowest = min(float(w) for w in torus.frequencies)
+    times = np.linspace(0, PERIODS * 2 * np.pi / slowest, SAMPLES)
+    return float(np.abs(torus.chain.accelerations(doubles.positions(times))).max())

@@ -220,6 +220,22 @@ def from_integers(
     return np.asarray(_LDEXP(values, whole_exponents), dtype=object)
 
 
+def doubles_as_integers(values: NDArray[np.float64], exponent: int) -> NDArray[np.object_]:
+    """Doubles times 2^exponent as integers, rounded down."""
+    mantissas, exponents = np.frexp(values)
+    shifts = exponents.astype(object) + (exponent - 53)
+    whole = np.ldexp(mantissas, 53).astype(np.int64).astype(object)
+    pairs = zip(whole.flat, shifts.flat, strict=True)
+    shifted = [m << s if s >= 0 else m >> -s for m, s in pairs]
+    return np.array(shifted, dtype=object).reshape(np.shape(values))
+
+
+def fraction_of(value: Any) -> Fraction:
+    """An mpf as the fraction it is."""
+    sign, mantissa, exponent, _ = value._mpf_
+    return Fraction((-1) ** sign * int(mantissa)) * Fraction(2) ** int(exponent)
+
+
 def mpf(value: Any) -> Any:
     """One number as mpf at the working precision.
 

@@ -42,31 +42,46 @@ def chosen_harmonics(
     The second result says whether more would not fit.
 
     functions : of the angles, those of half of the bonds, or the one of a ring's waves.
-    ln |c[nu]| is fitted by a - sum w_i |nu_i|; all harmonics within the reach of the fit are
-    taken, one of each pair +-nu.
     """
     size = {nu: float(np.abs(row).max()) for nu, row in known.items()}
     largest = max(size.values())
-    used = {nu: x for nu, x in size.items() if x > 1e-16 * largest}
-    table = np.array([[1, *(-abs(n) for n in nu)] for nu in used], dtype=float)
-    heights = np.log([x / largest for x in used.values()])
-    determined = len(used) > s + 1
+    heights = {
+        nu: float(np.log(x / largest)) for nu, x in size.items() if x > 1e-16 * largest
+    }
+    return within_reach(heights, functions, s, float(-np.log(tolerance)))
+
+
+def within_reach(
+    heights: Mapping[tuple[int, ...], float],
+    functions: int,
+    s: int,
+    depth: float,
+    most: int = MOST_HARMONICS,
+) -> tuple[Ints, bool]:
+    """Harmonics whose heights are expected above -depth, and whether more would not fit.
+
+    heights : ln |c[nu]| relative to the largest. They are fitted by a - sum w_i |nu_i|; all
+    harmonics within the reach of the fit are taken, one of each pair +-nu. most : of them.
+    """
+    table = np.array([[1, *(-abs(n) for n in nu)] for nu in heights], dtype=float)
+    logarithms = np.array(list(heights.values()))
+    determined = len(heights) > s + 1
     solution = np.full(s + 1, 3.0)
     if determined:
-        solution = np.linalg.lstsq(table, heights, rcond=None)[0]
+        solution = np.linalg.lstsq(table, logarithms, rcond=None)[0]
     weights = np.clip(solution[1:], 0.2, 12.0)
-    above = heights - table[:, 1:] @ weights
+    above = logarithms - table[:, 1:] @ weights
     offset = float(np.quantile(above, 0.98)) if determined else 0.0
-    reach = max(-np.log(tolerance) + max(offset, 0.0), 3.5 * weights.max())
+    reach = max(depth + max(offset, 0.0), 3.5 * weights.max())
     full = False
-    while not _fits(weights, reach, functions):
+    while not _fits(weights, reach, functions, most):
         reach, full = 0.95 * reach, True
     inside = _inside(tuple(weights.tolist()), reach)
     chosen = sorted({*inside, *unit_harmonics(s)})
     return np.array(chosen, dtype=np.int64), full
 
 
-def _fits(weights: Floats, reach: float, functions: int) -> bool:
+def _fits(weights: Floats, reach: float, functions: int, most: int) -> bool:
     """Whether the harmonics fit, and so many functions on the points of their lattice.
 
     The lattice has about twice as many points as the cross-polytope of harmonics.
@@ -74,7 +89,7 @@ def _fits(weights: Floats, reach: float, functions: int) -> bool:
     s = len(weights)
     polytope = float(np.prod(2 * reach / weights + 1)) / math.factorial(s)
     points = 1.2 * OVERSAMPLING**s / 2**s * polytope
-    return bool(points * functions <= LARGEST_GRID and polytope / 2 <= MOST_HARMONICS)
+    return bool(points * functions <= LARGEST_GRID and polytope / 2 <= most)
 
 
 def _inside(

@@ -272,7 +272,10 @@ def _names(equation: TorusEquation) -> list[str]:
 
 
 def _solved(
-    system: _System, preconditioner: _Preconditioner, right: Floats
+    system: _System,
+    preconditioner: _Preconditioner,
+    right: Floats,
+    accuracy: float = ACCURACY,
 ) -> tuple[Floats, int]:
     """The solution of the system for a right-hand side, and the number of products it took."""
     from scipy.sparse.linalg import LinearOperator, gmres
@@ -287,7 +290,7 @@ def _solved(
         return system.product(preconditioner(vector))
 
     operator = LinearOperator((len(right), len(right)), matvec=preconditioned, dtype=float)
-    limits = {"rtol": ACCURACY, "atol": 0.0, "restart": KRYLOV, "maxiter": RESTARTS}
+    limits = {"rtol": accuracy, "atol": 0.0, "restart": KRYLOV, "maxiter": RESTARTS}
     solution, info = gmres(operator, right, **limits)
     if info:
         left = float(np.linalg.norm(operator @ solution - right))
@@ -333,3 +336,33 @@ def _corrected(system: _System, preconditioner: _Preconditioner, right: Floats) 
             break
         before = size
     return total
+
+
+class Correction:
+    """Newton's matrix at one iterate, factored once and solved for many right-hand sides.
+
+    What corrects residuals that were taken in more digits: the matrix of doubles is as good as it
+    was, whatever the size of the residual.
+    """
+
+    def __init__(
+        self,
+        equation: TorusEquation,
+        conditions: Sequence[Condition],
+        cosines: Floats,
+        shifts: Floats,
+    ) -> None:
+        self._system = _System(equation, conditions, cosines, shifts)
+        self._preconditioner = _Preconditioner(self._system)
+
+    def __call__(self, imbalance: Floats, accuracy: float) -> tuple[Floats, Floats, int]:
+        """Changes of coefficients (H, C) and shifts (s,) that take an imbalance (H, C) away.
+
+        The conditions stay met. The last result: products with the derivative.
+        """
+        mask, s = self._system.mask, len(self._system.by_shift)
+        right = np.concatenate([-imbalance[mask], np.zeros(s)])
+        change, products = _solved(self._system, self._preconditioner, right, accuracy)
+        by_cosine = np.zeros(mask.shape)
+        by_cosine[mask] = change[:-s]
+        return by_cosine, change[-s:], products

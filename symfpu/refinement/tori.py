@@ -27,6 +27,13 @@ from symfpu.refinement.conditions import (
     ratio_conditions,
     seed_amplitudes,
 )
+from symfpu.refinement.digits import (
+    Failure,
+    PreciseTorus,
+    guess_of,
+    precise_torus,
+    require_digits,
+)
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.harmonics import chosen_harmonics, known_rows
 from symfpu.refinement.invariance import DIGITS, InvarianceEquation, long, rational
@@ -110,13 +117,14 @@ class RefinedTorus(QuasiPeriodic):
 class NoTorus(SymfpuError):
     """Newton's method found no torus: raised by `refine`, its sisters and `family`.
 
-    iterate : the best one, a RefinedTorus or RefinedRingTorus; residual : what it leaves of the
+    iterate : the best one, a RefinedTorus or RefinedRingTorus, or where digits were asked for the
+        torus from which they were tried; residual : what it leaves of the
         equations of motion, relative to the largest acceleration, dimensionless; reason : why it
         ended. Ours.
     """
 
     def __init__(
-        self, reason: str, iterate: RefinedTorus | RefinedRingTorus, residual: float
+        self, reason: str, iterate: QuasiPeriodic | RefinedRingTorus, residual: float
     ) -> None:
         self.reason, self.iterate, self.residual = reason, iterate, residual
         left = f"the best iterate leaves {residual:.2g} of the largest acceleration"
@@ -128,6 +136,14 @@ class NoTorus(SymfpuError):
 
 @overload
 def refine(
+    torus: QuasiPeriodic,
+    *,
+    digits: int,
+    tolerance: float = ...,
+    progress: Progress | None = ...,
+) -> PreciseTorus: ...
+@overload
+def refine(
     torus: RingTorus, *, tolerance: float = ..., progress: Progress | None = ...
 ) -> RefinedRingTorus: ...
 @overload
@@ -137,22 +153,26 @@ def refine(
 def refine(
     torus: QuasiPeriodic | RingTorus,
     *,
+    digits: int | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> RefinedTorus | RefinedRingTorus:
+) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
     """The torus with the same frequencies that solves the equations of motion.
 
     A given torus is the guess.
 
     torus : of a series, resummed, or any other; its phases (radians) are kept. On a ring one of
         travelling waves, from `travelling_torus`; a RefinedRingTorus comes back.
+    digits : None for doubles, or 1 .. 1000 of the largest coefficient: a PreciseTorus, whose sweeps
+        start from the torus in doubles, or from a PreciseTorus of fewer digits where they ended.
+        Of fixed ends, a polynomial potential or one of exponentials and powers.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration,
         dimensionless; harmonics are added until it is reached.
     progress : called as (label, NO_FRACTION) on every step.
 
     Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a
     torus, which the paper solves by series. Raises InputError, on a ring also for frequencies
-    with an integer relation, and NoTorus with the best iterate.
+    with an integer relation and for digits, and NoTorus with the best iterate.
 
     >>> from symfpu.tori.amplitudes import solve_amplitudes
     >>> from symfpu.series.lindstedt import lindstedt
@@ -162,6 +182,8 @@ def refine(
     True
     """
     _require_torus(torus)
+    if digits is not None:
+        return _of_digits(torus, digits, tolerance=tolerance, progress=progress)
     if isinstance(torus, RingTorus):
         require_independent(torus)
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
@@ -169,6 +191,15 @@ def refine(
     return replace(refined, frequencies=tuple(torus.frequencies))
 
 
+@overload
+def refine_at_amplitudes(
+    torus: QuasiPeriodic,
+    amplitudes: Mapping[int, Number],
+    *,
+    digits: int,
+    tolerance: float = ...,
+    progress: Progress | None = ...,
+) -> PreciseTorus: ...
 @overload
 def refine_at_amplitudes(
     torus: RingTorus,
@@ -189,13 +220,15 @@ def refine_at_amplitudes(
     torus: QuasiPeriodic | RingTorus,
     amplitudes: Mapping[int, Number],
     *,
+    digits: int | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> RefinedTorus | RefinedRingTorus:
+) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
     """The torus with the given amplitude of every seed; its frequencies are found.
 
     torus : the guess, of the same seeds; its phases (radians) are kept.
     amplitudes : A_q by seed, exact numbers, dimensionless; of cos(theta_q) in Q_q.
+    digits : None for doubles, or as of `refine`; so many of the frequencies, too.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration.
     progress : called as (label, NO_FRACTION) on every step.
 
@@ -208,15 +241,46 @@ def refine_at_amplitudes(
     0.390507682
     """
     _require_torus(torus)
-    values = [
-        long(a) for a in _by_seed("amplitudes", amplitudes, torus, signed=True).values()
-    ]
-    return refined_torus(
-        torus,
-        [Amplitude(i, a) for i, a in enumerate(values)],
-        tolerance=tolerance,
-        progress=progress,
-    )
+    given = tuple(_by_seed("amplitudes", amplitudes, torus, signed=True).values())
+    how: dict[str, Any] = {"tolerance": tolerance, "progress": progress}
+    if digits is not None:
+        return _of_digits(torus, digits, given, **how)
+    found: RefinedTorus | RefinedRingTorus = _at_amplitudes(torus, given, **how)
+    return found
+
+
+def _at_amplitudes(torus: Any, amplitudes: Sequence[Fraction], **how: Any) -> Any:
+    conditions = [Amplitude(i, long(a)) for i, a in enumerate(amplitudes)]
+    return refined_torus(torus, conditions, **how)
+
+
+def _of_digits(
+    torus: QuasiPeriodic | RingTorus,
+    digits: int,
+    amplitudes: tuple[Fraction, ...] | None = None,
+    *,
+    tolerance: float,
+    progress: Progress | None,
+) -> PreciseTorus:
+    """The torus of the same frequencies, or of given amplitudes, with digits."""
+    if isinstance(torus, RingTorus):
+        allowed = "nothing for a torus on a ring, which is refined in doubles"
+        raise InputError("digits", digits, allowed, "leave it out")
+    require_digits(torus.chain, digits)
+    how: dict[str, Any] = {"tolerance": tolerance, "progress": progress}
+    near: QuasiPeriodic
+    if amplitudes is not None:
+        near = _at_amplitudes(torus, amplitudes, **how)
+    elif isinstance(torus, (RefinedTorus, PreciseTorus)):
+        near = torus
+    else:
+        near = refine(torus, **how)
+    frequencies = near.frequencies if amplitudes is not None else torus.frequencies
+    guess = guess_of(near, frequencies, amplitudes)
+    try:
+        return precise_torus(guess, digits, progress or unheard)
+    except Failure as failure:
+        raise NoTorus(str(failure), near, near.residual()) from None
 
 
 @overload

@@ -8,6 +8,7 @@ from typing import Any
 from symfpu.breathers.floquet import Floquet
 from symfpu.frames.attributes import exact_text
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION
+from symfpu.refinement.digits import PreciseTorus
 from symfpu.reports.tables import fifteen_digits, number_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -39,10 +40,19 @@ def solution_record(
         },
         **{name: number_text(value, digits) for name, value in _energies(solution)},
         "residual": fifteen_digits(solution.residual()),
+        **_limits(solution),
         "harmonics": len(solution.harmonics),
         "warnings": [*solution.warnings, *warnings],
         **stability,
     }
+
+
+def _limits(solution: QuasiPeriodic | RingTorus) -> dict[str, str]:
+    """What a torus of many digits knows of itself."""
+    if not isinstance(solution, PreciseTorus):
+        return {}
+    bound, error = number_text(solution.bound, 3), number_text(solution.error, 3)
+    return {"residual_bound": bound, "coefficient_error": error}
 
 
 def frequencies_record(solution: Any) -> dict[str, str] | None:
@@ -101,11 +111,21 @@ def solution_text(record: dict[str, Any]) -> str:
         f"energy H           {record['energy']}   (at t = 0)",
         f"harmonic energy    {record['harmonic_energy']}   (at t = 0; time average {average})",
         f"residual           {record['residual']:.2g}   (equations of motion, relative)",
+        *_limit_lines(record),
         f"harmonics          {record['harmonics']}, in {digits}",
         *_stability_lines(record),
         *(f"warning: {warning}" for warning in record["warnings"]),
     ]
     return "\n".join(lines)
+
+
+def _limit_lines(record: dict[str, Any]) -> list[str]:
+    if "residual_bound" not in record:
+        return []
+    return [
+        f"residual below     {record['residual_bound']}   (at all angles, relative)",
+        f"coefficient error  {record['coefficient_error']}   (an estimate, relative)",
+    ]
 
 
 def _stability_lines(record: dict[str, Any]) -> list[str]:

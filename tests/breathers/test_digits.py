@@ -10,8 +10,9 @@ import pytest
 from symfpu.breathers import digits as digits_module
 from symfpu.breathers.balance import NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.breathers.digits import Sweeps, periodic_orbit_digits
-from symfpu.breathers.fixed_force import FixedForce, terms
+from symfpu.breathers.fixed_force import FixedForce
 from symfpu.chain.chain import Chain
+from symfpu.chain.tension_terms import terms
 from symfpu.errors import InputError
 from symfpu.integrable.torus import toda_torus
 from symfpu.numbers.arithmetic import MULTIPRECISION

@@ -91,7 +91,28 @@ def test_refine_at_amplitudes(capsys, solved):
     assert record["residual"] < COMMANDED_RESIDUAL
 
 
+@pytest.mark.long
+def test_refine_to_digits(capsys, solved, tmp_path):
+    """From a file of doubles, and on from the file of fewer digits."""
+    fewer, more = str(tmp_path / "fewer"), str(tmp_path / "more")
+    code, out, err = run(capsys, "refine", solved, "--digits", "18", "--amplitudes", "0.1,0.05", "-o", fewer)
+    assert (code, err) == (0, "")
+    assert "in 18 digits" in out
+    assert "residual below" in out
+    code, out, _ = run(capsys, "refine", fewer, "--digits", "22", "-o", more, "--json")
+    record = json.loads(out)
+    assert (code, record["kind"], record["digits"]) == (0, "PreciseTorus", 22)
+    assert record["residual"] < float(record["residual_bound"]) < COMMANDED_RESIDUAL**2
+    assert float(record["amplitudes"]["1"]) == 0.1
+    assert load(more).torus.frequencies == load(fewer).torus.frequencies
+    code, out, _ = run(capsys, "show", more)
+    assert "in 22 digits" in out
+
+
 BAD_REFINE = {
+    "energy and digits": (["--energy", "0.01", "--digits", "20"], "energy"),
+    "no digits": (["--digits", "0"], "digits"),
+    "digits of words": (["--digits", "many"], "digits"),
     "harmonic without energy": (["--harmonic"], "harmonic"),
     "energy and amplitudes": (["--energy", "0.01", "--amplitudes", "0.1,0.1"], "amplitudes"),
     "too few amplitudes": (["--amplitudes", "0.1"], "amplitudes"),

@@ -79,6 +79,7 @@ CASES = {
     "FourierTorus": cache(lambda: refine(series_torus()).in_doubles()),
     "PeriodicOrbit": breather,
     "PreciseOrbit": cache(lambda: periodic_orbit_digits(breather(), 25)),
+    "PreciseTorus": cache(lambda: refine(digits_torus(), digits=20)),
     "ShotOrbit": cache(lambda: shoot(CHAIN, SEED, FREQUENCY)),
 }
 

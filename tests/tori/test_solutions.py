@@ -54,6 +54,10 @@ class TestPreciseOrbit(SolutionTests):
     name, residual = "PreciseOrbit", 1e-25
 
 
+class TestPreciseTorus(SolutionTests):
+    name, residual = "PreciseTorus", 1e-20
+
+
 class TestShotOrbit(SolutionTests):
     name, residual = "ShotOrbit", 1e-11
 

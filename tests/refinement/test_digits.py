@@ -1,0 +1,184 @@
+"""Tori of many digits against breathers of many digits, Toda's spectral curve, more digits, and the equations of motion at angles."""
+
+from functools import cache
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.action_angle.actions import actions
+from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
+from symfpu.breathers.digits import periodic_orbit_digits
+from symfpu.bundles.bundle import load, save
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from symfpu.integrable.torus import toda_torus
+from symfpu.refinement import digits as digits_module
+from symfpu.refinement.digits import PreciseTorus
+from symfpu.refinement.tori import NoTorus, refine, refine_at_amplitudes
+from symfpu.series.travelling import travelling_waves
+from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.tori.ring_torus import travelling_torus
+from tests.oracles.oscillators import duffing
+
+SMALL = Chain(4, alpha="0.2", beta="0.3")
+SMALL_AMPLITUDES = {1: "0.1", 2: "0.05"}
+
+CASES = {
+    "alpha": (Chain(8, alpha="0.25"), {1: "0.2", 2: "0.1"}),
+    "beta": (Chain(7, beta="0.3"), {1: "0.3", 3: "0.1"}),
+    "mixed": (Chain(6, alpha="0.3", beta="-0.2"), {2: "0.2", 5: "0.1"}),
+    "three": (Chain(4, beta="0.3"), {1: "0.1", 2: "0.05", 3: "0.04"}),
+    "toda": (Chain(4, potential="toda:1/2"), {1: "0.2", 2: "0.1"}),
+    "lennard-jones": (Chain(4, potential="lj:2,1"), {1: "0.02", 2: "0.01"}),
+}
+
+
+def ten(exponent):
+    return mpmath.mpf(10) ** exponent
+
+
+@cache
+def small(digits):
+    return refine_at_amplitudes(torus_at_amplitudes(SMALL, SMALL_AMPLITUDES, order=3), SMALL_AMPLITUDES, digits=digits)
+
+
+def farthest(one, two):
+    """Largest difference of coefficients, those of harmonics of one alone too, over the largest coefficient."""
+    by_harmonic = [{tuple(nu): row for nu, row in zip(t.harmonics.tolist(), t.cosines, strict=True)} for t in (one, two)]
+    none = 0 * one.cosines[0]
+    with mpmath.workdps(2 * max(one.digits, two.digits)):
+        keys = by_harmonic[0].keys() | by_harmonic[1].keys()
+        off = max(np.abs(by_harmonic[0].get(nu, none) - by_harmonic[1].get(nu, none)).max() for nu in keys)
+        return off / np.abs(two.cosines).max()
+
+
+def test_more_digits_continue_fewer_and_the_error_is_about_what_is_estimated():
+    fewer, more = small(20), small(32)
+    off = farthest(fewer, more)
+    assert 0 < off < ten(-20)
+    assert off < 100 * fewer.error < ten(-18)
+    assert more.error < ten(-32)
+    with mpmath.workdps(50):
+        for w, x in zip(fewer.frequencies, more.frequencies, strict=True):
+            assert abs(mpmath.mpf((w - x).numerator) / (w - x).denominator) < ten(-20)
+
+
+def test_the_residual_at_angles_is_below_its_bound_and_energy_is_constant():
+    torus = small(32)
+    assert 0 < torus.residual(3) < torus.bound < ten(-31)
+    energies = torus.energy([0, "1.7", "40.3"])
+    with mpmath.workdps(50):
+        assert max(abs(energies / energies[0] - 1)) < ten(-31)
+
+
+def test_frequencies_lead_back_to_the_amplitudes_from_fewer_digits():
+    """And a torus of fewer digits saves sweeps."""
+    fewer = small(20)
+    again = refine(fewer, digits=32)
+    assert again.frequencies == fewer.frequencies
+    with mpmath.workdps(50):
+        for q, a in SMALL_AMPLITUDES.items():
+            assert abs(again.amplitudes[q] - mpmath.mpf(a)) < ten(-19)
+    assert again.sweeps < small(32).sweeps
+
+
+def test_one_angle_is_the_breather():
+    """Harmonic balance with its own force: other products, another matrix."""
+    orbit = breather_at_amplitude(Chain(6, alpha="0.3", beta="0.1"), 2, "0.2")
+    precise = periodic_orbit_digits(orbit, 40)
+    assert farthest(refine(orbit, digits=40), precise) < ten(-40)
+
+
+def test_two_bonds_swing_as_elliptic_functions_do():
+    chain = Chain(2, beta="0.5")
+    with mpmath.workdps(40):
+        squared = chain.linear_frequency(1) ** 2
+        omega, amplitude = duffing(squared, mpmath.mpf("0.5") / 4 * squared**2 * chain.C(1, 1, 1, 1), mpmath.mpf("0.5"))
+        found = refine(periodic_orbit(chain, 1, mpmath.nstr(omega, 33)), digits=28)
+        assert abs(found.amplitude / amplitude - 1) < ten(-27)
+
+
+def test_phases_are_kept_and_actions_have_the_digits():
+    guess = torus_at_amplitudes(Chain(3, beta="0.5"), {1: "0.1", 2: "0.1"}, order=2, phases={1: 0.5, 2: "1.25"})
+    fewer, more = refine(guess, digits=16), refine(guess, digits=24)
+    assert [float(phi) for phi in more.phases.values()] == [0.5, 1.25]
+    with mpmath.workdps(40):
+        for q, action in actions(more).items():
+            assert abs(actions(fewer)[q] / action - 1) < ten(-15)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", CASES)
+def test_thirty_and_fifty_digits_agree(name, tmp_path):
+    chain, amplitudes = CASES[name]
+    near = refine(torus_at_amplitudes(chain, amplitudes, order=3))
+    fewer, more = refine(near, digits=30), refine(near, digits=50)
+    assert 0 < farthest(fewer, more) < ten(-30)
+    assert 0 < more.residual(2) < more.bound < ten(-48)
+    energies = more.energy([0, 1, 30])
+    with mpmath.workdps(70):
+        assert max(abs(energies / energies[0] - 1)) < ten(-48)
+    loaded = load(save(tmp_path / "torus", more)).torus
+    assert type(loaded) is PreciseTorus
+    assert farthest(loaded, more) == 0
+    assert (loaded.bound, loaded.error, loaded.sweeps) == (more.bound, more.error, more.sweeps)
+
+
+@pytest.mark.long
+def test_toda_has_the_energy_and_actions_of_the_spectral_curve():
+    chain = Chain(4, potential="toda:1/2")
+    near = refine(torus_at_amplitudes(chain, {1: "0.1", 2: "0.1"}, order=4))
+    found = refine(near, digits=32)
+    exact = toda_torus(chain, (1, 2), frequencies=near.frequencies, digits=35)
+    with mpmath.workdps(50):
+        assert abs(found.energy() / exact.energy - 1) < ten(-30)
+        for q, action in actions(found).items():
+            assert abs(action / exact.actions[q] - 1) < ten(-30)
+
+
+def test_a_wrong_digit_is_seen():
+    torus = small(20)
+    guess = digits_module.guess_of(torus, torus.frequencies, None)
+    with mpmath.workdps(40):
+        sweeps = digits_module.TorusSweeps(guess, torus.harmonics)
+        before = sweeps.left_over()
+        sweeps.c[sweeps.equation.seed_rows[0], 0] += sweeps.size >> 50
+        spoilt = sweeps.left_over()
+    assert before.bound < ten(-19)
+    assert ten(-17) < spoilt.bound < ten(-13)
+    assert ten(-17) < spoilt.inside < ten(-13)
+
+
+def test_sweeps_that_gain_nothing_end(monkeypatch):
+    monkeypatch.setattr(digits_module, "SWEEPS", 1)
+    near = small(20).in_doubles()
+    with pytest.raises(NoTorus, match=r"sweeps in fixed point stop at a residual of 1e-1\d") as caught:
+        refine(near, digits=40)
+    assert caught.value.iterate.seeds == near.seeds
+
+
+def test_what_has_no_digits_is_refused_by_name():
+    near = small(20).in_doubles()
+    for digits in (0, 1001, 2.5):
+        with pytest.raises(InputError, match=r"^digits = "):
+            refine(near, digits=digits)
+    ring = travelling_torus(travelling_waves(Chain(6, beta="0.1", ends="periodic"), (1,), ("1.01",), 3))
+    with pytest.raises(InputError, match=r"^digits = 20: .*ring"):
+        refine(ring, digits=20)
+    sinh = torus_at_amplitudes(Chain(2, potential="expr:cosh(r)-1"), {1: "0.1"}, order=2)
+    with pytest.raises(InputError, match=r"^torus = .*exponentials and powers"):
+        refine(sinh, digits=20)
+
+
+@pytest.mark.long
+def test_more_digits_than_harmonics_fit_are_refused():
+    with pytest.raises(InputError, match=r"^digits = 1000 .*harmonics"):
+        refine(small(20).in_doubles(), digits=1000)
+
+
+def test_repr_is_an_answer():
+    text = repr(small(20))
+    assert text.startswith("PreciseTorus(N=4, alpha=0.2, beta=0.3, omega_1=0.76")
+    assert "20 digits, " in text
+    assert "residual below " in text
