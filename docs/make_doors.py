@@ -245,6 +245,9 @@ SERIES: dict[str, Door] = {
     "lindstedt, no frequencies": lambda c: c.symbolic,
     "lindstedt, N='N'": lambda c: c.for_all_lengths,
     "lindstedt, ring='nested'": lambda c: c.lindstedt((1,), order=2, ring="nested"),
+    "normal_frequency_series": lambda c: symfpu.normal_frequency_series(
+        c.chain, SEEDS, 4, 2
+    ),
     "pade_amplitudes": lambda c: symfpu.pade_amplitudes(c.series, c.solved.amplitudes),
     "pade_frequencies": lambda c: symfpu.pade_frequencies(c.series, c.amplitudes),
     "pade_poles": lambda c: symfpu.pade_poles(c.series, 1, c.amplitudes),
@@ -274,6 +277,7 @@ NEWTON: dict[str, Door] = {
     ),
     "floquet": lambda c: symfpu.floquet(c.periodic),
     "normal_modes": lambda c: symfpu.normal_modes(c.breather),
+    "solve_normal_frequency": lambda c: symfpu.solve_normal_frequency(c.breather, 2, 2),
     "member_at_energy": lambda c: symfpu.member_at_energy(
         c.family, c.family.members[1].torus.energy(), harmonic=False
     ),

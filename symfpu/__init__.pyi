@@ -91,8 +91,11 @@ from symfpu.action_angle.twist import twist as twist
 from symfpu.normal.modes import NoNormalModes as NoNormalModes
 from symfpu.normal.modes import NormalMode as NormalMode
 from symfpu.normal.modes import NormalModes as NormalModes
+from symfpu.normal.phantom import NormalFrequencySeries as NormalFrequencySeries
+from symfpu.normal.phantom import normal_frequency_series as normal_frequency_series
 from symfpu.normal.resonances import ParametricResonance as ParametricResonance
 from symfpu.normal.search import normal_modes as normal_modes
+from symfpu.normal.self_consistent import solve_normal_frequency as solve_normal_frequency
 
 # families in energy
 from symfpu.families.continuation import Event as Event

@@ -60,6 +60,7 @@ from symfpu.localization.profiles import fpu_trajectory, profile_distance
 from symfpu.localization.recurrence import NoRecurrence, recurrence
 from symfpu.localization.trials import profile_invariance
 from symfpu.normal.modes import NoNormalModes
+from symfpu.normal.phantom import normal_frequency_series
 from symfpu.normal.search import normal_modes
 from symfpu.paper.corrected import TimeIsUp
 from symfpu.proofs.certificates import prove_propagation
@@ -253,6 +254,7 @@ RESULTS = {
     "SpectralLine": (lambda _: lines_found().lines[0], repr),
     "BirkhoffForm": (lambda _: birkhoff_form(PAIR, (1, 2), 2), lambda x: x.hamiltonian()),
     "BirkhoffForm, digits": (lambda _: birkhoff_form(PAIR, (1, 2), 2, digits=20), lambda x: x.frequencies_at({1: 0.1, 2: 0.1})),
+    "NormalFrequencySeries": (lambda _: normal_frequency_series(PAIR, (1,), 2, 2), lambda x: x.correction(2)),
     "Twist": (lambda _: twist(orbit()), lambda x: (x.matrix, x.signature)),
     "TwistAtRest": (lambda _: twist_at_rest(PAIR, (1, 2)), lambda x: (x.matrix, x.formula())),
     "Trend": (lambda _: invariance().slope_rate, lambda x: x.rate),

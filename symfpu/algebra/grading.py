@@ -58,7 +58,7 @@ def compositions(total: int, parts: int) -> Ints:
 class Group:
     """The monomials of some seeds, for every degree up to `degree`, sorted by additive keys."""
 
-    def __init__(self, seeds: int, degree: int) -> None:
+    def __init__(self, seeds: int, degree: int, *, phantom: bool = False) -> None:
         self.seeds, self.degree = seeds, degree
         base, variables = 4 * degree + 1, 2 * seeds
         largest = base**variables * (degree + 1)
@@ -69,6 +69,8 @@ class Group:
         self._keys: list[Keys] = []
         for d in range(degree + 1):
             rows = compositions(d, 2 * seeds)
+            if phantom:
+                rows = rows[rows[:, :2].sum(axis=1) <= 1]
             keys = self.keys(rows)
             order = np.argsort(keys, kind="stable")
             self.exponents.append(rows[order])
@@ -99,6 +101,11 @@ class Group:
         first, second = self._keys[left], self._keys[right]
         keys = first[:, None] + second[None, :]
         return self.ranks(left + right, keys)
+
+    def kept_products(self, left: int, right: int) -> NDArray[np.bool_]:
+        """Whether they are monomials of this group; shape (left, right)."""
+        keys = self._keys[left][:, None] + self._keys[right][None, :]
+        return np.isin(keys, self._keys[left + right])
 
     def conjugates(self, degree: int) -> Ints:
         """Rank of the conjugate of each monomial of `degree`."""
@@ -144,7 +151,8 @@ class ProductTables(NamedTuple):
 class Grading:
     """All monomials in z_i, conj z_i of `seeds` seeds up to `degree`, as rows of one long list.
 
-    Rows of degree d are first_row[d] ... first_row[d + 1] - 1. Example:
+    Rows of degree d are first_row[d] ... first_row[d + 1] - 1. phantom : only those of degree 0
+    and 1 in the first of two or more seeds; products are cut off there. Example:
 
     >>> g = Grading(seeds=1, degree=3)
     >>> g.exponents(3).tolist()
@@ -155,6 +163,7 @@ class Grading:
 
     seeds: int
     degree: int
+    phantom: bool = False
 
     @cached_property
     def inner(self) -> Group:
@@ -162,7 +171,7 @@ class Grading:
 
     @cached_property
     def outer(self) -> Group:
-        return Group(self.seeds // 2, self.degree)
+        return Group(self.seeds // 2, self.degree, phantom=self.phantom)
 
     @cached_property
     def _outer_first(self) -> Ints:
@@ -182,7 +191,7 @@ class Grading:
     @cached_property
     def first_row(self) -> Ints:
         """First row of each degree; one more entry for the end. Shape (degree + 2,)."""
-        sizes = [monomial_count(self.seeds, d) for d in range(self.degree + 1)]
+        sizes = np.convolve(self.outer.counts, self.inner.counts)[: self.degree + 1]
         ends = np.cumsum(sizes)
         return np.concatenate([[0], ends]).astype(np.int64)
 
@@ -217,7 +226,8 @@ class Grading:
         """
         if degree % 2:
             return np.zeros((0, self.seeds), dtype=np.int64)
-        return compositions(degree // 2, self.seeds)
+        exponents = compositions(degree // 2, self.seeds)
+        return exponents[exponents[:, 0] == 0] if self.phantom else exponents
 
     def rows(self, exponents: Ints) -> Ints:
         """Rows (counted from the first of their degree) of monomials of one common degree.
@@ -239,6 +249,12 @@ class Grading:
             place = self.inner.ranks(degree - x, inner_keys)
             result[at] = first_rows[block] + place
         return result
+
+    def kept(self, exponents: Ints) -> NDArray[np.bool_]:
+        """Whether these are monomials of this grading; shape (count,)."""
+        if not self.phantom:
+            return np.ones(len(exponents), dtype=np.bool_)
+        return np.asarray(exponents[:, :2].sum(axis=1) <= 1)
 
     @cached_property
     def _layout(self) -> list[tuple[Ints, Ints, Ints]]:
@@ -346,11 +362,11 @@ class Grading:
             for y in range(self.degree + 1 - x):
                 if counts[x] == 0 or counts[y] == 0:
                     continue
-                table = self.outer.products(x, y) + first[x + y]
-                l, r = np.indices(table.shape)
-                lefts.append(l.ravel() + first[x])
-                rights.append(r.ravel() + first[y])
-                products.append(table.ravel())
+                table, kept = self.outer.products(x, y), self.outer.kept_products(x, y)
+                l, r = np.nonzero(kept)
+                lefts.append(l + first[x])
+                rights.append(r + first[y])
+                products.append(table[kept] + first[x + y])
         return np.concatenate(lefts), np.concatenate(rights), np.concatenate(products)
 
     def _inner_table(self) -> tuple[NDArray[np.int32], Ints, Ints]:

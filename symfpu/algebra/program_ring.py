@@ -210,6 +210,8 @@ class ProgramRing:
         """Pairs of monomials of two degrees with a canonical product, and its canonical row."""
         left, right = self.grading.exponents(d), self.grading.exponents(e)
         a, b = (part.ravel() for part in np.indices((len(left), len(right))))
+        kept = self.grading.kept(left[a] + right[b])
+        a, b = a[kept], b[kept]
         rows = self.grading.rows(left[a] + right[b])
         canonical = self.grading.canonical(d + e)
         place = np.searchsorted(canonical, rows)

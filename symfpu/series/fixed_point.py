@@ -38,6 +38,8 @@ def fixed_point_series(
     order: int,
     digits: int,
     progress: Progress | None,
+    *,
+    phantom: bool = False,
 ) -> LindstedtSeries:
     """The series in fixed-point numbers of as many binary places as its digits need.
 
@@ -47,8 +49,8 @@ def fixed_point_series(
     """
     _require_known(chain, digits)
     chosen = chosen_frequencies(frequencies, "fixed-point")
-    check_size(chain, seeds, order, "fixedpoint", digits)
-    space = monomial_space(chain, seeds, order)
+    check_size(chain, seeds, order, "fixedpoint", digits, phantom=phantom)
+    space = monomial_space(chain, seeds, order, phantom=phantom)
 
     def stage(number: int) -> Progress | None:
         if progress is None:

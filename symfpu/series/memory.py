@@ -20,20 +20,36 @@ EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60
 # series in doubles that the stages before and after a fixed-point series hold, with their radii
 OTHER_STAGES = 6
 CONSTANT_BYTES = 2**24
+# degree 0 in a phantom seed, or 1 with either sign: three times the monomials of the others, five
+# times their pairs with such a product
+PHANTOM_FACTOR = 5
 
 
 def check_size(
-    chain: Chain, seeds: tuple[int, ...], order: int, ring: str, digits: int = 0
+    chain: Chain,
+    seeds: tuple[int, ...],
+    order: int,
+    ring: str,
+    digits: int = 0,
+    *,
+    phantom: bool = False,
 ) -> None:
-    """Refuse an order whose arrays would not fit, before anything is allocated."""
+    """Refuse an order whose arrays would not fit, before anything is allocated.
+
+    phantom : whether the first seed's amplitude is needed to its first power only.
+    """
     free = psutil.virtual_memory().available
-    needed = _needed(chain, len(seeds), order, ring, digits)
-    if needed <= free:
+    full, factor = (len(seeds) - 1, PHANTOM_FACTOR) if phantom else (len(seeds), 1)
+
+    def needed(k: int) -> int:
+        return factor * _needed(chain, full, k, ring, digits)
+
+    if needed(order) <= free:
         return
     largest = -1
-    while _needed(chain, len(seeds), largest + 1, ring, digits) <= free:
+    while needed(largest + 1) <= free:
         largest += 1
-    raise TooLarge(order, needed, free, largest)
+    raise TooLarge(order, needed(order), free, largest)
 
 
 def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int:

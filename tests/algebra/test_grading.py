@@ -156,3 +156,17 @@ def test_wanted_blocks_hold_all_canonical_rows(seeds, degree):
             start = int(t.first_canonical[d - t.outer_degree[outer]]) if t.inner_start[outer] else 0
             held.update(range(first + start, first + count))
         assert held == Counter(grading.canonical(d).tolist())
+
+
+@pytest.mark.parametrize(("seeds", "degree"), [(2, 6), (3, 5), (5, 3)])
+def test_a_phantom_seed_keeps_what_is_linear_in_it(seeds, degree):
+    """The monomials of a phantom grading are those with its power 0 or 1, and so are their products."""
+    grading = Grading(seeds, degree, phantom=True)
+    for d in range(degree + 1):
+        wanted = {row for row in all_monomials(seeds, d) if sum(row[:2]) <= 1}
+        rows = list(map(tuple, grading.exponents(d).tolist()))
+        assert set(rows) == wanted
+        assert len(rows) == len(wanted) == grading.first_row[d + 1] - grading.first_row[d]
+        assert set(map(tuple, grading.diagonal(d).tolist())) == {
+            row for row in map(tuple, Grading(seeds, degree).diagonal(d).tolist()) if not row[0]
+        }

@@ -24,11 +24,12 @@ ARGUMENTS = {
     "energies": 0.1, "harmonic": False, "expression": 1, "spectrum": np.ones(7), "times": np.arange(1.0, 9.0),
     "averages": np.ones((8, 7)), "groups": [[1], [2]], "specific_energy": 0.01, "fraction": "1/8", "sizes": (8, 16),
     "specific_energies": (0.01, 0.02), "spectra": np.ones((2, 7)), "harmonics": np.array([[1]]),
-    "cosines": np.zeros((1, 7)), "frequencies": (Fraction(1, 2),), "iterations": 1, "degree": 2, "sigma": 0.0, "phases": {},
+    "cosines": np.zeros((1, 7)), "frequencies": (Fraction(1, 2),), "iterations": 1, "degree": 2, "sigma": 0.0, "phases": {}, "mode": 3,
 }  # fmt: skip
 # results: the functions that make them are tested instead
 RESULTS = {"AlignmentIndices", "Family", "LindstedtSeries", "Orbit", "ProfileInvariance", "RefinedTorus", "ShotOrbit"}
 RESULTS |= {"RingTorus", "TravellingSeries", "BirkhoffForm", "Twist", "TwistAtRest", "FrequencyAnalysis", "RefinedRingTorus"}
+RESULTS |= {"NormalFrequencySeries"}
 TAKE_RINGS = {"travelling_waves", "integrate", "alignment_indices", "seconds_needed"}
 TAKE_RINGS |= {"toda_gaps", "toda_invariants", "toda_torus", "travelling_breather"}
 TAKE_RINGS |= {"packet_state", "particle_state", "random_state", "read_state"}

@@ -27,6 +27,7 @@ WITHOUT = {
     "ExpandableTerm": "an expression",
     "NamedParts": "an expression",
     "BirkhoffForm": "exact numbers of a field, made anew",
+    "NormalFrequencySeries": "a series, made anew",
     "NormalMode": "part of NormalModes",
     "ParametricResonance": "part of NormalModes",
     "SpectralLine": "part of FrequencyAnalysis",

@@ -178,6 +178,7 @@ PUBLIC = {
     "accelerations": lambda: SYMBOLIC.accelerations(ONES),
     "alignment_indices": lambda: symfpu.alignment_indices(SYMBOLIC, ONES, ONES, T=1.0),
     "B": lambda: SYMBOLIC.B(1, 1, 2),
+    "normal_frequency_series": lambda: symfpu.normal_frequency_series(SYMBOLIC, (1,), 2, 2),
     "breather_at_amplitude": lambda: symfpu.breather_at_amplitude(SYMBOLIC, 1, 0.1),
     "breather_at_energy": lambda: symfpu.breather_at_energy(SYMBOLIC, 1, 0.1),
     "breather_law": lambda: symfpu.breather_law(SYMBOLIC, 0.1),
