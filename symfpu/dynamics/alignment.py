@@ -3,8 +3,6 @@
 With them its maximal Lyapunov exponent and the dimension of its torus: the paper's G_r of
 sections 3.2 and 4.
 
-The paper's G_r of sections 3.2 and 4.
-
 GALI_k is the k-volume of k unit deviation vectors (Skokos, Bountis, Antonopoulos, Physica D 231
 (2007) 30; Eur. Phys. J. Special Topics 165 (2008) 5). On a torus of dimension s in a phase space
 of dimension 2n, n = N - 1, it goes as
@@ -244,9 +242,9 @@ def alignment_indices(
     """
     n = require_any_chain(chain).N - 1
     h, integrator = abs(step_length(step)), particle_scheme(scheme)
-    count, last = _vectors(n, vectors), _steps(T, h)
+    count, last = frame_size(n, vectors), _steps(T, h)
     longest = integer(block, "block", 1)
-    marks = _marks(last, h, _samples(samples))
+    marks = _marks(last, h, sample_count(samples))
     drawn = integer(seed, "seed", 0)
     vectors_drawn = _first_frame(chain, count, drawn)
     frame = moving_frame(chain, Q, P, *vectors_drawn, h, scheme=integrator)
@@ -291,7 +289,7 @@ def seconds_needed(
     """
     n = require_any_chain(chain).N - 1
     h, integrator = abs(step_length(step)), particle_scheme(scheme)
-    count, last = _vectors(n, vectors), _steps(T, h)
+    count, last = frame_size(n, vectors), _steps(T, h)
     slowest = np.abs(chain.mode_numbers) == 1
     small = np.where(slowest, 1e-3, 0.0)
     vectors_drawn = _first_frame(chain, count, 0)
@@ -299,7 +297,7 @@ def seconds_needed(
     return last * seconds_a_step(frame, BLOCK)
 
 
-def _samples(samples: int) -> int:
+def sample_count(samples: int) -> int:
     count = integer(samples, "samples", FEWEST_SAMPLES)
     if count > MOST_SAMPLES:
         allowed = f"{FEWEST_SAMPLES} to {MOST_SAMPLES}"
@@ -307,7 +305,7 @@ def _samples(samples: int) -> int:
     return count
 
 
-def _vectors(n: int, vectors: int | None) -> int:
+def frame_size(n: int, vectors: int | None) -> int:
     count = min(VECTORS, 2 * n) if vectors is None else integer(vectors, "vectors", 2)
     most = min(2 * n, MOST_VECTORS)
     if count > most:
@@ -315,14 +313,19 @@ def _vectors(n: int, vectors: int | None) -> int:
     return count
 
 
-def _steps(T: float, h: float) -> int:
-    """Steps to T, the last one perhaps beyond it."""
+def last_time(T: object, h: float = 1.0) -> float:
+    """A time that slopes can be seen in, with steps h."""
     shortest = SHORTEST_RUN * max(1.0, h)
     is_number = isinstance(T, Real) and not isinstance(T, bool)
-    if not is_number or not shortest <= float(T) < math.inf:
+    if not is_number or not shortest <= float(T) < math.inf:  # type: ignore[arg-type]
         allowed = f"a finite time from {shortest:g} up"
         raise InputError("T", T, allowed, "slopes need two decades of time")
-    steps = float(T) / h
+    return float(T)  # type: ignore[arg-type]
+
+
+def _steps(T: float, h: float) -> int:
+    """Steps to T, the last one perhaps beyond it."""
+    steps = last_time(T, h) / h
     if not steps <= MOST_STEPS:
         allowed = f"at most 2^52 steps, {h * MOST_STEPS:.3g}"
         raise InputError("T", T, allowed, "take a shorter time, or a longer step")
@@ -334,10 +337,10 @@ def _first_frame(chain: Chain, vectors: int, seed: int) -> tuple[Numbers, Number
     if chain.periodic:
         x, p = _random_ring_frame(vectors, chain.N, seed)
         return chain.modes(x), chain.modes(p)
-    return _random_frame(vectors, chain.N - 1, seed)
+    return random_frame(vectors, chain.N - 1, seed)
 
 
-def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
+def random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
     """Orthonormal vectors of a phase space of dimension 2n as rows."""
     random = np.random.default_rng(seed)
     columns = random.normal(size=(2 * n, vectors))

@@ -75,7 +75,7 @@ def test_a_finished_orbit_is_taken_from_its_file(tmp_path):
 def same_vectors(monkeypatch):
     """The frame that the file was begun with: another library of linear algebra rounds it otherwise."""
     vectors = tuple(np.load(DATA / "first_vectors.npy"))
-    monkeypatch.setattr("symfpu.dynamics.alignment._random_frame", lambda count, n, seed: vectors)
+    monkeypatch.setattr("symfpu.dynamics.alignment.random_frame", lambda count, n, seed: vectors)
 
 
 @pytest.mark.usefixtures("same_vectors")
@@ -100,7 +100,7 @@ def test_indices_of_a_file_without_a_scheme_are_of_the_default(tmp_path):
 
 def test_indices_from_a_machine_that_rounds_otherwise_are_refused(tmp_path, monkeypatch):
     vectors = np.nextafter(np.load(DATA / "first_vectors.npy"), 1)
-    monkeypatch.setattr("symfpu.dynamics.alignment._random_frame", lambda count, n, seed: tuple(vectors))
+    monkeypatch.setattr("symfpu.dynamics.alignment.random_frame", lambda count, n, seed: tuple(vectors))
     file = shutil.copy(DATA / "gali.npz", tmp_path)
     with pytest.raises(InputError, match=r"from a machine that rounds alike, as it is of version 0\.1 \(first vectors is"):
         alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, file=file)
