@@ -294,7 +294,7 @@ NEWTON: dict[str, Door] = {
 }
 DYNAMICS: dict[str, Door] = {
     "alignment_indices": lambda c: symfpu.alignment_indices(
-        c.chain, *c.state, 100.0, vectors=2
+        c.chain, *c.state, 100.0, vectors=2, frames=1
     ),
     "frequency_analysis": lambda c: c.lines,
     **{

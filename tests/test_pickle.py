@@ -140,7 +140,7 @@ def growth():
 @cache
 def indices():
     Q, P = fpu_trajectory(PAIR, {1: "0.1"})
-    return alignment_indices(PAIR, Q, P, 100.0, vectors=3, samples=64)
+    return alignment_indices(PAIR, Q, P, 100.0, vectors=3, samples=64, frames=1)
 
 
 @cache

@@ -139,7 +139,9 @@ class ForetoldIndices(Shown, Gridded):
         found = np.full(len(due), np.inf)
         waiting = np.ones(len(due), dtype=bool)
         for end in reversed(ends):
-            slopes = [slope.value for slope in self.slopes(float(self.times[end - 1]), decades)]
+            slopes = [
+                slope.value for slope in self.slopes(float(self.times[end - 1]), decades)
+            ]
             waiting &= np.abs(np.array(slopes) - due) <= ODDNESS
             found[waiting] = self.times[end - 1]
         return dict(enumerate(found.tolist(), start=2))
@@ -170,9 +172,13 @@ class ForetoldIndices(Shown, Gridded):
             variables={
                 "log10_gali": Variable(rows, self.log10_gali, "log10 of GALI_k"),
                 "growth": Variable(("time",), self.growth, "log |v_1|"),
-                "settled": Variable(("k",), list(settled.values()), "time of the torus' slope"),
+                "settled": Variable(
+                    ("k",), list(settled.values()), "time of the torus' slope"
+                ),
                 "asymptotic_slope": Variable(
-                    ("k",), list(self.asymptotic_slopes.values()), "of log GALI_k with log t"
+                    ("k",),
+                    list(self.asymptotic_slopes.values()),
+                    "of log GALI_k with log t",
                 ),
                 "rate": Variable(("seed",), self.rates, "of growth, by size"),
             },
@@ -297,7 +303,9 @@ def _times(T: object, samples: int) -> Floats:
     ascending = times.ndim == 1 and bool(np.all(np.diff(times) > 0))
     if not ascending or not 0 < times[0] <= times[-1] <= LONGEST:
         allowed = f"a time, or ascending times between 0 and {LONGEST:.0e}"
-        raise InputError("T", T, allowed, "pass the times of alignment_indices, or a number")
+        raise InputError(
+            "T", T, allowed, "pass the times of alignment_indices, or a number"
+        )
     sample_count(len(times))
     return times
 

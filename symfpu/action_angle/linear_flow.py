@@ -89,7 +89,9 @@ class LinearFlow:
         along, across = [], []
         for i, changed in enumerate(made.by_cosine):
             turned = nu @ made.twist[:, i]
-            along.append(_state(-(sines * nu[:, i]) @ c, -(cosines * (nu[:, i] * rates)) @ c))
+            along.append(
+                _state(-(sines * nu[:, i]) @ c, -(cosines * (nu[:, i] * rates)) @ c)
+            )
             momenta = -(sines * rates) @ changed - (sines * turned) @ c
             across.append(_state(cosines @ changed, momenta))
         return np.stack(along, axis=2), np.stack(across, axis=2)

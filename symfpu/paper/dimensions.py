@@ -26,7 +26,7 @@ def full_seconds(figure: str) -> float:
     """
     label, vectors = VECTORS[figure]
     chain = printed_row(label).chain
-    return seconds_needed(chain, FULL_TIME, vectors=vectors, step=GALI_STEP)
+    return seconds_needed(chain, FULL_TIME, vectors=vectors, step=GALI_STEP, frames=1)
 
 
 def figure_alignment(
@@ -45,7 +45,14 @@ def figure_alignment(
         tell(f"{name}: GALI, {label} of {T:.0e}", fraction)
 
     return alignment_indices(
-        chain, *start, T, vectors=vectors, step=GALI_STEP, file=file, progress=progress
+        chain,
+        *start,
+        T,
+        vectors=vectors,
+        step=GALI_STEP,
+        frames=1,
+        file=file,
+        progress=progress,
     )
 
 

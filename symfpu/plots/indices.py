@@ -21,8 +21,9 @@ def alignment(result: Any, ax: Axes | None = None) -> Axes:
     result : what `alignment_indices` gave; dimensionless (section 3.2). ax : axes of matplotlib;
         default new ones.
 
-    A dashed line over the last decades has the fitted slope, which is in the legend with its
-    uncertainty; the verdict is the title. Returns the axes. Raises InputError.
+    Further frames are thin. A dashed line over the last decades has the fitted slope, which is
+    in the legend with its uncertainty; the verdict is the title. Returns the axes. Raises
+    InputError.
 
     >>> from matplotlib.figure import Figure
     >>> from symfpu import Chain, alignment_indices
@@ -35,10 +36,13 @@ def alignment(result: Any, ax: Axes | None = None) -> Axes:
     late = x >= x[-1] - DECADES
     with axes_for(ax) as axes:
         for i, slope in enumerate(found.slopes()):
-            y = found.log10_gali[:, i]
+            frames = np.array([one.log10_gali[:, i] for one in found.frames])
+            y = frames.mean(axis=0)
             style = look(i) | {"marker": None}
+            for others in frames[1:]:
+                axes.plot(x, others, **style | {"lw": 0.5, "alpha": 0.5})
             fitted = rf"{slope.value:z.2f} \pm {slope.error:.2f}"
-            axes.plot(x, y, label=rf"$G_{{{slope.k}}}$: ${fitted}$", **style)
+            axes.plot(x, frames[0], label=rf"$G_{{{slope.k}}}$: ${fitted}$", **style)
             line = y[late].mean() + slope.value * (x[late] - x[late].mean())
             axes.plot(x[late], line, color="black", ls=(0, (4, 3)), lw=0.9)
         bottom, top = axes.get_ylim()

@@ -155,7 +155,7 @@ def indices():
 
 @cache
 def short_indices():
-    return alignment_indices(one_mode().chain, *one_mode().state(), 200, vectors=2)
+    return alignment_indices(one_mode().chain, *one_mode().state(), 200, vectors=2, frames=1)
 
 
 @cache
