@@ -623,3 +623,12 @@ NORMAL_MULTIPLIER = 1e-11
 
 # What a frequency of a long regular orbit is known to: the integrator's phase.
 EXACT_LINE = 1e-13
+
+# Products of the torus' derivatives, each a solution with Newton's matrix to some 1e-12, and normal modes of residual 1e-10.
+CANONICAL = 1e-9
+
+# log10 of volumes: the integrator's tori with step 0.1 are off by some 1e-9 in frequencies and shapes, over 3e4 time units.
+FORETOLD = 1e-7
+
+# Normal directions as modes at rest are off by their coupling, some percent to a third in these volumes.
+FORETOLD_AT_REST = 0.6

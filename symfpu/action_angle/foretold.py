@@ -223,16 +223,30 @@ def foretold_indices(
     {2: -1, 3: -2, 4: -3, 5: -4, 6: -6}
     """
     torus = _checked(solution)
-    n, s = torus.chain.N - 1, len(torus.seeds)
-    count, drawn = frame_size(n, vectors), integer(seed, "seed", 0)
+    count, drawn = frame_size(torus.chain.N - 1, vectors), integer(seed, "seed", 0)
     times = _times(T, samples)
+    flow = flow_of(torus, normal, double(start, "start"))
+    return indices_by(flow, solution, times, count, drawn)
+
+
+def flow_of(
+    torus: QuasiPeriodic, normal: NormalModes | None = None, start: float = 0.0
+) -> LinearFlow:
+    """The linearised flow about a refined torus from its state at a time on."""
     directions = _at_rest(torus) if normal is None else _given(torus, normal)
     phases = np.array([float(torus.phases[q]) for q in torus.seeds])
     omega = np.array([float(w) for w in torus.frequencies])
-    begun = phases + omega * double(start, "start")
-    changes = changes_by_action(torus)
-    flow = LinearFlow(changes, omega, begun, directions, exact=normal is not None)
-    frame = np.concatenate(random_frame(count, n, drawn), axis=1).T
+    begun = phases + omega * start
+    changes = changes_by_action(torus.in_doubles())
+    return LinearFlow(changes, omega, begun, directions, exact=normal is not None)
+
+
+def indices_by(
+    flow: LinearFlow, solution: QuasiPeriodic, times: Floats, vectors: int, seed: int
+) -> ForetoldIndices:
+    """Indices of one frame; all frames of a torus need one flow."""
+    n, s = solution.chain.N - 1, len(solution.seeds)
+    frame = np.concatenate(random_frame(vectors, n, seed), axis=1).T
     gali, growth = _volumes(flow, frame, times)
     return ForetoldIndices(
         torus=solution,
@@ -240,7 +254,7 @@ def foretold_indices(
         log10_gali=gali,
         growth=growth,
         rates=growth_rates(flow)[:s],
-        normal=AT_REST if normal is None else EXACT,
+        normal=EXACT if flow.exact else AT_REST,
     )
 
 

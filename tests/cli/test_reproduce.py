@@ -110,7 +110,7 @@ def test_full_says_how_long_and_goes_on_where_it_was_stopped(full, monkeypatch, 
             if done > stop_at:
                 raise KeyboardInterrupt
 
-        return alignment_indices(*given, progress=hear, **options, **RUNS, frames=1)
+        return alignment_indices(*given, progress=hear, **options, **RUNS)
 
     monkeypatch.setattr(dimensions, "alignment_indices", partial(watched, 1 / 3))
     code, out, err = run(capsys, "fig9", "--full", "-o", str(tmp_path))

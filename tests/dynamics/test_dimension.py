@@ -162,3 +162,23 @@ def test_linear_growth_is_counted_back_from_the_end():
     assert linear_decades(TIMES, np.log(np.maximum(TIMES, 1e4))) == pytest.approx(3.0, abs=LATE_DECADES)
     assert linear_decades(TIMES, (1 + 2 * ODDNESS) * np.log(TIMES)) == 0.0
     assert FULL_DECADES > LOW_DECADES
+
+
+@pytest.mark.parametrize(
+    ("steps", "growth", "supported"),
+    [
+        ([0, -1, -1, -0.5], 1.0, 2),  # G_2, G_3, G_4 have settled, G_5 has not
+        ([-1, -0.5, -0.5, -0.5], 1.0, 1),
+        ([0, 0, -0.5, -1], 1.0, None),
+        ([0, -1, -1, -0.5], 0.3, None),  # before vectors grow indices say nothing
+    ],
+)
+def test_an_undecided_orbit_has_a_best_supported_dimension(steps, growth, supported):
+    found = made(growth * np.log(TIMES), steps).dimension()
+    assert (found.verdict, found.value, found.supported) == ("undecided", None, supported)
+
+
+def test_a_decided_dimension_is_the_supported_one():
+    found = made(np.log(TIMES), [0, -1, -1, -1]).dimension()
+    assert found.supported == found.value == 2
+    assert found.frames == (2,)

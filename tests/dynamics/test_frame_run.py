@@ -186,12 +186,12 @@ def test_a_checkpoint_of_other_parameters_is_refused(change, name, tmp_path, sta
 def test_a_checkpoint_is_taken_on_by_a_machine_that_rounds_otherwise(tmp_path, state, monkeypatch):
     arguments = {"chain": CHAIN, "file": tmp_path / "gali"} | state | SHORT
     first = alignment_indices(**arguments, frames=1)
-    drawn = alignment._random_frame
+    drawn = alignment.random_frame
 
     def rounded_otherwise(*sizes):
         return tuple(np.nextafter(rows, 1) for rows in drawn(*sizes))
 
-    monkeypatch.setattr(alignment, "_random_frame", rounded_otherwise)
+    monkeypatch.setattr(alignment, "random_frame", rounded_otherwise)
     assert np.array_equal(alignment_indices(**arguments, frames=1).log10_gali, first.log10_gali)
 
 
