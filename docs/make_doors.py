@@ -276,6 +276,7 @@ NEWTON: dict[str, Door] = {
         c.chain, (1,), 1e-2 * c.size**2, members=2, folder=c.folder / "family"
     ),
     "floquet": lambda c: symfpu.floquet(c.periodic),
+    "foretold_indices": lambda c: symfpu.foretold_indices(c.breather, 1e4, vectors=2),
     "normal_modes": lambda c: symfpu.normal_modes(c.breather),
     "solve_normal_frequency": lambda c: symfpu.solve_normal_frequency(c.breather, 2, 2),
     "member_at_energy": lambda c: symfpu.member_at_energy(
@@ -298,7 +299,7 @@ NEWTON: dict[str, Door] = {
 }
 DYNAMICS: dict[str, Door] = {
     "alignment_indices": lambda c: symfpu.alignment_indices(
-        c.chain, *c.state, 100.0, vectors=2
+        c.chain, *c.state, 100.0, vectors=2, frames=1
     ),
     "frequency_analysis": lambda c: c.lines,
     **{

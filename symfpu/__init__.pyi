@@ -84,6 +84,8 @@ from symfpu.action_angle.at_rest import TwistAtRest as TwistAtRest
 from symfpu.action_angle.at_rest import twist_at_rest as twist_at_rest
 from symfpu.action_angle.birkhoff import BirkhoffForm as BirkhoffForm
 from symfpu.action_angle.birkhoff import birkhoff_form as birkhoff_form
+from symfpu.action_angle.foretold import ForetoldIndices as ForetoldIndices
+from symfpu.action_angle.foretold import foretold_indices as foretold_indices
 from symfpu.action_angle.twist import Twist as Twist
 from symfpu.action_angle.twist import twist as twist
 

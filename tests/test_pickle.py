@@ -17,6 +17,7 @@ import pytest
 import symfpu
 from symfpu.action_angle.at_rest import twist_at_rest
 from symfpu.action_angle.birkhoff import birkhoff_form
+from symfpu.action_angle.foretold import foretold_indices
 from symfpu.action_angle.newton_twist import NoTwist
 from symfpu.action_angle.twist import twist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy
@@ -141,7 +142,7 @@ def growth():
 @cache
 def indices():
     Q, P = fpu_trajectory(PAIR, {1: "0.1"})
-    return alignment_indices(PAIR, Q, P, 100.0, vectors=3, samples=64)
+    return alignment_indices(PAIR, Q, P, 100.0, vectors=3, samples=64, frames=1)
 
 
 @cache
@@ -255,6 +256,7 @@ RESULTS = {
     "BirkhoffForm": (lambda _: birkhoff_form(PAIR, (1, 2), 2), lambda x: x.hamiltonian()),
     "BirkhoffForm, digits": (lambda _: birkhoff_form(PAIR, (1, 2), 2, digits=20), lambda x: x.frequencies_at({1: 0.1, 2: 0.1})),
     "NormalFrequencySeries": (lambda _: normal_frequency_series(PAIR, (1,), 2, 2), lambda x: x.correction(2)),
+    "ForetoldIndices": (lambda _: foretold_indices(orbit(), 1e3), lambda x: (x.settling(), x.slopes())),
     "Twist": (lambda _: twist(orbit()), lambda x: (x.matrix, x.signature)),
     "TwistAtRest": (lambda _: twist_at_rest(PAIR, (1, 2)), lambda x: (x.matrix, x.formula())),
     "Trend": (lambda _: invariance().slope_rate, lambda x: x.rate),

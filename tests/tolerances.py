@@ -629,3 +629,11 @@ EXACT_LINE = 1e-13
 
 # What a box of four or eight harmonics an angle cuts off of powers of a small torus: third powers of stretches of 0.1 with three angles.
 KRONECKER_BOUND = 1e-2
+# Products of the torus' derivatives, each a solution with Newton's matrix to some 1e-12, and normal modes of residual 1e-10.
+CANONICAL = 1e-9
+
+# log10 of volumes: the integrator's tori with step 0.1 are off by some 1e-9 in frequencies and shapes, over 3e4 time units.
+FORETOLD = 1e-7
+
+# Normal directions as modes at rest are off by their coupling, some percent to a third in these volumes.
+FORETOLD_AT_REST = 0.6

@@ -8,12 +8,15 @@ matrix is not.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import NamedTuple
+
 import numpy as np
 
 from symfpu.action_angle.actions import half_weighted
 from symfpu.errors import SymfpuError
 from symfpu.refinement.conditions import Amplitude, seed_amplitudes
-from symfpu.refinement.equation import Floats
+from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.harmonics import unit_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.newton import responses
@@ -41,6 +44,50 @@ def changes_by_newton(torus: QuasiPeriodic) -> tuple[Floats, Floats]:
 
     torus : that solves the equations of motion, in doubles. Raises NoTwist.
     """
+    found = _changes(torus)
+    return found.by_shift.T, found.by_action.T
+
+
+@dataclass(frozen=True, eq=False)
+class ActionChanges:
+    """A torus and how it changes with its actions.
+
+    harmonics : (H, s). cosines : c, (H, N-1). by_cosine : dc/dI_i, (s, H, N-1). twist :
+    Lambda_ij = domega_i/dI_j, (s, s).
+    """
+
+    harmonics: Ints
+    cosines: Floats
+    by_cosine: Floats
+    twist: Floats
+
+
+def changes_by_action(torus: QuasiPeriodic) -> ActionChanges:
+    """The same by the actions, with what the coefficients do. Raises NoTwist."""
+    found = _changes(torus)
+    try:
+        by_amplitude = np.linalg.inv(found.by_action)
+    except np.linalg.LinAlgError as failure:
+        raise NoTwist("the actions do not change with the amplitudes") from failure
+    return ActionChanges(
+        harmonics=found.equation.harmonics,
+        cosines=found.cosines,
+        by_cosine=np.tensordot(by_amplitude, found.by_cosine, axes=1),
+        twist=(by_amplitude @ found.by_shift).T,
+    )
+
+
+class _Changes(NamedTuple):
+    """By ln A_j, j first."""
+
+    equation: InvarianceEquation
+    cosines: Floats
+    by_cosine: Floats
+    by_shift: Floats
+    by_action: Floats
+
+
+def _changes(torus: QuasiPeriodic) -> _Changes:
     equation, cosines = _equation(torus)
     shifts = shifts_of(torus)
     amplitudes = seed_amplitudes(equation, cosines)
@@ -59,7 +106,7 @@ def changes_by_newton(torus: QuasiPeriodic) -> tuple[Floats, Floats]:
         moved = half_weighted(equation.harmonics, omega, mixed)
         faster = half_weighted(equation.harmonics, turned, squares)
         by_action.append(moved + faster)
-    return by_shift.T, np.array(by_action).T
+    return _Changes(equation, known, by_cosine, by_shift, np.array(by_action))
 
 
 def _equation(torus: QuasiPeriodic) -> tuple[InvarianceEquation, Floats]:

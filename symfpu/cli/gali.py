@@ -38,6 +38,7 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.dynamics.alignment import (
+    FRAMES,
     SAMPLES,
     SCHEME,
     STEP,
@@ -84,6 +85,9 @@ def gali(
         str, typer.Option(help="Times at which the indices are kept.")
     ] = str(SAMPLES),
     seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
+    frames: Annotated[
+        str, typer.Option(help="Number of frames of deviation vectors.", metavar="M")
+    ] = str(FRAMES),
     output: Annotated[
         str | None,
         typer.Option(
@@ -119,8 +123,11 @@ def gali(
     T = number("time", time)
     h = number("step", step)
     count = optional("vectors", vectors)
+    many = whole("frames", frames)
     if estimate:
-        seconds = seconds_needed(start.chain, T, vectors=count, step=h, scheme=scheme)
+        seconds = seconds_needed(
+            start.chain, T, vectors=count, step=h, scheme=scheme, frames=many
+        )
         _print_estimate(seconds, as_json)
         return
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
@@ -136,6 +143,7 @@ def gali(
             scheme=scheme,
             samples=whole("samples", samples),
             seed=whole("seed", seed),
+            frames=many,
             file=kept,
             progress=advance,
         )
@@ -173,6 +181,8 @@ def _text(found: AlignmentIndices, start: Start) -> list[str]:
     """The same for a reader."""
     dimension = found.dimension()
     value = "none" if dimension.value is None else str(dimension.value)
+    if dimension.value is None and dimension.supported is not None:
+        value = f"none, best supported {dimension.supported}"
     origin = "a state of your own"
     if start.torus is not None:
         origin = f"the torus has the seeds {', '.join(map(str, start.torus.seeds))}"
@@ -182,6 +192,7 @@ def _text(found: AlignmentIndices, start: Start) -> list[str]:
         f"verdict: {dimension.verdict}",
         f"dimension          {value}   ({origin})",
         f"                   {dimension.reason}",
+        f"by frame           {_by_frame(dimension.frames)}",
         f"Lyapunov exponent  {found.lyapunov[-1]:.3g}   ({end}; falls as log(t)/t on a torus)",
         f"energy error       {found.energy_error:.2g}   (relative, at the end; {steps})",
     ]
@@ -189,6 +200,11 @@ def _text(found: AlignmentIndices, start: Start) -> list[str]:
         fitted = f"slope {slope.value:8.3f} +- {slope.error:.3f}"
         lines.append(f"GALI_{slope.k:<3} {fitted}   log10 at the end {index:.4g}")
     return lines
+
+
+def _by_frame(values: tuple[int | None, ...]) -> str:
+    """The dimension of each frame, - for none."""
+    return ", ".join("-" if value is None else str(value) for value in values)
 
 
 def _write_table(found: AlignmentIndices, path: Path) -> None:

@@ -3,8 +3,6 @@
 With them its maximal Lyapunov exponent and the dimension of its torus: the paper's G_r of
 sections 3.2 and 4.
 
-The paper's G_r of sections 3.2 and 4.
-
 GALI_k is the k-volume of k unit deviation vectors (Skokos, Bountis, Antonopoulos, Physica D 231
 (2007) 30; Eur. Phys. J. Special Topics 165 (2008) 5). On a torus of dimension s in a phase space
 of dimension 2n, n = N - 1, it goes as
@@ -16,9 +14,10 @@ captions of the paper.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from os import PathLike
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,7 +35,8 @@ from symfpu.dynamics.dimension import (
 from symfpu.dynamics.frame_run import FrameRun, seconds_a_step
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import particle_scheme
-from symfpu.dynamics.tangent import moving_frame, step_length
+from symfpu.dynamics.several_frames import together
+from symfpu.dynamics.tangent import MovingFrame, moving_frame, step_length
 from symfpu.dynamics.wells import require_within_walls
 from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path, digest, seconds_between
@@ -52,6 +52,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 STEP, SAMPLES, VECTORS, BLOCK = 0.4, 400, 7, 40
+FRAMES, MOST_FRAMES = 4, 1000
 SCHEME = BLANES_MOAN6.name
 MOST_VECTORS, MOST_SAMPLES, MOST_STEPS = 64, 1_000_000, 2**52
 LOST_ENERGY = 1e-3  # relative: an orbit that has lost so much is not one of the chain
@@ -82,8 +83,10 @@ class AlignmentIndices(Shown, Gridded):
         vector.
     step : of the integrator. energy_error : |H(T) - H(0)| / H(0) of the orbit. scheme : its
         coefficients.
+    others : indices of further frames along the same orbit, each for itself; the arrays above are
+        those of the first frame.
 
-    Its methods look at the last decades of time.
+    Its methods look at the last decades of time, in all frames.
 
     >>> from symfpu import Chain, alignment_indices
     >>> found = alignment_indices(Chain(N=4, alpha=1), [0.1, 0, 0], [0, 0, 0], 1e3, vectors=2)
@@ -102,6 +105,7 @@ class AlignmentIndices(Shown, Gridded):
     step: float
     energy_error: float
     scheme: Scheme = BLANES_MOAN6
+    others: tuple[AlignmentIndices, ...] = ()
 
     @property
     def verdict(self) -> str:
@@ -110,7 +114,12 @@ class AlignmentIndices(Shown, Gridded):
 
     def __repr__(self) -> str:
         model = repr(self.chain)[6:-1]
-        verdict = self.dimension().verdict
+        dimension = self.dimension()
+        verdict = dimension.verdict
+        if verdict == "undecided" and dimension.supported is not None:
+            verdict += f", best supported dimension {dimension.supported}"
+        if self.others:
+            verdict += f" by {len(self.frames)} frames"
         values = ", ".join(f"{s.value:.2f}" for s in self.slopes())
         slopes = f"slopes of GALI_2..{self.vectors} {values}"
         exponent = f"Lyapunov exponent {self.lyapunov[-1]:.2g}"
@@ -123,15 +132,29 @@ class AlignmentIndices(Shown, Gridded):
         """The number of deviation vectors."""
         return int(self.log10_gali.shape[1]) + 1
 
+    @property
+    def frames(self) -> tuple[AlignmentIndices, ...]:
+        """Each frame of deviation vectors for itself."""
+        return (replace(self, others=()), *self.others)
+
     def slopes(self, decades: float = DECADES) -> tuple[Slope, ...]:
         """d log GALI_k / d log t over the last decades of time for k = 2 .. vectors.
 
         The uncertainty is that of the delete-a-block jackknife over PARTS stretches of the
-        window: it sees waves longer than the samples are apart, and bends. decades : of time, cut
-        to what the samples span and widened to LEAST_SAMPLES of them. Raises InputError.
+        window: it sees waves longer than the samples are apart, and bends. Of several frames the
+        mean, with the standard error of it if that is larger. decades : of time, cut to what the
+        samples span and widened to LEAST_SAMPLES of them. Raises InputError.
         """
-        found = fits(self.times, self.log10_gali, decades)
-        return tuple(Slope(k, *fit) for k, fit in enumerate(found, start=2))
+        frames = self.frames
+        every = [fits(one.times, one.log10_gali, decades) for one in frames]
+        fitted = np.array(every)  # (frames, vectors - 1, 2)
+        values = fitted[:, :, 0].mean(axis=0)
+        errors = np.sqrt((fitted[:, :, 1] ** 2).mean(axis=0) / len(frames))
+        if len(frames) > 1:
+            among = fitted[:, :, 0].std(axis=0, ddof=1) / math.sqrt(len(frames))
+            errors = np.maximum(errors, among)
+        pairs = zip(values.tolist(), errors.tolist(), strict=True)
+        return tuple(Slope(k, *pair) for k, pair in enumerate(pairs, start=2))
 
     def dimension(self, decades: float = DECADES) -> TorusDimension:
         """The dimension s of the torus by how each further vector changes the slope.
@@ -146,13 +169,19 @@ class AlignmentIndices(Shown, Gridded):
         its second half, and a first vector that grows as t, in every decade of the last LOW ones
         for a torus of low dimension (an index falls, 2 s <= n) or with N = 2, of the last FULL
         ones for others: see symfpu.dynamics.dimension. Undecided is everything else, and an orbit
-        that has lost LOST_ENERGY of its energy; the reason says what it would take. Raises
-        InputError.
+        that has lost LOST_ENERGY of its energy; the reason says what it would take, and
+        `supported` what the indices that have settled say. Several frames: chaotic if one is,
+        regular if half of them are and none with another dimension; `frames` has the dimension
+        of each. Raises InputError.
         """
         if not self.energy_error <= LOST_ENERGY:
             lost = f"the orbit is off by {self.energy_error:.1g} of its energy"
             reason = f"{lost}: take a shorter step than {self.step:g}"
             return TorusDimension("undecided", None, math.nan, {}, reason)
+        return together([one._dimension(decades) for one in self.frames])
+
+    def _dimension(self, decades: float) -> TorusDimension:
+        """By the first frame alone."""
         growth = self.lyapunov * self.times
         return torus_dimension(
             Evidence(self.times, growth, self.log10_gali, self.chain.N - 1, decades)
@@ -178,6 +207,7 @@ class AlignmentIndices(Shown, Gridded):
                 step=self.step,
                 energy_error=self.energy_error,
                 verdict=self.dimension().verdict,
+                frames=len(self.frames),
             ),
             rows=("time", "k"),
         )
@@ -194,6 +224,7 @@ def alignment_indices(
     scheme: str = SCHEME,
     samples: int = SAMPLES,
     seed: int = 0,
+    frames: int = FRAMES,
     block: int = BLOCK,
     file: str | PathLike[str] | None = None,
     every: float = 10.0,
@@ -212,11 +243,15 @@ def alignment_indices(
         in the result.
     scheme : of the integrator, on T + V: those of symfpu.dynamics.schemes but for aba864_modes.
     samples : times, even in log t from 1 to T; each is a whole number of steps.
-    seed : of numpy's default generator, for the vectors.
+    seed : of numpy's default generator, for the vectors of the first frame; the next frames have
+        the next seeds.
+    frames : of deviation vectors, one after the other along the same orbit. How soon indices
+        settle depends on the frame; `dimension()` gives the spread. Each costs as much as one.
     block : the most steps between two orthonormalisations, halved where the frame is squeezed.
     file : written every so many seconds, at the end, and when the interrupt key is pressed, whole
         or not at all; with the same arguments an interrupted or killed run goes on from it and
-        ends in the same bits. With a larger T it goes on too: the samples there are stay, later
+        ends in the same bits. Further frames have files of their own beside it: gali.zip,
+        gali-2.zip, ... . With a larger T it goes on too: the samples there are stay, later
         ones are chosen for the new T, so that bits are not those of a run to this T from the
         start.
     every : those seconds.
@@ -244,28 +279,65 @@ def alignment_indices(
     """
     n = require_any_chain(chain).N - 1
     h, integrator = abs(step_length(step)), particle_scheme(scheme)
-    count, last = _vectors(n, vectors), _steps(T, h)
+    count, last = frame_size(n, vectors), _steps(T, h)
     longest = integer(block, "block", 1)
-    marks = _marks(last, h, _samples(samples))
-    drawn = integer(seed, "seed", 0)
-    vectors_drawn = _first_frame(chain, count, drawn)
-    frame = moving_frame(chain, Q, P, *vectors_drawn, h, scheme=integrator)
+    marks = _marks(last, h, sample_count(samples))
+    drawn, many = integer(seed, "seed", 0), frame_count(frames)
     require_within_walls(chain, np.asarray(Q, dtype=chain.kind_of_ends.mode_type))
+    path = None if file is None else checkpoint_path(file)
+    state = digest(np.array([Q, P], dtype=chain.kind_of_ends.mode_type))
+    runs = []
+    for number in range(many):
+        vectors_drawn = _first_frame(chain, count, drawn + number)
+        frame = moving_frame(chain, Q, P, *vectors_drawn, h, scheme=integrator)
+        run = FrameRun(frame, marks, h, longest, seconds_between(every))
+        before = _energy_of(frame)
+        if path is not None:
+            made_of = {"start": state, "seed": drawn + number}
+            run.keep_in(_path_of(path, number), made_of)
+        runs.append(run)
+    found = []
+    for number, run in enumerate(runs):
+        run.go(_part(progress or unheard, number, many))
+        found.append(_indices(run, before))
+    return replace(found[0], others=tuple(found[1:]))
+
+
+def _energy_of(frame: MovingFrame) -> float:
     if not np.any(frame.x) and not np.any(frame.p):
         raise InputError(
             "Q, P", 0.0, "a state other than the equilibrium", "start from an orbit"
         )
-    before = float(chain.energy(*frame.orbit()))
-    run = FrameRun(frame, marks, h, longest, seconds_between(every))
-    if file is not None:
-        state = digest(np.array([Q, P], dtype=chain.kind_of_ends.mode_type))
-        run.keep_in(checkpoint_path(file), {"start": state, "seed": drawn})
-    run.go(progress or unheard)
-    times = np.asarray(run.marks * h, dtype=np.float64)
+    return float(frame.chain.energy(*frame.orbit()))
+
+
+def _indices(run: FrameRun, before: float) -> AlignmentIndices:
+    """Of one frame at the end of its run. before : the energy at its beginning."""
+    error = abs(_energy_of(run.frame) - before) / abs(before)
+    times = np.asarray(run.marks * run.step, dtype=np.float64)
     logarithms = np.cumsum(run.volumes, axis=1)
-    volumes = logarithms[:, 1:] / math.log(10)
-    error = abs(float(chain.energy(*frame.orbit())) - before) / abs(before)
-    return AlignmentIndices(chain, times, volumes, run.growth / times, h, error, integrator)
+    return AlignmentIndices(
+        chain=run.frame.chain,
+        times=times,
+        log10_gali=logarithms[:, 1:] / math.log(10),
+        lyapunov=run.growth / times,
+        step=run.step,
+        energy_error=error,
+        scheme=run.frame.scheme,
+    )
+
+
+def _path_of(path: Path, i: int) -> Path:
+    """The file of a frame, the first being 0."""
+    return path if i == 0 else path.with_stem(f"{path.stem}-{i + 1}")
+
+
+def _part(progress: Progress, i: int, many: int) -> Progress:
+    """Progress of one of many frames."""
+    if many == 1:
+        return progress
+    name = f"frame {i + 1} of {many}"
+    return lambda label, fraction: progress(f"{name}, {label}", (i + fraction) / many)
 
 
 def seconds_needed(
@@ -275,11 +347,12 @@ def seconds_needed(
     vectors: int | None = None,
     step: float = STEP,
     scheme: str = SCHEME,
+    frames: int = FRAMES,
 ) -> float:
     """Processor time in seconds that `alignment_indices` of such a chain will take.
 
     chain : the model. T : the last time, step : of the integrator, both dimensionless.
-    vectors : 2 to 2(N-1), default as there. scheme : as there.
+    vectors : 2 to 2(N-1), default as there. scheme, frames : as there.
 
     From a trial of a fraction of a second, a small oscillation: an orbit so chaotic that it
     squeezes the frame within BLOCK steps takes longer. Ours.
@@ -291,15 +364,15 @@ def seconds_needed(
     """
     n = require_any_chain(chain).N - 1
     h, integrator = abs(step_length(step)), particle_scheme(scheme)
-    count, last = _vectors(n, vectors), _steps(T, h)
+    count, last = frame_size(n, vectors), _steps(T, h)
     slowest = np.abs(chain.mode_numbers) == 1
     small = np.where(slowest, 1e-3, 0.0)
     vectors_drawn = _first_frame(chain, count, 0)
     frame = moving_frame(chain, small, small, *vectors_drawn, h, scheme=integrator)
-    return last * seconds_a_step(frame, BLOCK)
+    return frame_count(frames) * last * seconds_a_step(frame, BLOCK)
 
 
-def _samples(samples: int) -> int:
+def sample_count(samples: int) -> int:
     count = integer(samples, "samples", FEWEST_SAMPLES)
     if count > MOST_SAMPLES:
         allowed = f"{FEWEST_SAMPLES} to {MOST_SAMPLES}"
@@ -307,7 +380,15 @@ def _samples(samples: int) -> int:
     return count
 
 
-def _vectors(n: int, vectors: int | None) -> int:
+def frame_count(frames: int) -> int:
+    """The number of frames, checked."""
+    count = integer(frames, "frames", 1)
+    if count > MOST_FRAMES:
+        raise InputError("frames", count, f"1 to {MOST_FRAMES}", "a few show the spread")
+    return count
+
+
+def frame_size(n: int, vectors: int | None) -> int:
     count = min(VECTORS, 2 * n) if vectors is None else integer(vectors, "vectors", 2)
     most = min(2 * n, MOST_VECTORS)
     if count > most:
@@ -315,14 +396,19 @@ def _vectors(n: int, vectors: int | None) -> int:
     return count
 
 
-def _steps(T: float, h: float) -> int:
-    """Steps to T, the last one perhaps beyond it."""
+def last_time(T: object, h: float = 1.0) -> float:
+    """A time that slopes can be seen in, with steps h."""
     shortest = SHORTEST_RUN * max(1.0, h)
     is_number = isinstance(T, Real) and not isinstance(T, bool)
-    if not is_number or not shortest <= float(T) < math.inf:
+    if not is_number or not shortest <= float(T) < math.inf:  # type: ignore[arg-type]
         allowed = f"a finite time from {shortest:g} up"
         raise InputError("T", T, allowed, "slopes need two decades of time")
-    steps = float(T) / h
+    return float(T)  # type: ignore[arg-type]
+
+
+def _steps(T: float, h: float) -> int:
+    """Steps to T, the last one perhaps beyond it."""
+    steps = last_time(T, h) / h
     if not steps <= MOST_STEPS:
         allowed = f"at most 2^52 steps, {h * MOST_STEPS:.3g}"
         raise InputError("T", T, allowed, "take a shorter time, or a longer step")
@@ -334,10 +420,10 @@ def _first_frame(chain: Chain, vectors: int, seed: int) -> tuple[Numbers, Number
     if chain.periodic:
         x, p = _random_ring_frame(vectors, chain.N, seed)
         return chain.modes(x), chain.modes(p)
-    return _random_frame(vectors, chain.N - 1, seed)
+    return random_frame(vectors, chain.N - 1, seed)
 
 
-def _random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
+def random_frame(vectors: int, n: int, seed: int) -> tuple[Floats, Floats]:
     """Orthonormal vectors of a phase space of dimension 2n as rows."""
     random = np.random.default_rng(seed)
     columns = random.normal(size=(2 * n, vectors))

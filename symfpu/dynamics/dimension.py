@@ -47,7 +47,11 @@ class TorusDimension:
     verdict : 'regular, dimension s', 'regular, dimension s or more' if no index falls, 'chaotic'
     or 'undecided'. value : s, None for a chaotic or undecided orbit. error : the standard
     deviation of s over the weights; weights : of each s, normalised, also where nothing is
-    decided. reason : the numbers behind the verdict, and for an undecided one what it would take.
+    decided, their mean over the frames. reason : the numbers behind the verdict, and for an
+    undecided one what it would take.
+    supported : s, or the best supported value of an undecided orbit, by the indices that have
+    settled: the first ones, up to a fall by 1/t; None where there is no such fall.
+    frames : s of each frame of deviation vectors, None where that one decides nothing.
     """
 
     verdict: str
@@ -55,6 +59,8 @@ class TorusDimension:
     error: float
     weights: Mapping[int, float] = field(repr=False)
     reason: str
+    supported: int | None = None
+    frames: tuple[int | None, ...] = field(default=(None,), repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,9 +110,30 @@ def torus_dimension(seen: Evidence) -> TorusDimension:
     if not doubt:
         doubt = _length_doubt(seen, best)
     if doubt:
-        return TorusDimension("undecided", None, error, weights, reason + doubt)
+        supported = supported_dimension(seen, steps)
+        return TorusDimension("undecided", None, error, weights, reason + doubt, supported)
     more = " or more" if best == seen.vectors < seen.freedom else ""
-    return TorusDimension(f"regular, dimension {best}{more}", best, error, weights, reason)
+    verdict = f"regular, dimension {best}{more}"
+    return TorusDimension(verdict, best, error, weights, reason, best, (best,))
+
+
+def supported_dimension(seen: Evidence, steps: Floats) -> int | None:
+    """s by the indices that have settled, where |v| grows as t.
+
+    Differences of slopes are 0 up to j = s, then -1: the first of them to ODDNESS, the others
+    may still be on their way. None without a difference of -1.
+    """
+    exponent, _ = seen.exponent()
+    if abs(exponent - 1) > ODDNESS:
+        return None
+    s = 1
+    for slope in steps[:, 0]:
+        if abs(slope + 1) <= ODDNESS:
+            return s
+        if abs(slope) > ODDNESS:
+            return None
+        s += 1
+    return None
 
 
 def expected_steps(s: int, n: int, vectors: int) -> Ints:

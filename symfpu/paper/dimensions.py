@@ -7,15 +7,20 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.action_angle.foretold import ForetoldIndices, flow_of, indices_by
 from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices, seconds_needed
+from symfpu.dynamics.dimension import TorusDimension
+from symfpu.dynamics.several_frames import together
 from symfpu.files.progress import Progress
 from symfpu.paper.starts import printed_row
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Floats = NDArray[np.float64]
 TIME, FULL_TIME = 1e7, 1e9  # default; the paper's, with --full
 # by figure: whose chain, and how many vectors
 VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}
 GALI_STEP = 0.4  # of the tangent map
+FORETOLD_TIME, FORETOLD_SAMPLES, FORETOLD_FRAMES = 1e11, 440, 4
 SETTLED_DECADES = 0.3  # of the last value of an index
 
 
@@ -26,7 +31,7 @@ def full_seconds(figure: str) -> float:
     """
     label, vectors = VECTORS[figure]
     chain = printed_row(label).chain
-    return seconds_needed(chain, FULL_TIME, vectors=vectors, step=GALI_STEP)
+    return seconds_needed(chain, FULL_TIME, vectors=vectors, step=GALI_STEP, frames=1)
 
 
 def figure_alignment(
@@ -45,8 +50,28 @@ def figure_alignment(
         tell(f"{name}: GALI, {label} of {T:.0e}", fraction)
 
     return alignment_indices(
-        chain, *start, T, vectors=vectors, step=GALI_STEP, file=file, progress=progress
+        chain,
+        *start,
+        T,
+        vectors=vectors,
+        step=GALI_STEP,
+        frames=1,
+        file=file,
+        progress=progress,
     )
+
+
+def foretold_frames(torus: QuasiPeriodic, vectors: int) -> tuple[ForetoldIndices, ...]:
+    """Alignment indices of an exact torus in closed form, beyond the paper's time; four frames."""
+    flow = flow_of(torus)
+    times = np.geomspace(1.0, FORETOLD_TIME, FORETOLD_SAMPLES)
+    frames = range(FORETOLD_FRAMES)
+    return tuple(indices_by(flow, torus, times, vectors, seed) for seed in frames)
+
+
+def foretold_dimension(frames: tuple[ForetoldIndices, ...], T: float) -> TorusDimension:
+    """What frames that are followed to T say together."""
+    return together([frame.dimension(T) for frame in frames])
 
 
 def slopes_text(found: AlignmentIndices) -> str:

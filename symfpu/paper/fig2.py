@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.alignment import alignment_panel
@@ -20,12 +21,12 @@ from symfpu.localization.laws import fit_profile, middle_modes
 from symfpu.localization.profiles import normalised_averages
 from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_line
 from symfpu.paper.claims import Claim, PaperFigure, judged
-from symfpu.paper.dimensions import FULL_TIME, figure_alignment, settled_after
+from symfpu.paper.dimensions import figure_alignment, foretold_frames
 from symfpu.paper.judgements import (
     SIMILAR_DECADES,
     cancellation_claim,
-    dimension_claim,
     falls,
+    foretold_claim,
     same_profile,
     sums_panel,
 )
@@ -59,6 +60,8 @@ def figure2(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     orbit = integrated_orbit("fig2 PLn", row.chain, torus, TIME, progress)
     start = (torus.positions(0.0), torus.momenta(0.0))
     found = figure_alignment("fig2", start, progress, folder, full=full)
+    progress("fig2: indices foretold", NO_FRACTION)
+    frames = foretold_frames(exact, found.vectors)
     profiles = {
         "PL": torus.average_spectrum() / torus.energy(),
         "PLn": normalised_averages(orbit)[-1],
@@ -75,7 +78,7 @@ def figure2(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
         exponential_claim(exact),
         _caption_claim(line, torus),
         line_claim(line, profiles["exact torus"]),
-        _dimension_claim(found),
+        _dimension_claim(found, frames),
         *_sums_claims(sums, row.order),
         root_finding_claim(exact),
     )
@@ -171,13 +174,9 @@ def line_claim(line: PrintedLine, spectrum: Floats) -> Claim:
     return Claim("4", text, "", ours, verdict)
 
 
-def _dimension_claim(found: AlignmentIndices) -> Claim:
-    settled = settled_after(found, 4)
-    more = f"; G_4 within 0.3 decades of its last value from t = {settled:.0e} on"
+def _dimension_claim(found: AlignmentIndices, frames: tuple[ForetoldIndices, ...]) -> Claim:
     text = "G_2, G_3 soon constant, G_4 after 3e7, G_5 falls as 1/t from there to 1e9"
-    return dimension_claim(
-        "4", text, 4, found, shown_after=PLATEAU, whole=FULL_TIME, more=more
-    )
+    return foretold_claim("4", text, 4, frames, (4, PLATEAU), found)
 
 
 def _sums_claims(sums: tuple[Floats, Floats], order: int) -> tuple[Claim, Claim]:

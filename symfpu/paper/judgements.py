@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.figures.panels import Curve, Panel
 from symfpu.localization.profiles import profile_distance
 from symfpu.paper.claims import OPEN, Claim, judged
-from symfpu.paper.dimensions import slopes_text
+from symfpu.paper.dimensions import FULL_TIME, foretold_dimension, slopes_text
 
 Floats = NDArray[np.float64]
 SIMILAR_DECADES = 1.0  # in which profiles over thirty decades are alike
@@ -85,6 +86,41 @@ def dimension_claim(
         ours += f"; the paper goes to {whole:.0e}"
     decided = OPEN if undecided or early else judged(same)
     return Claim(section, text, f"dimension {printed}", ours + more, decided)
+
+
+def foretold_claim(
+    section: str,
+    text: str,
+    printed: int,
+    frames: tuple[ForetoldIndices, ...],
+    settled: tuple[int, float],
+    found: AlignmentIndices,
+) -> Claim:
+    """Whether the torus itself shows the printed dimension at the paper's time, in closed form.
+
+    settled : k, and the time from which the paper sees G_k constant, which must be within those of
+    the frames; in part if it is not. found : integrated, for the evidence.
+    """
+    k, after = settled
+    said = foretold_dimension(frames, FULL_TIME)
+    times = [frame.settling()[k] for frame in frames]
+    rates = ", ".join(f"{rate:.1e}" for rate in frames[0].rates)
+    slopes = np.mean(
+        [[s.value for s in frame.slopes(FULL_TIME)] for frame in frames], axis=0
+    )
+    shown = ", ".join(f"{slope:.2f}" for slope in slopes)
+    values = ", ".join("none" if s is None else str(s) for s in said.frames)
+    when = ", ".join(f"{time:.0e}" for time in sorted(times))
+    ours = f"foretold from the exact torus, its twist and {len(frames)} frames: {said.verdict} "
+    ours += f"at {FULL_TIME:.0e} (by frame {values}; mean slopes {shown} "
+    ours += f"of G_2..G_{found.vectors}); growth rates {rates}; "
+    ours += f"G_{k} has the slope of the torus from t = {when} on, in the paper from {after:.0e}"
+    ours += f"; integrated: {slopes_text(found)}"
+    same = said.value == printed
+    in_time = min(times) <= after <= max(times)
+    return Claim(
+        section, text, f"dimension {printed}", ours, judged(same and in_time, same)
+    )
 
 
 def cancellation_claim(

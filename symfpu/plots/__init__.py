@@ -5,6 +5,7 @@ from symfpu.plots.families import family_frequencies as family_frequencies
 from symfpu.plots.families import family_multipliers as family_multipliers
 from symfpu.plots.families import family_spectra as family_spectra
 from symfpu.plots.indices import alignment as alignment
+from symfpu.plots.indices import foretold as foretold
 from symfpu.plots.indices import lyapunov as lyapunov
 from symfpu.plots.lines import lines as lines
 from symfpu.plots.motion import animation as animation

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.dimension import DECADES
 from symfpu.plots.style import Axes, axes_for, look, require
 
 LEAST_HEIGHT_DECADES = 0.5  # of the picture, for indices that stay where they are
+FORETOLD, FORETOLD_ADVICE = "foretold indices", "pass what foretold_indices gave"
 WORDS, ADVICE = "alignment indices", "pass what alignment_indices gave"
 
 
@@ -21,8 +23,9 @@ def alignment(result: Any, ax: Axes | None = None) -> Axes:
     result : what `alignment_indices` gave; dimensionless (section 3.2). ax : axes of matplotlib;
         default new ones.
 
-    A dashed line over the last decades has the fitted slope, which is in the legend with its
-    uncertainty; the verdict is the title. Returns the axes. Raises InputError.
+    Further frames are thin. A dashed line over the last decades has the fitted slope, which is
+    in the legend with its uncertainty; the verdict is the title. Returns the axes. Raises
+    InputError.
 
     >>> from matplotlib.figure import Figure
     >>> from symfpu import Chain, alignment_indices
@@ -35,10 +38,13 @@ def alignment(result: Any, ax: Axes | None = None) -> Axes:
     late = x >= x[-1] - DECADES
     with axes_for(ax) as axes:
         for i, slope in enumerate(found.slopes()):
-            y = found.log10_gali[:, i]
+            frames = np.array([one.log10_gali[:, i] for one in found.frames])
+            y = frames.mean(axis=0)
             style = look(i) | {"marker": None}
+            for others in frames[1:]:
+                axes.plot(x, others, **style | {"lw": 0.5, "alpha": 0.5})
             fitted = rf"{slope.value:z.2f} \pm {slope.error:.2f}"
-            axes.plot(x, y, label=rf"$G_{{{slope.k}}}$: ${fitted}$", **style)
+            axes.plot(x, frames[0], label=rf"$G_{{{slope.k}}}$: ${fitted}$", **style)
             line = y[late].mean() + slope.value * (x[late] - x[late].mean())
             axes.plot(x[late], line, color="black", ls=(0, (4, 3)), lw=0.9)
         bottom, top = axes.get_ylim()
@@ -48,6 +54,50 @@ def alignment(result: Any, ax: Axes | None = None) -> Axes:
         axes.set_title(found.dimension().verdict)
         legend = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
         axes.legend(title="slopes, last decades", title_fontsize="small", **legend)
+    return axes
+
+
+def foretold(
+    result: Any, ax: Axes | None = None, *, observed: AlignmentIndices | None = None
+) -> Axes:
+    """Alignment indices of a torus in closed form, and integrated ones as points on them.
+
+    result : what `foretold_indices` gave; dimensionless. Ours. ax : axes of matplotlib; default
+        new ones. observed : what `alignment_indices` gave with the same frame; no line without.
+
+    Triangles on the upper edge are the times from which G_k has the slope of the torus, which is
+    in the legend. Returns the axes. Raises InputError.
+
+    >>> from matplotlib.figure import Figure
+    >>> from symfpu import Chain, breather_at_amplitude, foretold_indices
+    >>> found = foretold_indices(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.4"), 1e6)
+    >>> foretold(found, Figure().add_subplot()).get_title()
+    'regular, dimension 1'
+    """
+    found = require(result, ForetoldIndices, FORETOLD, FORETOLD_ADVICE)
+    if observed is not None:
+        require(observed, AlignmentIndices, WORDS, ADVICE)
+    x = np.log10(found.times)
+    settled = found.settling()
+    with axes_for(ax) as axes:
+        for i, (k, slope) in enumerate(found.asymptotic_slopes.items()):
+            style = look(i) | {"marker": None}
+            label = rf"$G_{{{k}}} \to t^{{{slope}}}$"
+            axes.plot(x, found.log10_gali[:, i], label=label, lw=1.0, **style)
+            if observed is not None and k <= observed.vectors:
+                points = np.log10(observed.times), observed.log10_gali[:, k - 2]
+                axes.plot(*points, ls="none", marker=".", ms=3, color=style["color"])
+        bottom, top = axes.get_ylim()
+        top = max(top, 0) + 0.06 * (top - bottom)
+        for i, time in enumerate(settled.values()):
+            if math.isfinite(time):
+                place = math.log10(time), top
+                axes.plot(*place, marker="v", color=look(i)["color"], clip_on=False, ms=6)
+        axes.set_ylim(bottom, top)
+        axes.set_xlabel(r"$\log_{10}\, t$")
+        axes.set_ylabel(r"$\log_{10}\, G_k$")
+        axes.set_title(found.verdict)
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return axes
 
 

@@ -11,6 +11,7 @@ from functools import partial
 from html import escape
 from typing import Any, NamedTuple
 
+from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.breathers.floquet import Floquet
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
@@ -21,7 +22,7 @@ from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import decimal
 from symfpu.plots.families import family_frequencies
-from symfpu.plots.indices import alignment
+from symfpu.plots.indices import alignment, foretold
 from symfpu.plots.lines import lines
 from symfpu.plots.motion import time_series
 from symfpu.plots.normal import normal_frequencies
@@ -171,6 +172,15 @@ def _index_rows(found: AlignmentIndices) -> Rows:
     yield "energy error", f"{found.energy_error:.1g}"
 
 
+def _foretold_rows(found: ForetoldIndices) -> Rows:
+    yield "chain", _model(found.torus.chain)
+    yield "seeds", _listed(found.torus.seeds)
+    for k, time in found.settling().items():
+        slope = found.asymptotic_slopes[k]
+        yield f"G_{k}", f"slope {slope}, from t = {time:.2g} on"
+    yield "rates of growth", ", ".join(f"{rate:.2g}" for rate in found.rates)
+
+
 def _floquet_rows(found: Floquet) -> Rows:
     yield "chain", _model(found.orbit.chain)
     yield "seed", str(found.orbit.seed)
@@ -260,6 +270,7 @@ USUAL = (
     Usual(
         AlignmentIndices, alignment, lambda found: found.dimension().verdict, _index_rows
     ),
+    Usual(ForetoldIndices, foretold, lambda found: found.verdict, _foretold_rows),
     Usual(
         Floquet,
         multipliers,

@@ -53,6 +53,8 @@ def alignment_record(found: AlignmentIndices) -> dict[str, Any]:
         "log10_gali": indices,
         "dimension": dimension.value,
         "dimension_error": fifteen_digits(dimension.error) if decided else None,
+        "supported_dimension": dimension.supported,
+        "dimension_by_frame": list(dimension.frames),
         "verdict": dimension.verdict,
         "reason": dimension.reason,
         "lyapunov": fifteen_digits(float(found.lyapunov[-1])),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.action_angle.twist import Twist
 from symfpu.breathers.floquet import Floquet
 from symfpu.dynamics.alignment import AlignmentIndices
@@ -45,6 +46,7 @@ RESULTS: tuple[type[Any], ...] = (
     Event,
     Family,
     Floquet,
+    ForetoldIndices,
     FrequencyAnalysis,
     FrequencyChanges,
     GroupGrowth,

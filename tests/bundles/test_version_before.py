@@ -75,13 +75,13 @@ def test_a_finished_orbit_is_taken_from_its_file(tmp_path):
 def same_vectors(monkeypatch):
     """The frame that the file was begun with: another library of linear algebra rounds it otherwise."""
     vectors = tuple(np.load(DATA / "first_vectors.npy"))
-    monkeypatch.setattr("symfpu.dynamics.alignment._random_frame", lambda count, n, seed: vectors)
+    monkeypatch.setattr("symfpu.dynamics.alignment.random_frame", lambda count, n, seed: vectors)
 
 
 @pytest.mark.usefixtures("same_vectors")
 def test_finished_indices_are_taken_from_their_file(tmp_path):
     file = shutil.copy(DATA / "gali.npz", tmp_path)
-    found = alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, file=file)
+    found = alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, file=file, frames=1)
     assert found.times[-1] == 500.0
     assert found.log10_gali[-1, -1] == pytest.approx(float(FACTS["gali.npz"]["last"]), rel=AMPLITUDE)
 
@@ -91,19 +91,19 @@ def test_indices_of_a_file_without_a_scheme_are_of_the_default(tmp_path):
     """Nor does it hold where its samples are: it is not gone on from to a longer time."""
     file = shutil.copy(DATA / "gali.npz", tmp_path)
     with pytest.raises(InputError, match=r"scheme is blanes_moan6 in it, kahan_li8 here"):
-        alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, scheme="kahan_li8", file=file)
+        alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, scheme="kahan_li8", file=file, frames=1)
     with pytest.raises(InputError, match=r"of version 0\.1, and goes on to its own end only"):
-        alignment_indices(ALPHA, ONE_MODE, AT_REST, 600.0, vectors=3, file=file)
-    named = alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, scheme="blanes_moan6", file=file)
+        alignment_indices(ALPHA, ONE_MODE, AT_REST, 600.0, vectors=3, file=file, frames=1)
+    named = alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, scheme="blanes_moan6", file=file, frames=1)
     assert named.times[-1] == 500.0
 
 
 def test_indices_from_a_machine_that_rounds_otherwise_are_refused(tmp_path, monkeypatch):
     vectors = np.nextafter(np.load(DATA / "first_vectors.npy"), 1)
-    monkeypatch.setattr("symfpu.dynamics.alignment._random_frame", lambda count, n, seed: tuple(vectors))
+    monkeypatch.setattr("symfpu.dynamics.alignment.random_frame", lambda count, n, seed: tuple(vectors))
     file = shutil.copy(DATA / "gali.npz", tmp_path)
     with pytest.raises(InputError, match=r"from a machine that rounds alike, as it is of version 0\.1 \(first vectors is"):
-        alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, file=file)
+        alignment_indices(ALPHA, ONE_MODE, AT_REST, 500.0, vectors=3, file=file, frames=1)
 
 
 def test_members_of_a_family_load():

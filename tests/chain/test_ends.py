@@ -30,6 +30,17 @@ ARGUMENTS = {
 RESULTS = {"AlignmentIndices", "Family", "LindstedtSeries", "Orbit", "ProfileInvariance", "RefinedTorus", "ShotOrbit"}
 RESULTS |= {"RingTorus", "TravellingSeries", "BirkhoffForm", "Twist", "TwistAtRest", "FrequencyAnalysis", "RefinedRingTorus"}
 RESULTS |= {"NormalFrequencySeries"}
+RESULTS |= {
+    "ForetoldIndices",
+    "RingTorus",
+    "TravellingSeries",
+    "BirkhoffForm",
+    "Twist",
+    "TwistAtRest",
+    "FrequencyAnalysis",
+    "RefinedRingTorus",
+}
+RESULTS |= {"ForetoldIndices"}
 TAKE_RINGS = {"travelling_waves", "integrate", "alignment_indices", "seconds_needed"}
 TAKE_RINGS |= {"toda_gaps", "toda_invariants", "toda_torus", "travelling_breather"}
 TAKE_RINGS |= {"packet_state", "particle_state", "random_state", "read_state"}

@@ -51,7 +51,7 @@ def run(capsys, *argv):
 
 
 def test_json_has_slopes_and_dimension(capsys, kept):
-    code, out, err = run(capsys, "gali", str(kept), "--time", "5e4", "--vectors", "4", "--json")
+    code, out, err = run(capsys, "gali", str(kept), "--time", "5e4", "--vectors", "4", "--frames", "1", "--json")
     record = json.loads(out)
     assert (code, err) == (0, "")
     assert list(record["slopes"]) == ["2", "3", "4"]

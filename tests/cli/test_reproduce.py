@@ -129,7 +129,7 @@ def test_full_says_how_long_and_goes_on_where_it_was_stopped(full, monkeypatch, 
     assert min(fractions) > 0.9 * reached > 0.3
     row = printed_row("Fig. 9")
     start = fpu_trajectory(row.chain, packet_amplitudes(row.chain, (1,), row.energy))
-    whole = alignment_indices(row.chain, *start, LONG, vectors=7, step=dimensions.GALI_STEP)
+    whole = alignment_indices(row.chain, *start, LONG, vectors=7, step=dimensions.GALI_STEP, frames=1)
     rows = [line for line in csv.reader((tmp_path / "fig9d.csv").read_text().splitlines()) if line[0] == "G_7"]
     assert [float(value) for _, _, value in rows] == whole.log10_gali[:, -1].tolist()
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.alignment import _random_frame, alignment_indices
+from symfpu.dynamics.alignment import alignment_indices, random_frame
 from symfpu.dynamics.dimension import expected_steps
 from symfpu.dynamics.schemes import particle_scheme
 from symfpu.dynamics.tangent import tangent_steps
@@ -44,10 +44,10 @@ def two_torus():
 @cache
 def found(name):
     if name == "one mode":  # beta, mode N/2: it excites no other
-        return alignment_indices(BETA, [0, 0, 0, 0.3, 0, 0, 0], np.zeros(7), 1e5)
+        return alignment_indices(BETA, [0, 0, 0, 0.3, 0, 0, 0], np.zeros(7), 1e5, frames=1)
     if name == "two modes":
-        return alignment_indices(ALPHA, *two_torus(), 1e5, vectors=14)
-    return alignment_indices(BETA, *chaotic_state(3), 1e3, step=0.1)
+        return alignment_indices(ALPHA, *two_torus(), 1e5, vectors=14, frames=1)
+    return alignment_indices(BETA, *chaotic_state(3), 1e3, step=0.1, frames=1)
 
 
 def chaotic_state(seed=1):
@@ -99,7 +99,7 @@ def test_a_chaotic_orbit_decays_exponentially():
     assert 0.15 < indices.lyapunov[-1] < 0.25
     assert indices.energy_error < ENERGY_STEPS
     assert indices.dimension().verdict == "chaotic"
-    other = alignment_indices(BETA, *chaotic_state(3), 1e3, step=0.1, seed=5)
+    other = alignment_indices(BETA, *chaotic_state(3), 1e3, step=0.1, seed=5, frames=1)
     assert other.lyapunov[-1] == pytest.approx(indices.lyapunov[-1], abs=LYAPUNOV)
     regular = found("one mode")
     assert regular.lyapunov[-1] == pytest.approx(np.log(1e5) / 1e5, rel=REGULAR_EXPONENT)
@@ -107,7 +107,7 @@ def test_a_chaotic_orbit_decays_exponentially():
 
 def test_nothing_is_concluded_before_vectors_have_grown():
     """Before the twist shows indices are constant on every torus; the dimension is not 'two or more'."""
-    indices = alignment_indices(BETA, [0, 0, 0, 0.01, 0, 0, 0], np.zeros(7), 2e3)
+    indices = alignment_indices(BETA, [0, 0, 0, 0.01, 0, 0, 0], np.zeros(7), 2e3, frames=1)
     assert (indices.dimension().verdict, indices.dimension().value) == ("undecided", None)
     assert "longer" in indices.dimension().reason
 
@@ -118,10 +118,10 @@ def test_volumes_agree_with_a_hundred_digits_where_doubles_underflow_their_accur
     The time is so short that rounding in the orbit grows by e^10 only.
     """
     T, step, steps, vectors = 104.0, 0.25, 16, 9
-    indices = alignment_indices(BETA, *chaotic_state(), T, step=step, samples=64, vectors=vectors)
+    indices = alignment_indices(BETA, *chaotic_state(), T, step=step, samples=64, vectors=vectors, frames=1)
     eye, (Q, P) = np.eye(14), chaotic_state()
     with mpmath.workdps(100):
-        V = mpmath.matrix(np.hstack(_random_frame(vectors, 7, 0)).T.tolist())
+        V = mpmath.matrix(np.hstack(random_frame(vectors, 7, 0)).T.tolist())
         for _ in range(round(T / step) // steps):
             Q, P, dQ, dP = tangent_steps(BETA, Q, P, eye[:, :7], eye[:, 7:], step, steps)
             V = mpmath.matrix(np.hstack([dQ, dP]).T.tolist()) * V
@@ -137,7 +137,7 @@ def test_volumes_agree_with_a_hundred_digits_where_doubles_underflow_their_accur
 @pytest.mark.parametrize("block", [1, 7, 40])
 def test_the_length_of_blocks_does_not_matter(block):
     arguments = (BETA, *chaotic_state(), 100.0)
-    one, other = (alignment_indices(*arguments, samples=64, block=b) for b in (16, block))
+    one, other = (alignment_indices(*arguments, samples=64, block=b, frames=1) for b in (16, block))
     assert other.log10_gali == pytest.approx(one.log10_gali, abs=SAME_VOLUME)
     assert other.lyapunov == pytest.approx(one.lyapunov, abs=SAME_VOLUME)
 
@@ -152,14 +152,14 @@ def test_times_are_whole_steps_even_in_the_logarithm():
 
 def test_progress_is_told():
     told = []
-    alignment_indices(BETA, *chaotic_state(), 100.0, samples=64, progress=lambda label, done: told.append(done))
+    alignment_indices(BETA, *chaotic_state(), 100.0, samples=64, progress=lambda label, done: told.append(done), frames=1)
     assert told == sorted(told)
     assert told[-1] == 1.0
 
 
 def test_an_orbit_over_the_barrier_of_the_alpha_model_is_lost():
     with pytest.raises(SymfpuError, match="the orbit is lost before t = "):
-        alignment_indices(Chain(8, alpha=1), [3.0] * 7, [0.0] * 7, 1000.0)
+        alignment_indices(Chain(8, alpha=1), [3.0] * 7, [0.0] * 7, 1000.0, frames=1)
 
 
 @pytest.mark.parametrize(
@@ -183,7 +183,7 @@ def test_an_orbit_over_the_barrier_of_the_alpha_model_is_lost():
 def test_bad_input_is_refused(changes, name):
     arguments = {"Q": [0.1] * 7, "P": [0.0] * 7, "T": 100.0} | changes
     with pytest.raises(InputError, match=rf"^{name} = "):
-        alignment_indices(BETA, **arguments)
+        alignment_indices(BETA, **arguments, frames=1)
 
 
 @pytest.mark.parametrize(("name", "steps"), [("blanes_moan6", (0.4, 0.2)), ("kahan_li8", (0.4, 0.2)), ("aba864", (0.2, 0.1))])
@@ -191,7 +191,7 @@ def test_indices_by_another_scheme_differ_by_its_error(name, steps):
     """From those of the scheme of order 8 with short steps; the difference falls as step^order of the scheme."""
 
     def indices(step, scheme):
-        run = alignment_indices(BETA, 0.1 * np.ones(7), np.zeros(7), 100.0, step=step, scheme=scheme, samples=64, vectors=4)
+        run = alignment_indices(BETA, 0.1 * np.ones(7), np.zeros(7), 100.0, step=step, scheme=scheme, samples=64, vectors=4, frames=1)
         return np.append(run.log10_gali[-1], run.lyapunov[-1])
 
     exact = indices(0.05, "kahan_li8")
@@ -203,10 +203,10 @@ def test_indices_by_another_scheme_differ_by_its_error(name, steps):
 
 def test_the_default_is_blanes_and_moan_and_the_result_names_its_scheme():
     run = BETA, chaotic_state()[0], np.zeros(7), 100.0
-    one, other = (alignment_indices(*run, samples=64, **scheme) for scheme in ({}, {"scheme": "blanes_moan6"}))
+    one, other = (alignment_indices(*run, samples=64, **scheme, frames=1) for scheme in ({}, {"scheme": "blanes_moan6"}))
     assert np.array_equal(one.log10_gali, other.log10_gali)
     assert one.scheme.name == other.scheme.name == "blanes_moan6"
-    assert alignment_indices(*run, samples=64, scheme="aba864").scheme.name == "aba864"
+    assert alignment_indices(*run, samples=64, scheme="aba864", frames=1).scheme.name == "aba864"
 
 
 def test_bad_decades_are_refused():
@@ -215,14 +215,14 @@ def test_bad_decades_are_refused():
 
 
 def test_an_orbit_that_loses_its_energy_shows_no_dimension():
-    coarse = alignment_indices(BETA, *chaotic_state(3), 500.0, vectors=3, step=0.6)
+    coarse = alignment_indices(BETA, *chaotic_state(3), 500.0, vectors=3, step=0.6, frames=1)
     assert coarse.energy_error > 0.1
     assert coarse.dimension().value is None
     assert "take a shorter step than 0.6" in coarse.dimension().reason
 
 
 def test_two_particles_have_fewer_vectors():
-    assert alignment_indices(Chain(2, beta=1), [0.5], [0.0], 200.0).vectors == 2
+    assert alignment_indices(Chain(2, beta=1), [0.5], [0.0], 200.0, frames=1).vectors == 2
 
 
 @pytest.mark.parametrize(
@@ -232,4 +232,4 @@ def test_two_particles_have_fewer_vectors():
 def test_absurd_runs_are_refused(change, name):
     arguments = {"chain": Chain(4, beta=1), "Q": [0.1, 0.0, 0.0], "P": [0.0] * 3, "T": 200.0}
     with pytest.raises(InputError, match=rf"^{name} = "):
-        alignment_indices(**arguments | change)
+        alignment_indices(**arguments | change, frames=1)

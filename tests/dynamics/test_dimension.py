@@ -45,7 +45,7 @@ def verdicts(found, longest):
 @cache
 def mixed(seed):
     x, p = state(31, 0.3, seed)
-    return alignment_indices(MIXED, MIXED.modes(x), MIXED.modes(p), 3e5, vectors=2, samples=600)
+    return alignment_indices(MIXED, MIXED.modes(x), MIXED.modes(p), 3e5, vectors=2, samples=600, frames=1)
 
 
 def made(growth, steps, vectors=5, N=16):
@@ -58,7 +58,7 @@ def made(growth, steps, vectors=5, N=16):
 @pytest.mark.parametrize(("seed", "T"), [(0, 1e4), (1, 3e4), (2, 3e3)])
 def test_a_chaotic_orbit_is_not_called_regular_before_its_chaos_shows(seed, T, frame):
     x, p = state(31, 0.3, seed)
-    found = alignment_indices(MIXED, MIXED.modes(x), MIXED.modes(p), T, vectors=2, seed=frame).dimension()
+    found = alignment_indices(MIXED, MIXED.modes(x), MIXED.modes(p), T, vectors=2, seed=frame, frames=1).dimension()
     assert found.verdict == "undecided"
     assert "take a longer time" in found.reason
 
@@ -85,7 +85,7 @@ def test_a_vector_that_has_grown_by_e_to_the_58_is_that_of_a_chaotic_orbit():
 )
 def test_no_word_is_taken_back(chain, scale, seed):
     """Regular and chaotic states, among them one that grows as t for more than three decades and is chaotic after all (N = 4, seed 3)."""
-    found = alignment_indices(chain, *state(chain.N - 1, scale, seed), 1e5, samples=600, vectors=6)
+    found = alignment_indices(chain, *state(chain.N - 1, scale, seed), 1e5, samples=600, vectors=6, frames=1)
     for vectors in (2, 4, 6):
         said = verdicts(replace(found, log10_gali=found.log10_gali[:, : vectors - 1]), 1e5)
         words = [word for word in said if word != "undecided"]
@@ -104,7 +104,7 @@ def test_no_word_is_taken_back(chain, scale, seed):
     ],
 )
 def test_periodic_orbits_are_regular_in_every_frame(chain, Q, P, frame):
-    found = alignment_indices(chain, Q, P, 1e5, step=0.2, vectors=2, seed=frame)
+    found = alignment_indices(chain, Q, P, 1e5, step=0.2, vectors=2, seed=frame, frames=1)
     assert found.dimension().verdict == "regular, dimension 1"
     assert set(verdicts(found, 1e5)) <= {"undecided", "regular, dimension 1"}
 
@@ -112,7 +112,7 @@ def test_periodic_orbits_are_regular_in_every_frame(chain, Q, P, frame):
 @pytest.mark.parametrize("seed", [0, 2])
 def test_a_torus_of_full_dimension_is_believed_after_four_decades(seed):
     chain = Chain(4, beta=1)
-    found = alignment_indices(chain, *state(3, 0.5, seed), 2e5, samples=600)
+    found = alignment_indices(chain, *state(3, 0.5, seed), 2e5, samples=600, frames=1)
     assert until(found, 2e4).dimension().verdict == "undecided"
     assert found.dimension().verdict == "regular, dimension 3"
 
@@ -162,3 +162,23 @@ def test_linear_growth_is_counted_back_from_the_end():
     assert linear_decades(TIMES, np.log(np.maximum(TIMES, 1e4))) == pytest.approx(3.0, abs=LATE_DECADES)
     assert linear_decades(TIMES, (1 + 2 * ODDNESS) * np.log(TIMES)) == 0.0
     assert FULL_DECADES > LOW_DECADES
+
+
+@pytest.mark.parametrize(
+    ("steps", "growth", "supported"),
+    [
+        ([0, -1, -1, -0.5], 1.0, 2),  # G_2, G_3, G_4 have settled, G_5 has not
+        ([-1, -0.5, -0.5, -0.5], 1.0, 1),
+        ([0, 0, -0.5, -1], 1.0, None),
+        ([0, -1, -1, -0.5], 0.3, None),  # before vectors grow indices say nothing
+    ],
+)
+def test_an_undecided_orbit_has_a_best_supported_dimension(steps, growth, supported):
+    found = made(growth * np.log(TIMES), steps).dimension()
+    assert (found.verdict, found.value, found.supported) == ("undecided", None, supported)
+
+
+def test_a_decided_dimension_is_the_supported_one():
+    found = made(np.log(TIMES), [0, -1, -1, -1]).dimension()
+    assert found.supported == found.value == 2
+    assert found.frames == (2,)

@@ -148,7 +148,7 @@ def test_a_step_across_the_wall_is_stopped_with_time_and_bond():
 @pytest.mark.long
 def test_an_alignment_index_across_the_wall_is_lost_with_time_and_bond():
     with pytest.raises(OrbitLost, match="in bond 2") as caught:
-        alignment_indices(LJ, *kicked(LJ, 5.0), 1000.0, step=0.3)
+        alignment_indices(LJ, *kicked(LJ, 5.0), 1000.0, step=0.3, frames=1)
     assert (caught.value.bond, caught.value.time) == (2, 0.3)
 
 
@@ -187,8 +187,8 @@ def test_a_toda_chain_is_regular_where_that_of_alpha_is_chaotic():
     draws = np.random.default_rng(0)
     state = draws.normal(scale=1.6, size=5), draws.normal(scale=1.6 / 3, size=5)
     run = {"T": 1e4, "vectors": 2, "step": 0.125}
-    regular = alignment_indices(Chain(6, potential="toda:1/4"), *state, **run)
-    chaotic = alignment_indices(Chain(6, alpha="1/4"), *state, **run)
+    regular = alignment_indices(Chain(6, potential="toda:1/4"), *state, **run, frames=1)
+    chaotic = alignment_indices(Chain(6, alpha="1/4"), *state, **run, frames=1)
     assert chaotic.dimension().verdict == "chaotic"
     assert chaotic.lyapunov[-1] * run["T"] > 2 * np.log(run["T"])
     assert regular.lyapunov[-1] * run["T"] < np.log(run["T"])

@@ -81,7 +81,7 @@ TODA_TORI = [(5, (1,), ("1.210817",), 20, 4e4), (6, (1, -2), ("1.02", "1.766692"
 def test_a_torus_of_waves_has_as_many_dimensions_as_seeds(N, seeds, omega, order, T):
     torus = travelling_torus(travelling_waves(ring(N, potential="toda:1"), seeds, omega, order))
     start = torus.mode_coordinates(0.0), torus.mode_momenta(0.0)
-    found = alignment_indices(torus.chain, *start, T, vectors=4, step=0.2)
+    found = alignment_indices(torus.chain, *start, T, vectors=4, step=0.2, frames=1)
     assert found.dimension().verdict == f"regular, dimension {len(seeds)}"
     assert found.energy_error < ENERGY_LONG_STEPS
 
@@ -95,28 +95,28 @@ def test_a_chaotic_orbit_of_a_ring_keeps_the_volume_of_its_phase_space():
     carried(frame, 5000, 10, 10, np.eye(8), diagonal, np.zeros(8))
     assert diagonal[-1] < -50
     assert abs(diagonal.sum()) < SAME_VOLUME
-    found = alignment_indices(chain, *state, 500.0, vectors=2, step=0.1)
+    found = alignment_indices(chain, *state, 500.0, vectors=2, step=0.1, frames=1)
     assert found.dimension().verdict == "chaotic"
 
 
 def test_a_run_goes_on_to_the_last_bit(tmp_path):
     chain, path = ring(5, potential="toda:1/2"), tmp_path / "run"
     state, run = drawn(chain, 0.2), {"vectors": 3, "samples": 64}
-    alignment_indices(chain, *state, 200.0, file=path, **run)
-    again = alignment_indices(chain, *state, 200.0, file=path, **run)
-    alone = alignment_indices(chain, *state, 200.0, **run)
+    alignment_indices(chain, *state, 200.0, file=path, **run, frames=1)
+    again = alignment_indices(chain, *state, 200.0, file=path, **run, frames=1)
+    alone = alignment_indices(chain, *state, 200.0, **run, frames=1)
     assert np.array_equal(again.log10_gali, alone.log10_gali)
     with pytest.raises(InputError, match="ends is periodic in it, fixed here"):
-        alignment_indices(Chain(5, potential="toda:1/2"), [0.1, 0, 0, 0], np.zeros(4), 200.0, file=path, **run)
+        alignment_indices(Chain(5, potential="toda:1/2"), [0.1, 0, 0, 0], np.zeros(4), 200.0, file=path, **run, frames=1)
 
 
 def test_what_rings_do_not_have_is_refused():
     chain = ring(6, alpha="1/4")
     with pytest.raises(InputError, match="vectors"):
-        alignment_indices(chain, *drawn(chain, 0.1), 200.0, vectors=11)
+        alignment_indices(chain, *drawn(chain, 0.1), 200.0, vectors=11, frames=1)
     with pytest.raises(InputError, match=r"Q_\(-q\) = conj Q_q"):
-        alignment_indices(chain, np.arange(5.0), np.zeros(5), 200.0)
+        alignment_indices(chain, np.arange(5.0), np.zeros(5), 200.0, frames=1)
     p = np.array([-3.0, 0, 0, 0, 0, 3.0])
     with pytest.raises(OrbitLost, match="bond 0"):
-        alignment_indices(chain, np.zeros(5), chain.modes(p), 200.0)
+        alignment_indices(chain, np.zeros(5), chain.modes(p), 200.0, frames=1)
     assert 0 < seconds_needed(chain, 1e3, vectors=2) < 60

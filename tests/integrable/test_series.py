@@ -131,5 +131,5 @@ def test_alignment_indices_count_the_open_gaps(seeds, actions, time):
         state = tuple(np.asarray(part, dtype=float) for part in toda_torus(chain, seeds, actions=actions).state())
     opened = int((np.asarray(toda_gaps(chain, *state)) > math.sqrt(EPS)).sum())
     assert opened == (len(seeds) or 4)
-    found = alignment_indices(chain, *state, time).dimension()
+    found = alignment_indices(chain, *state, time, frames=1).dimension()
     assert (found.verdict, found.value) == (f"regular, dimension {opened}", opened)

@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 
+from symfpu.action_angle.foretold import foretold_indices
 from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
@@ -154,8 +155,19 @@ def indices():
 
 
 @cache
+def foretold():
+    return foretold_indices(one_of_five(), np.geomspace(1, 1e6, 200), vectors=4)
+
+
+@cache
+def integrated():
+    """The same frame, for a short time: a picture shows both."""
+    return alignment_indices(one_of_five().chain, *one_of_five().state(), 300, vectors=4, step=0.2, samples=64, frames=1)
+
+
+@cache
 def short_indices():
-    return alignment_indices(one_mode().chain, *one_mode().state(), 200, vectors=2)
+    return alignment_indices(one_mode().chain, *one_mode().state(), 200, vectors=2, frames=1)
 
 
 @cache

@@ -51,6 +51,7 @@ PICTURES = {
     "multipliers": lambda ax: plots.multipliers(cases.stable_floquet(), ax),
     "multipliers-unstable": lambda ax: plots.multipliers(cases.unstable().members[-1].multipliers, ax),
     "alignment": lambda ax: plots.alignment(cases.indices(), ax),
+    "foretold": lambda ax: plots.foretold(cases.foretold(), ax, observed=cases.integrated()),
     "lyapunov": lambda ax: plots.lyapunov(cases.indices(), ax),
     "propagation": lambda ax: plots.propagation(cases.sequence(), ax, N=32),
     "proof": lambda ax: plots.propagation(cases.proof(), ax),

@@ -176,7 +176,7 @@ SERIES = lindstedt(SYMBOLIC, (1,), order=2)
 ONES = np.ones(3)
 PUBLIC = {
     "accelerations": lambda: SYMBOLIC.accelerations(ONES),
-    "alignment_indices": lambda: symfpu.alignment_indices(SYMBOLIC, ONES, ONES, T=1.0),
+    "alignment_indices": lambda: symfpu.alignment_indices(SYMBOLIC, ONES, ONES, T=1.0, frames=1),
     "B": lambda: SYMBOLIC.B(1, 1, 2),
     "normal_frequency_series": lambda: symfpu.normal_frequency_series(SYMBOLIC, (1,), 2, 2),
     "breather_at_amplitude": lambda: symfpu.breather_at_amplitude(SYMBOLIC, 1, 0.1),
