@@ -623,3 +623,8 @@ NORMAL_MULTIPLIER = 1e-11
 
 # What a frequency of a long regular orbit is known to: the integrator's phase.
 EXACT_LINE = 1e-13
+# energies of the leading terms beside those of a torus of specific energy 1e-7: small divisors
+# make the next terms larger than lambda
+LEADING_ORDER_SLACK = 0.05
+# the power of N after those that a formula keeps, at N in the hundreds and thousands
+NEXT_IN_LENGTH = 0.02
