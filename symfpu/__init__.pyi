@@ -149,6 +149,7 @@ from symfpu.localization.laws import packet_groups as packet_groups
 from symfpu.localization.laws import packet_parameter as packet_parameter
 from symfpu.localization.laws import profile_law as profile_law
 from symfpu.localization.laws import rounding_floor as rounding_floor
+from symfpu.localization.packet_sums import packet_energies as packet_energies
 from symfpu.localization.profiles import ProfileDistance as ProfileDistance
 from symfpu.localization.profiles import fpu_trajectory as fpu_trajectory
 from symfpu.localization.profiles import normalised_averages as normalised_averages

@@ -637,3 +637,8 @@ FORETOLD = 1e-7
 
 # Normal directions as modes at rest are off by their coupling, some percent to a third in these volumes.
 FORETOLD_AT_REST = 0.6
+# energies of the leading terms beside those of a torus of specific energy 1e-7: small divisors
+# make the next terms larger than lambda
+LEADING_ORDER_SLACK = 0.05
+# the power of N after those that a formula keeps, at N in the hundreds and thousands
+NEXT_IN_LENGTH = 0.02

@@ -210,6 +210,7 @@ PUBLIC = {
     "natural_packet": lambda: symfpu.natural_packet(SYMBOLIC, 0.1),
     "packet_amplitudes": lambda: symfpu.packet_amplitudes(SYMBOLIC, (1, 2), 0.1),
     "packet_groups": lambda: symfpu.packet_groups(SYMBOLIC, 2),
+    "packet_energies": lambda: symfpu.packet_energies(SYMBOLIC, 2, 0.1),
     "packet_parameter": lambda: symfpu.packet_parameter(SYMBOLIC, 2, 0.1),
     "periodic_orbit": lambda: symfpu.periodic_orbit(SYMBOLIC, 1, "0.4"),
     "positions": lambda: SYMBOLIC.positions(ONES),
