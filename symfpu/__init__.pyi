@@ -177,6 +177,8 @@ from symfpu.proofs.leading import lemma_holds as lemma_holds
 from symfpu.proofs.sweeps import Sweep as Sweep
 from symfpu.proofs.sweeps import SweepIncomplete as SweepIncomplete
 from symfpu.proofs.sweeps import sweep_propagation as sweep_propagation
+from symfpu.proofs.theorem import RuleForAllN as RuleForAllN
+from symfpu.proofs.theorem import prove_for_all_N as prove_for_all_N
 
 # files, and how to cite
 from symfpu.bundles.bundle import Bundle as Bundle

@@ -67,6 +67,7 @@ from symfpu.paper.corrected import TimeIsUp
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.proofs.leading import leading_terms
 from symfpu.proofs.sweeps import Sweep, SweepCase, SweepIncomplete
+from symfpu.proofs.theorem import prove_for_all_N
 from symfpu.proofs.verify import CertificateError
 from symfpu.refinement.tori import NoTorus, refine
 from symfpu.series.expandable import expandable_term
@@ -247,6 +248,7 @@ RESULTS = {
     "ResummedTorus": (lambda _: resum(torus(30)), lambda x: (x.disagreement, motion(x))),
     "RootCertificate": (lambda _: torus(30).certificate, lambda x: x.radius),
     "ShotOrbit": (shot, lambda x: (motion(x), x.iterations)),
+    "RuleForAllN": (lambda _: prove_for_all_N("beta", 1, 1), lambda x: x.certificate()),
     "Sweep": (lambda _: sweep(), lambda x: x.exceptions),
     "TorusDimension": (lambda _: indices().dimension(), lambda x: x.weights),
     "TodaInvariants": (lambda _: toda_invariants(PAIR, *fpu_trajectory(PAIR, {1: "0.1"})), lambda x: (x.gaps, x.actions, x.frequencies)),

@@ -224,6 +224,12 @@ def product_modes(N: int, modes: tuple[int, ...]) -> frozenset[int]:
 
     For B this is Eq. wg of Appendix B.
     """
+    return frozenset(q for q, _ in product_couplings(N, modes))
+
+
+@lru_cache(maxsize=1 << 18)
+def product_couplings(N: int, modes: tuple[int, ...]) -> tuple[tuple[int, int], ...]:
+    """The modes q whose coupling with these is not zero, and B_q m1 m2, C_q m1 m2 m3, ...."""
     first, *others = modes
     counts = {first: 1}  # of cosines of the bonds, by wave number
     for m in others:
@@ -235,4 +241,4 @@ def product_modes(N: int, modes: tuple[int, ...]) -> frozenset[int]:
                 folded = fold(total, N)
                 longer[folded] = longer.get(folded, 0) + sign * count
         counts = longer
-    return frozenset(q for q, count in counts.items() if count and 0 < q < N)
+    return tuple((q, count) for q, count in counts.items() if count and 0 < q < N)

@@ -28,14 +28,20 @@ from symfpu.cli.terminal import (
     whole,
     whole_numbers,
 )
+from symfpu.cli.theorems import (
+    prove_theorem,
+    refuse_case,
+    refuse_theorem,
+    require_case,
+)
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
+from symfpu.proofs.checkers import check
 from symfpu.proofs.sweeps import sweep_propagation
 from symfpu.proofs.verify import CertificateError
-from symfpu.proofs.verify import verify as verify_certificate
 from symfpu.reports.sweep import sweep_markdown
 
 MODELS = ("alpha", "beta", "alpha+beta")
@@ -97,14 +103,38 @@ def _set_of(modes: Iterable[int]) -> str:
     epilog="Example: symfpu prove -N 8 --model beta --seeds 1,4 --order 3 -o proof.json"
 )
 def prove(
-    bonds: BondsOption,
-    seeds: SeedsOption,
     order: OrderOption,
+    bonds: Annotated[
+        str | None,
+        typer.Option(
+            "-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"
+        ),
+    ] = None,
+    seeds: Annotated[
+        str | None,
+        typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,..."),
+    ] = None,
     model: SingleModelOption = None,
     potential: PotentialOption = None,
     points: Annotated[
-        str, typer.Option(help="Independent primes and random frequencies.")
-    ] = "1",
+        str | None,
+        typer.Option(help="Independent primes and random frequencies.  Default: 1."),
+    ] = None,
+    all_N: Annotated[
+        bool, typer.Option("--all-N", help="Prove it for every N and all sets of S seeds.")
+    ] = False,
+    seeds_number: Annotated[
+        str | None,
+        typer.Option(help="With --all-N: how many seeds, 1 to 3.", metavar="S"),
+    ] = None,
+    log: Annotated[
+        str | None,
+        typer.Option(
+            "--file",
+            help="With --all-N: keep decided flats here; an interrupted proof goes on.",
+            metavar="FILE",
+        ),
+    ] = None,
     output: Annotated[
         str | None,
         typer.Option(
@@ -113,14 +143,21 @@ def prove(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Prove or refute the propagation rule by exact arithmetic.
+    """Prove or refute the propagation rule by exact arithmetic, for one N or for all.
 
     Exit code 1 where it stays undecided.
     """
+    file = None if output is None else output_file(path_named("output", output))
+    if all_N:
+        refuse_case({"N": bonds, "seeds": seeds, "potential": potential, "points": points})
+        kept = None if log is None else path_named("file", log)
+        theorem = prove_theorem(model, seeds_number, order, kept, file, as_json)
+        raise typer.Exit(1 if theorem.verdict == "undecided" else 0)
+    refuse_theorem({"seeds_number": seeds_number, "file": log})
+    bonds, seeds = require_case(bonds, seeds)
     N = whole("N", bonds)
     chosen = whole_numbers("seeds", seeds)
     highest = whole("order", order)
-    file = None if output is None else output_file(path_named("output", output))
     with progress_bar("recursion modulo a prime") as advance:
         proof = prove_propagation(
             N,
@@ -128,7 +165,7 @@ def prove(
             highest,
             model=model,
             potential=potential,
-            points=whole("points", points),
+            points=whole("points", points or "1"),
             progress=advance,
         )
         if file is not None:
@@ -168,11 +205,12 @@ def verify(
 ) -> None:
     """Check a certificate by another route.
 
-    Mode space, the tensors B and C, Python's integers, nothing of the prover.
+    Mode space, the tensors B and C, Python's integers, nothing of the prover. Of theorems
+    for every N the flats are found again.
     """
     path = path_named("certificate", file)
     try:
-        checked = verify_certificate(path)
+        checked = check(path)
     except CertificateError as error:
         raise InputError(
             "certificate", str(path), "one written by symfpu prove, unaltered", str(error)

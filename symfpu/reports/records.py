@@ -24,6 +24,7 @@ from symfpu.localization.laws import ProfileLine
 from symfpu.localization.profiles import ProfileDistance
 from symfpu.numbers.arithmetic import text
 from symfpu.proofs.certificates import PropagationProof
+from symfpu.proofs.theorem import RuleForAllN
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.dynamics import alignment_record, orbit_record
@@ -115,6 +116,20 @@ def _proof_record(proof: PropagationProof) -> Json:
     return found
 
 
+def _theorem_record(proof: RuleForAllN) -> Json:
+    """The theorem, and every family of seed sets that it excepts."""
+    return {
+        "model": proof.model,
+        "seeds_number": proof.seeds_number,
+        "order": proof.order,
+        "verdict": proof.verdict,
+        "theorem": proof.theorem,
+        "flats": proof.flats,
+        "exceptional_flats": [plain(vars(flat)) for flat in proof.exceptional_flats],
+        "gaps": [[found.flat.N, *found.flat.seeds] for found in proof.gaps],
+    }
+
+
 def _bundle_record(bundle: Bundle) -> Json:
     """What the file holds, and what made it."""
     return record(bundle.result) | {
@@ -148,6 +163,7 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (Orbit, orbit_record),
     (AlignmentIndices, alignment_record),
     (PropagationProof, _proof_record),
+    (RuleForAllN, _theorem_record),
     (ProfileLine, _line_record),
     (ProfileDistance, _distance_record),
     (Bundle, _bundle_record),

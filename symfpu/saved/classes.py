@@ -28,7 +28,10 @@ from symfpu.proofs.certificates import (
     Vanishing,
     Witness,
 )
+from symfpu.proofs.every_length import DecidedFlat
+from symfpu.proofs.flats import Flat
 from symfpu.proofs.sweeps import Sweep, SweepCase
+from symfpu.proofs.theorem import RuleForAllN
 from symfpu.series.sample import EnergyChanges, FrequencyChanges, SampledSeries
 from symfpu.series.series import ResiduePoint
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
@@ -62,6 +65,7 @@ RESULTS: tuple[type[Any], ...] = (
     PropagationProof,
     Recurrence,
     RootCertificate,
+    RuleForAllN,
     SampledSeries,
     Sweep,
     TodaInvariants,
@@ -71,7 +75,9 @@ RESULTS: tuple[type[Any], ...] = (
 )
 # what they hold
 PARTS: tuple[type[Any], ...] = (
+    DecidedFlat,
     Edges,
+    Flat,
     LargestTerm,
     NormalDivisor,
     NormalMode,

@@ -17,7 +17,7 @@ WITHOUT = {"Chain": "an argument", "Evaluator": "a program", "ExpandableTerm": "
 WITHOUT |= dict.fromkeys(("NormalMode", "ParametricResonance", "SpectralLine"), "a row of a table")
 CASES = {name: make for name, (make, _) in RESULTS.items() if hasattr(getattr(symfpu, name.partition(",")[0], object), "record")}
 CASES = {name: make for name, make in CASES.items() if name != "Bundle"}  # that of what it holds: below
-QUICK = {"QTorus", "Event", "Sweep", "ProfileLine", "ProfileDistance", "PropagationProof", "Recurrence", "LeadingTerm"}
+QUICK = {"QTorus", "Event", "Sweep", "ProfileLine", "ProfileDistance", "PropagationProof", "RuleForAllN", "Recurrence", "LeadingTerm"}
 FORMS = {
     "frequencies": str,
     "amplitudes": str,

@@ -33,7 +33,7 @@ WITHOUT = {
     "SpectralLine": "part of FrequencyAnalysis",
     "TwistAtRest": "exact numbers of a field, made anew",
 }
-QUICK = {"QTorus", "Event", "Sweep", "ProfileLine", "ProfileDistance", "PropagationProof", "Recurrence", "ShotOrbit"}
+QUICK = {"QTorus", "Event", "Sweep", "ProfileLine", "ProfileDistance", "PropagationProof", "RuleForAllN", "Recurrence", "ShotOrbit"}
 SAVED = [name for name in CASES if name.partition(",")[0] in public_classes() - set(WITHOUT)]
 
 

@@ -1,0 +1,485 @@
+"""Independent checker of the theorem for every N: Python integers and fractions only.
+
+It finds the hyperplanes m.q = 2 w N again, shows that the flats of the certificate are all there
+are, and decides the representative of each once more: by the signs of the products of couplings,
+by residues that the recursion of `verify` computes again, or by couplings that are zero. It
+shares no code with the prover and imports nothing but the standard library and the checker of
+certificates of one N.
+"""
+
+import json
+import re
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import combinations, pairwise, product
+from math import gcd
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from symfpu.proofs.verify import (
+    LARGEST_FILE,
+    MODELS,
+    READING_ERRORS,
+    Budget,
+    Case,
+    CertificateError,
+    Point,
+    Recursion,
+    check_digest,
+    check_point,
+    coupled_sets,
+    couplings,
+    need,
+    propagation_rule,
+)
+
+FORMAT = "symfpu rule for all N certificate"
+KEYS = (
+    "digest exceptions flats format model order points schema seeds_number undecided "
+    "verdict witnesses"
+)
+MOST_SEEDS = 3
+LARGEST_ORDER = 100
+LARGEST_N = 4096
+
+Json = dict[str, Any]
+Row = tuple[int, ...]
+Powers = tuple[int, ...]
+
+
+def verify(path: str | Path) -> list[str]:
+    """Lines that say what was checked, the theorem first.
+
+    Raises CertificateError, with the reason, if the certificate is not right.
+    """
+    try:
+        return check_theorem(read_theorem(Path(path)))
+    except CertificateError:
+        raise
+    except READING_ERRORS as error:
+        raise CertificateError(f"no readable certificate: {error!r:.200}") from None
+
+
+# --- the file
+
+
+def read_theorem(path: Path) -> Json:
+    """The contents, without floats, booleans and minus signs: == and < are exact afterwards."""
+    small = path.stat().st_size <= LARGEST_FILE and path.is_file()
+    need(small, "not a regular file of at most 64 MB")
+    text = path.read_text("ascii", "replace")
+    bare = re.sub(r'"[^"\\]*"', '"', text)
+    strange = re.search(r'[^\s0-9{}\[\],:nul"]|[0-9]{21}', bare)
+    need(not strange, "not JSON of plain strings, null and integers of at most 20 digits")
+    data: Json = json.loads(text)
+    need(data["format"] == FORMAT, "not a theorem for all N")
+    need(data["schema"] == 1, "schema version unknown: this checker supports version 1")
+    once = bare.count(":") == len(data)
+    need(
+        once and " ".join(sorted(data)) == KEYS, "a key is missing, unknown or there twice"
+    )
+    check_digest(data)
+    return data
+
+
+class Theorem(NamedTuple):
+    """What is claimed: the model, how many seeds, the last order."""
+
+    model: str
+    s: int
+    order: int
+
+    def degree(self, k: int) -> int:
+        """How many leaves a term of order k has."""
+        return 1 + k * MODELS[self.model][0]
+
+    def case(self, flat: Row) -> Case:
+        """The representative of a flat as one case."""
+        N, *seeds = flat
+        return Case(N, self.order, seeds, *MODELS[self.model])
+
+
+def read_claim(data: Json) -> Theorem:
+    """Model, number of seeds and order, their sizes bounded."""
+    model, s, order = data["model"], data["seeds_number"], data["order"]
+    fits = model in MODELS and 0 < s <= MOST_SEEDS and 0 < order <= LARGEST_ORDER
+    need(fits, "wrong model, number of seeds or order")
+    return Theorem(model, s, order)
+
+
+def read_flats(data: Json, claim: Theorem) -> list[Row]:
+    """Representatives: N and ascending seeds."""
+    found = [tuple(row) for row in data["flats"]]
+    for N, *seeds in found:
+        need(N <= LARGEST_N and len(seeds) == claim.s, "a representative of wrong size")
+        need(
+            seeds == sorted({q for q in seeds if 0 < q < N}),
+            "seeds are not ascending modes",
+        )
+    return found
+
+
+# --- the flats are all there are
+
+
+def hyperplanes(claim: Theorem) -> list[Row]:
+    """m_1 .. m_s, c of every m.x = c between the corners of 0 < x_1 < .. < x_s < 1.
+
+    c is even, and |m| at most twice the last degree; even in beta.
+    """
+    most = 2 * claim.degree(claim.order)
+    found = set()
+    for m in product(range(-most, most + 1), repeat=claim.s):
+        size = sum(map(abs, m))
+        if 0 < size <= most and (claim.model == "alpha" or size % 2 == 0):
+            corners = [sum(m[claim.s - i :]) for i in range(claim.s + 1)]
+            for c in range(-most, most + 1):
+                if c % 2 == 0 and min(corners) < c < max(corners):
+                    found.add(lowest((*m, c)))
+    return sorted(found)
+
+
+def lowest(row: Row) -> Row:
+    """In lowest terms, the first number that is not zero positive."""
+    shared = gcd(*row)
+    if next(filter(None, row)) < 0:
+        shared = -shared
+    return tuple(c // shared for c in row)
+
+
+def dot(m: Row, v: Row) -> int:
+    """Of the normal of a row with a vector: a value at the end of the row is left out."""
+    return sum(a * b for a, b in zip(m, v, strict=False))
+
+
+def held(rows: list[Row], N: int, seeds: Row) -> int:
+    """Which hyperplanes hold seeds / N, as bits."""
+    bits = 0
+    for i, row in enumerate(rows):
+        if dot(row, seeds) == row[-1] * N:
+            bits |= 1 << i
+    return bits
+
+
+def check_flats(claim: Theorem, flats: list[Row]) -> list[int]:
+    """The flats are all of the arrangement, each once; returns their dimensions.
+
+    The whole simplex is there, each hyperplane, where s = 3 each line, each point on a line: so
+    every intersection that meets the open simplex.
+    """
+    rows = hyperplanes(claim)
+    masks = {held(rows, flat[0], flat[1:]): flat for flat in flats}
+    need(len(masks) == len(flats), "two representatives of one flat")
+    directions = dict(lines(claim, rows, masks))
+    expected = set(directions) | {0}
+    if claim.s > 1:
+        expected |= {1 << i for i in range(len(rows))}
+    points = set(points_on_lines(rows, directions, masks))
+    need(not points & expected, "a point that is a line")
+    missing, more = (expected | points) - set(masks), set(masks) - expected - points
+    need(not missing, f"flats are missing: {len(missing)}")
+    need(not more, f"representatives of no flat: {len(more)}")
+    return [dimension(claim, held(rows, f[0], f[1:]), directions, points) for f in flats]
+
+
+def dimension(claim: Theorem, mask: int, directions: Any, points: set[int]) -> int:
+    """Of a flat, by the hyperplanes that hold it."""
+    if mask in points:
+        return 0
+    if mask in directions:
+        return 1
+    return claim.s if mask == 0 else claim.s - 1
+
+
+def lines(
+    claim: Theorem, rows: list[Row], masks: dict[int, Row]
+) -> Iterator[tuple[int, Row]]:
+    """The flats of dimension one and their directions."""
+    if claim.s == 1:
+        yield 0, (1,)
+    if claim.s == 2:
+        for i, (a, b, _) in enumerate(rows):
+            yield 1 << i, (-b, a)
+    if claim.s == 3:
+        for first, second in combinations(rows, 2):
+            direction = cross(first, second)
+            if any(direction):
+                start, scale = common_point(first, second, direction)
+                if meets_simplex(start, scale, direction):
+                    yield line_mask(rows, start, scale, direction), direction
+
+
+def cross(a: Row, b: Row) -> Row:
+    """Of two normals."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def common_point(a: Row, b: Row, direction: Row) -> tuple[Row, int]:
+    """A point of both planes, as integers over a scale: one coordinate is zero."""
+    zero = next(i for i in range(3) if direction[i])
+    i, j = (zero + 1) % 3, (zero + 2) % 3
+    point = [0, 0, 0]
+    point[i] = a[3] * b[j] - b[3] * a[j]
+    point[j] = a[i] * b[3] - b[i] * a[3]
+    scale = direction[zero]
+    if scale < 0:
+        return tuple(-c for c in point), -scale
+    return tuple(point), scale
+
+
+def meets_simplex(start: Row, scale: int, direction: Row) -> bool:
+    """Whether a line meets 0 < x_1 < .. < x_s < 1: all gaps are positive at some t."""
+    ends, slopes = (0, *start, scale), (0, *direction, 0)
+    low: list[Fraction] = []
+    high: list[Fraction] = []
+    for i in range(len(ends) - 1):
+        gap, slope = ends[i + 1] - ends[i], slopes[i + 1] - slopes[i]
+        if slope == 0 and gap <= 0:
+            return False
+        if slope:
+            (low if slope > 0 else high).append(Fraction(-gap, slope))
+    return not low or not high or max(low) < min(high)
+
+
+def line_mask(rows: list[Row], start: Row, scale: int, direction: Row) -> int:
+    """Which planes hold a line, as bits."""
+    bits = 0
+    for i, row in enumerate(rows):
+        if dot(row, direction) == 0 and dot(row, start) == row[-1] * scale:
+            bits |= 1 << i
+    return bits
+
+
+def points_on_lines(
+    rows: list[Row], directions: dict[int, Row], masks: dict[int, Row]
+) -> Iterator[int]:
+    """The points in which other hyperplanes meet the lines, as hyperplanes that hold them.
+
+    A line is followed from its representative.
+    """
+    known = {flat: mask for mask, flat in masks.items()}
+    for mask, direction in directions.items():
+        need(mask in masks, "a line has no representative")
+        N, *seeds = masks[mask]
+        for row in rows:
+            slope = dot(row, direction)
+            if slope == 0:
+                continue
+            rise = row[-1] * N - dot(row, tuple(seeds))
+            sign = 1 if slope > 0 else -1
+            place = [
+                sign * (q * slope + v * rise) for q, v in zip(seeds, direction, strict=True)
+            ]
+            ends = [0, *place, sign * N * slope]
+            if all(ends[i] < ends[i + 1] for i in range(len(ends) - 1)):
+                shared = gcd(*ends)
+                flat = (ends[-1] // shared, *(c // shared for c in place))
+                need(flat in known, f"a point has no representative: {flat}")
+                yield known[flat]
+
+
+# --- what a representative decides
+
+
+class Signs:
+    """Signs of the products of couplings in u_q[p], where all signs of the harmonic p are +."""
+
+    def __init__(self, case: Case) -> None:
+        self.case, self.factors = case, case.step + 1
+        self.known: dict[Powers, set[tuple[int, int]]] = {}
+        self.coupled: dict[Row, list[tuple[int, int]]] = {}
+
+    def of(self, p: Powers) -> set[tuple[int, int]]:
+        """Modes with the signs +1 and -1 that occur."""
+        if sum(p) == 1:
+            return {(self.case.seeds[p.index(1)], 1)}
+        if (sum(p) - 1) % self.case.step:
+            return set()
+        if p not in self.known:
+            self.known[p] = set(self.products(p))
+        return self.known[p]
+
+    def products(self, p: Powers) -> Iterator[tuple[int, int]]:
+        """Of all ways to share p among the factors."""
+        for parts in shared(p, self.factors):
+            for chosen in product(*map(self.of, parts)):
+                modes, sign = [], 1
+                for m, s in chosen:
+                    modes.append(m)
+                    sign *= s
+                for q, coupling in self.couplings(tuple(sorted(modes))):
+                    yield q, sign if coupling > 0 else -sign
+
+    def couplings(self, modes: Row) -> list[tuple[int, int]]:
+        """Eq. transa, remembered."""
+        if modes not in self.coupled:
+            self.coupled[modes] = couplings(self.case.N, *modes)
+        return self.coupled[modes]
+
+
+def shared(p: Powers, factors: int, least: Powers = ()) -> Iterator[tuple[Powers, ...]]:
+    """Ways to write p as a sum of so many powers in ascending order, none of them zero."""
+    if factors == 1:
+        if any(p) and p >= least:
+            yield (p,)
+        return
+    for part in product(*(range(e + 1) for e in p)):
+        if any(part) and part >= least:
+            rest = tuple(a - b for a, b in zip(p, part, strict=True))
+            for others in shared(rest, factors - 1, part):
+                yield (part, *others)
+
+
+def powers_of_degree(s: int, degree: int) -> list[Powers]:
+    """All p with this sum."""
+    return [p for p in product(range(degree + 1), repeat=s) if sum(p) == degree]
+
+
+class Evidence(NamedTuple):
+    """What a certificate says of one flat."""
+
+    exceptions: list[tuple[int, Any, Any]]
+    witnesses: dict[tuple[int, int], tuple[int, int, Powers]]
+    undecided: list[int]
+
+
+def read_evidence(data: Json, claim: Theorem, count: int) -> list[Evidence]:
+    """Exceptions, witnesses and undecided modes, flat by flat, ascending and none twice."""
+    found = [Evidence([], {}, []) for _ in range(count)]
+    for key in ("exceptions", "undecided", "witnesses"):
+        named = [row[:2] if key != "witnesses" else [row[0], row[2]] for row in data[key]]
+        need(
+            all(a < b for a, b in pairwise(named)),
+            f"{key} not ascending",
+        )
+    for i, mode, rule, actual in data["exceptions"]:
+        found[i].exceptions.append((mode, rule, actual))
+    for i, point, mode, order, residue, *powers in data["witnesses"]:
+        fits = 0 < order <= claim.order and sum(powers) == claim.degree(order)
+        need(fits and len(powers) == claim.s, "a witness of wrong degree")
+        found[i].witnesses[mode, order] = point, residue, tuple(powers)
+    for i, mode in data["undecided"]:
+        found[i].undecided.append(mode)
+    return found
+
+
+def check_flat(claim: Theorem, flat: Row, evidence: Evidence, points: list[Row]) -> None:
+    """Every mode is excited at its order and at none before, or named as undecided."""
+    case = claim.case(flat)
+    actual = actual_orders(claim, case, evidence)
+    signs, left = Signs(case), dict(evidence.witnesses)
+    unsure = []
+    for q, k in sorted(actual.items()):
+        if k == 0 or one_sign(signs, claim, q, k):
+            continue
+        if (q, k) in left:
+            check_residue(case, q, *left.pop((q, k)), points)
+        else:
+            unsure.append(q)
+    need(unsure == evidence.undecided, f"{flat}: undecided modes {unsure}")
+    need(not left, f"{flat}: a witness that nothing asks for")
+
+
+def actual_orders(claim: Theorem, case: Case, evidence: Evidence) -> dict[int, int]:
+    """Those of the rule, with the exceptions; before them the couplings leave a mode nothing."""
+    rule = propagation_rule(case, Budget())
+    orders = {q: k for k, modes in enumerate(rule) for q in modes}
+    need(set(orders) >= set(case.seeds), "the rule lost a seed")
+    actual = dict(orders)
+    for mode, predicted, found in evidence.exceptions:
+        need(
+            orders.get(mode) == predicted, f"mode {mode}: the rule does not say {predicted}"
+        )
+        need(
+            predicted and (found is None or predicted < found), f"mode {mode}: no exception"
+        )
+        del actual[mode]
+        if found is not None:
+            need(found <= claim.order, f"mode {mode}: order {found}")
+            actual[mode] = found
+    if evidence.exceptions:
+        check_zeros(claim, case, evidence)
+    return actual
+
+
+def check_zeros(claim: Theorem, case: Case, evidence: Evidence) -> None:
+    """The couplings leave an exceptional mode nothing at the orders before its own."""
+    sets = coupled_sets(case, claim.order, Budget())
+    for mode, predicted, found in evidence.exceptions:
+        last = claim.order if found is None else found - 1
+        for k in range(predicted, last + 1):
+            need(mode not in sets[k], f"{case.seeds}: mode {mode} may be excited at {k}")
+
+
+def one_sign(signs: Signs, claim: Theorem, q: int, k: int) -> bool:
+    """Whether all products of some term of order k of the mode have one sign."""
+    for p in powers_of_degree(claim.s, claim.degree(k)):
+        found = signs.of(p)
+        if ((q, 1) in found) != ((q, -1) in found):
+            return True
+    return False
+
+
+def check_residue(
+    case: Case, q: int, point: int, residue: int, powers: Powers, points: list[Row]
+) -> None:
+    """The coefficient of these powers is the stated residue, which is not zero."""
+    prime, root, *frequencies = points[point]
+    at = Point(prime, root, frequencies)
+    check_point(case, at)
+    monomial = tuple(e for n in powers for e in (n, 0))
+    computed = Recursion(case, at, Budget()).coefficients(monomial).get(q, {}).get(())
+    need(0 < residue == computed, f"mode {q}: the residue is not {residue}")
+
+
+# --- the theorem
+
+
+def check_theorem(data: Json) -> list[str]:
+    """Every claim in turn; what was checked."""
+    claim = read_claim(data)
+    flats = read_flats(data, claim)
+    dimensions = check_flats(claim, flats)
+    check_points_used(data)
+    evidence = read_evidence(data, claim, len(flats))
+    for flat, found in zip(flats, evidence, strict=True):
+        check_flat(claim, flat, found, data["points"])
+    exceptional = sum(bool(found.exceptions) for found in evidence)
+    undecided = any(found.undecided for found in evidence)
+    verdict = "undecided" if undecided else "refuted" if exceptional else "proved"
+    need(data["verdict"] == verdict, f"the verdict is {verdict}")
+    wide = [
+        n for n, found in zip(dimensions, evidence, strict=True) if found.witnesses and n
+    ]
+    residues = len(data["witnesses"])
+    return [
+        sentence(claim, verdict, exceptional, len(flats), len(wide)),
+        f"{len(flats)} flats: all of the arrangement, each with a representative",
+        f"{residues} modes by residues, computed again; the others by the sign",
+    ]
+
+
+def check_points_used(data: Json) -> None:
+    """Each point is there for a witness."""
+    used = sorted({row[1] for row in data["witnesses"]})
+    need(used == list(range(len(data["points"]))), "points that no witness uses")
+
+
+def sentence(claim: Theorem, verdict: str, exceptional: int, count: int, gaps: int) -> str:
+    """The theorem."""
+    plural = "s" * (claim.s > 1)
+    sets = f"every set of {claim.s} seed{plural}"
+    if claim.s >= claim.degree(claim.order):
+        sets = f"every set of {claim.s} or more seeds"
+    start = f"{claim.model} chains: for every N and {sets}, to order {claim.order},"
+    if verdict == "undecided":
+        return f"{start} the propagation rule is not decided"
+    rule = "the propagation rule holds"
+    if exceptional:
+        rule += f" except on {exceptional} of {count} flats"
+    rule += ", for generic frequencies"
+    return f"{start} {rule}" + f"; on {gaps} flats for generic L_q(nu) instead" * (gaps > 0)
