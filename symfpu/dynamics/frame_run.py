@@ -184,7 +184,9 @@ class FrameRun:
         frame, steps = self.frame, end - self.done
         T, scheme = steps * self.step, frame.scheme.name
         try:
-            integrate(frame.chain, *before.orbit(), T, step=self.step, scheme=scheme, samples=1)
+            integrate(
+                frame.chain, *before.orbit(), T, step=self.step, scheme=scheme, samples=1
+            )
         except OrbitStopped as stopped:
             steps = round(stopped.time / self.step) + 1
             return OrbitLost((self.done + steps) * self.step, self.step, stopped.bond)
