@@ -39,11 +39,12 @@ from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
-from symfpu.proofs.checkers import check
+from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.sweeps import sweep_propagation
 from symfpu.proofs.verify import CertificateError
 from symfpu.reports.sweep import sweep_markdown
 
+ALLOWED_CERTIFICATE = "one written by symfpu prove or certify, unaltered"
 MODELS = ("alpha", "beta", "alpha+beta")
 SingleModelOption = Annotated[
     str | None, choice("--model", MODELS[:2], "The chain.  Default: alpha.")
@@ -199,21 +200,24 @@ def _print_proof(proof: PropagationProof) -> None:
 @app.command(epilog="Example: symfpu verify proof.json")
 def verify(
     file: Annotated[
-        str, typer.Argument(help="A certificate written by symfpu prove.", metavar="FILE")
+        str,
+        typer.Argument(
+            help="A certificate written by symfpu prove or certify.", metavar="FILE"
+        ),
     ],
     as_json: JsonOption = False,
 ) -> None:
     """Check a certificate by another route.
 
-    Mode space, the tensors B and C, Python's integers, nothing of the prover. Of theorems
-    for every N the flats are found again.
+    Python's integers, nothing of the prover: of the rule in mode space, with the tensors B and C;
+    of theorems for every N the flats are found again.
     """
     path = path_named("certificate", file)
     try:
-        checked = check(path)
+        checked = verify_certificate(path)
     except CertificateError as error:
         raise InputError(
-            "certificate", str(path), "one written by symfpu prove, unaltered", str(error)
+            "certificate", str(path), ALLOWED_CERTIFICATE, str(error)
         ) from error
     if as_json:
         print_json({"file": str(path), "valid": True, "checked": checked})

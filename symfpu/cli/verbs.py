@@ -28,6 +28,7 @@ VERBS = {
     "family": "families",
     "actions": "actions",
     "stability": "stability",
+    "certify": "certify",
     "orbit": "orbit",
     "gali": "gali",
     "export": "export",

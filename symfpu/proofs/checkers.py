@@ -1,4 +1,7 @@
-"""Which checker a certificate belongs to: one for each kind, found by its format."""
+"""Which checker reads which kind of certificate: one line a kind.
+
+The checkers share no code with the provers, and none with each other.
+"""
 
 from __future__ import annotations
 
@@ -6,30 +9,41 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from symfpu.proofs import verify, verify_theorem
+from symfpu.proofs import check_existence, verify, verify_theorem
+from symfpu.proofs.verify import CertificateError
 
 Checker = Callable[[Path], list[str]]
+
 CHECKERS: dict[str, Checker] = {
     "symfpu propagation certificate": verify.verify,
+    "symfpu existence certificate": check_existence.verify,
     verify_theorem.FORMAT: verify_theorem.verify,
 }
-BEGINNING = 200  # bytes in which the format stands
+PROPAGATION = "symfpu propagation certificate"
+KIND = re.compile(r'"format":\s*"([^"\\]*)"')
+LONGEST_HEAD = 4096  # characters in which a file names its kind
 
 
-def check(path: Path) -> list[str]:
-    """Lines that say what was checked, by the checker of this kind.
+def verify_certificate(path: str | Path) -> list[str]:
+    """Lines that say what was checked in the certificate of a file, whichever kind it is.
 
-    A file whose kind is not known goes to the first, which says what is wrong. Raises
-    CertificateError.
+    Raises CertificateError, with the reason, if it is not right.
     """
-    return CHECKERS.get(_format(path), verify.verify)(path)
-
-
-def _format(path: Path) -> str:
+    path = Path(path)
+    checker = CHECKERS.get(kind_of(path), CHECKERS[PROPAGATION])
     try:
-        with path.open("rb") as file:
-            text = file.read(BEGINNING).decode("ascii", "replace")
+        return checker(path)
+    except CertificateError:
+        raise
+    except check_existence.ExistenceError as error:
+        raise CertificateError(str(error)) from error
+
+
+def kind_of(path: Path) -> str:
+    """The kind that the head of a file names; each checker reads it again for itself."""
+    try:
+        with path.open(encoding="ascii", errors="replace") as file:
+            found = KIND.search(file.read(LONGEST_HEAD))
     except OSError:
         return ""
-    found = re.search(r'"format": ?"([^"]*)"', text)
     return found[1] if found else ""

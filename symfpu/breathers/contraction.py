@@ -1,0 +1,333 @@
+"""The contraction of a proof of existence: approximate inverse, weights, and how far I - A DF is
+from zero, in doubles whose rounding is bounded.
+
+A is the inverse of a small block, an integer matrix times 2^-INVERSE_BITS, and 1/lambda_q[n] =
+1/(1 - n^2 omega^2/Omega_q^2) elsewhere. Weights are w = v nu^n with integers v 2^-WEIGHT_BITS for
+n up to FREE harmonics, 1 beyond. The slopes of the bonds enter with K harmonics, rounded to
+doubles; the norm of the rest is a bound of its own. Ours; docs/existence.md has the proof.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.chain.chain import Chain
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+INVERSE_BITS = 14
+WEIGHT_BITS = 6
+ROUNDOFF = 2.0**-53
+UPWARDS = 1 + 1e-9  # more than sums of so many positive doubles lose
+MARGIN = 1e-12  # relative, more than the divisors beyond all resonances lose
+MOST_RADIUS = 0.85  # of |I - A DF|, so that weights make its norm less than 1
+LEAST_RATE = 0.5  # that weights are asked for
+MOST_LINEAR = 0.93  # of the norm of I - A DF
+LARGEST_WEIGHT, LARGEST_ENTRY = 2.0**40, 2**52
+POWERS = 60
+FIRST_FREE, WIDENING, WIDENINGS = 1.3, 1.3, 5  # harmonics, in units of the highest mode
+FIRST_BLOCK, SMALLEST_GROWTH, LARGEST_BLOCK = 8, 4, 400
+
+
+@dataclass(frozen=True)
+class Places:
+    """The unknowns up to a harmonic, ascending: their harmonics n and modes q."""
+
+    n: Ints
+    q: Ints
+
+
+def places_of(chain: Chain, seed: int, harmonics: int) -> Places:
+    """Those that the symmetry allows."""
+    n, q = np.indices((harmonics + 1, chain.N - 1))
+    q += 1
+    allowed = (q - n * seed) % 2 == 0
+    if chain.potential.even:
+        allowed &= n % 2 == 1
+    harmonic, mode = np.nonzero(allowed)
+    return Places(harmonic, mode + 1)
+
+
+@dataclass(frozen=True, eq=False)
+class LinearPart:
+    """DF at the orbit, its slopes cut after K harmonics.
+
+    slopes : g_0, g_1/2, .. of every bond in doubles, shape (K+1, N). rest : above the sum over
+        bonds of the norms of what is left out.
+    """
+
+    chain: Chain
+    seed: int
+    omega: float
+    nu: float
+    slopes: Floats
+    rest: float
+
+    @property
+    def K(self) -> int:
+        """The last harmonic of the slopes."""
+        return len(self.slopes) - 1
+
+    def divisors(self, places: Places) -> Floats:
+        """lambda_q[n] = 1 - n^2 omega^2 / Omega_q^2."""
+        linear = self.chain.frequencies()[places.q - 1]
+        return np.asarray(1 - (places.n * self.omega / linear) ** 2)
+
+    def divisor_errors(self, places: Places) -> Floats:
+        """Above the rounding of the divisors."""
+        linear = self.chain.frequencies()[places.q - 1]
+        return np.asarray(16 * ROUNDOFF * (1 + (places.n * self.omega / linear) ** 2))
+
+    @cached_property
+    def coupling(self) -> Floats:
+        """By harmonic of the slope, what couples two modes; shape (K+1, N-1, N-1)."""
+        N = self.chain.N
+        angles = (np.arange(N) + 0.5) * np.pi / N
+        table = np.cos(np.outer(np.arange(2 * N - 1), angles))
+        sums = self.slopes @ table.T / N
+        q = np.arange(1, N)
+        return np.asarray(sums[:, abs(q[:, None] - q)] + sums[:, q[:, None] + q])
+
+    @cached_property
+    def coupling_errors(self) -> Floats:
+        """Above the rounding of the couplings of a harmonic, shape (K+1,).
+
+        The angles have 4 units of rounding times their size, below 2 pi N.
+        """
+        N = self.chain.N
+        units = 8 * (8 * N + N)
+        return np.asarray(units * ROUNDOFF * np.abs(self.slopes).sum(axis=1) / N)
+
+    def matrix(self, rows: Places, columns: Places) -> tuple[Floats, Floats]:
+        """Derivatives of the anharmonic force, and a bound of their rounding."""
+        K = self.K
+        n, m = rows.n[:, None], columns.n
+        pair = rows.q[:, None] - 1, columns.q - 1
+        padded = np.concatenate([self.coupling, np.zeros((1, *self.coupling.shape[1:]))])
+        errors = np.append(self.coupling_errors, 0.0)
+        apart, total = np.minimum(abs(n - m), K + 1), np.minimum(n + m, K + 1)
+        folds = n > 0
+        values = padded[(apart, *pair)] + np.where(folds, padded[(total, *pair)], 0.0)
+        return values, errors[apart] + np.where(folds, errors[total], 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Contraction:
+    """Choices and bounds.
+
+    free, columns : the last harmonic whose weights are free, and the last whose columns are taken
+        one by one. block : places of the block among those up to `columns`. inverse : integers.
+    weights : integers v of the places up to `free`.
+    linear : Z0 + Z1, above the norm of I - A DF with slopes cut. spread : above
+        sum_q nu^-n |A e_q[n]| for every n; 2/N times it bounds A on what a bond gives.
+    columns_of_inverse : above |A e| nu^-n by place, up to `columns`; beyond, those of every mode
+        are below `beyond`.
+    """
+
+    part: LinearPart
+    places: Places
+    free: int
+    block: Ints
+    inverse: Ints
+    weights: Ints
+    linear: float
+    spread: float
+    columns_of_inverse: Floats
+    beyond: Floats
+
+
+class Attempt:
+    """Bounds for cutoffs that are given."""
+
+    def __init__(self, part: LinearPart, free: int) -> None:
+        chain, seed = part.chain, part.seed
+        self.part, self.free, self.columns = part, free, free + part.K
+        self.inside = places_of(chain, seed, self.columns)
+        self.rows = places_of(chain, seed, self.columns + part.K)
+        self.divisors = part.divisors(self.rows)
+        self.errors = part.divisor_errors(self.rows)
+        self.count = len(self.inside.n)
+        self.free_count = int((self.inside.n <= free).sum())
+        self.force, self.force_errors = part.matrix(self.rows, self.inside)
+        # of a column to the weight nu^n of its place
+        growth = self.rows.n[:, None] - self.inside.n
+        self.scales = part.nu**growth
+        self.diagonal = abs(self.divisors) - self.errors
+
+    def importance(self) -> Floats:
+        """How much the rows with free weights fail to be dominated by the diagonal."""
+        sums = np.abs(self.force[: self.free_count]).sum(axis=1)
+        return np.asarray(sums / abs(self.divisors[: self.free_count]))
+
+    def order(self) -> Ints:
+        """Places, those that need the block most first."""
+        return np.argsort(-self.importance(), kind="stable")
+
+    def inverse(self, block: Ints) -> Floats:
+        """Of DF on the block, rounded to integers."""
+        square = self.force[np.ix_(block, block)] + np.diag(self.divisors[block])
+        inverse = np.linalg.inv(square)
+        return np.asarray(np.rint(np.ldexp(inverse, INVERSE_BITS)))
+
+    def defect(self, block: Ints, inverse: Ints) -> Floats:
+        """Above the entries of |I - A DF|, columns up to `columns`, in units of nu^n."""
+        A = np.ldexp(inverse.astype(float), -INVERSE_BITS)
+        bounds = (np.abs(self.force) + self.force_errors) / self.diagonal[:, None]
+        full, errors = self.force[block], self.force_errors[block]
+        own = np.arange(len(block))
+        full[own, block] += self.divisors[block]
+        errors[own, block] += self.errors[block]
+        errors = errors + 2 * ROUNDOFF * np.abs(full)
+        product = -(A @ full)
+        product[own, block] += 1
+        size = np.abs(A) @ np.abs(full)
+        lost = (len(block) + 4) * ROUNDOFF * (size + 1)
+        bounds[block] = np.abs(product) + np.abs(A) @ errors + lost
+        return np.asarray(bounds * self.scales * UPWARDS)
+
+    def tail(self) -> float:
+        """The same for all columns beyond `columns`."""
+        part, K = self.part, self.part.K
+        n = self.columns + 1 - K
+        linear = part.chain.frequencies()
+        if n * part.omega <= linear[-1] * (1 + 1e-9):
+            return math.inf
+        least = self._beyond(n)
+        growth = part.nu ** np.arange(K + 1) + part.nu ** -np.arange(K + 1.0)
+        growth[0] = 1.0
+        sizes = np.abs(part.coupling) + part.coupling_errors[:, None, None]
+        sums = np.einsum("k,kpq->pq", growth, sizes) / least[:, None]
+        return float(sums.sum(axis=0).max() * UPWARDS)
+
+    def _beyond(self, n: int) -> Floats:
+        """Below |lambda_q| of every harmonic from n on, which is above all resonances."""
+        ratio = n * self.part.omega / self.part.chain.frequencies()
+        return np.asarray((ratio**2 - 1) * (1 - MARGIN) - MARGIN)
+
+    def weights(self, defect: Floats) -> Ints | None:
+        """v with v |I - A DF| <= rho v for a rho below 1, at least 1; None if there are none."""
+        count = self.free_count
+        own, leaving = defect[:count, :count], defect[count:, :count].sum(axis=0)
+        _, radius = perron(own.T)
+        if not radius < MOST_RADIUS:
+            return None
+        rho = max(LEAST_RATE, (1 + 2 * radius) / 3)
+        v = np.linalg.solve(rho * np.eye(count) - own.T, leaving + rho)
+        if not (v.min() > 0 and v.max() < LARGEST_WEIGHT):
+            return None
+        scaled = np.ceil(np.ldexp(np.maximum(v, 1.0), WEIGHT_BITS))
+        return np.asarray(scaled, dtype=np.int64)
+
+    def own(self, defect: Floats) -> Floats:
+        """The part whose weights are free."""
+        return defect[: self.free_count, : self.free_count]
+
+    def grown(self, block: Ints, defect: Floats | None) -> Ints:
+        """With more places: those that the spectral radius depends on most."""
+        outside = np.setdiff1d(np.arange(self.free_count), block)
+        score = self.importance()
+        if defect is not None:
+            score = perron(self.own(defect))[0] * perron(self.own(defect).T)[0]
+        more = max(SMALLEST_GROWTH, len(block) // 3)
+        chosen = outside[np.argsort(-score[outside], kind="stable")][:more]
+        return np.sort(np.append(block, chosen))
+
+    def bounded(self, block: Ints) -> tuple[Contraction | None, Floats | None]:
+        """The bounds with this block, and |I - A DF|.
+
+        None where weights cannot make it a contraction, and where the block has no inverse.
+        """
+        try:
+            inverse = self.inverse(block)
+        except np.linalg.LinAlgError:
+            return None, None
+        if not np.abs(inverse).max() < LARGEST_ENTRY:
+            return None, None
+        defect = self.defect(block, inverse.astype(np.int64))
+        chosen = self.weights(defect)
+        if chosen is None:
+            return None, defect
+        return self._contraction(block, inverse.astype(np.int64), defect, chosen), defect
+
+    def _contraction(
+        self, block: Ints, inverse: Ints, defect: Floats, chosen: Ints
+    ) -> Contraction:
+        """The bounds with these weights."""
+        v = np.ones(len(self.rows.n))
+        v[: self.free_count] = np.ldexp(chosen.astype(float), -WEIGHT_BITS)
+        of_columns = (v @ defect) / v[: self.count]
+        linear = max(float(of_columns.max()) * UPWARDS, self.tail())
+        norms = v[: self.count] / self.diagonal[: self.count]
+        sizes = np.abs(np.ldexp(inverse.astype(float), -INVERSE_BITS))
+        norms[block] = v[block] @ (sizes * self.scales[np.ix_(block, block)])
+        norms *= UPWARDS
+        beyond = UPWARDS / self._beyond(self.columns + 1)
+        sums = np.bincount(self.inside.n, weights=norms)
+        spread = max(float(sums.max()), float(beyond.sum())) * UPWARDS
+        return Contraction(
+            part=self.part,
+            places=self.inside,
+            free=self.free,
+            block=block,
+            inverse=inverse,
+            weights=chosen,
+            linear=linear,
+            spread=spread,
+            columns_of_inverse=norms,
+            beyond=beyond,
+        )
+
+
+def perron(matrix: Floats) -> tuple[Floats, float]:
+    """The eigenvector of a matrix that is not negative, and its largest eigenvalue, about."""
+    x = np.ones(len(matrix))
+    size = 0.0
+    for _ in range(POWERS):
+        x = matrix @ x
+        size = float(np.linalg.norm(x))
+        if not 0 < size < math.inf:
+            break
+        x /= size
+    return x, size
+
+
+def contraction(part: LinearPart) -> tuple[Contraction | None, float]:
+    """A contraction with a small block, and the smallest norm or spectral radius that was met.
+
+    The block grows by the places that matter most to the spectral radius of |I - A DF|; where the
+    weights cannot end at the last free harmonic, more are freed.
+    """
+    top = float(part.chain.frequencies()[-1]) / part.omega
+    free = math.ceil(FIRST_FREE * top) + 2
+    attempt = Attempt(part, free)
+    block = np.sort(attempt.order()[:FIRST_BLOCK])
+    least, widened = math.inf, 0
+    while True:
+        found, defect = attempt.bounded(block)
+        if found is not None:
+            least = min(least, found.linear)
+            if found.linear < MOST_LINEAR:
+                return found, found.linear
+        elif defect is not None:
+            least = min(least, max(1.0, perron(attempt.own(defect))[1]))
+        if found is not None and widened < WIDENINGS:
+            widened, free = widened + 1, math.ceil(WIDENING * free)
+            again = Attempt(part, free)
+            block, attempt = moved(block, attempt, again), again
+            continue
+        larger = attempt.grown(block, defect)
+        if len(larger) == len(block) or len(larger) > LARGEST_BLOCK:
+            return None, least
+        block = larger
+
+
+def moved(block: Ints, old: Attempt, new: Attempt) -> Ints:
+    """The same places among those of another attempt; they ascend, so nothing moves."""
+    assert (old.inside.n[block] == new.inside.n[block]).all()
+    return block

@@ -1,0 +1,56 @@
+"""Proofs of existence, for JSON and for the terminal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath
+
+from symfpu.breathers.existence import ExistenceProof, interval_text
+from symfpu.numbers.typed import decimal
+from symfpu.reports.tables import fifteen_digits
+
+
+def existence_record(proof: ExistenceProof) -> dict[str, Any]:
+    """Keys of the command line; intervals as [middle, radius], numbers as strings."""
+    digits = proof.digits + 3
+    return {
+        **proof.chain.typed,
+        "seeds": [proof.seed],
+        "frequencies": {str(proof.seed): decimal(proof.frequency)},
+        "proved": True,
+        "radius": fifteen_digits(proof.radius),
+        "unique": fifteen_digits(proof.unique),
+        "nu": str(proof.nu),
+        "amplitude": [
+            mpmath.nstr(proof.amplitude, digits),
+            fifteen_digits(proof.amplitude_radius),
+        ],
+        "energy": [mpmath.nstr(proof.energy, digits), fifteen_digits(proof.energy_radius)],
+        "bounds": {
+            "Y": fifteen_digits(proof.residual),
+            "Z1": fifteen_digits(proof.linear),
+            "Z2": fifteen_digits(proof.curvature),
+        },
+        "harmonics": proof.harmonics,
+        "block": proof.block,
+    }
+
+
+def existence_text(proof: ExistenceProof) -> str:
+    """The theorem, the intervals, and the bounds."""
+    chain = repr(proof.chain).removeprefix("Chain(").removesuffix(")")
+    A = interval_text(proof.amplitude, proof.amplitude_radius)
+    H = interval_text(proof.energy, proof.energy_radius)
+    return "\n".join(
+        [
+            f"{chain}, seed {proof.seed}, omega = {decimal(proof.frequency)}: proved",
+            f"  a periodic orbit of this frequency exists within {proof.radius:.2g} "
+            f"of the computed one, the only one within {proof.unique:.2g},",
+            f"  analytic for |Im omega t| < log {proof.nu}",
+            f"  A = {A}",
+            f"  H = {H}",
+            f"  Y = {proof.residual:.2g}, Z0 + Z1 = {proof.linear:.3g}, "
+            f"Z2 = {proof.curvature:.3g}; {proof.harmonics} harmonics, block of {proof.block}",
+        ]
+    )
