@@ -217,7 +217,14 @@ class Grading:
         """
         if degree % 2:
             return np.zeros((0, self.seeds), dtype=np.int64)
-        return compositions(degree // 2, self.seeds)
+        if degree not in self._diagonals:
+            self._diagonals[degree] = compositions(degree // 2, self.seeds)
+        return self._diagonals[degree]
+
+    @cached_property
+    def _diagonals(self) -> dict[int, Ints]:
+        """Those that were asked for: root finding asks for each some dozens of times."""
+        return {}
 
     def rows(self, exponents: Ints) -> Ints:
         """Rows (counted from the first of their degree) of monomials of one common degree.
