@@ -226,8 +226,16 @@ class Grading:
         """
         if degree % 2:
             return np.zeros((0, self.seeds), dtype=np.int64)
-        exponents = compositions(degree // 2, self.seeds)
-        return exponents[exponents[:, 0] == 0] if self.phantom else exponents
+        if degree not in self._diagonals:
+            exponents = compositions(degree // 2, self.seeds)
+            kept = exponents[exponents[:, 0] == 0] if self.phantom else exponents
+            self._diagonals[degree] = kept
+        return self._diagonals[degree]
+
+    @cached_property
+    def _diagonals(self) -> dict[int, Ints]:
+        """Those that were asked for: root finding asks for each some dozens of times."""
+        return {}
 
     def rows(self, exponents: Ints) -> Ints:
         """Rows (counted from the first of their degree) of monomials of one common degree.

@@ -16,6 +16,7 @@ amplitudes by d times its relative size.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -122,6 +123,7 @@ def _canonical_signs(harmonics: Ints) -> Ints:
     return np.asarray(np.where((lead < 0)[:, None], -harmonics, harmonics))
 
 
+@lru_cache(maxsize=64)
 def _degrees(chain: Chain, seeds: tuple[int, ...]) -> Ints:
     """The lowest degree in the amplitudes with which each mode is excited by the rule, at most N.
 

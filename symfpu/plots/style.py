@@ -81,10 +81,16 @@ def axes_for(ax: Axes | None, projection: str | None = None) -> Iterator[Axes]:
 
 
 def _lines(axes: Axes) -> list[Any]:
-    """All lines of the picture that the axes are in, those of legends and second axes too."""
-    from matplotlib.lines import Line2D
+    """All lines of the picture that the axes are in, those of legends and second axes too.
 
-    return list(axes.figure.findobj(Line2D))
+    But those of ticks and grids, which matplotlib would make only to be asked.
+    """
+    figure = axes.figure
+    legends = [*figure.legends, *(found.get_legend() for found in figure.axes)]
+    marks = [
+        line for legend in legends if legend is not None for line in legend.get_lines()
+    ]
+    return [*(line for found in figure.axes for line in found.lines), *marks]
 
 
 def _keep_colours(line: Any) -> None:

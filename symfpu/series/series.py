@@ -650,10 +650,15 @@ class LindstedtSeries(Shown, Tabled):
     def _frequency_doubles(self, squares: Floats, top: int) -> tuple[Floats, Floats]:
         linear = self.chain.frequencies()[np.array(self.seeds) - 1]
         slope = self.seed_factors**2
-        orders = range(1, top + 1)
+        diagonals, tables = self._frequency_tables
+        return frequency_sums(linear, slope, squares, diagonals[:top], tables[:top])
+
+    @cached_property
+    def _frequency_tables(self) -> tuple[list[Ints], list[Floats]]:
+        """Exponents and coefficients of W by order from 1 on, as `frequency_sums` takes them."""
+        orders = range(1, self.order + 1)
         diagonals = [self.grading.diagonal(self.chain.degree_step * k) for k in orders]
-        tables = [self._sign(k) * self.corrections[k] for k in orders]
-        return frequency_sums(linear, slope, squares, diagonals, tables)
+        return diagonals, [self._sign(k) * self.corrections[k] for k in orders]
 
     def _table(self) -> Table:
         """One row for each coefficient of the coordinates and of the frequencies, without mu^k."""

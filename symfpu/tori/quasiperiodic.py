@@ -356,11 +356,9 @@ class QuasiPeriodic(Shown, Gridded, Parts):
         """By mode the largest |d^2Q_q/dt^2 - force|, and the largest force."""
         worst = np.zeros(self.chain.N - 1)
         largest: Any = 0.0
-        coordinates = self._cosine_sums(self.cosines)
-        accelerations = self._cosine_sums(self._curvatures)
+        both = self._cosine_sums(np.hstack([self.cosines, self._curvatures]))
         for theta in self.angle_grid(number):
-            Q = self._at_angles(theta, coordinates)
-            second = self._at_angles(theta, accelerations)
+            Q, second = np.hsplit(self._at_angles(theta, both), 2)
             force = self.chain.accelerations(Q)
             worst = np.maximum(worst, np.abs(second - force).max(axis=0))
             largest = max(largest, np.abs(force).max())

@@ -40,8 +40,10 @@ class Controls:
             "energy H": ENERGY,
         }
         self.given = pn.widgets.RadioButtonGroup(name="given", options=words, **FULL)
-        self.order = pn.widgets.IntSlider(
-            name="order k of the series", start=1, end=LAST_ORDER, **FULL
+        self.order = _prompt(
+            pn.widgets.IntSlider(
+                name="order k of the series", start=1, end=LAST_ORDER, **FULL
+            )
         )
         self.sliders = pn.Column(margin=0, sizing_mode="stretch_width")
         self.message = pn.pane.HTML("", **FULL)
@@ -156,8 +158,9 @@ class Controls:
         if self._found is not None:
             value = min(max(_log(self._found.energy), least), largest)
         limits = {"start": round(least, 2), "end": round(largest, 2), "step": 0.01}
-        return pn.widgets.FloatSlider(
-            name="log₁₀ of the energy H", value=round(value, 2), **limits, **FULL
+        name = "log₁₀ of the energy H"
+        return _prompt(
+            pn.widgets.FloatSlider(name=name, value=round(value, 2), **limits, **FULL)
         )
 
     def _moved(self) -> None:
@@ -185,7 +188,7 @@ LABELS = {
 def _slider(name: str, limits: Range, value: float) -> Any:
     pn = panel()
     places = max(0, len(f"{limits.step:.12f}".rstrip("0").partition(".")[2]))
-    return pn.widgets.EditableFloatSlider(
+    slider = pn.widgets.EditableFloatSlider(
         name=name,
         start=min(limits.start, value),
         end=max(limits.end, value),
@@ -194,6 +197,14 @@ def _slider(name: str, limits: Range, value: float) -> Any:
         format=f"0.{'0' * (places + 1)}",
         **FULL,
     )
+    return _prompt(slider)
+
+
+def _prompt(widget: Any) -> Any:
+    """The widget, heard at once: Panel waits 50 ms for more changes; here the newest wins anyway."""
+    for part in widget.select(lambda part: hasattr(part, "_debounce")):
+        part._debounce = 0
+    return widget
 
 
 def _real(text: str) -> float:

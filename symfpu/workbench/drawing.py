@@ -35,6 +35,7 @@ SHAPES = {
     "P": ((-1, -0.4), (1, -0.4), (1, 0.4), (-1, 0.4)),
 }
 DASHES = {"--": "6 3", ":": "1.5 2.5", "-.": "6 3 1.5 3"}
+GRID_NAMES = ("gridOn", "grid_visible")  # of the grid among the settings of ticks
 NO_MARK = (None, "None", "none", "", " ")
 
 
@@ -42,19 +43,43 @@ class NotKnown(Exception):
     """Axes hold what this file does not read."""
 
 
-def picture_svg(draw: Callable[[Axes], object], name: str) -> str:
-    """An SVG of what `draw` puts into axes; raises NotKnown, and what `draw` raises.
+class Sheets:
+    """Empty axes: they take as long as what is drawn in them, so one waits for the next picture."""
 
-    name : of the picture, for those who do not see it.
-    """
+    def __init__(self) -> None:
+        self._ready: Axes | None = None
+
+    def prepare(self) -> None:
+        """Makes the next ones, at a time when nobody waits."""
+        if self._ready is None:
+            self._ready = _empty_axes()
+
+    def take(self) -> Axes:
+        """Axes that nothing was drawn in."""
+        taken, self._ready = self._ready, None
+        return _empty_axes() if taken is None else taken
+
+
+def _empty_axes() -> Axes:
     from matplotlib.figure import Figure
 
     with styled():
         figure = Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
         figure.set_layout_engine("none")
-        ax = figure.add_axes((0.1, 0.1, 0.8, 0.8))
+        return figure.add_axes((0.1, 0.1, 0.8, 0.8))
+
+
+def picture_svg(
+    draw: Callable[[Axes], object], name: str, sheets: Sheets | None = None
+) -> str:
+    """An SVG of what `draw` puts into axes; raises NotKnown, and what `draw` raises.
+
+    name : of the picture, for those who do not see it. sheets : where axes are from.
+    """
+    ax = _empty_axes() if sheets is None else sheets.take()
+    with styled():
         draw(ax)
-        _require_known(figure, ax)
+        _require_known(ax.figure, ax)
         return _Page(ax, name).svg()
 
 
@@ -226,9 +251,12 @@ def _ticks(axis: Any, limits: Sequence[float]) -> list[tuple[float, str]]:
 
 
 def _gridded(axis: Any) -> bool:
-    return bool(
-        axis.get_tick_params().get("grid_visible", axis.get_gridlines()[0].get_visible())
-    )
+    """Whether an axis has its grid; asking a line of it would make all ticks."""
+    known = axis.get_tick_params()
+    for name in GRID_NAMES:
+        if name in known:
+            return bool(known[name])
+    return bool(axis.get_gridlines()[0].get_visible())
 
 
 def _path(points: Floats) -> str:

@@ -50,6 +50,7 @@ GRID = {
     "gap": "10px",
     "align-items": "stretch",
 }
+PALE = ":host { transition: opacity 0.2s 0.4s; } :host(.stale) { opacity: 0.45; }"
 SLOW = 1.0  # seconds from which a computation is said to go on
 LOOK = 300  # milliseconds between two looks at it
 DOWNLOAD = """
@@ -95,6 +96,9 @@ class Page:
         self.problem, self.notice = html(margin=0), html(margin=0)
         self.formula, self.lines = html(margin=0), html(margin=0)
         self.pictures = {name: html(margin=0, min_height=150) for name in TITLES}
+        self.grid = pn.Column(
+            styles=GRID, stylesheets=[PALE], margin=0, sizing_mode="stretch_width"
+        )
         self.busy = html(margin=(6, 10), styles={"color": "#5b6673"})
         self.python = pn.widgets.TextInput(value="", visible=False)
         self.parcel = pn.widgets.TextInput(value="", visible=False)
@@ -139,13 +143,14 @@ class Page:
             widget.param.watch(lambda event: self._ask_term(), "value")
 
     def changed(self, choice: Choice) -> None:
-        """Another choice: asks for it, and says by which lines it is made."""
-        self.problem.object = ""
-        self._show_lines(choice, "")
-        self._mark_stale(True)
-        self.busy.css_classes = ["busy"]
+        """Another choice: asks for it, and while it is computed says by which lines it is made."""
         self.asker.ask(TORUS, choice)
-        self._ask_term()
+        with panel().io.hold(self._document):
+            self.problem.object = ""
+            self._mark_stale(True)
+            self.busy.css_classes = ["busy"]
+            self._show_lines(choice, "")
+            self._ask_term()
 
     def _show_lines(self, choice: Choice, command: str) -> None:
         try:
@@ -161,8 +166,7 @@ class Page:
         if stale == self._stale:
             return
         self._stale = stale
-        for pane in (self.numbers, self.verdict, *self.pictures.values()):
-            pane.css_classes = ["stale"] if stale else []
+        self.grid.css_classes = ["stale"] if stale else []
 
     def _ask_term(self) -> None:
         """Asks for the formula, if it is another than the one that is shown."""
@@ -216,6 +220,10 @@ class Page:
         self._document.add_next_tick_callback(partial(self._show, kind, part))
 
     def _show(self, kind: str, part: Any) -> None:
+        with panel().io.hold(self._document):  # one message to the browser
+            self._show_part(kind, part)
+
+    def _show_part(self, kind: str, part: Any) -> None:
         if part == DONE:
             if kind == TORUS:
                 self.busy.css_classes = ["idle"]
@@ -284,9 +292,9 @@ class Page:
             self._card("A term of the series", self._term_row(pn)),
             self._card("The same in Python and on the command line", self.lines),
         ]
-        grid = pn.Column(*cards, styles=GRID, margin=0, sizing_mode="stretch_width")
+        self.grid.objects = cards
         styles = {"flex": "1 1 520px", "min-width": "0"}
-        main = pn.Column(self.problem, grid, styles=styles, margin=0)
+        main = pn.Column(self.problem, self.grid, styles=styles, margin=0)
         return pn.FlexBox(
             self._side(pn),
             main,

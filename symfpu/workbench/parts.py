@@ -26,7 +26,7 @@ from symfpu.plots.tori import torus as torus_surface
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.verdict import Assessment
 from symfpu.workbench.choice import Choice
-from symfpu.workbench.drawing import HEIGHT, WIDTH, NotKnown, picture_svg
+from symfpu.workbench.drawing import HEIGHT, WIDTH, NotKnown, Sheets, picture_svg
 from symfpu.workbench.solving import Solved, described, judged, solved
 
 SPECTRUM, RESIDUALS, SECTION = "spectrum", "residual by order", "section"
@@ -104,6 +104,11 @@ class Bench:
 
     def __init__(self) -> None:
         self.last: Solved | None = None
+        self._sheets = Sheets()
+
+    def prepare(self) -> None:
+        """What the next answer needs whatever it is, at a time when nobody waits."""
+        self._sheets.prepare()
 
     def parts(self, choice: Choice, progress: Progress | None = None) -> Iterator[Part]:
         """What is shown of a choice; errors of the package are parts too."""
@@ -114,7 +119,7 @@ class Bench:
         except SymfpuError as error:
             yield Problem(_without_folder(str(error), choice))
             return
-        yield from _pictures(found, tell)
+        yield from _pictures(found, tell, self._sheets)
 
     def solved(self, choice: Choice, progress: Progress | None = None) -> Solved:
         """The torus of a choice, computed once."""
@@ -162,10 +167,10 @@ def _numbers(found: Solved) -> Numbers:
     )
 
 
-def _pictures(found: Solved, tell: Progress) -> Iterator[Part]:
+def _pictures(found: Solved, tell: Progress, sheets: Sheets) -> Iterator[Part]:
     best = found.best
     both = found.torus if found.refined is None else [found.torus, found.refined]
-    yield _picture(SPECTRUM, partial(spectrum, both))
+    yield _picture(SPECTRUM, partial(spectrum, both), sheets)
     verdict = judged(found, tell)
     yield from _judgement(found, verdict)
     yield _picture(SECTION, partial(section, best))
@@ -190,9 +195,11 @@ def _refined_text(found: Solved) -> str:
     return f"Newton's method leaves a residual of {left:.2g}, with {count} harmonics"
 
 
-def _picture(name: str, draw: Callable[[Axes], object]) -> Picture:
+def _picture(
+    name: str, draw: Callable[[Axes], object], sheets: Sheets | None = None
+) -> Picture:
     try:
-        return Picture(name, picture_svg(draw, name))
+        return Picture(name, picture_svg(draw, name, sheets))
     except NotKnown:
         return Picture(name, _image(draw, name))
     except SymfpuError as error:

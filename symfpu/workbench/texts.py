@@ -28,7 +28,6 @@ ul.reasons { margin: 4px 0 0; padding-left: 1.2em; }
 .problem { border-left: 4px solid #b03a00; background: #fdf1ea; padding: 8px 12px; margin: 0; }
 .warning { border-left: 4px solid #d59a00; background: #fff8e6; padding: 4px 10px;
   margin: 6px 0 0; }
-.stale { opacity: 0.45; }
 pre { margin: 0; padding: 8px 10px; background: #f5f7f9; border: 1px solid var(--line);
   overflow-x: auto; font-size: 12.5px; line-height: 1.45; }
 .formula { overflow-x: auto; } .formula svg { max-width: none; height: auto; }

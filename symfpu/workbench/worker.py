@@ -6,6 +6,7 @@ that the wish was taken, DONE that it is over.
 
 from __future__ import annotations
 
+import gc
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -40,8 +41,10 @@ def work(connection: Connection) -> None:
     bench, wishes = Bench(), Wishes()
     for _ in bench.parts(Choice()):
         pass  # loads what was compiled and the pictures' fonts, before anybody waits for them
+    gc.freeze()  # what is there now stays: a collection need not walk through it
     try:
         while True:
+            bench.prepare()
             _receive(connection, wishes, wait=True)
             for kind, (ticket, arguments) in wishes.taken():
                 connection.send((kind, ticket, TAKEN))
