@@ -73,8 +73,15 @@ def verify(path: str | Path) -> list[str]:
 
     Raises CertificateError, with the reason, if it is not right.
     """
+    _, checked = verified(path)
+    return checked
+
+
+def verified(path: str | Path) -> tuple[Json, list[str]]:
+    """The same with the certificate that was checked, which is read once."""
     try:
-        return check_certificate(read_certificate(Path(path)))
+        certificate = read_certificate(Path(path))
+        return certificate, check_certificate(certificate)
     except CertificateError:
         raise
     except READING_ERRORS as error:

@@ -1,11 +1,53 @@
-"""A sweep of the propagation rule as text."""
+"""Proofs and sweeps of the propagation rule, for JSON and as text."""
 
 from __future__ import annotations
 
+from typing import Any
+
+from symfpu.proofs.certificates import SINGLE, PropagationProof, RuleException
 from symfpu.proofs.sweeps import Sweep, SweepCase
 from symfpu.reports.tables import markdown_table
 
 VERDICTS = ("proved", "refuted", "undecided")
+EVIDENCE = ("excited", "vanishing", "points", "coefficients", "digest")
+
+Json = dict[str, Any]
+
+
+def proof_record(proof: PropagationProof) -> Json:
+    """A proof for JSON: its certificate without the evidence."""
+    return certificate_record(proof.certificate())
+
+
+def certificate_record(certificate: Json) -> Json:
+    """The same of a certificate that was read."""
+    found = {key: certificate[key] for key in certificate if key not in EVIDENCE}
+    return {"kind": PropagationProof.__name__} | found
+
+
+def sweep_record(sweep: Sweep) -> Json:
+    """A sweep for JSON: how many seed sets, and those in which the Proposition fails."""
+    law = "model" if sweep.model in SINGLE else "potential"
+    failing = [_case_record(case) for case in sweep.exceptions]
+    return {
+        "kind": Sweep.__name__,
+        law: sweep.model,
+        "order": sweep.order,
+        "cases": len(sweep.cases),
+        "exceptions": failing,
+    }
+
+
+def _case_record(case: SweepCase) -> Json:
+    """A seed set; its exceptions as those of a proof."""
+    exceptions = [RuleException(*entry).record() for entry in case.exceptions]
+    return {
+        "N": case.N,
+        "seeds": list(case.seeds),
+        "verdict": case.verdict,
+        "exceptions": exceptions,
+        "corrected_rule_holds": case.corrected_rule_holds,
+    }
 
 
 def sweep_markdown(sweep: Sweep) -> str:
