@@ -14,7 +14,8 @@ from symfpu.saved.results import load
 from tests.reports.test_records import FORMS, numbers
 
 ROOT = Path(__file__).parents[2]
-PAGE = set(re.findall(r"`(\w+)`", (ROOT / "docs" / "records.md").read_text()))
+ROWS = re.findall(r"^\| ([^|]*) \|", (ROOT / "docs" / "records.md").read_text(), re.MULTILINE)
+PAGE = {word for row in ROWS for word in re.findall(r"\w+", row)}
 CHAIN = ["-N", "4", "--alpha", "0.3"]
 TORUS = [*CHAIN, "--seeds", "1", "--energy", "0.001", "--order", "2"]
 RULE = ["-N", "6", "--seeds", "1,2", "--order", "2"]
