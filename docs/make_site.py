@@ -2,7 +2,8 @@
 
     python docs/make_site.py FOLDER [--links]
 
-FOLDER/html/index.html is its first page. --links : ask the network whether links to elsewhere lead somewhere, and build nothing.
+FOLDER/html/index.html is its first page; links within the site lead to pages and anchors that are there, or it is an error.
+--links : ask the network whether links to elsewhere lead somewhere, and build nothing; one line says so where there is no network.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ DOCS = Path(__file__).parent
 ROOT = DOCS.parent
 sys.path.insert(0, str(DOCS))
 
-from press import gallery, topics  # noqa: E402
+from press import check, gallery, topics  # noqa: E402
 
 SAME = ("*.md", "*.png", "conf.py")
 CONTENTS = re.compile(r"^:::\{toctree\}\n(.*?)^:::$", re.MULTILINE | re.DOTALL)
@@ -83,9 +84,31 @@ def _copy_notebooks(folder: Path) -> None:
     )
 
 
-def build(folder: Path, builder: str = "html") -> int:
-    """Sphinx over the pages; warnings are errors. Returns its exit code."""
+def build(folder: Path) -> int:
+    """The site; warnings and lost links are errors. Returns the exit code."""
     pages = lay_out(folder / "pages")
+    code = _sphinx(pages, folder, "html")
+    lost = check.lost_in(folder / "html")
+    for name, link in lost:
+        print(f"{name}: {link} leads nowhere", file=sys.stderr)
+    return code or int(bool(lost))
+
+
+def ask(folder: Path) -> int:
+    """Whether links to elsewhere lead somewhere. Returns the exit code, 1 without a network."""
+    pages = lay_out(folder / "pages")
+    silent = check.silent_hosts(pages)
+    if silent:
+        print(
+            f"make links needs a network, none of {', '.join(silent)} answers; make docs checks the links within",
+            file=sys.stderr,
+        )
+        return 1
+    return _sphinx(pages, folder, "linkcheck")
+
+
+def _sphinx(pages: Path, folder: Path, builder: str) -> int:
+    """Sphinx over the pages; warnings are errors. Returns its exit code."""
     output = folder / builder
     shutil.rmtree(output, ignore_errors=True)
     command = [
@@ -107,4 +130,4 @@ def build(folder: Path, builder: str = "html") -> int:
 
 if __name__ == "__main__":
     target = Path(sys.argv[1])
-    sys.exit(build(target, "linkcheck" if "--links" in sys.argv else "html"))
+    sys.exit(ask(target) if "--links" in sys.argv else build(target))

@@ -112,7 +112,8 @@ def test_commands_have_the_options_they_are_given(page):
 
 PATH = re.compile(r"(?<![\w/.-])((?:symfpu|tests|docs|generated|notebooks)/[\w./-]*\w/?)")
 LINK = re.compile(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)")
-NAMED = [*PAGES, ROOT / "Makefile", ROOT / "pyproject.toml", *sorted((ROOT / "symfpu").rglob("*.py"))]
+HOSTED = ROOT / ".github" / "workflows" / "ci.yml"
+NAMED = [*PAGES, HOSTED, ROOT / "Makefile", ROOT / "pyproject.toml", *sorted((ROOT / "symfpu").rglob("*.py"))]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -123,6 +124,12 @@ def test_links_lead_somewhere(page):
 @pytest.mark.parametrize("file", NAMED, ids=lambda file: os.fspath(file.relative_to(ROOT)))
 def test_files_that_are_named_exist(file):
     assert [path for path in PATH.findall(file.read_text()) if not (ROOT / path).exists()] == []
+
+
+def test_hosted_runs_name_targets():
+    """Every job of CI, and the site is one of them."""
+    named = set(re.findall(r"\bmake (\w+)", HOSTED.read_text()))
+    assert {"docs", "links", "long", "test"} <= named <= set(TARGET.findall((ROOT / "Makefile").read_text()))
 
 
 TEST = re.compile(r"`(test_\w+)`")

@@ -5,9 +5,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from html.parser import HTMLParser
 from pathlib import Path
-from urllib.parse import unquote
 
 import pytest
 
@@ -16,8 +14,9 @@ import symfpu
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs"))
 
+import make_site  # noqa: E402
 from docutils.utils.math import MathError  # noqa: E402
-from press import docstrings, formulas, gallery, links, plain, topics  # noqa: E402
+from press import check, docstrings, formulas, gallery, links, plain, topics  # noqa: E402
 
 SECONDS = 6.0  # of processor time, where others use the processor; alone an example takes less than one or two
 VERDICTS = ("holds", "holds in part", "does not hold", "undecided")
@@ -148,31 +147,14 @@ def test_the_paper_s_page_counts_its_verdicts():
     assert printed == [[found[verdict] for verdict in VERDICTS] for found in counts]
 
 
-class Page(HTMLParser):
-    """Links and targets of a page, and what it loads."""
-
-    def __init__(self, path):
-        super().__init__()
-        self.links, self.targets, self.loaded = [], set(), []
-        self.feed(path.read_text())
-
-    def handle_starttag(self, tag, attrs):
-        known = dict(attrs)
-        self.targets |= {known[name] for name in ("id", "name") if known.get(name)}
-        if tag == "a" and known.get("href"):
-            self.links.append(known["href"])
-        if tag in ("script", "img", "link"):
-            self.loaded += [known[name] for name in ("src", "href") if known.get(name)]
-
-
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    """The whole site, built as `make docs` does."""
+    """The whole site, built as `make docs` does, which fails for a lost link."""
     folder = tmp_path_factory.mktemp("site")
     command = [sys.executable, str(ROOT / "docs/make_site.py"), str(folder)]
     built = subprocess.run(command, capture_output=True, text=True, check=False)
     assert built.returncode == 0, built.stderr[-3000:]
-    return {path.relative_to(folder / "html").as_posix(): Page(path) for path in (folder / "html").rglob("*.html")}
+    return check.pages(folder / "html")
 
 
 @pytest.mark.long
@@ -186,18 +168,42 @@ def test_the_site_has_its_pages(site):
     assert {f"symfpu.{name}" for name in symfpu.__all__} <= documented
 
 
-@pytest.mark.long
-def test_links_within_the_site_lead_to_targets(site):
-    lost = []
-    for name, page in site.items():
-        for link in page.links:
-            file, _, anchor = unquote(link).partition("#")
-            if re.match(r"\w+:", file):
-                continue
-            target = (Path("/") / name).parent.joinpath(file).resolve().relative_to("/").as_posix() if file else name
-            if target.endswith(".html") and (target not in site or (anchor and anchor not in site[target].targets)):
-                lost.append((name, link))
-    assert lost == []
+LINKS = {
+    "index.html": True,
+    "#here": True,
+    "part/page.html#there": True,
+    "part/picture.png": True,
+    "https://example.org/#x": True,
+    "part/nowhere.html": False,
+    "part/nowhere.png": False,
+    "#there": False,
+    "part/page.html#here": False,
+    "../index.html": False,
+}
+
+
+@pytest.mark.parametrize(("link", "leads"), LINKS.items(), ids=LINKS)
+def test_lost_links_are_found(link, leads, tmp_path):
+    (tmp_path / "part").mkdir()
+    (tmp_path / "part" / "picture.png").touch()
+    (tmp_path / "index.html").write_text(f'<p id="here"><a href="{link}">a</a></p>')
+    (tmp_path / "part" / "page.html").write_text('<a name="there" href="../index.html#here">b</a>')
+    expected = [] if leads else [("index.html", link)]
+    assert check.lost_in(tmp_path) == expected
+
+
+def test_links_without_a_network_say_so_in_one_line(monkeypatch, capsys, tmp_path):
+    def unreachable(*_):
+        raise OSError
+
+    monkeypatch.setattr(make_site, "lay_out", lambda folder: folder)
+    monkeypatch.setattr(check.socket, "create_connection", unreachable)
+    (tmp_path / "pages").mkdir()
+    (tmp_path / "pages" / "a.md").write_text("[a](https://example.org/page) [b](http://example.com)")
+    assert make_site.ask(tmp_path) == 1
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "example.com, example.org" in said
 
 
 @pytest.mark.long

@@ -69,6 +69,11 @@ class Twist(Gridded):
         return numbers.context(self.digits) if numbers else np.errstate()
 
     @property
+    def omega(self) -> dict[int, Any]:
+        """The frequencies by seed, as everywhere."""
+        return dict(zip(self.seeds, self.frequencies, strict=True))
+
+    @property
     def asymmetry(self) -> float:
         """Largest |Lambda_ij - Lambda_ji|, over the largest entry: what the torus lacks."""
         largest = float(np.abs(self.matrix).max())

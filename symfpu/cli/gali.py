@@ -165,7 +165,7 @@ def gali(
 
 def _print_estimate(seconds: float, as_json: bool) -> None:
     if as_json:
-        print_json({"seconds": float(f"{seconds:.2g}")})
+        print_json({"kind": "gali", "seconds": float(f"{seconds:.2g}")})
     else:
         hours = f" ({seconds / 3600:.1f} hours)" if seconds > 3600 else ""
         print(f"about {seconds:.2g} seconds{hours} of one processor")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -39,10 +38,10 @@ from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
-from symfpu.proofs.checkers import verify_certificate
+from symfpu.proofs.checkers import verified_certificate
 from symfpu.proofs.sweeps import sweep_propagation
 from symfpu.proofs.verify import CertificateError
-from symfpu.reports.sweep import sweep_markdown
+from symfpu.reports.proofs import certificate_record, sweep_markdown
 
 ALLOWED_CERTIFICATE = "one written by symfpu prove or certify, unaltered"
 MODELS = ("alpha", "beta", "alpha+beta")
@@ -74,6 +73,7 @@ def propagate(
     draw(partial(propagation, sequence, N=N), picture)
     if as_json:
         record = {
+            "kind": "propagate",
             "N": N,
             **_law_entries(model, potential),
             **({} if ends == "fixed" else {"ends": ends}),
@@ -214,13 +214,14 @@ def verify(
     """
     path = path_named("certificate", file)
     try:
-        checked = verify_certificate(path)
+        certificate, checked = verified_certificate(path)
     except CertificateError as error:
         raise InputError(
             "certificate", str(path), ALLOWED_CERTIFICATE, str(error)
         ) from error
     if as_json:
-        print_json({"file": str(path), "valid": True, "checked": checked})
+        about = {"file": str(path), "valid": True, "checked": checked}
+        print_json(certificate_record(certificate) | about)
         return
     say("\n".join([*checked, "the certificate is valid"]))
 
@@ -281,13 +282,7 @@ def sweep(
             write_text(summary, sweep_markdown(result))
         keep(result, saved, context)
     if as_json:
-        record = {
-            **_law_entries(model, potential),
-            "order": result.order,
-            "cases": len(result.cases),
-            "exceptions": [asdict(case) for case in result.exceptions],
-        }
-        print_json(record)
+        print_json(result.record())
         return
     say(result)
     for case in result.exceptions:

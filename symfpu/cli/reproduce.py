@@ -29,6 +29,7 @@ from symfpu.paper.claims_page import (
     file_names,
 )
 from symfpu.paper.targets import LONG_TARGETS, TARGETS, full_estimate, reproduced
+from symfpu.reports.head import headed
 
 
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
@@ -111,7 +112,8 @@ def _kept(figures: dict[str, PaperFigure], folder: Path) -> str:
 
 def _write(figures: dict[str, PaperFigure], folder: Path) -> dict[str, Any]:
     """The report as Markdown and JSON; returns the record."""
-    record = {target: figure_record(figure) for target, figure in figures.items()}
+    found = {target: figure_record(figure) for target, figure in figures.items()}
+    record = headed({"kind": "reproduce", "figures": found})
     parts = ["# The paper's numbers, computed from its printed frequencies"]
     if any(figure.claims for figure in figures.values()):
         parts.append(claims_markdown(figures.values()))

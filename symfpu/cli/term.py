@@ -29,6 +29,7 @@ from symfpu.errors import InputError
 from symfpu.files.writing import output_file
 from symfpu.notebook import latex_lines
 from symfpu.numbers.typed import decimal
+from symfpu.reports.solution import frequencies_record
 from symfpu.saved.results import save
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.closed_forms import closed_form
@@ -181,13 +182,14 @@ def _record(found: Formula, latex: bool) -> dict[str, Any]:
     """For machines; expressions as SymPy and SymEngine read them."""
     series = found.series
     names = [[str(name), str(value)] for name, value in found.parts.names]
-    frequencies = series.frequencies and list(map(str, series.frequencies))
     record = {
+        "kind": "term",
         "N": "N" if series.chain.symbolic else series.chain.N,
         **series.chain.typed_law,
         **found.valid,
         "seeds": list(map(label_entry, series.seeds)),
-        "frequencies": frequencies,
+        "frequencies": frequencies_record(series),
+        "digits": series.digits,
         "name": found.name,
         "q": label_entry(found.q),
         "order": found.order,

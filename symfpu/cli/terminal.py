@@ -36,6 +36,7 @@ from rich.text import Text
 
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
+from symfpu.reports.head import headed
 
 SeedsOption = Annotated[
     str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")
@@ -161,7 +162,7 @@ def held(found: Found | None, file: str) -> Found:
 
 def print_json(record: dict[str, Any]) -> None:
     """A result for machines on standard output."""
-    print(json.dumps(record, indent=1))
+    print(json.dumps(headed(record), indent=1))
 
 
 def say(text: object) -> None:

@@ -84,6 +84,11 @@ class TodaTorus(Tabled):
             f"H = {self.energy}, {omega})"
         )
 
+    @property
+    def omega(self) -> dict[int, Any]:
+        """The frequencies by seed, by the name that they have in every result."""
+        return dict(self.frequencies)
+
     def particles(self, phases: Mapping[int, int] | None = None) -> tuple[Numbers, Numbers]:
         """Displacements x and momenta p of one state on the torus, as mpf.
 

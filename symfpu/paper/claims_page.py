@@ -61,18 +61,16 @@ def claims_markdown(figures: Iterable[PaperFigure]) -> str:
     return f"## Claims\n\n{summary}.\n\n{table}\n"
 
 
-def figure_record(figure: PaperFigure) -> Any:
-    """For JSON: claims, and the curves of each panel by name.
-
-    Beside numbers of the figure's own they are under "judged"; numbers are alone where nothing is
-    judged.
-    """
-    if figure.numbers is not None and not figure.claims:
-        return figure.numbers
-    record: dict[str, Any] = {"title": figure.title, "remarks": list(figure.remarks)}
-    record["claims"] = [claim.record() for claim in figure.claims]
-    record["panels"] = {panel.name: _curve_names(panel) for panel in figure.panels}
-    return record if figure.numbers is None else figure.numbers | {"judged": record}
+def figure_record(figure: PaperFigure) -> dict[str, Any]:
+    """For JSON: claims, the curves of each panel by name, and numbers of the figure's own."""
+    return {
+        "kind": type(figure).__name__,
+        "title": figure.title,
+        "remarks": list(figure.remarks),
+        "claims": [claim.record() for claim in figure.claims],
+        "panels": {panel.name: _curve_names(panel) for panel in figure.panels},
+        "numbers": figure.numbers,
+    }
 
 
 def _curve_names(panel: Panel) -> list[str]:

@@ -8,35 +8,51 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from symfpu.proofs import check_existence, verify, verify_theorem
 from symfpu.proofs.verify import CertificateError
 
-Checker = Callable[[Path], list[str]]
-
-CHECKERS: dict[str, Checker] = {
-    "symfpu propagation certificate": verify.verify,
-    "symfpu existence certificate": check_existence.verify,
-    verify_theorem.FORMAT: verify_theorem.verify,
-}
+Json = dict[str, Any]
 PROPAGATION = "symfpu propagation certificate"
 KIND = re.compile(r'"format":\s*"([^"\\]*)"')
 LONGEST_HEAD = 4096  # characters in which a file names its kind
 
 
-def verify_certificate(path: str | Path) -> list[str]:
-    """Lines that say what was checked in the certificate of a file, whichever kind it is.
+class Checker(NamedTuple):
+    """What reads a certificate from a file, and what checks it and says so in lines."""
+
+    read: Callable[[Path], Json]
+    check: Callable[[Json], list[str]]
+
+
+CHECKERS: dict[str, Checker] = {
+    PROPAGATION: Checker(verify.read_certificate, verify.check_certificate),
+    check_existence.FORMAT: Checker(
+        check_existence.read_certificate, check_existence.check_certificate
+    ),
+    verify_theorem.FORMAT: Checker(
+        verify_theorem.read_theorem, verify_theorem.check_theorem
+    ),
+}
+
+
+def verified_certificate(path: str | Path) -> tuple[Json, list[str]]:
+    """A certificate, whichever kind it is, and lines that say what was checked in it.
 
     Raises CertificateError, with the reason, if it is not right.
     """
     path = Path(path)
     checker = CHECKERS.get(kind_of(path), CHECKERS[PROPAGATION])
     try:
-        return checker(path)
+        certificate = checker.read(path)
+        return certificate, checker.check(certificate)
     except CertificateError:
         raise
     except check_existence.ExistenceError as error:
         raise CertificateError(str(error)) from error
+    except verify.READING_ERRORS as error:
+        raise CertificateError(f"no readable certificate: {error!r:.200}") from None
 
 
 def kind_of(path: Path) -> str:

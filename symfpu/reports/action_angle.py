@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.action_angle.twist import Twist
-from symfpu.numbers.typed import decimal
+from symfpu.reports.solution import frequencies_record
 from symfpu.reports.tables import fifteen_digits, number_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -16,24 +16,32 @@ PLACES = 12  # digits of doubles in lines for a reader
 def actions_record(
     solution: QuasiPeriodic | RingTorus, by_angle: dict[int, Any], found: Twist | None
 ) -> dict[str, Any]:
-    """Keys of the command line; `twist` and what follows from it are there where it was found."""
+    """What the verb prints: the twist with exact frequencies, or of a ring the actions alone."""
+    frequencies = frequencies_record(solution)
+    if found is not None:
+        return twist_record(found) | {"frequencies": frequencies}
     digits = solution.digits
-    frequencies = zip(solution.seeds, solution.frequencies, strict=True)
-    record = {
-        "kind": type(solution).__name__,
+    return {
+        "kind": "actions",
         **solution.chain.typed,
         "seeds": list(solution.seeds),
+        "frequencies": frequencies,
         "digits": digits,
-        "frequencies": {str(q): decimal(omega) for q, omega in frequencies},
         "actions": {str(q): number_text(x, digits) for q, x in by_angle.items()},
     }
-    return record if found is None else record | _twist_record(found)
 
 
-def _twist_record(found: Twist) -> dict[str, Any]:
+def twist_record(found: Twist) -> dict[str, Any]:
+    """A twist for JSON, with the actions of the torus that it is of."""
     places = found.digits
     rows = [[number_text(x, places) for x in row] for row in found.matrix]
     return {
+        "kind": type(found).__name__,
+        **found.chain.typed,
+        "seeds": list(found.seeds),
+        "frequencies": _by_seed(found, found.frequencies),
+        "digits": places,
+        "actions": _by_seed(found, found.actions),
         "twist": rows,
         "twist_method": found.method,
         "asymmetry": fifteen_digits(found.asymmetry),
@@ -43,6 +51,11 @@ def _twist_record(found: Twist) -> dict[str, Any]:
         "determinant": number_text(found.determinant, places),
         "isoenergetic_determinant": number_text(found.isoenergetic_determinant, places),
     }
+
+
+def _by_seed(found: Twist, values: Any) -> dict[str, str]:
+    numbers = zip(found.seeds, values, strict=True)
+    return {str(q): number_text(x, found.digits) for q, x in numbers}
 
 
 def actions_text(record: dict[str, Any]) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 from symfpu.normal.modes import NormalMode, NormalModes
 from symfpu.normal.resonances import ParametricResonance
-from symfpu.numbers.typed import decimal
+from symfpu.reports.solution import frequencies_record
 from symfpu.reports.tables import fifteen_digits
 
 SHOWN_RESONANCES = 10
@@ -15,11 +15,12 @@ SHOWN_RESONANCES = 10
 def normal_record(found: NormalModes) -> dict[str, Any]:
     """Keys of the command line; real frequencies as strings, complex ones as [re, im]."""
     torus = found.torus
-    frequencies = zip(torus.seeds, torus.frequencies, strict=True)
     return {
+        "kind": type(found).__name__,
         **torus.chain.typed,
         "seeds": list(torus.seeds),
-        "frequencies": {str(q): decimal(w) for q, w in frequencies},
+        "frequencies": frequencies_record(torus),
+        "verdict": found.verdict,
         "stable": found.stable,
         "growth": fifteen_digits(found.growth),
         "normal_frequencies": {str(mode.mode): _sigma(mode) for mode in found.modes},
@@ -38,7 +39,7 @@ def _sigma(mode: NormalMode) -> str | list[str]:
 
 def _resonance(one: ParametricResonance) -> dict[str, Any]:
     return {
-        "kind": one.kind,
+        "resonance": one.kind,
         "modes": list(one.modes),
         "harmonic": list(one.harmonic),
         "distance": fifteen_digits(one.distance),

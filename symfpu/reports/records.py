@@ -10,6 +10,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
+from symfpu.action_angle.twist import Twist
 from symfpu.breathers.floquet import Floquet
 from symfpu.bundles.bundle import Bundle
 from symfpu.chain.length import label_entry
@@ -22,13 +23,19 @@ from symfpu.frames.attributes import exact_text
 from symfpu.frames.tabled import Tabled
 from symfpu.localization.laws import ProfileLine
 from symfpu.localization.profiles import ProfileDistance
+from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
 from symfpu.proofs.certificates import PropagationProof
+from symfpu.proofs.sweeps import Sweep
 from symfpu.proofs.theorem import RuleForAllN
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
+from symfpu.reports.action_angle import twist_record
 from symfpu.reports.dynamics import alignment_record, orbit_record
 from symfpu.reports.family import event_record, family_record, member_record, refined_record
+from symfpu.reports.head import headed
+from symfpu.reports.normal import normal_record
+from symfpu.reports.proofs import proof_record, sweep_record
 from symfpu.reports.solution import floquet_record, solution_record
 from symfpu.reports.tables import fifteen_digits
 from symfpu.reports.torus import series_record, torus_record
@@ -48,9 +55,9 @@ def record(result: object) -> Json:
     """The record of a result; raises InputError for what is none."""
     for kind, made in KINDS:
         if isinstance(result, kind):
-            return {"kind": type(result).__name__} | made(result)
+            return headed({"kind": type(result).__name__} | made(result))
     if isinstance(result, Tabled):
-        return {"kind": type(result).__name__} | _columns(result)
+        return headed({"kind": type(result).__name__} | _columns(result))
     allowed = "a result with a record"
     raise InputError("result", type(result).__name__, allowed, "pass what symfpu computed")
 
@@ -108,12 +115,9 @@ def _number(value: Any) -> Any:
     return str(value)
 
 
-def _proof_record(proof: PropagationProof) -> Json:
-    """The certificate without its evidence."""
-    found = proof.certificate()
-    for evidence in ("excited", "vanishing", "points", "coefficients", "digest"):
-        found.pop(evidence, None)
-    return found
+def _sweep_record(sweep: Sweep) -> Json:
+    """What the verb prints, and every seed set by column."""
+    return sweep_record(sweep) | {"columns": _columns(sweep)["columns"]}
 
 
 def _theorem_record(proof: RuleForAllN) -> Json:
@@ -162,8 +166,11 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (Floquet, floquet_record),
     (Orbit, orbit_record),
     (AlignmentIndices, alignment_record),
-    (PropagationProof, _proof_record),
+    (PropagationProof, proof_record),
     (RuleForAllN, _theorem_record),
+    (Sweep, _sweep_record),
+    (NormalModes, normal_record),
+    (Twist, twist_record),
     (ProfileLine, _line_record),
     (ProfileDistance, _distance_record),
     (Bundle, _bundle_record),

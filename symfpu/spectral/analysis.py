@@ -111,6 +111,11 @@ class FrequencyAnalysis(Shown, Tabled):
         found = f"{independent}: {shown}; {lines}, drift {self.drift:.2g}"
         return f"FrequencyAnalysis({chain}, T={self.T:.10g}, {found})"
 
+    @property
+    def omega(self) -> dict[int, float]:
+        """The independent frequencies by the modes that name them, as everywhere by seed."""
+        return dict(zip(self.seeds, self.frequencies.tolist(), strict=True))
+
     def count(self, level: float) -> int:
         """How many independent frequencies are stronger than this part of the strongest.
 

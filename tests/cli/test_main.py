@@ -327,7 +327,7 @@ def test_reproduce_table_has_every_row_and_its_verdict(capsys, monkeypatch, tmp_
     left_out = {row.label: ((1e-9, 1e-11), 4) for row in (TWO_TORUS, *quick) if row.label != "Fig. 8"}
     monkeypatch.setattr("symfpu.paper.corrected.HEAVY_ROWS", left_out)
     code, out, err = run(capsys, "reproduce", "table", "-o", str(tmp_path), "--json")
-    rows = {row["label"]: row for row in json.loads(out)["table"]}
+    rows = {row["label"]: row for row in json.loads(out)["figures"]["table"]["numbers"]}
     assert (code, err) == (0, "")
     assert list(rows) == ["Fig. 1", "Fig. 2", "Fig. 5a", "Fig. 5b", "Fig. 5c", "Fig. 7", "Fig. 8"]
     assert all(rows[label]["met_at_frequency_orders"] for label in ("Fig. 1", "Fig. 2", "Fig. 5a", "Fig. 5b", "Fig. 5c"))

@@ -50,7 +50,8 @@ def test_reproduce_writes_claims_pictures_and_data(short, capsys, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == expected | {"report.md", "report.json"}
     page = (tmp_path / "report.md").read_text()
     record = strict((tmp_path / "report.json").read_text())
-    claims = [claim for part in (record["section5"], record["fig3"], record["fig6"]["judged"]) for claim in part["claims"]]
+    assert list(record["figures"]) == ["section5", "fig3", "fig6"]
+    claims = [claim for part in record["figures"].values() for claim in part["claims"]]
     counts = {verdict: sum(claim["verdict"] == verdict for claim in claims) for verdict in VERDICTS}
     summary = ", ".join(f"{n} {verdict}" for verdict, n in counts.items() if n)
     assert f"## Claims\n\n{summary}.\n" in page
@@ -75,7 +76,7 @@ def test_json_is_strict_and_alone_on_standard_output(capsys, tmp_path):
     code, out, err = run(capsys, "section5", "-o", str(tmp_path), "--json")
     assert (code, err) == (0, "")
     assert strict(out) == strict((tmp_path / "report.json").read_text())
-    assert list(strict(out)) == ["section5"]
+    assert list(strict(out)["figures"]) == ["section5"]
 
 
 @pytest.mark.long
@@ -88,7 +89,7 @@ def test_a_target_that_fails_loses_nothing_of_those_before(monkeypatch, capsys, 
     assert (code, out) == (1, "")
     assert "no recurrence" in err
     assert "Fig. 6" in (tmp_path / "report.md").read_text()
-    assert list(strict((tmp_path / "report.json").read_text())) == ["fig6"]
+    assert list(strict((tmp_path / "report.json").read_text())["figures"]) == ["fig6"]
 
 
 @pytest.fixture

@@ -99,10 +99,13 @@ def test_the_page_has_remarks_text_claims_and_pictures_in_this_order(figure):
     assert places == sorted(places)
 
 
-def test_numbers_are_beside_what_is_judged_or_alone(figure):
-    judged_alone = figure_record(figure)
-    assert figure_record(replace(figure, numbers={"best": 3})) == {"best": 3, "judged": judged_alone}
-    assert figure_record(replace(figure, claims=(), numbers=[1, 2])) == [1, 2]
+@pytest.mark.parametrize("numbers", [{"best": 3}, [1, 2]])
+def test_numbers_are_beside_what_is_judged(figure, numbers):
+    without = figure_record(figure)
+    assert (without["kind"], without["numbers"]) == ("PaperFigure", None)
+    assert figure_record(replace(figure, numbers=numbers)) == without | {"numbers": numbers}
+    unjudged = figure_record(replace(figure, claims=(), numbers=numbers))
+    assert unjudged == without | {"claims": [], "numbers": numbers}
 
 
 def test_files_that_differ_in_a_last_letter_are_named_together(figure):

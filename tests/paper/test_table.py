@@ -151,8 +151,9 @@ def test_reproduce_fig1_writes_pictures_data_and_claims(computed, monkeypatch, c
     assert all((tmp_path / name).stat().st_size > 500 for name in expected if not name.endswith("csv"))
     record = json.loads(out)
     assert record == json.loads((tmp_path / "report.json").read_text())
-    assert set(record["fig1"]["claims"]) == {"best_difference", "cancellation", "term_size", "harmonic_error", "energy_error"}
-    claims = {claim["text"].split(",")[0]: claim for claim in record["fig1"]["judged"]["claims"]}
+    figure = record["figures"]["fig1"]
+    assert set(figure["numbers"]["claims"]) == {"best_difference", "cancellation", "term_size", "harmonic_error", "energy_error"}
+    claims = {claim["text"].split(",")[0]: claim for claim in figure["claims"]}
     assert len(claims) == 11
     assert claims["cancellations by four orders of magnitude at k = 14"]["verdict"] == "holds"
     assert claims["the energies E_q fall exponentially with q"]["verdict"] == "holds"

@@ -138,7 +138,7 @@ def test_the_page_links_every_picture_once(cancellation, breather):
 
 
 def test_the_record_is_strict_json_with_the_numbers(cancellation, breather, assessment):
-    record = json.loads(json.dumps(figure_record(convergence_figure(cancellation, breather)), allow_nan=False))
+    record = json.loads(json.dumps(figure_record(convergence_figure(cancellation, breather)), allow_nan=False))["numbers"]
     assert (record["coincidence"], record["divisor"], record["pole"]) == ([13, -7], 3.125e-5, 0.625)
     assert record["ratios"] == {"18": 9.0, "20": 1.25, "22": 1.5}
     assert record["resummed_residuals"] == {"12": 1e-5, "30": 2e-7}
@@ -150,7 +150,7 @@ def test_the_record_is_strict_json_with_the_numbers(cancellation, breather, asse
 
 def test_a_study_without_a_pole_still_has_a_record(cancellation, breather, assessment):
     endless = replace(cancellation, assessment=replace(assessment, pole_radius=math.inf, growth=0.0))
-    record = json.loads(json.dumps(figure_record(convergence_figure(endless, breather)), allow_nan=False))
+    record = json.loads(json.dumps(figure_record(convergence_figure(endless, breather)), allow_nan=False))["numbers"]
     assert record["torus"]["radius_by_poles"] is record["torus"]["radius_by_ratio"] is None
 
 
@@ -177,7 +177,9 @@ def test_reproduce_convergence_writes_page_data_and_pictures(cancellation, breat
     assert (code, captured.err) == (0, "")
     written = {path.name for path in (tmp_path / "out").iterdir()}
     assert written == {"report.md", "report.json"} | {f"{name}.{suffix}" for name in FILES for suffix in ("png", "pdf", "csv")}
-    assert json.loads(captured.out) == json.loads((tmp_path / "out" / "report.json").read_text()) == {"convergence": figure_record(figure)}
+    found = json.loads(captured.out)
+    assert found == json.loads((tmp_path / "out" / "report.json").read_text())
+    assert found["figures"] == {"convergence": figure_record(figure)}
     assert figure_markdown(figure) in (tmp_path / "out" / "report.md").read_text()
 
 
@@ -188,7 +190,7 @@ def test_reproduce_fig6_writes_its_orders(capsys, tmp_path):
     captured = capsys.readouterr()
     assert captured.out.splitlines()[-1] == f"written: {tmp_path / 'report.md'}, report.json, fig6a..c as PNG, PDF and CSV"
     assert captured.out.count("holds: section 6.3, ") == 3
-    record = json.loads((tmp_path / "report.json").read_text())["fig6"]
+    record = json.loads((tmp_path / "report.json").read_text())["figures"]["fig6"]["numbers"]
     for panel in "abc":
         header, *rows = rows_of(tmp_path / f"fig6{panel}.csv")
         assert header == ["q", "kappa", "order"]

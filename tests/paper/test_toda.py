@@ -187,7 +187,7 @@ def test_reproduce_toda(tmp_path):
     figure = toda_page(tmp_path, lambda label, fraction: labels.add(label))
     assert len(labels) >= 13
     assert [panel.name for panel in figure.panels] == [f"toda-{letter}" for letter in "abcdefghi"]
-    record = json.loads(json.dumps(figure_record(figure), allow_nan=False))
+    record = json.loads(json.dumps(figure_record(figure), allow_nan=False))["numbers"]
     for name, time in RETURNS.items():
         assert record["returns"][name][0] == pytest.approx(time, abs=RECURRENCE_TIME)
     assert record["series_ends"]["Toda"] == pytest.approx(TODA_END, abs=SERIES_END)

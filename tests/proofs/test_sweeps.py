@@ -11,7 +11,7 @@ import pytest
 from symfpu.errors import InputError, TooLarge
 from symfpu.proofs import sweeps
 from symfpu.proofs.sweeps import SweepIncomplete, sweep_propagation
-from symfpu.reports.sweep import sweep_markdown
+from symfpu.reports.proofs import sweep_markdown
 
 
 @pytest.fixture(scope="module")

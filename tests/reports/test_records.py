@@ -9,6 +9,7 @@ import pytest
 
 import symfpu
 from symfpu.errors import InputError
+from symfpu.proofs.sweeps import SweepCase
 from symfpu.reports.records import record
 from tests.test_pickle import RESULTS, public_classes
 from tests.tolerances import THIRTY_DIGITS
@@ -58,7 +59,7 @@ def test_records_are_json_with_the_same_keys_and_forms(name, tmp_path):
     result = CASES[name](tmp_path)
     found = result.record()
     assert strict(found) == found
-    assert found["kind"] == type(result).__name__
+    assert (found["kind"], found["symfpu_version"]) == (type(result).__name__, symfpu.__version__)
     for value in numbers(found):
         assert float(f"{value:.15g}") == value
     if hasattr(result, "chain"):
@@ -112,6 +113,27 @@ def test_frequencies_are_by_seed_as_amplitudes_are(tmp_path):
     assert again.frequencies == torus.frequencies
     with pytest.raises(InputError, match="a number for each of the seeds"):
         symfpu.lindstedt(torus.series.chain, (1, 2), {1: "0.39"}, 2)
+
+
+def test_a_sweep_of_another_potential_names_it():
+    """Its exceptions are as those of a proof."""
+    case = SweepCase(4, (1, 2), "refuted", ((3, 1, None),), True)
+    found = symfpu.Sweep("toda:1/2", 1, (case,)).record()
+    assert (found["potential"], found["cases"], "model" in found) == ("toda:1/2", 1, False)
+    assert found["exceptions"][0]["exceptions"] == [{"mode": 3, "predicted": 1, "actual": None}]
+
+
+def test_every_result_with_frequencies_of_seeds_has_them_by_seed():
+    """Where `frequencies` is a method it is by seed itself."""
+    kinds = [getattr(symfpu, name) for name in public_classes()]
+    given = [kind for kind in kinds if not callable(getattr(kind, "frequencies", None))]
+    with_both = [kind for kind in given if {"seeds", "frequencies"} <= attributes_of(kind)]
+    assert len(with_both) > 10
+    assert [kind for kind in with_both if "omega" not in attributes_of(kind)] == []
+
+
+def attributes_of(kind):
+    return {*dir(kind), *getattr(kind, "__dataclass_fields__", ())}
 
 
 def test_what_is_no_result_is_refused():

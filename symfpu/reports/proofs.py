@@ -1,0 +1,101 @@
+"""Proofs and sweeps of the propagation rule, for JSON and as text."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from symfpu.breathers.existence import ExistenceProof
+from symfpu.proofs import certificates, check_existence, theorem
+from symfpu.proofs.certificates import SINGLE, PropagationProof, RuleException
+from symfpu.proofs.sweeps import Sweep, SweepCase
+from symfpu.proofs.theorem import RuleForAllN
+from symfpu.reports.tables import markdown_table
+
+VERDICTS = ("proved", "refuted", "undecided")
+CERTIFIED = {
+    certificates.FORMAT: PropagationProof.__name__,
+    theorem.FORMAT: RuleForAllN.__name__,
+    check_existence.FORMAT: ExistenceProof.__name__,
+}
+EVIDENCE = ("excited", "vanishing", "points", "coefficients", "digest")
+
+Json = dict[str, Any]
+
+
+def proof_record(proof: PropagationProof) -> Json:
+    """A proof for JSON: its certificate without the evidence."""
+    return certificate_record(proof.certificate())
+
+
+def certificate_record(certificate: Json) -> Json:
+    """The same of a certificate that was read, of any kind; of others what is no list or table."""
+    kind = CERTIFIED[certificate["format"]]
+    if kind == PropagationProof.__name__:
+        kept = {key: certificate[key] for key in certificate if key not in EVIDENCE}
+    else:
+        kept = {key: x for key, x in certificate.items() if isinstance(x, str | int)}
+        kept.pop("digest", None)
+    return {"kind": kind} | kept
+
+
+def sweep_record(sweep: Sweep) -> Json:
+    """A sweep for JSON: how many seed sets, and those in which the Proposition fails."""
+    law = "model" if sweep.model in SINGLE else "potential"
+    failing = [_case_record(case) for case in sweep.exceptions]
+    return {
+        "kind": Sweep.__name__,
+        law: sweep.model,
+        "order": sweep.order,
+        "cases": len(sweep.cases),
+        "exceptions": failing,
+    }
+
+
+def _case_record(case: SweepCase) -> Json:
+    """A seed set; its exceptions as those of a proof."""
+    exceptions = [RuleException(*entry).record() for entry in case.exceptions]
+    return {
+        "N": case.N,
+        "seeds": list(case.seeds),
+        "verdict": case.verdict,
+        "exceptions": exceptions,
+        "corrected_rule_holds": case.corrected_rule_holds,
+    }
+
+
+def sweep_markdown(sweep: Sweep) -> str:
+    """A sweep of the propagation rule.
+
+    How often it holds by N and number of seeds, and every exception.
+    """
+    proved = sum(case.verdict == "proved" for case in sweep.cases)
+    holds = sum(case.corrected_rule_holds for case in sweep.cases)
+    counts = f"{len(sweep.cases)} seed sets. The proposition holds in {proved}; "
+    counts += f"the corrected rule predicts the actual sets in {holds}."
+    parts = [f"## {sweep.model} model, order {sweep.order}", counts]
+    parts.append(markdown_table(["N", "seeds", "sets", *VERDICTS], _count_rows(sweep)))
+    exceptions = [_exception_row(case) for case in sweep.exceptions]
+    if exceptions:
+        parts.append("Exceptions (mode: predicted order -> actual order):")
+        parts.append(markdown_table(["N", "seeds", "exceptions"], exceptions))
+    return "\n\n".join(parts) + "\n"
+
+
+def _count_rows(sweep: Sweep) -> list[list[str]]:
+    """Verdicts by N and number of seeds."""
+    groups: dict[tuple[int, int], list[str]] = {}
+    for case in sweep.cases:
+        size = (case.N, len(case.seeds))
+        groups.setdefault(size, []).append(case.verdict)
+    rows = []
+    for (N, s), verdicts in groups.items():
+        counts = [verdicts.count(verdict) for verdict in VERDICTS]
+        row = [N, s, len(verdicts), *counts]
+        rows.append([str(number) for number in row])
+    return rows
+
+
+def _exception_row(case: SweepCase) -> list[str]:
+    seeds = ", ".join(map(str, case.seeds))
+    moved = [f"{q}: {predicted} -> {actual}" for q, predicted, actual in case.exceptions]
+    return [str(case.N), seeds, "; ".join(moved)]

@@ -1,0 +1,146 @@
+"""Every verb with --json prints one vocabulary: head, chain and seeds as everywhere, numbers in one form, keys of the page."""
+
+import ast
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import symfpu
+from symfpu.cli.main import main
+from symfpu.cli.verbs import VERBS
+from symfpu.saved.results import load
+from tests.reports.test_records import FORMS, numbers
+
+ROOT = Path(__file__).parents[2]
+ROWS = re.findall(r"^\| ([^|]*) \|", (ROOT / "docs" / "records.md").read_text(), re.MULTILINE)
+PAGE = {word for row in ROWS for word in re.findall(r"\w+", row)}
+CHAIN = ["-N", "4", "--alpha", "0.3"]
+TORUS = [*CHAIN, "--seeds", "1", "--energy", "0.001", "--order", "2"]
+RULE = ["-N", "6", "--seeds", "1,2", "--order", "2"]
+TODA = ["--potential", "toda:1/2"]
+RING = ["-N", "8", "--beta", "0.3", "--ends", "periodic", "--seeds", "1", "--omega", "0.77", "--order", "2"]
+BREATHER = ["breather", *CHAIN, "--seed", "1", "--energy", "0.001"]
+MADE = {"PROOF": ["prove", *RULE, "--model", "beta", "-o"], "TORUS": ["solve", *TORUS, "-o"], "ORBIT": [*BREATHER, "-o"]}
+CASES = {
+    "propagate": ["propagate", *RULE],
+    "verify": ["verify", "PROOF"],
+    "term": ["term", *CHAIN, "--seeds", "1", "-q", "2", "--order", "1"],
+    "solve": ["solve", *TORUS],
+}
+LONG = {
+    "prove": ["prove", *RULE, "--model", "beta"],
+    "propagate, another potential": ["propagate", *RULE, *TODA],
+    "propagate, a ring": ["propagate", *RULE, "--model", "alpha+beta", "--ends", "periodic"],
+    "term, all N": ["term", "-N", "N", *TODA, "--seeds", "1,N-1", "-q", "2", "--order", "2"],
+    "term, numbers": ["term", *CHAIN, "--seeds", "1", "-q", "2", "--order", "1", "--omega", "0.77", "--digits", "20"],
+    "show": ["show", "TORUS"],
+    "breather": BREATHER,
+    "refine": ["refine", "TORUS"],
+    "prove, another potential": ["prove", *RULE, *TODA],
+    "sweep": ["sweep", "--longest", "4", "--order", "2", "--model", "beta"],
+    "solve, a ring": ["solve", *RING],
+    "breather, multipliers": [*BREATHER, "--multipliers"],
+    "family": ["family", *CHAIN, "--seeds", "1", "--to-energy", "0.002", "--from-energy", "0.001"],
+    "actions": ["actions", "TORUS"],
+    "stability": ["stability", "ORBIT"],
+    "orbit": ["orbit", "TORUS", "--time", "100", "--samples", "10"],
+    "orbit, a state": ["orbit", *CHAIN, "--packet", "1", "--energy", "0.1", "--time", "100", "--samples", "10"],
+    "gali": ["gali", "TORUS", "--time", "1000", "--vectors", "3"],
+    "gali, estimate": ["gali", "TORUS", "--time", "1000", "--vectors", "3", "--estimate"],
+    "reproduce": ["reproduce", "fig6", "-o", "out"],
+}
+EVERY = {name: pytest.param(words, id=name) for name, words in CASES.items()}
+EVERY |= {name: pytest.param(words, id=name, marks=pytest.mark.long) for name, words in LONG.items()}
+LAWS = ({"alpha", "beta"}, {"model"}, {"potential"})
+OF_PARTS = {"figures"}  # each with a head of its own
+
+
+def printed(capsys, words):
+    """What a verb prints with --json, as a strict reader takes it."""
+
+    def refuse(word):
+        raise AssertionError(word)
+
+    assert main([*words, "--json"]) == 0
+    return json.loads(capsys.readouterr().out, parse_constant=refuse)
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+
+    def path_of(word):
+        if word not in MADE:
+            return word
+        file = tmp_path / word
+        main([*MADE[word], str(file)])
+        return capsys.readouterr().out.split()[-1]
+
+    return path_of
+
+
+def test_every_verb_with_json_is_here():
+    """Read from the source: to import every verb takes seconds."""
+    parsed = [ast.parse((ROOT / "symfpu" / "cli" / f"{module}.py").read_text()) for module in {*VERBS.values()}]
+    functions = [node for tree in parsed for node in tree.body if isinstance(node, ast.FunctionDef) and node.decorator_list]
+    with_json = {verb_of(node) for node in functions if any("JsonOption" in ast.unparse(one) for one in node.args.args if one.annotation)}
+    assert with_json == {words[0] for words in (CASES | LONG).values()}
+
+
+def verb_of(function):
+    named = [one.value for call in function.decorator_list for one in call.args]
+    return named[0] if named else function.name
+
+
+@pytest.mark.parametrize("words", EVERY.values())
+def test_every_verb_has_the_same_keys_and_number_forms(words, files, capsys):
+    found = printed(capsys, [files(word) for word in words])
+    assert list(found)[:2] == ["kind", "symfpu_version"]
+    assert found["symfpu_version"] == symfpu.__version__
+    assert found["kind"] == words[0] or hasattr(symfpu, found["kind"])
+    assert set(found) - PAGE == set()
+    if "N" in found or "model" in found:
+        assert sum(law <= set(found) for law in LAWS) == 1
+    assert "ends" not in found or found["ends"] == "periodic"
+    if "seeds" in found:
+        assert isinstance(found["seeds"], list)
+        for key in ("frequencies", "amplitudes", "actions"):
+            assert list(found.get(key) or map(str, found["seeds"])) == list(map(str, found["seeds"]))
+    for key, form in FORMS.items():
+        values = found.get(key)
+        inside = values.values() if isinstance(values, dict) else [values] * (values is not None)
+        assert all(isinstance(value, form) for value in inside), key
+    assert all(float(f"{value:.15g}") == value for value in numbers(found))
+    for part in found.get("figures", {}).values():
+        assert list(part) == ["kind", "title", "remarks", "claims", "panels", "numbers"]
+
+
+KEPT = {"solve": "-o", "refine": "-o", "breather": "-o", "family": "--save", "orbit": "--save", "gali": "--save", "sweep": "--save"}
+OF_THE_RUN = {"seconds", "assessment", "verdict", "warnings"}  # clocks; what the verb judges or doubts besides
+
+
+@pytest.mark.parametrize("name", [name for name in EVERY if name in KEPT])
+@pytest.mark.long
+def test_a_verb_prints_the_record_of_what_it_keeps(name, files, capsys, tmp_path):
+    file = tmp_path / "kept.symfpu"
+    words = [files(word) for word in (CASES | LONG)[name]]
+    found = printed(capsys, [*words, KEPT[name], str(file)])
+    kept = load(file).result.record()
+    assert {key: found[key] for key in kept if key not in OF_THE_RUN} == {key: kept[key] for key in kept if key not in OF_THE_RUN}
+
+
+@pytest.mark.long
+def test_verify_says_what_prove_said(files, capsys):
+    proved = printed(capsys, ["prove", *RULE, "--model", "beta"])
+    verified = printed(capsys, ["verify", files("PROOF")])
+    assert {key: verified[key] for key in proved} == proved
+    assert verified["valid"] is True
+
+
+@pytest.mark.long
+def test_frequencies_of_a_term_are_by_seed(files, capsys):
+    found = printed(capsys, LONG["term, numbers"])
+    assert (found["frequencies"], found["digits"]) == ({"1": "0.77"}, 20)
+    assert printed(capsys, CASES["term"])["frequencies"] is None
