@@ -623,3 +623,6 @@ NORMAL_MULTIPLIER = 1e-11
 
 # What a frequency of a long regular orbit is known to: the integrator's phase.
 EXACT_LINE = 1e-13
+
+# Rounding of 1e-14 a step against a perturbation that grows from 1e-8 to 1e-4, over nine times the rate in all: a part of 1e-7.
+GROWTH_OF_ORBIT = 1e-7
