@@ -642,3 +642,5 @@ FORETOLD_AT_REST = 0.6
 LEADING_ORDER_SLACK = 0.05
 # the power of N after those that a formula keeps, at N in the hundreds and thousands
 NEXT_IN_LENGTH = 0.02
+# Rounding of 1e-14 a step against a perturbation that grows from 1e-8 to 1e-4, over nine times the rate in all: a part of 1e-7.
+GROWTH_OF_ORBIT = 1e-7

@@ -188,7 +188,9 @@ class Bordered:
 
     def improved(self, X: Values, accuracy: float) -> tuple[Values, Values]:
         """X that solves to the accuracy, over Omega_q^2, and L X."""
-        X = X.astype(self._divisors.dtype)
+        real = not np.iscomplexobj(self._divisors)
+        # of a real sigma X is real: its part in W is 1
+        X = X.real.copy() if real else X.astype(complex)
         images = np.empty_like(X)
         for k in range(X.shape[1]):
             image = self.multiply(X[:, k])

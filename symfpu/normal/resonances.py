@@ -9,12 +9,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.refinement.equation import Ints
 from symfpu.refinement.invariance import dilated
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+
+class Frequencies(Protocol):
+    """What knows normal frequencies by mode, and its torus."""
+
+    @property
+    def frequencies(self) -> Mapping[int, complex]: ...
+
+    @property
+    def torus(self) -> QuasiPeriodic: ...
+
 
 PARAMETRIC, SUM, DIFFERENCE, OWN = "parametric", "sum", "difference", "own"
 KINDS = (PARAMETRIC, SUM, DIFFERENCE, OWN)
@@ -46,6 +60,21 @@ class ParametricResonance:
         """The equation, in words."""
         harmonic = ",".join(map(str, self.harmonic))
         return f"{self.left} = ({harmonic}).omega"
+
+    def distance_of(self, found: Frequencies) -> float:
+        """Its distance on another torus: left side minus right side, of the real parts."""
+        sigma = {q: complex(w).real for q, w in found.frequencies.items()}
+        omega = np.array([float(w) for w in found.torus.frequencies])
+        return self.left_of(sigma) - float(np.array(self.harmonic) @ omega)
+
+    def left_of(self, sigma: Mapping[int, float]) -> float:
+        """Its left side."""
+        q, other = self.modes[0], self.modes[-1]
+        if self.kind == OWN:
+            return sigma[q]
+        return (
+            sigma[q] - sigma[other] if self.kind == DIFFERENCE else sigma[q] + sigma[other]
+        )
 
     @property
     def left(self) -> str:
@@ -83,6 +112,52 @@ def resonances_of(
             harmonic = tuple(harmonics[at].tolist())
             found.append(ParametricResonance(kind, modes, harmonic, float(distances[at])))
     return sorted(found, key=lambda r: abs(r.distance))
+
+
+def crossed_resonances(
+    first: Frequencies, second: Frequencies, length: int
+) -> list[ParametricResonance]:
+    """Those whose distance changes its sign between two tori, of directions elliptic on both.
+
+    All but sigma_q = nu.omega, which twice it is among 2 sigma_q; sum |nu_i| <= length.
+    """
+    if not length:
+        return []
+    chain, seeds = first.torus.chain, first.torus.seeds
+    harmonics = harmonics_up_to(len(seeds), length)
+    harmonics = harmonics[(harmonics != 0).any(axis=1)]
+    parity = harmonics @ np.array(seeds) % 2
+    even = harmonics.sum(axis=1) % 2 == 0
+    before, after = (_sides(found, harmonics) for found in (first, second))
+    common = {q: w for q, w in before.sigma.items() if q in after.sigma}
+    found = []
+    for kind, modes, value, odd in _combinations(common):
+        if kind == OWN:
+            continue
+        allowed = parity == odd
+        if chain.potential.even:
+            allowed &= even
+        resonance = ParametricResonance(kind, modes, (), 0.0)
+        distances = value - before.rates
+        later = resonance.left_of(after.sigma) - after.rates
+        for at in np.flatnonzero(allowed & (distances * later < 0)):
+            harmonic = tuple(harmonics[at].tolist())
+            found.append(ParametricResonance(kind, modes, harmonic, float(distances[at])))
+    return found
+
+
+class _Sides(NamedTuple):
+    """Real normal frequencies by mode, and nu.omega."""
+
+    sigma: dict[int, float]
+    rates: NDArray[np.float64]
+
+
+def _sides(found: Frequencies, harmonics: Ints) -> _Sides:
+    omega = np.array([float(w) for w in found.torus.frequencies])
+    every = {q: complex(w) for q, w in found.frequencies.items()}
+    real = {q: w.real for q, w in every.items() if not w.imag}
+    return _Sides(real, np.asarray(harmonics @ omega))
 
 
 def harmonics_up_to(s: int, length: int) -> Ints:

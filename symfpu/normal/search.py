@@ -57,7 +57,7 @@ def normal_modes(
     1.847...
     """
     torus = _checked(solution)
-    chosen = _checked_modes(torus, modes)
+    chosen = checked_modes(torus, modes)
     length = integer(resonance_length, "resonance_length", 1)
     tell = progress or unheard
     guesses = second_order(torus)
@@ -93,7 +93,8 @@ def _checked(solution: object) -> QuasiPeriodic:
     return torus
 
 
-def _checked_modes(torus: QuasiPeriodic, modes: Iterable[int] | None) -> tuple[int, ...]:
+def checked_modes(torus: QuasiPeriodic, modes: Iterable[int] | None) -> tuple[int, ...]:
+    """Those asked for, ascending; InputError for what is no normal mode."""
     normal = [q for q in torus.chain.mode_numbers if q not in torus.seeds]
     if modes is None:
         return tuple(normal)

@@ -57,10 +57,11 @@ def solve_normal_frequency(
     Dimensionless. Solves sigma = Omega_q + sum mu^k sigma^(k)(A; omega, sigma) (Eq. omeser of the
     torus with a phantom seed more, ours). Of the true one it misses the next terms of the series:
     an independent check of `normal_modes` at small amplitudes. Where the terms grow, as about the
-    onset of a hyperbolic direction, it is no check: few orders do not see it. Returns the series; its `sigma` is
-    the solution. Raises InputError; ResonantDivisor where the phantom seed is resonant with the
-    torus; NoNormalModes where no real number near the guess solves the equation, as in a
-    hyperbolic direction.
+    onset of a hyperbolic direction, it is no check: few orders do not see it.
+    Returns the series; its `sigma` is the solution.
+    Raises InputError; ResonantDivisor where the phantom seed is resonant with the torus;
+    NoNormalModes where no real number near the guess solves the equation, as in a hyperbolic
+    direction.
 
     >>> from symfpu import Chain, breather_at_amplitude, normal_modes, solve_normal_frequency
     >>> breather = breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")

@@ -9,6 +9,7 @@ from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.toda import toda
+from symfpu.dynamics.orbits import integrate
 from symfpu.dynamics.tangent import tangent_map_along
 from symfpu.errors import InputError
 from symfpu.integrable.torus import toda_torus
@@ -21,6 +22,7 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.tolerances import (
+    GROWTH_OF_ORBIT,
     NORMAL_CONVERGED,
     NORMAL_MULTIPLIER,
     NORMAL_PRINTED,
@@ -136,6 +138,30 @@ def test_a_hyperbolic_torus_is_found_with_its_quartet():
 def test_variations_of_a_hyperbolic_torus_shrink_with_its_rate():
     found = hyperbolic()
     assert all(error < NORMAL_VARIATION for error in carried(found.torus, found, 30.0))
+
+
+@pytest.mark.long
+def test_an_orbit_beside_a_hyperbolic_torus_leaves_it_at_its_rate():
+    """Nonlinear, from the torus and 1e-8 along the growing eigenfunction, while that grows to 1e-4."""
+    found = hyperbolic()
+    solution, mode = found.torus, found.mode(4)
+    turning = 1j * (complex(mode.sigma).real + mode.rates)
+
+    def eigenfunction(t):
+        """Q and P of the growing solution, without its growth."""
+        p = np.exp(np.multiply.outer(t, turning)) @ mode.coefficients.conj()
+        rate = turning + mode.growth
+        dp = (np.exp(np.multiply.outer(t, turning)) * rate) @ mode.coefficients.conj()
+        return np.concatenate([p.real, dp.real], axis=-1)
+
+    start = 1e-8 * eigenfunction(0.0)
+    Q, P = np.split(start, 2)
+    times = np.arange(70.0, 260.0, 2.0)
+    orbit = integrate(solution.chain, solution.positions(0.0) + Q, solution.momenta(0.0) + P, 260.0, step=0.05, samples=times)
+    off = np.concatenate([orbit.Q - solution.positions(orbit.times), orbit.P - solution.momenta(orbit.times)], axis=-1)
+    sizes = np.linalg.norm(off, axis=-1) / np.linalg.norm(eigenfunction(orbit.times), axis=-1)
+    rate, _ = np.polyfit(orbit.times, np.log(sizes), 1)
+    assert rate == pytest.approx(mode.growth, rel=GROWTH_OF_ORBIT)
 
 
 def test_the_linearised_force_is_the_derivative_and_symmetric():
