@@ -89,6 +89,14 @@ def refine_file(
         str | None,
         typer.Option(help="Any number of digits.  Default: doubles.", metavar="D"),
     ] = None,
+    checkpoint: Annotated[
+        str | None,
+        typer.Option(
+            "--checkpoint",
+            help="With --digits: keep the run in this file; the same command goes on from it.",
+            metavar="FILE",
+        ),
+    ] = None,
     tolerance: Annotated[
         str,
         typer.Option(
@@ -109,6 +117,9 @@ def refine_file(
         raise InputError("energy", energy, f"with --digits {allowed}", advice)
     torus = solution_of(load(path_named("FILE", file)), file)
     picture = picture_named(plot)
+    if checkpoint is not None and places is None:
+        raise InputError("checkpoint", checkpoint, "one with --digits", "leave it out")
+    run = None if checkpoint is None else path_named("checkpoint", checkpoint)
     if energy is not None and amplitudes is not None:
         raise InputError(
             "amplitudes",
@@ -123,17 +134,14 @@ def refine_file(
     kept = None if output is None else output_file(path_named("output", output))
     goal = number("tolerance", tolerance)
     with progress_bar("Newton's method") as advance:
+        refined: RefinedTorus | RefinedRingTorus | PreciseTorus
         if energy is not None:
             refined = refine_at_energy(
                 torus, energy, harmonic=harmonic, tolerance=goal, progress=advance
             )
-        elif amplitudes is not None:
-            chosen = by_seed("amplitudes", amplitudes, torus.seeds)
-            refined = refine_at_amplitudes(
-                torus, chosen, digits=places, tolerance=goal, progress=advance
-            )
         else:
-            refined = refine(torus, digits=places, tolerance=goal, progress=advance)
+            given = ratio("amplitudes", amplitudes, torus.seeds)
+            refined = _found(torus, given, places, run, tolerance=goal, progress=advance)
         if kept:
             command = shlex.join(["symfpu", *context.obj])
             save(kept, refined, verdict=verdict_of(refined), command=command)
@@ -150,6 +158,23 @@ def refine_file(
         say_drawn(picture)
 
 
+def _found(
+    torus: Any,
+    amplitudes: dict[int, str] | None,
+    digits: int | None,
+    file: Path | None,
+    **how: Any,
+) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
+    """Of the same frequencies, or of given amplitudes."""
+    found: RefinedTorus | RefinedRingTorus | PreciseTorus
+    how |= {"digits": digits, "file": file}
+    if amplitudes is None:
+        found = refine(torus, **how)
+    else:
+        found = refine_at_amplitudes(torus, amplitudes, **how)
+    return found
+
+
 def verdict_of(torus: RefinedTorus | RefinedRingTorus | PreciseTorus) -> dict[str, Any]:
     """What a file says of a refined torus."""
     if isinstance(torus, PreciseTorus):
@@ -158,7 +183,7 @@ def verdict_of(torus: RefinedTorus | RefinedRingTorus | PreciseTorus) -> dict[st
 
 
 def ratio(argument: str, text: str | None, seeds: tuple[int, ...]) -> dict[int, str] | None:
-    """A ratio by seed, or None where the option is not given."""
+    """Numbers by seed, or None where the option is not given."""
     return None if text is None else by_seed(argument, text, seeds)
 
 

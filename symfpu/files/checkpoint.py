@@ -57,7 +57,12 @@ ALIGNMENT = Kind(
     "alignment_indices(..., file=...) or symfpu gali --checkpoint",
     implied=(("scheme", "blanes_moan6"),),
 )
-KINDS = {kind.name: kind for kind in (ORBIT, ALIGNMENT)}
+TORUS_DIGITS = Kind(
+    "torus with digits",
+    "a torus with digits",
+    "refine(..., digits=..., file=...) or symfpu refine --digits D --checkpoint",
+)
+KINDS = {kind.name: kind for kind in (ORBIT, ALIGNMENT, TORUS_DIGITS)}
 
 
 def digest(values: NDArray[Any]) -> str:
@@ -130,7 +135,7 @@ def read_checkpoint(
                 raise BundleError(path, f"is not a checkpoint of {kind.of}", ADVICE)
             _require_same(path, archive.body["parameters"], parameters, kind, before)
             arrays = _arrays(archive)
-            if "sampled" not in arrays:
+            if "sampled" not in arrays and "sampled steps" in parameters:
                 _require_same_samples(path, archive.body["parameters"], parameters)
             return integer(archive.body["steps"], "steps", 0), arrays
         except (BundleError, Refused):

@@ -33,6 +33,7 @@ from symfpu.refinement.conditions import Amplitude, Condition, FrequencyShift
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.harmonics import within_reach
 from symfpu.refinement.invariance import InvarianceEquation, long
+from symfpu.refinement.kept_sweeps import Keep, Reached, unkept
 from symfpu.refinement.kronecker import Box, Integers, KroneckerForce
 from symfpu.refinement.newton import Correction
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, show
@@ -48,6 +49,7 @@ ACCURACY = 1e-12  # of the solution for a correction
 SWEEPS = 300
 STALL_SWEEPS = 4  # sweeps without a smaller residual that end the search
 ROUNDING_BITS = 24  # of a residual in last places, before the last correction
+GUARD_BITS = 128  # of coefficients that are larger than 1
 CHECK_BITS = 64  # more than those of the torus, in the check of its residual
 CHECKED = 1.25  # times as large as the harmonics of the torus: those of its residual
 DOUBLE_BITS = 1000  # of an integer that goes into a double
@@ -148,19 +150,43 @@ def guess_of(
     )
 
 
-def precise_torus(guess: Guess, digits: int, tell: Progress) -> PreciseTorus:
+def resumed(guess: Guess, reached: Reached) -> Guess:
+    """A guess with what an earlier run had reached."""
+    with mpmath.workprec(reached.bits + GUARD_BITS):
+        table = from_integers(reached.coefficients, np.asarray(-reached.bits))
+        rows = map(tuple, reached.harmonics.tolist())
+        frequencies = guess.frequencies
+        if guess.amplitudes is not None:
+            frequencies = _rational(reached.omega, reached.bits)
+        return guess._replace(
+            coefficients=dict(zip(rows, table, strict=True)),
+            frequencies=frequencies,
+            digits=reached.digits,
+            sweeps=reached.sweeps,
+        )
+
+
+def _rational(omega: Integers, bits: int) -> tuple[Fraction, ...]:
+    return tuple(Fraction(int(w), 1 << bits) for w in omega)
+
+
+def precise_torus(
+    guess: Guess, digits: int, tell: Progress, keep: Keep = unkept
+) -> PreciseTorus:
     """The torus near the guess with so many digits; raises Failure, and InputError for too many.
+
+    keep : called with what is reached after every sweep.
 
     Half of the digits first: from their fall-off the harmonics of all are known better, and fewer
     sweeps need all of them. Then harmonics are added until none that is left out has an error
     above the last digit.
     """
     if digits // 2 > _digits_of(guess):
-        guess = _reached(guess, digits // 2, tell)
+        guess = _reached(guess, digits // 2, tell, keep)
     with mpmath.workdps(digits + CARRIED_DIGITS):
         harmonics = _fitted(guess, digits)
         for _ in range(ROUNDS):
-            sweeps = _converged(guess, harmonics, digits, tell)
+            sweeps = _converged(guess, harmonics, digits, tell, keep)
             left = sweeps.left_over()
             tell(f"residual below {mpmath.nstr(left.bound, 2)}", NO_FRACTION)
             if left.error < mpmath.mpf(10) ** -digits:
@@ -172,18 +198,21 @@ def precise_torus(guess: Guess, digits: int, tell: Progress) -> PreciseTorus:
     raise Failure(reason)
 
 
-def _reached(guess: Guess, digits: int, tell: Progress) -> Guess:
+def _reached(guess: Guess, digits: int, tell: Progress, keep: Keep) -> Guess:
     """A guess of so many digits, with the harmonics that a fit expects; not checked."""
     if digits // 2 > _digits_of(guess):
-        guess = _reached(guess, digits // 2, tell)
+        guess = _reached(guess, digits // 2, tell, keep)
     with mpmath.workdps(digits + CARRIED_DIGITS):
-        return _converged(guess, _fitted(guess, digits), digits, tell).guess(digits)
+        harmonics = _fitted(guess, digits)
+        return _converged(guess, harmonics, digits, tell, keep).guess(digits)
 
 
-def _converged(guess: Guess, harmonics: Ints, digits: int, tell: Progress) -> TorusSweeps:
+def _converged(
+    guess: Guess, harmonics: Ints, digits: int, tell: Progress, keep: Keep
+) -> TorusSweeps:
     sweeps = TorusSweeps(guess, harmonics)
     tell(f"{len(harmonics)} harmonics, {sweeps.force.bits} bits", NO_FRACTION)
-    sweeps.converge(digits, tell)
+    sweeps.converge(digits, tell, keep)
     return sweeps
 
 
@@ -280,7 +309,7 @@ class TorusSweeps:
             equation, conditions, doubles.astype(np.longdouble), shifts
         )
 
-    def converge(self, digits: int, tell: Progress) -> None:
+    def converge(self, digits: int, tell: Progress, keep: Keep = unkept) -> None:
         """Sweep until the next residual is below the last digit, or rounding. Raises Failure.
 
         A sweep is expected to gain what the one before it did.
@@ -295,6 +324,7 @@ class TorusSweeps:
             left = (bits - self.size.bit_length()) * math.log10(2)
             tell(f"sweep {self.number}: residual 1e{left:.0f}", NO_FRACTION)
             self._correct(imbalance, bits)
+            keep(self._kept(min(digits, math.floor(-left))))
             expected = bits if math.isinf(least) else 2 * bits - least
             if bits <= ROUNDING_BITS or expected <= enough:
                 return
@@ -335,11 +365,15 @@ class TorusSweeps:
         """Exact: those given, or those found."""
         if self.start.amplitudes is None:
             return self.start.frequencies
-        return tuple(Fraction(int(w), 1 << self.force.bits) for w in self.omega)
+        return _rational(self.omega, self.force.bits)
 
     def coefficients(self) -> Any:
         """c as mpf, (H, N-1)."""
         return from_integers(self.c, np.asarray(-self.force.bits))
+
+    def _kept(self, digits: int) -> Reached:
+        bits, reached = self.force.bits, max(digits, 1)
+        return Reached(self.harmonics, self.c, self.omega, bits, reached, self.number)
 
     def guess(self, digits: int) -> Guess:
         """What was reached, of so many digits, to go on from with other harmonics."""
@@ -377,12 +411,12 @@ class TorusSweeps:
     def _finer(self) -> KroneckerForce:
         highest = np.ceil(CHECKED * np.abs(self.harmonics).max(axis=0)).astype(int)
         bits = self.force.bits + CHECK_BITS
-        reach = self._reach(self.c_doubles())
+        reach = self._reach(self.in_doubles())
         return KroneckerForce(self.chain, Box(highest, whole=True), bits, reach)
 
-    def c_doubles(self) -> Floats:
+    def in_doubles(self) -> Floats:
         """The coefficients in doubles, (H, N-1)."""
-        return self.coefficients().astype(float)
+        return np.asarray(self.coefficients(), dtype=float)
 
     def _relative(self, imbalance: Integers, divisors: Integers, bits: int) -> list[Any]:
         """Largest |imbalance / divisor| of each harmonic over the largest coefficient."""
@@ -404,7 +438,7 @@ class TorusSweeps:
 
     def _acceleration(self) -> float:
         """The largest acceleration of a mode at some times: below the largest of all."""
-        doubles = self._torus(None, self.c_doubles())
+        doubles = self._torus(None, self.in_doubles())
         t = np.linspace(0, 100 * np.pi / float(min(self.frequencies)), SAMPLES)
         forces = self.chain.accelerations(doubles.positions(t))
         return float(np.max(np.abs(forces)))

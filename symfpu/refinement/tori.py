@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from numbers import Real
+from pathlib import Path
 from typing import Any, NamedTuple, overload
 
 import mpmath
@@ -16,6 +17,7 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
+from symfpu.files.checkpoint import checkpoint_path
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import Number, exact
@@ -33,10 +35,12 @@ from symfpu.refinement.digits import (
     guess_of,
     precise_torus,
     require_digits,
+    resumed,
 )
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.harmonics import chosen_harmonics, known_rows
 from symfpu.refinement.invariance import DIGITS, InvarianceEquation, long, rational
+from symfpu.refinement.kept_sweeps import SweepsFile, require_digits_beside, unkept
 from symfpu.refinement.newton import Iterate, NewtonStep, newton
 from symfpu.refinement.resonances import NearResonance, near_resonances
 from symfpu.refinement.ring_tori import (
@@ -139,6 +143,7 @@ def refine(
     torus: QuasiPeriodic,
     *,
     digits: int,
+    file: Path | str | None = ...,
     tolerance: float = ...,
     progress: Progress | None = ...,
 ) -> PreciseTorus: ...
@@ -154,6 +159,7 @@ def refine(
     torus: QuasiPeriodic | RingTorus,
     *,
     digits: int | None = None,
+    file: Path | str | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
 ) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
@@ -166,6 +172,8 @@ def refine(
     digits : None for doubles, or 1 .. 1000 of the largest coefficient: a PreciseTorus, whose sweeps
         start from the torus in doubles, or from a PreciseTorus of fewer digits where they ended.
         Of fixed ends, a polynomial potential or one of exponentials and powers.
+    file : with digits, a checkpoint written after every sweep; a run that finds one goes on from
+        it, one to more digits, too.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration,
         dimensionless; harmonics are added until it is reached.
     progress : called as (label, NO_FRACTION) on every step.
@@ -182,8 +190,10 @@ def refine(
     True
     """
     _require_torus(torus)
+    require_digits_beside(file, digits)
     if digits is not None:
-        return _of_digits(torus, digits, tolerance=tolerance, progress=progress)
+        how: dict[str, Any] = {"tolerance": tolerance, "progress": progress}
+        return _of_digits(torus, digits, None, file, **how)
     if isinstance(torus, RingTorus):
         require_independent(torus)
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
@@ -197,6 +207,7 @@ def refine_at_amplitudes(
     amplitudes: Mapping[int, Number],
     *,
     digits: int,
+    file: Path | str | None = ...,
     tolerance: float = ...,
     progress: Progress | None = ...,
 ) -> PreciseTorus: ...
@@ -221,6 +232,7 @@ def refine_at_amplitudes(
     amplitudes: Mapping[int, Number],
     *,
     digits: int | None = None,
+    file: Path | str | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
 ) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
@@ -228,7 +240,7 @@ def refine_at_amplitudes(
 
     torus : the guess, of the same seeds; its phases (radians) are kept.
     amplitudes : A_q by seed, exact numbers, dimensionless; of cos(theta_q) in Q_q.
-    digits : None for doubles, or as of `refine`; so many of the frequencies, too.
+    digits, file : as of `refine`; so many digits of the frequencies, too.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration.
     progress : called as (label, NO_FRACTION) on every step.
 
@@ -243,8 +255,9 @@ def refine_at_amplitudes(
     _require_torus(torus)
     given = tuple(_by_seed("amplitudes", amplitudes, torus, signed=True).values())
     how: dict[str, Any] = {"tolerance": tolerance, "progress": progress}
+    require_digits_beside(file, digits)
     if digits is not None:
-        return _of_digits(torus, digits, given, **how)
+        return _of_digits(torus, digits, given, file, **how)
     found: RefinedTorus | RefinedRingTorus = _at_amplitudes(torus, given, **how)
     return found
 
@@ -257,7 +270,8 @@ def _at_amplitudes(torus: Any, amplitudes: Sequence[Fraction], **how: Any) -> An
 def _of_digits(
     torus: QuasiPeriodic | RingTorus,
     digits: int,
-    amplitudes: tuple[Fraction, ...] | None = None,
+    amplitudes: tuple[Fraction, ...] | None,
+    file: Path | str | None,
     *,
     tolerance: float,
     progress: Progress | None,
@@ -267,6 +281,7 @@ def _of_digits(
         allowed = "nothing for a torus on a ring, which is refined in doubles"
         raise InputError("digits", digits, allowed, "leave it out")
     require_digits(torus.chain, digits)
+    path = None if file is None else checkpoint_path(file)
     how: dict[str, Any] = {"tolerance": tolerance, "progress": progress}
     near: QuasiPeriodic
     if amplitudes is not None:
@@ -276,9 +291,21 @@ def _of_digits(
     else:
         near = refine(torus, **how)
     frequencies = near.frequencies if amplitudes is not None else torus.frequencies
-    guess = guess_of(near, frequencies, amplitudes)
+    guess, keep = guess_of(near, frequencies, amplitudes), unkept
+    if path is not None:
+        held = frequencies if amplitudes is None else None
+        kept = SweepsFile(
+            path,
+            torus.chain,
+            digits,
+            seeds=torus.seeds,
+            frequencies=held,
+            amplitudes=amplitudes,
+        )
+        before, keep = kept.read(), kept.write
+        guess = guess if before is None else resumed(guess, before)
     try:
-        return precise_torus(guess, digits, progress or unheard)
+        return precise_torus(guess, digits, progress or unheard, keep)
     except Failure as failure:
         raise NoTorus(str(failure), near, near.residual()) from None
 

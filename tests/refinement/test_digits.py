@@ -12,9 +12,11 @@ from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.files.archive import BundleError
 from symfpu.integrable.torus import toda_torus
 from symfpu.refinement import digits as digits_module
 from symfpu.refinement.digits import PreciseTorus
+from symfpu.refinement.kept_sweeps import whole, words
 from symfpu.refinement.tori import NoTorus, refine, refine_at_amplitudes
 from symfpu.series.travelling import travelling_waves
 from symfpu.tori.frequencies import torus_at_amplitudes
@@ -73,14 +75,14 @@ def test_the_residual_at_angles_is_below_its_bound_and_energy_is_constant():
 
 
 def test_frequencies_lead_back_to_the_amplitudes_from_fewer_digits():
-    """And a torus of fewer digits saves sweeps."""
-    fewer = small(20)
-    again = refine(fewer, digits=32)
+    """The sweeps begin where those of fewer digits ended."""
+    fewer, heard = small(20), []
+    again = refine(fewer, digits=32, progress=lambda label, fraction: heard.append(label))
+    assert heard[1].startswith("sweep 1: residual 1e-2")
     assert again.frequencies == fewer.frequencies
     with mpmath.workdps(50):
         for q, a in SMALL_AMPLITUDES.items():
             assert abs(again.amplitudes[q] - mpmath.mpf(a)) < ten(-19)
-    assert again.sweeps < small(32).sweeps
 
 
 def test_one_angle_is_the_breather():
@@ -148,6 +150,52 @@ def test_a_wrong_digit_is_seen():
     assert before.bound < ten(-19)
     assert ten(-17) < spoilt.bound < ten(-13)
     assert ten(-17) < spoilt.inside < ten(-13)
+
+
+class Interrupted(Exception):
+    pass
+
+
+def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
+    """To the same torus, and on to more digits; another run is refused."""
+    near, file = refine(small(20).in_doubles()), tmp_path / "run"
+    whole = refine(near, digits=30)
+
+    def until_second(label, fraction):
+        if label.startswith("sweep 2"):
+            raise Interrupted
+
+    with pytest.raises(Interrupted):
+        refine(near, digits=30, file=file, progress=until_second)
+    heard = []
+    again = refine(near, digits=30, file=str(file), progress=lambda label, fraction: heard.append(label))
+    assert heard[1].startswith("sweep 2: residual 1e-2")
+    assert farthest(again, whole) < ten(-30)
+    assert again.frequencies == near.frequencies
+    more = refine(near, digits=36, file=file)
+    assert more.sweeps > again.sweeps
+    with pytest.raises(InputError, match=r"^file = .*frequencies is"):
+        refine_at_amplitudes(near, SMALL_AMPLITUDES, digits=40, file=file)
+    with pytest.raises(InputError, match=r"^file = .*without digits"):
+        refine(near, file=file)
+    file.write_bytes(file.read_bytes()[:-40])
+    with pytest.raises(BundleError):
+        refine(near, digits=36, file=file)
+
+
+def test_amplitudes_go_on_with_their_frequencies(tmp_path):
+    near, file = small(20).in_doubles(), tmp_path / "run"
+    refine_at_amplitudes(near, SMALL_AMPLITUDES, digits=18, file=file)
+    more = refine_at_amplitudes(near, SMALL_AMPLITUDES, digits=32, file=file)
+    assert farthest(more, small(32)) < ten(-32)
+    with pytest.raises(BundleError, match="which holds no torus"):
+        load(file)
+
+
+@pytest.mark.parametrize("bits", [1, 31, 32, 33, 200])
+def test_words_give_the_integers_back(bits):
+    values = np.array([[0, 1, -1], [2**bits, -(2**bits), 2**bits - 1]], dtype=object)
+    assert (whole(words(values)) == values).all()
 
 
 def test_sweeps_that_gain_nothing_end(monkeypatch):
