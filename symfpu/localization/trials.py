@@ -208,7 +208,7 @@ class ProfileInvariance(Tabled):
         nan where a mode is below the floor, or without a second realisation.
         """
         coarse = self._coarse
-        middles = _middle_halves(coarse, self.fraction)
+        middles = middle_halves(coarse, self.fraction)
         values, errors = np.full((2, len(self.chains), len(middles)), math.nan)
         by_size = zip(self.chains, self.spectra, self.floors, strict=True)
         for i, (chain, shares, floor) in enumerate(by_size):
@@ -309,7 +309,7 @@ def _profile_columns(
     return below
 
 
-def _middle_halves(chain: Chain, fraction: Fraction) -> list[NDArray[np.int64]]:
+def middle_halves(chain: Chain, fraction: Fraction) -> list[NDArray[np.int64]]:
     """The modes of the middle halves of D_1, D_2, ..., of those that are whole."""
     s = int(fraction * chain.N)
     width = s * chain.degree_step

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence, reachable_modes
 from symfpu.figures.panels import Curve, Panel
-from symfpu.files.progress import Progress
+from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.printed import FIG6_CHAIN, FIG6_WIDTH
 from symfpu.reports.tables import markdown_table
+from symfpu.tori.at_energy import torus_at_energy
 
 PLACES = {"a": "1/4", "b": "1/2", "c": "3/4"}  # of the packets, kappa_0 by panel
+
+# the torus whose spectrum is compared: three seeds, excited wholly at this order
+SPECTRUM_CHAIN, SPECTRUM_ENERGY, SPECTRUM_ORDER = Chain(64, alpha="0.33"), "0.0001", 8
+STRONG_CORRELATION = 0.95
 
 
 @dataclass(frozen=True)
@@ -31,7 +38,11 @@ def figure6(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     """Orders of first excitation, and the intervals M_k against the rule."""
     packets = excited_by_packets()
     panels = tuple(_panel(letter, packet) for letter, packet in packets.items())
-    claims = tuple(intervals_claim(packet) for packet in packets.values())
+    progress("fig6: spectra", NO_FRACTION)
+    claims = (
+        *map(intervals_claim, packets.values()),
+        *(spectrum_claim(name) for name in PLACES.values()),
+    )
     numbers = {letter: _record(packet) for letter, packet in packets.items()}
     title = f"Fig. 6: orders of first excitation, N = {FIG6_CHAIN}, alpha"
     table = _table(packets)
@@ -123,3 +134,33 @@ def _interval_modes(N: int, center: int, half: int, k: int) -> set[int]:
     for place in places:
         modes |= set(range(place - half, place + half + 1))
     return modes & set(range(1, N))
+
+
+def spectrum_claim(place: str) -> Claim:
+    """Whether the spectrum of a torus has the pattern of the orders."""
+    chain = SPECTRUM_CHAIN
+    quarters = int(place[0]) * (4 // int(place[2]))
+    center = quarters * chain.N // 4
+    seeds = (center - 1, center, center + 1)
+    torus = torus_at_energy(chain, seeds, SPECTRUM_ENERGY, order=SPECTRUM_ORDER)
+    sequence = excitation_sequence(chain.N, seeds, SPECTRUM_ORDER)
+    return pattern_claim(place, sequence, torus.average_spectrum() / float(torus.energy()))
+
+
+def pattern_claim(place: str, sequence: list[tuple[int, ...]], spectrum: Any) -> Claim:
+    """Order of excitation against log10 e of every mode."""
+    levels = {
+        k: np.log10(spectrum[np.array(modes) - 1])
+        for k, modes in enumerate(sequence)
+        if modes
+    }
+    orders = np.concatenate([np.full(len(level), k) for k, level in levels.items()])
+    correlation = float(np.corrcoef(orders, np.concatenate(list(levels.values())))[0, 1])
+    medians = [float(np.median(level)) for level in levels.values()]
+    falling = all(b < a for a, b in pairwise(medians))
+    shown = ", ".join(f"{median:.1f}" for median in medians)
+    ours = f"torus of three seeds, N = {SPECTRUM_CHAIN.N}: log10 e against k has the correlation "
+    ours += f"{correlation:.3f}; medians by order {shown}"
+    text = f"kappa_0 = {place}: the pattern of orders is similar to the energy spectrum"
+    strong = correlation <= -STRONG_CORRELATION
+    return Claim("6.3", text, "", ours, judged(strong and falling, strong or falling))

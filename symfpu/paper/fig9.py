@@ -28,6 +28,7 @@ from symfpu.localization.profiles import (
 )
 from symfpu.localization.recurrence import recurrence
 from symfpu.numbers.typed import Number
+from symfpu.paper.breather_claims import closing, pairs_claim
 from symfpu.paper.breather_profiles import (
     CONSTANT_DECADES,
     SHOWN_MODES,
@@ -106,6 +107,7 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
         constancy_claim(breather, exact),
         *_profile_claims(profiles),
         gain_claim(torus),
+        pairs_claim({row.label: closing(row, torus)}),
         law_claim("6.4.3", profiles["Newton"], law),
         frequencies_claim(found),
         *packet_claims(row),

@@ -20,6 +20,7 @@ from symfpu.paper.fig7 import figure7
 from symfpu.paper.fig8 import figure8
 from symfpu.paper.fig9 import figure9
 from symfpu.paper.section5 import section5
+from symfpu.paper.statements import statements
 from symfpu.paper.table_page import table
 from symfpu.paper.toda import toda_page
 
@@ -38,6 +39,7 @@ class Maker(Protocol):
 TARGETS: dict[str, Maker] = {
     "table": table,
     "section5": section5,
+    "statements": statements,
     "fig1": figure1,
     "fig2": figure2,
     "fig3": figure3,
