@@ -273,6 +273,7 @@ NEWTON: dict[str, Door] = {
         c.chain, (1,), 1e-2 * c.size**2, members=2, folder=c.folder / "family"
     ),
     "floquet": lambda c: symfpu.floquet(c.periodic),
+    "prove_existence": lambda c: symfpu.prove_existence(c.periodic),
     "normal_modes": lambda c: symfpu.normal_modes(c.breather),
     "member_at_energy": lambda c: symfpu.member_at_energy(
         c.family, c.family.members[1].torus.energy(), harmonic=False

@@ -623,3 +623,9 @@ NORMAL_MULTIPLIER = 1e-11
 
 # What a frequency of a long regular orbit is known to: the integrator's phase.
 EXACT_LINE = 1e-13
+
+# Prover and checker bound the same three numbers: one in doubles and balls, the other in 60 binary places, both upwards.
+SAME_BOUNDS = 0.02
+
+# A matrix made of bond sums against one made of samples in time, both of some hundred rounded products.
+SAME_DERIVATIVE = 1e-12

@@ -10,6 +10,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
+from symfpu.breathers.existence import ExistenceProof
 from symfpu.breathers.floquet import Floquet
 from symfpu.bundles.bundle import Bundle
 from symfpu.chain.length import label_entry
@@ -27,6 +28,7 @@ from symfpu.proofs.certificates import PropagationProof
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.dynamics import alignment_record, orbit_record
+from symfpu.reports.existence import existence_record
 from symfpu.reports.family import event_record, family_record, member_record, refined_record
 from symfpu.reports.solution import floquet_record, solution_record
 from symfpu.reports.tables import fifteen_digits
@@ -138,6 +140,7 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (RefinedTorus, refined_record),
     (RefinedRingTorus, refined_record),
     (QuasiPeriodic, solution_record),
+    (ExistenceProof, existence_record),
     (RingTorus, solution_record),
     (LindstedtSeries, series_record),
     (TravellingSeries, series_record),
