@@ -644,3 +644,8 @@ LEADING_ORDER_SLACK = 0.05
 NEXT_IN_LENGTH = 0.02
 # Rounding of 1e-14 a step against a perturbation that grows from 1e-8 to 1e-4, over nine times the rate in all: a part of 1e-7.
 GROWTH_OF_ORBIT = 1e-7
+# Prover and checker bound the same three numbers: one in doubles and balls, the other in 60 binary places, both upwards.
+SAME_BOUNDS = 0.02
+
+# A matrix made of bond sums against one made of samples in time, both of some hundred rounded products.
+SAME_DERIVATIVE = 1e-12

@@ -53,7 +53,7 @@ class NoExistenceProof(SymfpuError):
     """The bounds do not prove that there is an orbit near the one computed.
 
     Raised by `prove_existence`. bound : which one, "Z1" or "Y". value : of it. needed : what it
-    would have to be below, dimensionless. Ours.
+    would have to be below, dimensionless. advice : what may help. Ours.
     """
 
     def __init__(self, bound: str, value: float, needed: float, advice: str) -> None:
@@ -79,7 +79,8 @@ class ExistenceProof(Tabled):
         doubles.
     residual, linear, curvature : Y, Z0 + Z1 and Z2 of the theorem, doubles.
     harmonics, block : of the orbit, and unknowns in the dense part of the inverse.
-    digits : of the orbit that was given. Dimensionless.
+    digits : of the orbit that was given. body : the certificate without its digest. Dimensionless.
+        Ours: docs/existence.md.
 
     >>> from symfpu import Chain, periodic_orbit, prove_existence
     >>> prove_existence(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"))
@@ -176,7 +177,8 @@ def prove_existence(orbit: QuasiPeriodic) -> ExistenceProof:
             raise NoExistenceProof("Z1", linear, 1.0, f"{MORE_HARMONICS}; {SMALLER}")
         found = radii(bounds)
         if found is None:
-            raise not_small(bounds)
+            bound, value, needed, advice = not_small(bounds)
+            raise NoExistenceProof(bound, value, needed, advice)
         return assembled(rounded, bounds, found)
 
 
@@ -202,16 +204,16 @@ def checked_orbit(orbit: object) -> QuasiPeriodic:
     return orbit
 
 
-def not_small(bounds: ProofBounds) -> NoExistenceProof:
-    """Y is too large for the other bounds."""
+def not_small(bounds: ProofBounds) -> tuple[str, float, float, str]:
+    """The bound that failed, Y for it is too large, what was needed, and what may help."""
     Y = double_above(bounds.residual)
     at_zero = double_above(bounds.curvature(flint.arb(0)))
     needed = (1 - bounds.linear) ** 2 / (4 * at_zero) if at_zero else math.inf
     size = float(sum(abs(bounds.balls.orbit.floats).max(axis=0)))
     if FAR * size < Y:
-        return NoExistenceProof("Y", Y, needed, NO_ORBIT)
+        return "Y", Y, needed, NO_ORBIT
     tail = double_above(bounds.beyond) > Y / 2
-    return NoExistenceProof("Y", Y, needed, MORE_HARMONICS if tail else MORE_DIGITS)
+    return "Y", Y, needed, MORE_HARMONICS if tail else MORE_DIGITS
 
 
 def assembled(orbit: RoundedOrbit, bounds: ProofBounds, found: Radii) -> ExistenceProof:

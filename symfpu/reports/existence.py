@@ -12,7 +12,7 @@ from symfpu.reports.tables import fifteen_digits
 
 
 def existence_record(proof: ExistenceProof) -> dict[str, Any]:
-    """Keys of the command line; intervals as [middle, radius], numbers as strings."""
+    """Keys of the command line; A and H are the middles of intervals."""
     digits = proof.digits + 3
     return {
         **proof.chain.typed,
@@ -22,11 +22,10 @@ def existence_record(proof: ExistenceProof) -> dict[str, Any]:
         "radius": fifteen_digits(proof.radius),
         "unique": fifteen_digits(proof.unique),
         "nu": str(proof.nu),
-        "amplitude": [
-            mpmath.nstr(proof.amplitude, digits),
-            fifteen_digits(proof.amplitude_radius),
-        ],
-        "energy": [mpmath.nstr(proof.energy, digits), fifteen_digits(proof.energy_radius)],
+        "amplitudes": {str(proof.seed): mpmath.nstr(proof.amplitude, digits)},
+        "amplitude_radius": fifteen_digits(proof.amplitude_radius),
+        "energy": mpmath.nstr(proof.energy, digits),
+        "energy_radius": fifteen_digits(proof.energy_radius),
         "bounds": {
             "Y": fifteen_digits(proof.residual),
             "Z1": fifteen_digits(proof.linear),

@@ -11,6 +11,7 @@ import mpmath
 import numpy as np
 
 from symfpu.action_angle.twist import Twist
+from symfpu.breathers.existence import ExistenceProof
 from symfpu.breathers.floquet import Floquet
 from symfpu.bundles.bundle import Bundle
 from symfpu.chain.length import label_entry
@@ -32,6 +33,7 @@ from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.action_angle import twist_record
 from symfpu.reports.dynamics import alignment_record, orbit_record
+from symfpu.reports.existence import existence_record
 from symfpu.reports.family import event_record, family_record, member_record, refined_record
 from symfpu.reports.head import headed
 from symfpu.reports.normal import normal_record
@@ -157,6 +159,7 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (RefinedTorus, refined_record),
     (RefinedRingTorus, refined_record),
     (QuasiPeriodic, solution_record),
+    (ExistenceProof, existence_record),
     (RingTorus, solution_record),
     (LindstedtSeries, series_record),
     (TravellingSeries, series_record),

@@ -24,6 +24,7 @@ WITHOUT = {
     "Bundle": "what a file held",
     "Chain": "an argument",
     "Evaluator": "a program",
+    "ExistenceProof": "its certificate is its file",
     "ExpandableTerm": "an expression",
     "NamedParts": "an expression",
     "BirkhoffForm": "exact numbers of a field, made anew",

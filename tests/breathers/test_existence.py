@@ -1,0 +1,173 @@
+"""Proofs of existence: the true orbit is where they say, their bounds are those of another route, and what is no orbit has none."""
+
+import json
+from dataclasses import replace
+from functools import cache
+
+import flint
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.breathers.at_energy import breather_at_energy
+from symfpu.breathers.balance import Balance, breather_at_amplitude, periodic_orbit
+from symfpu.breathers.bond_balls import BondBalls
+from symfpu.breathers.contraction import Attempt
+from symfpu.breathers.digits import periodic_orbit_digits
+from symfpu.breathers.existence import NoExistenceProof, prove_existence
+from symfpu.breathers.existence_bounds import SPARE_BITS, linear_part, strip
+from symfpu.breathers.rounded_orbit import rounded_orbit
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from symfpu.proofs import check_existence
+from symfpu.refinement.travelling_breather import travelling_breather
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.verdict import assess
+from tests.tolerances import SAME_BOUNDS, SAME_DERIVATIVE
+
+FIG9 = Chain(N=32, alpha="0.33")
+CASES = {
+    "alpha": (Chain(8, alpha="0.3"), 1, "0.4"),
+    "two bonds": (Chain(2, beta=1), 1, "0.3"),
+    "beta, even seed": (Chain(6, beta="0.5"), 2, "-0.2"),
+    "wrapped modes": (Chain(7, alpha="0.4"), 5, "0.1"),
+    "both": (Chain(5, alpha="1/3", beta="-1/7"), 3, "0.2"),
+    "a polynomial": (Chain(5, potential="poly:0.3,0.1,-1/5,0,1/9"), 2, "0.2"),
+}
+
+
+@cache
+def orbit(name):
+    return breather_at_amplitude(*CASES[name])
+
+
+@cache
+def proof(name):
+    return prove_existence(orbit(name))
+
+
+def checked(found, folder):
+    found.write(folder / "proof.json")
+    return check_existence.verify(folder / "proof.json")
+
+
+QUICK = ("alpha", "two bonds", "beta, even seed", "both")
+EACH = [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in CASES]
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_the_true_orbit_is_where_the_theorem_says(name):
+    """Forty digits are the true orbit as far as radii of doubles can see."""
+    found, precise = proof(name), periodic_orbit_digits(orbit(name), 40)
+    with mpmath.workdps(50):
+        N = found.chain.N
+        units = [mpmath.sqrt(mpmath.mpf(2) / N) * found.chain.linear_frequency(q) for q in range(1, N)]
+        rows = precise.by_harmonic() * np.array(units, dtype=object)
+        claimed = np.zeros(rows.shape, dtype=object)
+        of_orbit = rounded_orbit(orbit(name)).rows
+        claimed[: len(of_orbit)] = [[mpmath.ldexp(x, -found.body["bits"]) for x in row] for row in of_orbit]
+        distance = np.abs(rows - claimed).sum()
+        assert 0 < distance < found.radius < found.unique
+        assert abs(precise.amplitude - found.amplitude) < found.amplitude_radius
+        assert abs(precise.energy() - found.energy) < found.energy_radius
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_the_checker_agrees_in_every_bound(name, tmp_path):
+    found = proof(name)
+    theorem, _ = checked(found, tmp_path)
+    assert f"N = {found.chain.N} bonds" in theorem
+    data = json.loads((tmp_path / "proof.json").read_text())
+    claim = check_existence.read_claim(data)
+    inverse = check_existence.read_inverse(data, claim)
+    bonds = check_existence.Bonds(claim, inverse.last + inverse.slope_harmonics)
+    bounds = check_existence.Bounds(claim, bonds, inverse)
+    radius = check_existence.dyadic(data["unique"], "unique")
+    ours = [found.residual, 1 + found.linear, found.curvature]
+    theirs = [bounds.residual(), 1 + bounds.linear(), bounds.curvature(radius)]
+    np.testing.assert_allclose(ours, list(map(float, theirs)), rtol=SAME_BOUNDS)
+
+
+@pytest.mark.parametrize("name", ["alpha", "both"])
+def test_the_derivative_is_that_of_harmonic_balance(name):
+    """Another route to the same matrix: Balance collocates in time, with roots in its unknowns."""
+    of_doubles = orbit(name)
+    rounded = rounded_orbit(of_doubles)
+    with flint.ctx.workprec(rounded.bits + SPARE_BITS):
+        part = linear_part(BondBalls(rounded, strip(rounded)), 1e-300)
+    attempt = Attempt(part, 6)
+    balance = Balance(of_doubles.chain, of_doubles.seed, attempt.columns)
+    _, jacobian = balance.system(balance.vector(of_doubles.cosines, of_doubles.sigma))
+    inside = attempt.inside
+    assert (inside.n == balance.n).all()
+    assert (inside.q == balance.q + 1).all()
+    linear = of_doubles.chain.frequencies()[balance.q]
+    ours = attempt.force[: attempt.count] + np.diag(attempt.divisors[: attempt.count])
+    scaled = -jacobian[:, :-1] / linear[:, None] / linear
+    np.testing.assert_allclose(ours, scaled, rtol=0, atol=SAME_DERIVATIVE * np.abs(scaled).max())
+
+
+def test_the_radius_falls_with_the_digits():
+    near = orbit("alpha")
+    radii = [prove_existence(periodic_orbit_digits(near, digits)).radius for digits in (20, 40)]
+    for digits, radius in zip((20, 40), radii, strict=True):
+        assert 10.0 ** (-digits - 8) < radius < 10.0**-digits
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("guess", "word"), [(0.786, "converged"), (2.09, "not a torus")])
+def test_spurious_roots_do_not_certify(guess, word):
+    """Two roots of one truncated series: the one that assess calls spurious is no orbit, the other is one to its residual."""
+    series = lindstedt(Chain(8, beta="0.5"), (3,), ("1.14",), 8)
+    torus = solve_amplitudes(series, guess={3: guess})
+    assert assess(series, torus).word == word
+    if word == "converged":
+        assert prove_existence(torus).radius < 1e-3 * torus.amplitude
+        return
+    with pytest.raises(NoExistenceProof, match="Newton step") as caught:
+        prove_existence(torus)
+    assert caught.value.value > torus.amplitude
+
+
+def test_an_orbit_with_too_few_harmonics_says_so():
+    cut = orbit("alpha").cosines[:4]
+    with pytest.raises(NoExistenceProof) as caught:
+        prove_existence(orbit_cut(cut))
+    assert caught.value.bound == "Y"
+    assert caught.value.value > caught.value.needed
+
+
+def orbit_cut(cosines):
+    whole = orbit("alpha")
+    return replace(whole, cosines=cosines, harmonics=np.arange(len(cosines))[:, None])
+
+
+def test_what_the_theorem_is_not_about_is_refused():
+    ring = travelling_breather(Chain(6, alpha="0.3", ends="periodic"), 1, amplitude="0.1")
+    with pytest.raises(InputError, match="fixed ends"):
+        prove_existence(ring)
+    with pytest.raises(InputError, match="polynomial"):
+        prove_existence(breather_at_amplitude(Chain(4, potential="toda:1/2"), 1, "0.1"))
+    torus = solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3905", "0.7663"), 2))
+    with pytest.raises(InputError, match="2 angles"):
+        prove_existence(torus)
+    with pytest.raises(InputError, match="str"):
+        prove_existence("breather")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("seed", "omega"), [(1, "0.09814109959448596"), (25, "1.8830741847088537"), (1, "0.09844127049688513")])
+def test_the_breathers_of_the_figures_exist(seed, omega, tmp_path):
+    found = prove_existence(periodic_orbit_digits(periodic_orbit(FIG9, seed, omega), 32))
+    assert found.radius < 1e-25
+    assert checked(found, tmp_path)
+    assert (tmp_path / "proof.json").stat().st_size < 100_000
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("energy", ["0.014915", "0.75"])
+def test_breathers_of_these_energies_exist(energy, tmp_path):
+    found = prove_existence(periodic_orbit_digits(breather_at_energy(FIG9, 1, energy), 30))
+    assert found.radius < 1e-25
+    assert checked(found, tmp_path)

@@ -1,0 +1,158 @@
+"""Certificates of existence: every number altered is refused, and with a digest made to fit whatever the theorem would not give."""
+
+import ast
+import copy
+import json
+import sys
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+import mpmath
+import pytest
+
+from symfpu.breathers.balance import breather_at_amplitude
+from symfpu.breathers.existence import prove_existence
+from symfpu.chain.chain import Chain
+from symfpu.proofs import check_existence
+from symfpu.proofs.check_existence import COSINE_UNITS, Cosines, ExistenceError, verify
+from symfpu.proofs.checkers import verify_certificate
+from symfpu.proofs.verify import CertificateError
+from tests.proofs.test_forgeries import sealed
+
+
+@cache
+def certificate():
+    return prove_existence(breather_at_amplitude(Chain(3, alpha="0.3", beta="1/7"), 1, "0.3")).certificate()
+
+
+def reason(data, folder):
+    """Why a certificate is refused; None where it is not."""
+    path = folder / "c.json"
+    path.write_text(json.dumps(data))
+    try:
+        verify(path)
+    except ExistenceError as error:
+        return str(error)
+    return None
+
+
+def numbers(value, place=()):
+    """The places of all numbers and texts in a certificate."""
+    if isinstance(value, dict):
+        value = value.items()
+    elif isinstance(value, list):
+        value = enumerate(value)
+    else:
+        yield place
+        return
+    for key, inner in value:
+        yield from numbers(inner, (*place, key))
+
+
+def altered(data, place, change):
+    other = copy.deepcopy(data)
+    inside = other
+    for key in place[:-1]:
+        inside = inside[key]
+    inside[place[-1]] = change(inside[place[-1]])
+    return other
+
+
+def moved(value):
+    return value + 1 if isinstance(value, int) else f"{value}1"
+
+
+def test_every_number_altered_is_refused(tmp_path):
+    data = certificate()
+    assert reason(data, tmp_path) is None
+    places = list(numbers(data))
+    assert len(places) > 60
+    for place in places:
+        assert reason(altered(data, place, moved), tmp_path), place
+
+
+FORGERIES = {
+    "a smaller radius": (("radius", 0), lambda m: m // 2, "exceeds r"),
+    "a radius above that of uniqueness": (("unique", 1), lambda e: e + 200, "above that of uniqueness"),
+    "more uniqueness": (("unique", 0), lambda m: 2 * m, "not below 1"),
+    "another amplitude": (("amplitude", 0), lambda m: m + m // 10**12, "amplitude"),
+    "a narrower amplitude": (("amplitude", 1), lambda m: m // 3, "amplitude"),
+    "another energy": (("energy", 0), lambda m: m + m // 10**12, "H may be outside"),
+    "a narrower energy": (("energy", 1), lambda m: m // 4, "H may be outside"),
+    "another frequency": (("omega",), lambda w: str(Fraction(w) + Fraction(1, 10**12)), "exceeds r"),
+    "another coupling": (("coefficients", 0), lambda _: "300000000001/1000000000000", "exceeds r"),
+    "another coefficient": (("orbit", 1, 0), lambda c: c + c // 10**12, "exceeds r"),
+    "one more bond": (("N",), lambda N: N + 1, "wrong"),
+    "another seed": (("seed",), lambda _: 2, "wrong length|seed|block"),
+    "other bits": (("bits",), lambda b: b + 1, "exceeds r|amplitude|not below"),
+    "another inverse": (("inverse", 0, 0), lambda a: 3 * a, "not below 1|exceeds r"),
+    "a weight below 1": (("weights", 0), lambda _: 1, "a weight"),
+    "a wider strip": (("nu",), lambda _: "2", "not below 1|exceeds r"),
+    "no strip": (("nu",), lambda _: "1", "nu is not"),
+    "fewer free harmonics": (("free",), lambda _: 1, "wrong number of weights|block"),
+    "another kind": (("format",), lambda _: "symfpu propagation certificate", "not a certificate"),
+    "a later version": (("schema",), lambda _: 2, "supports schema"),
+}
+
+
+@pytest.mark.parametrize("name", FORGERIES)
+def test_forgeries_with_a_digest_that_fits_are_refused(name, tmp_path):
+    place, change, why = FORGERIES[name]
+    found = reason(sealed(altered(certificate(), place, change)), tmp_path)
+    assert found
+    assert any(word in found for word in why.split("|")), found
+
+
+def test_choices_may_differ_but_not_the_theorem(tmp_path):
+    """Another weight proves the same theorem."""
+    assert reason(sealed(altered(certificate(), ("weights", -1), lambda v: v + 1)), tmp_path) is None
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[]", "[1, 2]", '{"format": "symfpu existence certificate"}', "\x00", "1.5"])
+def test_what_is_no_certificate_is_refused(text, tmp_path):
+    path = tmp_path / "c.json"
+    path.write_text(text)
+    with pytest.raises(ExistenceError):
+        verify(path)
+    with pytest.raises(CertificateError):
+        verify_certificate(path)
+    with pytest.raises(CertificateError):
+        verify_certificate(tmp_path)
+
+
+def test_both_kinds_of_certificates_find_their_checker(tmp_path):
+    path = tmp_path / "c.json"
+    path.write_text(json.dumps(certificate()))
+    assert verify_certificate(path) == verify(path)
+    path.write_text(json.dumps(altered(certificate(), ("radius", 0), moved)))
+    with pytest.raises(CertificateError, match="digest"):
+        verify_certificate(path)
+
+
+def test_it_imports_the_standard_library_alone():
+    tree = ast.parse(Path(check_existence.__file__).read_text())
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+    names = {alias.name for node in imports if isinstance(node, ast.Import) for alias in node.names}
+    names |= {node.module for node in imports if isinstance(node, ast.ImportFrom)}
+    assert {name.partition(".")[0] for name in names} <= sys.stdlib_module_names
+
+
+@pytest.mark.parametrize("N", [2, 7, 32])
+def test_cosines_are_within_their_units(N):
+    for places in (60, 200):
+        found = Cosines(N, places)
+        with mpmath.workprec(places + 40):
+            for k in range(-1, 8 * N):
+                exact = mpmath.ldexp(mpmath.cospi(mpmath.mpf(k) / (2 * N)), places)
+                assert abs(found.of(k) - exact) < COSINE_UNITS
+
+
+def test_packed_columns_multiply_exactly():
+    rows = [[3, -5, 2**40], [-(2**40), 0, 7], [1, 1, -1]]
+    packed = check_existence.Packed(rows, 2**70)
+    for factors in ({0: 2**70, 2: -(2**70)}, {1: -1}, {}):
+        expected = [sum(x * row[l] for l, x in factors.items()) for row in rows]
+        assert packed.combination(factors) == expected
+    with pytest.raises(ExistenceError, match="larger than its bound"):
+        packed.combination({0: 2**70 + 1})
