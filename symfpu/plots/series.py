@@ -22,8 +22,10 @@ from symfpu.plots.style import (
     rounding_below,
     whole_numbers,
 )
+from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.series.series import LindstedtSeries
+from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment
@@ -120,7 +122,8 @@ def small_divisors(result: Any, ax: Axes | None = None) -> Axes:
     """The smallest divisors |lambda_q - (nu.omega)^2|, with mode q, harmonic nu and order.
 
     result : a series or the torus solved from it, or a torus of Newton's method, whose divisors
-        (nu.omega)^2 - Omega_q^2 stand beside the coefficients under them. ax : axes of
+        (nu.omega)^2 - Omega_q^2 stand beside the coefficients under them; waves of a ring too, but
+        for the torus that `travelling_torus` gave, which does not keep its series. ax : axes of
         matplotlib; default new ones. Dimensionless; those of Eq. Lm, over Omega_q^2.
 
     Returns the axes. Raises InputError for what has no divisors: series in universal form and
@@ -167,21 +170,26 @@ def _leave_room(axes: Axes, sizes: list[float]) -> None:
 
 
 def _divisors(result: Any) -> list[_Divisor]:
-    if isinstance(result, RefinedTorus):
+    if isinstance(result, (RefinedTorus, RefinedRingTorus)):
         near = result.near_resonances
         notes = [f"$c$ = {_minus(f'{r.coefficient:.1e}')}" for r in near]
         pairs = zip(near, notes, strict=True)
         return [_Divisor(abs(r.divisor), r.mode, r.harmonic, note) for r, note in pairs]
     series = result.series if isinstance(result, QTorus) else result
     allowed = "a series, or a torus of a series or of Newton's method"
-    checked = require(series, LindstedtSeries, allowed, "pass what lindstedt gave")
+    checked: LindstedtSeries | TravellingSeries
+    if isinstance(series, TravellingSeries):
+        checked = series
+    else:
+        advice = "pass what lindstedt or travelling_waves gave"
+        checked = require(series, LindstedtSeries, allowed, advice)
     smallest = checked.smallest_divisors
     return [_Divisor(d.size, d.mode, d.harmonic, f"$k$ = {d.order}") for d in smallest]
 
 
 def _place(divisor: _Divisor) -> str:
     harmonic = ", ".join(_minus(str(n)) for n in divisor.harmonic)
-    return rf"$q$ = {divisor.mode}, $\nu$ = ({harmonic})"
+    return rf"$q$ = {_minus(str(divisor.mode))}, $\nu$ = ({harmonic})"
 
 
 def _minus(number: str) -> str:

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer
 from symfpu.plots.style import Axes, Floats, axes_for, chosen_modes, legend, look
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
+
+Solution = QuasiPeriodic | RingTorus
 
 POINTS = 2000  # of a section
 ORBITS = 48  # that rule a torus of two angles
@@ -31,7 +36,8 @@ def section(
 ) -> Axes:
     """A section of a torus: its orbit once a period of a seed, in the planes (Q_q, P_q).
 
-    result : a torus or breather. Q_q and P_q are dimensionless (Eq. lintra).
+    result : a torus or breather. Q_q and P_q are dimensionless (Eq. lintra); on a ring they are
+        complex, and their real parts are drawn.
     ax : axes of matplotlib; default new ones. modes : q of the planes, each in its colour;
         default the other seeds, or the seed itself where there is no other.
     seed : whose period 2 pi / omega it is; default the first. points : how many periods.
@@ -53,28 +59,46 @@ def section(
     listed = others if modes is None else chosen_modes(torus.chain, modes)
     number = integer(points, "points", 1)
     omega = float(torus.frequencies[torus.seeds.index(beat)])
-    doubles = torus.in_doubles()
-    times = 2 * np.pi / omega * np.arange(number)
-    Q, P = doubles.positions(times), doubles.momenta(times)
+    Q, P = _phase_space(torus, 2 * np.pi / omega * np.arange(number))
+    columns = _columns(torus.chain, listed)
+    real = _real_part(torus.chain)
     with axes_for(ax) as axes:
-        for i, q in enumerate(listed):
+        for i, (q, column) in enumerate(zip(listed, columns, strict=True)):
             colour = look(i)["color"]
             size = 1.5 if len(torus.seeds) > 1 else 7
             style = {"marker": "o", "ls": "none", "ms": size, "mew": 0, "color": colour}
-            axes.plot(Q[:, q - 1], P[:, q - 1], label=f"$q = {q}$", **style)
-        axes.set_xlabel("$Q_q$")
-        axes.set_ylabel("$P_q$")
+            axes.plot(Q[:, column], P[:, column], label=f"$q = {q}$", **style)
+        axes.set_xlabel(f"${real}Q_q$")
+        axes.set_ylabel(f"${real}P_q$")
         axes.set_title(rf"once a period $2\pi/\omega_{{{beat}}}$")
-        _wide_enough(axes, torus.chain.frequencies()[np.array(listed) - 1])
+        _wide_enough(axes, torus.chain.frequencies()[columns])
         legend(axes)
         _large_marks(axes)
     return axes
 
 
-def _solution(result: Any) -> QuasiPeriodic:
-    if isinstance(result, QuasiPeriodic):
+def _solution(result: Any) -> Solution:
+    if isinstance(result, (QuasiPeriodic, RingTorus)):
         return result
     raise InputError("result", type(result).__name__, SOLUTION, ADVICE)
+
+
+def _phase_space(found: Solution, times: Floats) -> tuple[Floats, Floats]:
+    """Q and P at times, (T, N-1) each, in doubles; of a ring their real parts."""
+    if isinstance(found, RingTorus):
+        return found.mode_coordinates(times).real, found.mode_momenta(times).real
+    doubles = found.in_doubles()
+    return doubles.positions(times), doubles.momenta(times)
+
+
+def _columns(chain: Chain, modes: Sequence[int]) -> list[int]:
+    """Where modes stand in arrays of all of them."""
+    return [chain.mode_numbers.index(q) for q in modes]
+
+
+def _real_part(chain: Chain) -> str:
+    """What stands before the letter of a coordinate."""
+    return r"\mathrm{Re}\, " if chain.periodic else ""
 
 
 def _wide_enough(axes: Axes, linear: Floats) -> None:
@@ -101,9 +125,10 @@ def torus(
 ) -> Axes:
     """A torus in three dimensions, by the coordinates (Q_a, Q_b, Q_c) of three modes.
 
-    result : a torus or breather. ax : axes of three dimensions; default new ones. Dimensionless.
+    result : a torus or breather. ax : axes of three dimensions; default new ones. Dimensionless;
+        on a ring real parts.
     modes : a, b, c; or two, a and b, for (Q_a, P_a, Q_b). Default the first seed and the second,
-        or the mode of the largest energy that is no seed.
+        or the mode of the largest energy that is no seed; on a ring of another |q|.
 
     A torus of two angles is a surface ruled by orbits, a breather a closed curve; of one of more
     angles an orbit of sixty turns is seen. Returns the axes. Raises InputError. Ours.
@@ -117,12 +142,13 @@ def torus(
     """
     found = _solution(result)
     listed = _modes(found, modes)
-    Q, P = _surface(found.in_doubles())
-    names = [f"$Q_{{{q}}}$" for q in listed]
-    parts = [Q[..., q - 1] for q in listed]
+    Q, P = _surface(found)
+    columns, real = _columns(found.chain, listed), _real_part(found.chain)
+    names = [f"${real}Q_{{{q}}}$" for q in listed]
+    parts = [Q[..., column] for column in columns]
     if len(listed) == 2:
-        names.insert(1, f"$P_{{{listed[0]}}}$")
-        parts.insert(1, P[..., listed[0] - 1])
+        names.insert(1, f"${real}P_{{{listed[0]}}}$")
+        parts.insert(1, P[..., columns[0]])
     with axes_for(ax, "3d") as axes:
         _draw(axes, parts, angles=len(found.seeds))
         axes.set_xlabel(names[0], labelpad=7)
@@ -140,9 +166,10 @@ def _few_ticks() -> Any:
     return MaxNLocator(3)
 
 
-def _modes(found: QuasiPeriodic, modes: Sequence[int] | None) -> list[int]:
+def _modes(found: Solution, modes: Sequence[int] | None) -> list[int]:
     """Two modes or three; InputError for other numbers, and for a chain of one mode."""
-    if found.chain.N < 3:
+    numbers = found.chain.mode_numbers
+    if len(set(map(abs, numbers))) < 2:  # q and -q of a ring have one real part
         allowed = "a chain of two modes or more"
         raise InputError("result", found.chain, allowed, "draw its section instead")
     if modes is not None:
@@ -150,34 +177,47 @@ def _modes(found: QuasiPeriodic, modes: Sequence[int] | None) -> list[int]:
         if len(listed) not in (2, 3):
             raise InputError("modes", tuple(modes), "two modes or three", "choose so many")
         return listed
-    if len(found.seeds) > 1:
-        return list(found.seeds[:2])
+    first = found.seeds[0]
+    second = [q for q in found.seeds if abs(q) != abs(first)]
+    if second:
+        return [first, second[0]]
     energies = np.asarray(found.average_spectrum(), dtype=float)
-    energies[found.seeds[0] - 1] = -1
-    return [found.seeds[0], int(np.argmax(energies)) + 1]
+    energies[[abs(q) == abs(first) for q in numbers]] = -1
+    return [first, numbers[int(np.argmax(energies))]]
 
 
-def _surface(found: FourierTorus) -> tuple[Floats, Floats]:
+def _surface(found: Solution) -> tuple[Floats, Floats]:
     """Q and P on the torus, (orbits, points, N-1).
 
     Of two angles orbits of one turn of the first, from equally spaced phases of the second.
     """
     turn = 2 * np.pi / float(found.frequencies[0])
     if len(found.seeds) > 2:
-        times = np.linspace(0, TURNS * turn, TURNS * AROUND)
-        return found.positions(times)[None], found.momenta(times)[None]
+        return _one_orbit(found, np.linspace(0, TURNS * turn, TURNS * AROUND))
     times = np.linspace(0, turn, AROUND)
     if len(found.seeds) == 1:
-        return found.positions(times)[None], found.momenta(times)[None]
+        return _one_orbit(found, times)
+    plain = found if isinstance(found, RingTorus) else found.in_doubles()
     second = found.seeds[1]
-    Q, P = [], []
+    orbits = []
     for phase in np.linspace(0, 2 * np.pi, ORBITS + 1):
-        phases = {**found.phases, second: found.phases[second] + phase}
-        parts = (found.chain, found.seeds, found.frequencies, found.harmonics)
-        shifted = FourierTorus(*parts, found.cosines, phases)
-        Q.append(shifted.positions(times))
-        P.append(shifted.momenta(times))
+        phases = {**plain.phases, second: plain.phases[second] + phase}
+        orbits.append(_phase_space(_shifted(plain, phases), times))
+    Q, P = zip(*orbits, strict=True)
     return np.array(Q), np.array(P)
+
+
+def _one_orbit(found: Solution, times: Floats) -> tuple[Floats, Floats]:
+    Q, P = _phase_space(found, times)
+    return Q[None], P[None]
+
+
+def _shifted(found: FourierTorus | RingTorus, phases: dict[int, float]) -> Solution:
+    """The same torus from other phases."""
+    if isinstance(found, RingTorus):
+        return replace(found, phases=phases)
+    parts = (found.chain, found.seeds, found.frequencies, found.harmonics)
+    return FourierTorus(*parts, found.cosines, phases)
 
 
 def _draw(axes: Axes, parts: Sequence[Floats], *, angles: int) -> None:

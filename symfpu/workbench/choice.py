@@ -85,6 +85,7 @@ class Choice:
         """The lines of Python that make the same torus, and judge it."""
         if self.bundle:
             return "\n".join([*self._loading(), *self._refining()]) + "\n"
+        self.require_known()
         names, making = MAKING[self.chain.periodic, self.given](self)
         refining = self._refining()
         names = [*names, *(["refine"] if refining else [])]
@@ -102,6 +103,13 @@ class Choice:
         if self.chain.periodic:
             shown["ends"] = '"periodic"'
         return call("Chain", f"N={self.chain.N}", **shown)
+
+    def require_known(self) -> None:
+        """InputError for what the package does not solve: amplitudes or an energy of a ring."""
+        if self.chain.periodic and self.given != FREQUENCIES:
+            allowed = f"{FREQUENCIES}, which alone lead to the waves of a ring"
+            advice = "choose these, or fixed ends"
+            raise InputError("given", f"{self.given} of a ring", allowed, advice)
 
     def _loading(self) -> list[str]:
         names = "load, refine" if self.refined else "load"
@@ -218,6 +226,4 @@ MAKING = {
     (False, AMPLITUDES): _by_amplitudes,
     (False, ENERGY): _by_energy,
     (True, FREQUENCIES): _waves_by_frequencies,
-    (True, AMPLITUDES): _by_amplitudes,
-    (True, ENERGY): _by_energy,
 }

@@ -201,7 +201,7 @@ def _slider(name: str, limits: Range, value: float) -> Any:
 
 
 def _prompt(widget: Any) -> Any:
-    """The widget, heard at once: Panel waits 50 ms for more changes; here the newest wins anyway."""
+    """The widget, heard at once: Panel waits 50 ms for more changes; here the newest wins."""
     for part in widget.select(lambda part: hasattr(part, "_debounce")):
         part._debounce = 0
     return widget

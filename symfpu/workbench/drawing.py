@@ -205,8 +205,12 @@ class _Page:
 
     def _tick_labels(self) -> Iterator[str]:
         left, _, _, bottom = self.box
+        taken: list[tuple[float, float]] = []  # from where to where labels stand
         for x, (_, label) in zip(self._x_places(), self.x_ticks, strict=True):
-            yield _label(label, x, bottom + 16)
+            half = LETTER * len(plain(label)) / 2
+            if all(x + half < start or x - half > end for start, end in taken):
+                taken.append((x - half, x + half))
+                yield _label(label, x, bottom + 16)
         for y, (_, label) in zip(self._y_places(), self.y_ticks, strict=True):
             yield _label(label, left - 6, y + 4.5, "end")
 

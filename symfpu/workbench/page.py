@@ -215,11 +215,13 @@ class Page:
         if self.cancel.visible != slow:
             self.cancel.visible = slow
 
-    def hear(self, kind: str, part: Any) -> None:
+    def hear(self, kind: str, ticket: int, part: Any) -> None:
         """Called by a thread: what has come is shown by the page's own loop."""
-        self._document.add_next_tick_callback(partial(self._show, kind, part))
+        self._document.add_next_tick_callback(partial(self._show, kind, ticket, part))
 
-    def _show(self, kind: str, part: Any) -> None:
+    def _show(self, kind: str, ticket: int, part: Any) -> None:
+        if not self.asker.current(kind, ticket):
+            return  # something else was wished since it was heard
         with panel().io.hold(self._document):  # one message to the browser
             self._show_part(kind, part)
 

@@ -23,6 +23,7 @@ from symfpu.plots.spectra import spectrum
 from symfpu.plots.style import Axes, styled
 from symfpu.plots.tori import section
 from symfpu.plots.tori import torus as torus_surface
+from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.verdict import Assessment
 from symfpu.workbench.choice import Choice
@@ -174,8 +175,14 @@ def _pictures(found: Solved, tell: Progress, sheets: Sheets) -> Iterator[Part]:
     verdict = judged(found, tell)
     yield from _judgement(found, verdict)
     yield _picture(SECTION, partial(section, best))
-    yield _picture(DIVISORS, partial(small_divisors, best))
+    yield _picture(DIVISORS, partial(small_divisors, _with_divisors(found)))
     yield _surface(best)
+
+
+def _with_divisors(found: Solved) -> Any:
+    """What knows the smallest divisors: of a ring the series, which its torus does not keep."""
+    travelling = isinstance(found.series, TravellingSeries)
+    return found.series if travelling and found.refined is None else found.best
 
 
 def _judgement(found: Solved, verdict: Assessment | None) -> Iterator[Part]:
@@ -192,7 +199,8 @@ def _refined_text(found: Solved) -> str:
     assert found.refined is not None
     count = len(found.refined.harmonics)
     left = float(found.refined.residual())
-    return f"Newton's method leaves a residual of {left:.2g}, with {count} harmonics"
+    terms = "waves" if found.refined.chain.periodic else "harmonics"
+    return f"Newton's method leaves a residual of {left:.2g}, with {count} {terms}"
 
 
 def _picture(

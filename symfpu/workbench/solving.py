@@ -55,7 +55,8 @@ def solved(
         found = near
     elif choice.bundle:
         found = _held(choice)
-    elif choice.chain.periodic and choice.given == FREQUENCIES:
+    elif choice.chain.periodic:
+        choice.require_known()
         found = _waves(choice, tell)
     else:
         found = _fixed(choice, near, tell)

@@ -74,7 +74,7 @@ def _levelled(label: str) -> Iterator[tuple[str, bool, float, float]]:
 
 def _math(source: str) -> Iterator[tuple[str, bool, float]]:
     """Text, whether slanted, and its level; of the TeX that the pictures use."""
-    levels, coming, barred = [0.0], 0.0, False
+    levels, coming, barred, upright = [0.0], 0.0, False, False
     for name, script, brace, letters, space, other in TOKEN.findall(source):
         if script:
             coming = BELOW if script == "_" else ABOVE
@@ -85,10 +85,14 @@ def _math(source: str) -> Iterator[tuple[str, bool, float]]:
             levels.pop()
         elif name == "overline":
             barred = True
+        elif name == "mathrm":
+            upright = True
         elif name or letters or other:
             level, coming = coming or levels[-1], 0.0
             text = SYMBOLS[name] if name else letters or other.replace("-", "\u2212")
             slanted = bool(letters) or (name.isalpha() and name not in UPRIGHT)
+            if upright and letters:
+                slanted = upright = False
             if barred and letters:
                 text, barred = text + BAR, False
             if text:

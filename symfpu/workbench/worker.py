@@ -134,10 +134,11 @@ class Spares:
 class Asker:
     """What a page asks: the newest wish of each kind counts, and slow ones can be given up.
 
-    hear : called as (kind, part) from a thread of its own, with what answers the newest wishes.
+    hear : called as (kind, ticket, part) from a thread of its own, with what answers the newest
+        wishes. Who hears later than that asks `current`.
     """
 
-    def __init__(self, hear: Callable[[str, Any], None], spares: Spares) -> None:
+    def __init__(self, hear: Callable[[str, int, Any], None], spares: Spares) -> None:
         self._hear, self._spares = hear, spares
         self._newest = {kind: Newest() for kind in KINDS}
         self._wishes: dict[str, Message] = {}  # the newest, as long as they are not done
@@ -159,9 +160,12 @@ class Asker:
         try:
             self._process.connection.send(message)
         except OSError:
-            self._hear(
-                message[0], Problem("the computing process has ended; reload the page")
-            )
+            ended = Problem("the computing process has ended; reload the page")
+            self._hear(message[0], message[1], ended)
+
+    def current(self, kind: str, ticket: int) -> bool:
+        """Whether an answer is still one to the newest wish."""
+        return self._newest[kind].current(ticket)
 
     def cancel(self) -> None:
         """Gives up whatever is being computed, at once."""
@@ -213,4 +217,4 @@ class Asker:
                 if current:
                     self._wishes.pop(kind, None)
         if current:
-            self._hear(kind, part)
+            self._hear(kind, ticket, part)

@@ -19,6 +19,7 @@ from symfpu.integrable.invariants import toda_gaps
 from symfpu.localization.floors import spectrum_floor
 from symfpu.plots.style import COLOURS, EPS, MARKERS, look, parameters, styled
 from symfpu.series.lindstedt import lindstedt
+from symfpu.series.travelling import travelling_waves
 from tests.plots import cases
 from tests.tolerances import LAST_DIGIT, ROUNDING
 
@@ -319,6 +320,31 @@ def test_rounding_does_not_draw_the_point_of_a_breather_apart(ax):
     alone = Figure().add_subplot()
     plots.section(cases.one_mode(), alone)
     assert list(labelled(alone)) == ["$q = 1$"]
+
+
+def test_a_section_of_a_ring_has_real_parts(ax):
+    ring = cases.ring()
+    plots.section(ring, ax, modes=(-2,), points=3)
+    times = 2 * np.pi / float(ring.frequencies[0]) * np.arange(3)
+    column = ring.chain.mode_numbers.index(-2)
+    (line,) = ax.lines
+    assert line.get_xdata() == pytest.approx(ring.mode_coordinates(times)[:, column].real, rel=LAST_DIGIT)
+    assert line.get_ydata() == pytest.approx(ring.mode_momenta(times)[:, column].real, rel=LAST_DIGIT)
+    assert "Re" in ax.get_xlabel()
+
+
+def test_small_divisors_of_a_ring_are_those_of_its_series(ax):
+    series = travelling_waves(cases.RING, (1,), ("0.69",), 6)
+    plots.small_divisors(series, ax)
+    assert ax.lines[0].get_xdata().tolist() == [d.size for d in series.smallest_divisors]
+    with pytest.raises(InputError):
+        plots.small_divisors(cases.ring(), ax)
+
+
+def test_a_torus_of_a_ring_is_seen_along_modes_of_different_wave_length(ax3):
+    plots.torus(cases.ring(), ax3)
+    assert "Q_{1}" in ax3.get_xlabel()
+    assert "Q_{2}" in ax3.get_zlabel().replace("-", "")
 
 
 @pytest.mark.parametrize(("options", "argument"), [({"seed": 3}, "seed"), ({"points": 0}, "points"), ({"modes": (0,)}, "modes")])

@@ -2,6 +2,7 @@
 
 import json
 import shlex
+from dataclasses import replace
 
 import pytest
 
@@ -23,6 +24,7 @@ CHOICES = [
     pytest.param(SMALL.changed(alpha="0", beta="1/10"), marks=LONG),
     pytest.param(SMALL.changed(beta="0.1"), marks=LONG),
     pytest.param(SMALL.changed(ends="periodic", values=("0.766",)), marks=LONG),
+    pytest.param(replace(SMALL.changed(ends="periodic", values=("0.766",)), refined=True), marks=LONG),
     pytest.param(SMALL.changed(N="2", alpha="0", beta="1", values=("1.5",)), marks=LONG),
     pytest.param(SMALL.changed(refined=True), marks=LONG),
 ]
@@ -76,6 +78,8 @@ def test_what_was_not_chosen_as_frequencies_has_no_command_line_before_it_is_fou
         ({"values": ("0.39", "0.4")}, "frequencies"),
         ({"values": ('"); import os; ("',)}, "frequencies, seed 1"),
         ({"given": "energy", "energy": '1"'}, "energy"),
+        ({"given": "amplitudes", "ends": "periodic"}, "given"),
+        ({"given": "energy", "ends": "periodic"}, "given"),
     ],
     ids=str,
 )

@@ -65,6 +65,7 @@ def shared(chrome, address):
 @pytest.fixture
 def page(shared):
     """The same tab with the chain of N = 32 and the seeds 1 and 2, whatever was done before."""
+    shared.get_by_role("button", name="fixed ends").click()
     shared.get_by_role("button", name="frequencies \u03c9").click()
     typed(shared, "or another potential V(r)", "")
     typed(shared, "seeds D\u2080", "1,2")
@@ -208,6 +209,32 @@ def test_newton_refines_and_a_slider_leaves_it_behind(page):
     page.locator(HANDLE).first.press("ArrowRight")
     changed(page, after)
     assert "refine" not in lines(page)
+
+
+def test_waves_of_a_ring_are_seen_refined_and_saved(page, tmp_path):
+    section = 'svg[aria-label="section"]'
+    before, fixed = picture(page), picture(page, section)
+    page.get_by_role("button", name="ring").click()
+    series = changed(page, before)
+    assert "Re" in changed(page, fixed, section)
+    page.get_by_role("button", name="Refine by Newton's method").click()
+    assert "Newton" in changed(page, series)
+    names = {}
+    exec(lines(page), names)
+    page.wait_for_function(TEXT, arg=["table.seeds", f"{names['refined'].amplitudes[1]:.10g}"])
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save as bundle").click()
+    path = tmp_path / "ring.symfpu"
+    download.value.save_as(path)
+    assert type(load(path).torus).__name__ == "RefinedRingTorus"
+
+
+def test_amplitudes_of_a_ring_are_refused_by_name(page):
+    before = picture(page)
+    page.get_by_role("button", name="ring").click()
+    changed(page, before)
+    page.get_by_role("button", name="amplitudes A").click()
+    page.get_by_text("amplitudes of a ring").first.wait_for()
 
 
 def test_a_bundle_is_saved_and_loaded(page, tmp_path):
