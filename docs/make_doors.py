@@ -276,6 +276,9 @@ NEWTON: dict[str, Door] = {
         c.chain, (1,), 1e-2 * c.size**2, members=2, folder=c.folder / "family"
     ),
     "floquet": lambda c: symfpu.floquet(c.periodic),
+    "normal_family": lambda c: symfpu.normal_family(
+        c.breather, {1: 1.1 * c.size}, members=2, modes=[2], resonance_length=0
+    ),
     "normal_modes": lambda c: symfpu.normal_modes(c.breather),
     "solve_normal_frequency": lambda c: symfpu.solve_normal_frequency(c.breather, 2, 2),
     "member_at_energy": lambda c: symfpu.member_at_energy(

@@ -626,3 +626,12 @@ EXACT_LINE = 1e-13
 
 # Rounding of 1e-14 a step against a perturbation that grows from 1e-8 to 1e-4, over nine times the rate in all: a part of 1e-7.
 GROWTH_OF_ORBIT = 1e-7
+
+# An onset by inverse interpolation of its discriminant: 1e-14 of D over its slope, some 0.02 an amplitude.
+ONSET = 1e-10
+
+# An amplitude beside an onset at which Floquet's multipliers, whose own threshold is some 1e-8 of the square, have decided.
+BESIDE_AN_ONSET = 1e-6
+
+# An amplitude beside a crossing where the modes can be told apart; the mean of both distances is of its square.
+BESIDE_A_CROSSING = 1e-3
