@@ -278,6 +278,9 @@ NEWTON: dict[str, Door] = {
     "floquet": lambda c: symfpu.floquet(c.periodic),
     "foretold_indices": lambda c: symfpu.foretold_indices(c.breather, 1e4, vectors=2),
     "prove_existence": lambda c: symfpu.prove_existence(c.periodic),
+    "normal_family": lambda c: symfpu.normal_family(
+        c.breather, {1: 1.1 * c.size}, members=2, modes=[2], resonance_length=0
+    ),
     "normal_modes": lambda c: symfpu.normal_modes(c.breather),
     "solve_normal_frequency": lambda c: symfpu.solve_normal_frequency(c.breather, 2, 2),
     "member_at_energy": lambda c: symfpu.member_at_energy(

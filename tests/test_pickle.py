@@ -84,6 +84,7 @@ from symfpu.tori.ring_torus import travelling_torus
 from symfpu.tori.verdict import assess
 from tests.bundles.test_bundle import SERIES, same
 from tests.codegen.compilers import program
+from tests.plots import cases
 
 COPIES = {"pickle": lambda x: pickle.loads(pickle.dumps(x)), "copy": copy.copy, "deepcopy": copy.deepcopy}
 PAIR, SINGLE = Chain(8, alpha="0.3"), Chain(8, alpha="0.4", beta="0.1")
@@ -259,6 +260,8 @@ RESULTS = {
     "SpectralLine": (lambda _: lines_found().lines[0], repr),
     "BirkhoffForm": (lambda _: birkhoff_form(PAIR, (1, 2), 2), lambda x: x.hamiltonian()),
     "BirkhoffForm, digits": (lambda _: birkhoff_form(PAIR, (1, 2), 2, digits=20), lambda x: x.frequencies_at({1: 0.1, 2: 0.1})),
+    "NormalFamily": (lambda _: cases.normal_line(), lambda x: (x.events, x.verdict)),
+    "NormalEvent": (lambda _: cases.normal_line().events[0], repr),
     "NormalFrequencySeries": (lambda _: normal_frequency_series(PAIR, (1,), 2, 2), lambda x: x.correction(2)),
     "ForetoldIndices": (lambda _: foretold_indices(orbit(), 1e3), lambda x: (x.settling(), x.slopes())),
     "Twist": (lambda _: twist(orbit()), lambda x: (x.matrix, x.signature)),

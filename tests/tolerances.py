@@ -649,3 +649,12 @@ SAME_BOUNDS = 0.02
 
 # A matrix made of bond sums against one made of samples in time, both of some hundred rounded products.
 SAME_DERIVATIVE = 1e-12
+
+# An onset by inverse interpolation of its discriminant: 1e-14 of D over its slope, some 0.02 an amplitude.
+ONSET = 1e-10
+
+# An amplitude beside an onset at which Floquet's multipliers, whose own threshold is some 1e-8 of the square, have decided.
+BESIDE_AN_ONSET = 1e-6
+
+# An amplitude beside a crossing where the modes can be told apart; the mean of both distances is of its square.
+BESIDE_A_CROSSING = 1e-3

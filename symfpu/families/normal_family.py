@@ -116,11 +116,15 @@ class NormalFamily(Shown, Gridded):
         chain = chain.removeprefix("Chain(").removesuffix(")")
         first, last = (self._amplitudes(found) for found in self.members[:: self._span])
         line = ", ".join(f"A_{q}={a:.6g} .. {last[q]:.6g}" for q, a in first.items())
-        unstable = sum(not found.stable for found in self.members)
-        verdict = f"{unstable} of them unstable" if unstable else "stable"
         events = "; ".join(map(repr, self.events)) or "no events"
         count = f"{len(self.members)} members"
-        return f"NormalFamily({chain}, {count}, {line}, {verdict}, {events})"
+        return f"NormalFamily({chain}, {count}, {line}, {self.verdict}, {events})"
+
+    @property
+    def verdict(self) -> str:
+        """In words."""
+        unstable = sum(not found.stable for found in self.members)
+        return f"{unstable} of them unstable" if unstable else "stable"
 
     @property
     def _span(self) -> int:
@@ -318,9 +322,7 @@ class _Line:
         try:
             part = _zero(of, low, high, values)
         except Failed:
-            part, met = _between(low, high, values), _moved(resonance, 0.0)
-            where = self.amplitudes(part)
-            yield NormalEvent(RESONANCE, met, n, part, where, error=high - low)
+            yield self._crossed_apart(n, resonance, of, low, high, values)
             return
         where = self.amplitudes(part)
         there = self.modes_at(part, resonance.modes)
@@ -330,6 +332,24 @@ class _Line:
         elif abs(resonance.distance_of(there)) < MET:
             met = _moved(resonance, resonance.distance_of(there))
             yield NormalEvent(RESONANCE, met, n, part, where, error=PLACE)
+
+    def _crossed_apart(
+        self,
+        n: int,
+        resonance: ParametricResonance,
+        of: Callable[[float], float],
+        low: float,
+        high: float,
+        values: tuple[float, ...],
+    ) -> NormalEvent:
+        """Where modes that do not couple have one frequency they cannot be told apart."""
+        gap = LEAST_GAP * max(map(abs, values)) / SHARE
+        try:
+            part, error = collision(of, low, high, values, gap)
+        except Failed:
+            part, error = _between(low, high, values), high - low
+        where, met = self.amplitudes(part), _moved(resonance, 0.0)
+        return NormalEvent(RESONANCE, met, n, part, where, error=error)
 
 
 def _moved(resonance: ParametricResonance, distance: float) -> ParametricResonance:

@@ -207,8 +207,8 @@ def normal_frequency_series(
         coefficient, proved as in `lindstedt`; None for doubles.
     progress : called as (label, fraction done).
 
-    Dimensionless. It is Eq. omeser of the torus with one seed more, exactly at A_q = 0, for the
-    cost of about three series of D_0. `solve_normal_frequency` finds the sigma that it is itself.
+    Dimensionless. It is Eq. omeser of the torus with one seed more, exactly at A_q = 0, for about
+    three times the coefficients and four times the products of the series of D_0. `solve_normal_frequency` finds the sigma that it is itself.
     Ours. Raises InputError, TooLarge, and ResonantDivisor where the frequency of the phantom seed
     is resonant with those of the others.
 

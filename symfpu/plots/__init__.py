@@ -12,6 +12,9 @@ from symfpu.plots.motion import animation as animation
 from symfpu.plots.motion import space_time as space_time
 from symfpu.plots.motion import time_series as time_series
 from symfpu.plots.normal import normal_frequencies as normal_frequencies
+from symfpu.plots.normal_family import (
+    family_normal_frequencies as family_normal_frequencies,
+)
 from symfpu.plots.rule import propagation as propagation
 from symfpu.plots.series import amplitudes as amplitudes
 from symfpu.plots.series import coefficients as coefficients

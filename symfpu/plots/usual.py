@@ -17,6 +17,7 @@ from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.families.family import Family
+from symfpu.families.normal_family import NormalFamily
 from symfpu.integrable.invariants import TodaInvariants
 from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
@@ -26,6 +27,7 @@ from symfpu.plots.indices import alignment, foretold
 from symfpu.plots.lines import lines
 from symfpu.plots.motion import time_series
 from symfpu.plots.normal import normal_frequencies
+from symfpu.plots.normal_family import family_normal_frequencies
 from symfpu.plots.rule import propagation
 from symfpu.plots.series import amplitudes, residuals, small_divisors
 from symfpu.plots.spectra import spectrum
@@ -199,6 +201,15 @@ def _normal_rows(found: NormalModes) -> Rows:
     yield "residual", f"{found.residual:.2g}"
 
 
+def _normal_family_rows(found: NormalFamily) -> Rows:
+    torus = found.members[0].torus
+    yield "chain", _model(torus.chain)
+    yield "seeds", _listed(torus.seeds)
+    yield "members", str(len(found.members))
+    for event in found.events[:MOST_MODES]:
+        yield event.kind, repr(event)
+
+
 def _family_rows(found: Family) -> Rows:
     energies = [m.energy for m in found.members]
     yield "chain", _model(found.chain)
@@ -278,6 +289,12 @@ USUAL = (
         _floquet_rows,
     ),
     Usual(NormalModes, normal_frequencies, lambda found: found.verdict, _normal_rows),
+    Usual(
+        NormalFamily,
+        family_normal_frequencies,
+        lambda found: found.verdict,
+        _normal_family_rows,
+    ),
     Usual(Family, family_frequencies, lambda found: f"it {found.ending}", _family_rows),
     Usual(PropagationProof, propagation, lambda proof: proof.verdict, _proof_rows),
     Usual(

@@ -19,6 +19,7 @@ WITHOUT = {
     "Event": "one row of a family's data set",
     "ExpandableTerm": "an expression",
     "NamedParts": "an expression",
+    "NormalEvent": "a line of NormalFamily",
     "NormalMode": "a row of NormalModes",
     "ParametricResonance": "a line of NormalModes",
     "ProfileDistance": "one number and its mode",

@@ -129,6 +129,9 @@ def test_a_hyperbolic_torus_is_found_with_its_quartet():
     assert [q for q, mode in by_mode.items() if mode.growth] == [4, 6]
     assert complex(by_mode[4].sigma) == pytest.approx(1.577380 + 0.035136j, abs=NORMAL_PRINTED)
     assert by_mode[6].growth == pytest.approx(by_mode[4].growth, rel=NORMAL_MULTIPLIER)
+    for mode in found.modes:  # Krein's form of an eigenvector whose conjugate is no partner vanishes
+        assert mode.signature == 0
+        assert abs(mode.action) < NORMAL_VARIATION
     pair = found.resonances[0]
     assert (pair.kind, pair.modes, pair.harmonic) == (SUM, (4, 6), (0, 2))
     assert abs(pair.distance) < ROUNDING

@@ -47,6 +47,7 @@ PICTURES = {
     "family-multipliers": lambda ax: plots.family_multipliers(cases.unstable(), ax),
     "family-spectra": lambda ax: plots.family_spectra(cases.pair(), ax),
     "normal-frequencies": lambda ax: plots.normal_frequencies(cases.normal(), ax),
+    "family-normal-frequencies": lambda ax: plots.family_normal_frequencies(cases.normal_line(), ax),
     "lines": lambda ax: plots.lines(cases.lines_found(), ax),
     "multipliers": lambda ax: plots.multipliers(cases.stable_floquet(), ax),
     "multipliers-unstable": lambda ax: plots.multipliers(cases.unstable().members[-1].multipliers, ax),

@@ -28,6 +28,8 @@ WITHOUT = {
     "ExpandableTerm": "an expression",
     "NamedParts": "an expression",
     "BirkhoffForm": "exact numbers of a field, made anew",
+    "NormalEvent": "part of NormalFamily",
+    "NormalFamily": "its members are kept one by one",
     "NormalFrequencySeries": "a series, made anew",
     "NormalMode": "part of NormalModes",
     "ParametricResonance": "part of NormalModes",
