@@ -632,3 +632,6 @@ FORETOLD = 1e-7
 
 # Normal directions as modes at rest are off by their coupling, some percent to a third in these volumes.
 FORETOLD_AT_REST = 0.6
+
+# Central differences with steps of 1e-5 of actions that doubles know to some 1e-16: rounding 1e-11 over the largest, and the step's square.
+TODA_GROWTH = 1e-6
