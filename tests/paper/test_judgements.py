@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
+from symfpu.dynamics.dimension import DECADES
 from symfpu.figures.alignment import alignment_panel
 from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY
 from symfpu.paper.dimensions import foretold_frames, settled_after
@@ -72,7 +73,7 @@ def test_a_dimension_foretold(printed, after, verdict):
     """From the exact torus; the time at which G_3 settles is one of the frames' or not."""
     torus = refine(torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.2"}, 6))
     frames = foretold_frames(torus, 4)
-    settled = after or frames[0].settling()[3]
+    settled = after or frames[0].settling()[3] / 10**DECADES
     claim = foretold_claim("4", "a torus", printed, frames, (3, settled), alignment(2, vectors=4))
     assert claim.verdict == verdict
     assert "regular, dimension 2 at 1e+09 (by frame 2, 2, 2, 2" in claim.ours
