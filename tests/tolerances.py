@@ -658,3 +658,6 @@ BESIDE_AN_ONSET = 1e-6
 
 # An amplitude beside a crossing where the modes can be told apart; the mean of both distances is of its square.
 BESIDE_A_CROSSING = 1e-3
+
+# Central differences with steps of 1e-5 of actions that doubles know to some 1e-16: rounding 1e-11 over the largest, and the step's square.
+TODA_GROWTH = 1e-6

@@ -113,7 +113,8 @@ class ForetoldIndices(Shown, Gridded):
     def slopes(self, T: float | None = None, decades: float = DECADES) -> tuple[Slope, ...]:
         """d log GALI_k / d log t over the last decades before T, default the last time.
 
-        As `AlignmentIndices.slopes`. Raises InputError for too few samples before T.
+        decades : of time. As `AlignmentIndices.slopes`. Raises InputError for too few samples
+        before T.
         """
         known = self._until(T)
         found = fits(self.times[:known], self.log10_gali[:known], decades)
@@ -122,7 +123,8 @@ class ForetoldIndices(Shown, Gridded):
     def dimension(self, T: float | None = None, decades: float = DECADES) -> TorusDimension:
         """What an integration to T can show of the torus, default the last time.
 
-        Judged as `AlignmentIndices.dimension` judges. Raises InputError.
+        decades : of time, the last ones, in which slopes are fitted. Judged as
+        `AlignmentIndices.dimension` judges. Raises InputError.
         """
         known = self._until(T)
         times, gali = self.times[:known], self.log10_gali[:known]
@@ -132,7 +134,8 @@ class ForetoldIndices(Shown, Gridded):
     def settling(self, decades: float = DECADES) -> Mapping[int, float]:
         """By k the time from which every fit to the last decades has the slope of the torus.
 
-        To 1/3, as a verdict asks for; inf where the last fit has not.
+        To 1/3, as a verdict asks for; inf where the last fit has not. The plateau begins so many
+        decades before. decades : of a fit.
         """
         due = np.array(list(self.asymptotic_slopes.values()))
         ends = self._looks()

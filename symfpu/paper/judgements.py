@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.dynamics.alignment import AlignmentIndices
+from symfpu.dynamics.dimension import DECADES
 from symfpu.figures.panels import Curve, Panel
 from symfpu.localization.profiles import profile_distance
 from symfpu.paper.claims import OPEN, Claim, judged
@@ -99,11 +100,12 @@ def foretold_claim(
     """Whether the torus itself shows the printed dimension at the paper's time, in closed form.
 
     settled : k, and the time from which the paper sees G_k constant, which must be within those of
-    the frames; in part if it is not. found : integrated, for the evidence.
+    the frames; in part if it is not. A frame's is where the first stretch of DECADES begins that
+    has the slope of the torus. found : integrated, for the evidence.
     """
     k, after = settled
     said = foretold_dimension(frames, FULL_TIME)
-    times = [frame.settling()[k] for frame in frames]
+    times = [frame.settling()[k] / 10**DECADES for frame in frames]
     rates = ", ".join(f"{rate:.1e}" for rate in frames[0].rates)
     slopes = np.mean(
         [[s.value for s in frame.slopes(FULL_TIME)] for frame in frames], axis=0

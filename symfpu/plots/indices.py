@@ -60,7 +60,7 @@ def alignment(result: Any, ax: Axes | None = None) -> Axes:
 def foretold(
     result: Any, ax: Axes | None = None, *, observed: AlignmentIndices | None = None
 ) -> Axes:
-    """Alignment indices of a torus in closed form, and integrated ones as points on them.
+    """Alignment indices of a torus in closed form, and integrated ones as rings on them.
 
     result : what `foretold_indices` gave; dimensionless. Ours. ax : axes of matplotlib; default
         new ones. observed : what `alignment_indices` gave with the same frame; no line without.
@@ -86,9 +86,11 @@ def foretold(
             axes.plot(x, found.log10_gali[:, i], label=label, lw=1.0, **style)
             if observed is not None and k <= observed.vectors:
                 points = np.log10(observed.times), observed.log10_gali[:, k - 2]
-                axes.plot(*points, ls="none", marker=".", ms=3, color=style["color"])
+                axes.plot(
+                    *points, ls="none", marker="o", ms=4, mfc="none", color=style["color"]
+                )
         bottom, top = axes.get_ylim()
-        top = max(top, 0) + 0.06 * (top - bottom)
+        top = max(top, 0.0)
         for i, time in enumerate(settled.values()):
             if math.isfinite(time):
                 place = math.log10(time), top

@@ -164,7 +164,7 @@ def test_normal_modes_of_another_torus_some_of_them_or_hyperbolic_ones_are_refus
 
 def test_too_early_a_time_is_refused():
     found = foretold_indices(torus(2), TIMES, vectors=4)
-    with pytest.raises(InputError, match="^T = "):
+    with pytest.raises(InputError, match=r"^T = "):
         found.slopes(2.0)
 
 

@@ -56,7 +56,7 @@ def test_frames_cost_one_after_the_other():
 
 @pytest.mark.parametrize("frames", [0, 1.5, 10**6])
 def test_bad_numbers_of_frames_are_refused(frames):
-    with pytest.raises(InputError, match="^frames = "):
+    with pytest.raises(InputError, match=r"^frames = "):
         alignment_indices(*RUN, frames=frames)
 
 

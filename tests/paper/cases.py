@@ -10,6 +10,7 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.paper import dimensions, fig9
 from symfpu.paper.starts import printed_row
+from symfpu.paper.toda_growth import TodaGrowth
 
 
 def alignment(dimension, *, vectors=5, T=1e7, growth=1.0):
@@ -17,6 +18,13 @@ def alignment(dimension, *, vectors=5, T=1e7, growth=1.0):
     t = np.geomspace(1.0, T, 400)
     powers = -np.maximum(0.0, np.arange(2, vectors + 1) - dimension)
     return AlignmentIndices(Chain(16, alpha="0.33"), t, np.log10(t)[:, None] * powers, growth * np.log(t) / t, 0.4, 1e-12)
+
+
+def growth_at(rates, N=16):
+    """Directions that grow at these rates, and no others."""
+    random = np.random.default_rng(3)
+    left, right = (np.linalg.qr(random.normal(size=(2 * N - 2, len(rates))))[0] for _ in range(2))
+    return TodaGrowth(Chain(N, alpha="0.33"), (left * rates) @ right.T, np.ones(N - 1))
 
 
 def record(times, Q):

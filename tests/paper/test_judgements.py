@@ -3,19 +3,24 @@
 import numpy as np
 import pytest
 
+from symfpu.chain.chain import Chain
+from symfpu.dynamics.dimension import DECADES
 from symfpu.figures.alignment import alignment_panel
 from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY
-from symfpu.paper.dimensions import settled_after
+from symfpu.paper.dimensions import foretold_frames, settled_after
 from symfpu.paper.judgements import (
     cancellation_claim,
     dimension_claim,
     falls,
+    foretold_claim,
     groups_claim,
     parting_level,
     runs,
     same_profile,
     sums_panel,
 )
+from symfpu.refinement.tori import refine
+from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.paper.cases import alignment, exponential
 from tests.tolerances import SAMPLED_DECADES, WHOLE_NUMBERS
 
@@ -60,6 +65,18 @@ def test_as_many_dimensions_as_vectors_decide_nothing():
     """All indices constant: s = 5 or more is not s = 5."""
     assert dimension_claim("3.2", "", 5, alignment(5)).verdict == FAILS
     assert "or more" in dimension_claim("3.2", "", 5, alignment(5)).ours
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("printed", "after", "verdict"), [(2, None, HOLDS), (2, 1.0, PARTLY), (3, None, FAILS)])
+def test_a_dimension_foretold(printed, after, verdict):
+    """From the exact torus; the time at which G_3 settles is one of the frames' or not."""
+    torus = refine(torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.2"}, 6))
+    frames = foretold_frames(torus, 4)
+    settled = after or frames[0].settling()[3] / 10**DECADES
+    claim = foretold_claim("4", "a torus", printed, frames, (3, settled), alignment(2, vectors=4))
+    assert claim.verdict == verdict
+    assert "regular, dimension 2 at 1e+09 (by frame 2, 2, 2, 2" in claim.ours
 
 
 def test_before_the_orbit_shears_nothing_is_decided():
