@@ -356,15 +356,21 @@ class QuasiPeriodic(Shown, Gridded, Parts):
         """By mode the largest |d^2Q_q/dt^2 - force|, and the largest force."""
         worst = np.zeros(self.chain.N - 1)
         largest: Any = 0.0
-        coordinates = self._cosine_sums(self.cosines)
-        accelerations = self._cosine_sums(self._curvatures)
         for theta in self.angle_grid(number):
-            Q = self._at_angles(theta, coordinates)
-            second = self._at_angles(theta, accelerations)
+            Q, second = self._moved(theta)
             force = self.chain.accelerations(Q)
             worst = np.maximum(worst, np.abs(second - force).max(axis=0))
             largest = max(largest, np.abs(force).max())
         return worst, largest
+
+    def _moved(self, theta: Numbers) -> tuple[Numbers, Numbers]:
+        """Q and d^2Q/dt^2 at angles (P, s); with digits from one table of cosines, which are dear."""
+        if self.digits is None:
+            Q = self._at_angles(theta, self._cosine_sums(self.cosines))
+            return Q, self._at_angles(theta, self._cosine_sums(self._curvatures))
+        both = np.hstack([self.cosines, self._curvatures])
+        values = self._at_angles(theta, self._cosine_sums(both))
+        return values[:, : self.chain.N - 1], values[:, self.chain.N - 1 :]
 
     def angle_grid(self, number: int) -> Iterator[Numbers]:
         """The tensor grid of angles, radians, in portions (P, s); a shift keeps it off 0 and pi.
