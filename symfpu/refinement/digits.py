@@ -69,9 +69,9 @@ class PreciseTorus(FourierTorus):
     chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
     harmonics : the nu, shape (H, s). cosines : c_q[nu] as mpf, shape (H, N-1). phases : by seed.
     digits : of the largest coefficient.
-    bound : above |Q'' - force| of every mode at all angles, relative to the largest acceleration:
-        the sum of the sizes of the Fourier coefficients of the residual, with all that its
-        computation rounds or leaves out.
+    bound : above |Q'' - force| of every mode at all angles, relative to the largest acceleration
+        at 512 times: the sum of the sizes of the Fourier coefficients of the residual, with all
+        that its computation rounds or leaves out.
     error : of a coefficient, relative to the largest: an estimate, what one more step of Newton's
         method would change, at harmonics that were left out too. No proof: that takes a bound of
         the inverse, for all small divisors.
