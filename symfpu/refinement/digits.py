@@ -182,6 +182,7 @@ def precise_torus(
     above the last digit.
     """
     if digits // 2 > _digits_of(guess):
+        _fitted(guess, digits)  # refuses what will not fit before anything is computed
         guess = _reached(guess, digits // 2, tell, keep)
     with mpmath.workdps(digits + CARRIED_DIGITS):
         harmonics = _fitted(guess, digits)
