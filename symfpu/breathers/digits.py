@@ -43,9 +43,7 @@ from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, show
 
 Floats = NDArray[np.float64]
 
-MORE_ANGLES = (
-    "tori of more angles have many digits as series only: give digits= to lindstedt"
-)
+MORE_ANGLES = "for tori of more angles call refine(torus, digits=...)"
 NO_TERMS = (
     "take as potential the polynomial of its first coefficients, or digits= of lindstedt"
 )

@@ -69,9 +69,9 @@ class PreciseTorus(FourierTorus):
     chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
     harmonics : the nu, shape (H, s). cosines : c_q[nu] as mpf, shape (H, N-1). phases : by seed.
     digits : of the largest coefficient.
-    bound : above |Q'' - force| of every mode at all angles, relative to the largest acceleration:
-        the sum of the sizes of the Fourier coefficients of the residual, with all that its
-        computation rounds or leaves out.
+    bound : above |Q'' - force| of every mode at all angles, relative to the largest acceleration
+        at 512 times: the sum of the sizes of the Fourier coefficients of the residual, with all
+        that its computation rounds or leaves out.
     error : of a coefficient, relative to the largest: an estimate, what one more step of Newton's
         method would change, at harmonics that were left out too. No proof: that takes a bound of
         the inverse, for all small divisors.
@@ -182,6 +182,7 @@ def precise_torus(
     above the last digit.
     """
     if digits // 2 > _digits_of(guess):
+        _fitted(guess, digits)  # refuses what will not fit before anything is computed
         guess = _reached(guess, digits // 2, tell, keep)
     with mpmath.workdps(digits + CARRIED_DIGITS):
         harmonics = _fitted(guess, digits)

@@ -155,6 +155,16 @@ def test_floors_with_digits_are_bounds():
 
 
 @pytest.mark.long
+def test_the_floor_of_a_torus_with_digits_is_above_its_error():
+    torus = solve_amplitudes(lindstedt(Chain(8, beta=1), (1, 3), ("0.39020", "1.11119"), 6))
+    few, truth = refine(torus, digits=20), refine(torus, digits=40)
+    floor, E = spectrum_floor(few), few.average_spectrum().astype(float)
+    assert (floor >= error_energies(few, truth)).all()
+    excited = np.array([1, 3, 5, 7]) - 1
+    assert (floor[excited] < E[excited]).all()
+
+
+@pytest.mark.long
 def test_the_floor_of_a_refined_torus_is_above_its_error():
     """The truth is a series that has converged far below doubles."""
     chain, seeds, frequencies = Chain(8, beta=1), (1, 3), ("0.39020", "1.11119")
