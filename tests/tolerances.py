@@ -628,3 +628,5 @@ EXACT_LINE = 1e-13
 LEADING_ORDER_SLACK = 0.05
 # the power of N after those that a formula keeps, at N in the hundreds and thousands
 NEXT_IN_LENGTH = 0.02
+# numbers of a page, written with three or four digits
+THREE_DIGITS = 1e-3
