@@ -1,5 +1,6 @@
 """The laws on tori: verdicts on levels made by hand, and both models for short chains."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +12,7 @@ from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from tests.tolerances import ROUNDING, THREE_DIGITS
 
 ALPHA, BETA = printed_line("Fig. 4a"), printed_line("Fig. 4b")
+PAGE = Path(__file__).parents[2] / "docs" / "localization.md"
 SIZES = (64, 128, 256, 512, 1024)
 
 
@@ -70,3 +72,14 @@ def test_tori_of_both_models(monkeypatch):
     assert alpha.steps[0] == pytest.approx([-0.2089, -0.2909, -0.2616], abs=THREE_DIGITS)
     table = torus_laws.factors_table({"alpha": alpha, "beta": beta})
     assert table.count("C_1") == 2
+
+
+@pytest.mark.long
+def test_the_page_has_these_tables():
+    laws = {"alpha": torus_laws.torus_law(ALPHA), "beta": torus_laws.torus_law(BETA)}
+    page = PAGE.read_text()
+    assert torus_laws.factors_table(laws) in page
+    for model, found in laws.items():
+        for k, (exponent, last) in enumerate(zip(found.exponents, found.steps[-1], strict=True), 1):
+            assert f"| {model} | D_{k} | {exponent:.3f} | {last:.3f} |" in page
+        assert torus_laws.invariance_claim(found, random()).verdict == HOLDS
