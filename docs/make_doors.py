@@ -350,8 +350,8 @@ LOCALIZATION: dict[str, Door] = {
     "natural_packet": lambda c: symfpu.natural_packet(c.chain, 1e-3),
     "normalised_averages": lambda c: symfpu.normalised_averages(c.orbit),
     "packet_amplitudes": lambda c: symfpu.packet_amplitudes(c.chain, SEEDS, c.size**2),
-    "packet_groups": lambda c: symfpu.packet_groups(c.chain, 2),
     "packet_energies": lambda c: symfpu.packet_energies(c.chain, 2, 1e-3),
+    "packet_groups": lambda c: symfpu.packet_groups(c.chain, 2),
     "packet_parameter": lambda c: symfpu.packet_parameter(c.chain, 2, 1e-3),
     "profile_invariance": lambda c: symfpu.profile_invariance(
         c.chain, "1/8", 1e-2, (16, 32, 48), 1e3

@@ -661,3 +661,5 @@ BESIDE_A_CROSSING = 1e-3
 
 # Central differences with steps of 1e-5 of actions that doubles know to some 1e-16: rounding 1e-11 over the largest, and the step's square.
 TODA_GROWTH = 1e-6
+# numbers of a page, written with three or four digits
+THREE_DIGITS = 1e-3

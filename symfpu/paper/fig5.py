@@ -218,6 +218,8 @@ def scheme_level_claim(label: str, torus: QTorus, integrated: Floats) -> Claim:
     """spectrum of the integration, over the energy."""
     series = np.asarray(torus.average_spectrum() / torus.energy(), dtype=float)
     printed = PRINTED_LEVELS[label]
+    known = (series > 0) & (integrated > 0)
+    series, integrated = series[known], integrated[known]
     lowest = series.min()
     apart = np.abs(np.log10(integrated / series)) > PAIR_DECADES
     level = float(series[apart].max()) if apart.any() else 0.0

@@ -21,7 +21,7 @@ from symfpu.tori.at_energy import torus_at_energy
 PLACES = {"a": "1/4", "b": "1/2", "c": "3/4"}  # of the packets, kappa_0 by panel
 
 # the torus whose spectrum is compared: three seeds, excited wholly at this order
-SPECTRUM_CHAIN, SPECTRUM_ENERGY, SPECTRUM_ORDER = Chain(64, alpha="0.33"), "0.0001", 8
+SPECTRUM_CHAIN, SPECTRUM_ENERGY, SPECTRUM_ORDER = Chain(48, alpha="0.33"), "0.0001", 6
 STRONG_CORRELATION = 0.95
 
 

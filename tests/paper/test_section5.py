@@ -2,13 +2,14 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.files.progress import unheard
 from symfpu.paper import section5
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
-from symfpu.paper.fig6 import excited_by_packets, intervals_claim
+from symfpu.paper.fig6 import excited_by_packets, intervals_claim, pattern_claim, spectrum_claim
 from symfpu.paper.printed import EXCITATIONS
 
 pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
@@ -91,3 +92,16 @@ def test_intervals_of_section_6_3():
     claim = intervals_claim(moved)
     assert claim.verdict == FAILS
     assert "all but [1, 2" in claim.ours
+
+
+@pytest.mark.parametrize(("rate", "verdict"), [(4.0, HOLDS), (-4.0, FAILS)])
+def test_patterns_of_spectra(rate, verdict):
+    sequence = excitation_sequence(48, (11, 12, 13), 6)
+    spectrum = np.ones(47)
+    for k, modes in enumerate(sequence):
+        spectrum[np.array(modes) - 1] = 10.0 ** (-rate * k)
+    assert pattern_claim("1/4", sequence, spectrum).verdict == verdict
+
+
+def test_the_spectrum_of_a_torus_has_the_pattern():
+    assert spectrum_claim("1/2").verdict == HOLDS

@@ -1,12 +1,17 @@
 """The paper's discrete statements, each an exact test: section 5's examples, section 6's sequences and patterns."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import pytest
+import symengine as se
 from sympy import isprime
 
 from symfpu.chain.commensurability import frequency_rank
 from symfpu.chain.propagation import excitation_sequence, reachable_modes
+from symfpu.files.progress import unheard
+from symfpu.paper import statements
+from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.printed import EXCITATIONS
 from symfpu.proofs.certificates import prove_propagation
 
@@ -151,3 +156,71 @@ def test_linear_frequencies_are_incommensurable_for_primes_and_powers_of_two(N):
 def test_n_minus_one_prime_is_not_enough():
     assert isprime(12 - 1)
     assert frequency_rank(12) < 11
+
+
+def test_ranks_judge_the_condition_of_section_2(monkeypatch):
+    monkeypatch.setattr(statements, "RANKED_CHAINS", range(3, 15))
+    claim = statements.commensurability_claim()
+    assert claim.verdict == PARTLY
+    assert "N = 6, 12, 14;" in claim.ours
+    monkeypatch.setattr(statements, "frequency_rank", lambda N: N - 1)
+    assert statements.commensurability_claim().verdict == HOLDS
+    monkeypatch.setattr(statements, "frequency_rank", lambda N: N - 2)
+    assert statements.commensurability_claim().verdict == FAILS
+
+
+def corrections(alpha_orders, degree):
+    A = se.Symbol("A1")
+    return {
+        "alpha": {k: [A ** degree(k) if k in alpha_orders else se.Integer(0)] for k in (1, 2, 3, 4)},
+        "beta": {k: [A ** (2 * k)] for k in (1, 2)},
+    }
+
+
+def test_secular_terms_and_degrees():
+    found = corrections((2, 4), lambda k: k)
+    assert statements.secular_claim(found).verdict == HOLDS
+    assert statements.degree_claim(found).verdict == FAILS
+    assert statements.secular_claim(corrections((2, 3, 4), lambda k: k)).verdict == PARTLY
+    assert statements.degree_claim(corrections((2, 4), lambda k: k + 1)).verdict == PARTLY
+
+
+@pytest.mark.long
+def test_secular_terms_of_the_recursion():
+    secular, degree = statements.secular_claims()
+    assert (secular.verdict, degree.verdict) == (HOLDS, FAILS)
+
+
+def test_groups_of_beta_are_united_groups_of_alpha(monkeypatch):
+    assert statements.united_groups_claim().verdict == PARTLY  # not for one seed
+    monkeypatch.setattr(statements, "LOW_WIDTHS", range(2, 4))
+    assert statements.united_groups_claim().verdict == HOLDS
+
+
+def test_the_stated_condition_suffices_and_is_not_needed(monkeypatch):
+    claim = statements.condition_claim()
+    assert claim.verdict == PARTLY
+    assert "holds for 18, the equality then for 18" in claim.ours
+    assert "for 1 of 45" in claim.ours
+    monkeypatch.setattr(statements, "reachable_modes", lambda N, seeds, order: [()] * (order + 1))
+    assert statements.condition_claim().verdict == FAILS  # a condition that always holds
+
+
+def test_three_thirds(monkeypatch):
+    assert statements.thirds_claim().verdict == FAILS
+    monkeypatch.setattr(statements, "THIRDS", 2)
+    assert statements.thirds_claim().verdict == HOLDS
+
+
+def test_slopes_of_tori_are_logarithms(monkeypatch):
+    assert statements.slopes_claim().verdict == HOLDS
+    right = statements.profile_law
+    monkeypatch.setattr(statements, "profile_law", lambda chain, s, eps: replace(right(chain, s, eps), slope=-(eps**-0.25)))
+    assert statements.slopes_claim().verdict == FAILS
+
+
+@pytest.mark.long
+def test_every_statement_has_a_verdict(tmp_path):
+    figure = statements.statements(tmp_path, unheard)
+    assert len(figure.claims) == 14
+    assert figure.panels == ()
