@@ -94,6 +94,12 @@ class RuleForAllN(Tabled):
         return len(self.decided)
 
     @property
+    def reason(self) -> str:
+        """What shows the excited modes: "sign" alone, or "sign and residues"."""
+        by_sign = all(found.by_sign for found in self.decided)
+        return "sign" if by_sign else "sign and residues"
+
+    @property
     def gaps(self) -> tuple[DecidedFlat, ...]:
         """Flats of dimension one and more with a mode that a residue decides, not the sign.
 

@@ -35,7 +35,7 @@ def test_exceptions_are_those_of_the_recursion_at_other_lengths():
 def test_one_seed_is_a_theorem_by_sign_alone():
     for model, order in (("alpha", 6), ("beta", 4)):
         proof = prove_for_all_N(model, 1, order)
-        assert (proof.verdict, proof.gaps) == ("proved", ())
+        assert (proof.verdict, proof.reason, proof.gaps) == ("proved", "sign", ())
         assert all(found.by_sign for found in proof.decided)
         assert "for generic frequencies" in proof.theorem
 
@@ -148,7 +148,9 @@ def test_arguments_are_checked_at_the_door():
 
 
 def test_sets_of_more_seeds_are_settled_by_as_many_as_a_term_has_leaves():
-    assert "every set of 2 seeds, to order 2" in prove_for_all_N("alpha", 2, 2).theorem
+    proof = prove_for_all_N("alpha", 2, 2)
+    assert "every set of 2 seeds, to order 2" in proof.theorem
+    assert proof.reason == "sign and residues"
     assert "every set of 2 or more seeds, to order 1" in prove_for_all_N("alpha", 2, 1).theorem
 
 
