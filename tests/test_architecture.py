@@ -63,6 +63,8 @@ def test_the_way_is_one(step):
 
 def test_the_checker_imports_nothing_of_the_package():
     assert [source for source, _ in imported("symfpu/proofs/verify.py") if source.startswith("symfpu")] == []
+    theorem = {source for source, _ in imported("symfpu/proofs/verify_theorem.py") if source.startswith("symfpu")}
+    assert theorem == {"symfpu.proofs.verify"}
 
 
 def test_algebra_knows_no_physics():

@@ -84,4 +84,4 @@ def _print(proof: RuleForAllN) -> None:
         say(f"  {family}")
     if len(families) > LISTED:
         say(f"  {len(families) - LISTED} more; --json lists them all")
-    say(f"verdict: {proof.verdict}")
+    say(f"verdict: {proof.verdict}   (excited modes by {proof.reason})")

@@ -252,7 +252,7 @@ def representatives(
 def flats(model: str, s: int, order: int, progress: Progress | None = None) -> list[Flat]:
     """All flats, by falling dimension, then N and seeds; the first is the whole simplex.
 
-    >>> len(flats("alpha", 2, 1)), flats("alpha", 1, 1)
+    >>> len(flats("alpha", 2, 1)), flats("alpha", 1, 1)[:2]
     (28, [Flat(N=3, seeds=(1,), dimension=1), Flat(N=2, seeds=(1,), dimension=0)])
     """
     told = progress or unheard

@@ -94,6 +94,12 @@ class RuleForAllN(Tabled):
         return len(self.decided)
 
     @property
+    def reason(self) -> str:
+        """What shows the excited modes: "sign" alone, or "sign and residues"."""
+        by_sign = all(found.by_sign for found in self.decided)
+        return "sign" if by_sign else "sign and residues"
+
+    @property
     def gaps(self) -> tuple[DecidedFlat, ...]:
         """Flats of dimension one and more with a mode that a residue decides, not the sign.
 
@@ -262,9 +268,9 @@ def prove_for_all_N(
 
     >>> proof = prove_for_all_N("beta", 2, 1)
     >>> print(proof.exceptional_flats[0])
-    2 q_1 = N   (modes N - q_2: 1 -> None)
+    2 q_2 = N   (modes N - q_1: 1 -> None)
     >>> prove_for_all_N("alpha", 1, 4)
-    RuleForAllN(alpha, 1 seed, order 4: proved on 15 flats)
+    RuleForAllN(alpha, 1 seed, order 4: proved on 16 flats)
     """
     if model not in MODELS:
         advice = "other potentials are proved N by N: prove_propagation"

@@ -129,6 +129,7 @@ def _theorem_record(proof: RuleForAllN) -> Json:
         "seeds_number": proof.seeds_number,
         "order": proof.order,
         "verdict": proof.verdict,
+        "reason": proof.reason,
         "theorem": proof.theorem,
         "flats": proof.flats,
         "exceptional_flats": [plain(vars(flat)) for flat in proof.exceptional_flats],

@@ -12,7 +12,7 @@ import symfpu.cli
 from symfpu.cli.main import main
 from symfpu.cli.verbs import VERBS, app
 
-FOUNDATIONS = {"chains", "choices", "__init__", "keeping", "main", "pictures", "starts", "terminal", "verbs"}
+FOUNDATIONS = {"chains", "choices", "__init__", "keeping", "main", "pictures", "starts", "terminal", "theorems", "verbs"}
 SOLVE = ["solve", "-N", "8", "--alpha", "0.3", "--seeds", "1", "--omega", "0.3905", "--order", "4"]
 SHORT = {
     "solve": SOLVE,

@@ -2,6 +2,8 @@
 
 import json
 import random
+from itertools import combinations_with_replacement, product
+from operator import mul
 
 import pytest
 
@@ -33,7 +35,7 @@ def test_exceptions_are_those_of_the_recursion_at_other_lengths():
 def test_one_seed_is_a_theorem_by_sign_alone():
     for model, order in (("alpha", 6), ("beta", 4)):
         proof = prove_for_all_N(model, 1, order)
-        assert (proof.verdict, proof.gaps) == ("proved", ())
+        assert (proof.verdict, proof.reason, proof.gaps) == ("proved", "sign", ())
         assert all(found.by_sign for found in proof.decided)
         assert "for generic frequencies" in proof.theorem
 
@@ -146,7 +148,9 @@ def test_arguments_are_checked_at_the_door():
 
 
 def test_sets_of_more_seeds_are_settled_by_as_many_as_a_term_has_leaves():
-    assert "every set of 2 seeds, to order 2" in prove_for_all_N("alpha", 2, 2).theorem
+    proof = prove_for_all_N("alpha", 2, 2)
+    assert "every set of 2 seeds, to order 2" in proof.theorem
+    assert proof.reason == "sign and residues"
     assert "every set of 2 or more seeds, to order 1" in prove_for_all_N("alpha", 2, 1).theorem
 
 
@@ -171,3 +175,28 @@ def test_the_verb_proves_for_all_N_and_verifies(capsys, tmp_path):
     assert main(["prove", "--order", "1", "-N", "8", "--seeds", "1", "--seeds-number", "2"]) == 2
     assert main(["prove", "--order", "1", "-N", "8"]) == 2
     assert capsys.readouterr().err.count("\n") == 5
+
+
+def of_theorem_6(N, seeds):
+    """Modes that three seeds make only as N - n of l, m, n with l + m = N (docs/propagation.md)."""
+    found = set()
+    for q in set(range(1, N)) - set(seeds):
+        triples = [t for t in combinations_with_replacement(seeds, 3) if q in folds(t, N)]
+        if triples and all(any(t[i] + t[j] == N and t[k] == N - q for i, j, k in PAIRS) for t in triples):
+            found.add(q)
+    return found
+
+
+PAIRS = ((0, 1, 2), (0, 2, 1), (1, 2, 0))
+
+
+def folds(modes, N):
+    sums = [sum(map(mul, signs, modes)) for signs in product((1, -1), repeat=3)]
+    return {min(total % (2 * N), -total % (2 * N)) for total in sums}
+
+
+@pytest.mark.parametrize("s", [2, pytest.param(3, marks=pytest.mark.long)])
+def test_exceptions_at_order_one_are_those_of_theorem_6(s):
+    for found in prove_for_all_N("beta", s, 1).decided:
+        flat = found.flat
+        assert {e.mode for e in found.exceptions} == of_theorem_6(flat.N, flat.seeds), flat
