@@ -427,6 +427,7 @@ VERBS: dict[str, Door] = {
     "symfpu refine": lambda c: c.verb("refine", c.file),
     "symfpu show": lambda c: c.verb("show", c.file),
     "symfpu solve": lambda c: c.file,
+    "symfpu certify": lambda c: c.verb("certify", c.refined_file),
     "symfpu stability": lambda c: c.verb("stability", c.refined_file),
     "symfpu sweep": lambda c: c.verb(
         "sweep", "--order", 1, "--longest", 3, "--largest", 1, *c.rule_words

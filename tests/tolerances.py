@@ -647,6 +647,9 @@ GROWTH_OF_ORBIT = 1e-7
 # Prover and checker bound the same three numbers: one in doubles and balls, the other in 60 binary places, both upwards.
 SAME_BOUNDS = 0.02
 
+# Asked of the breathers of the figures: far beyond doubles, within the 30 digits that their orbits have.
+PROVED_RADIUS = 1e-25
+
 # A matrix made of bond sums against one made of samples in time, both of some hundred rounded products.
 SAME_DERIVATIVE = 1e-12
 

@@ -25,6 +25,7 @@ INVERSE_BITS = 14
 WEIGHT_BITS = 6
 ROUNDOFF = 2.0**-53
 UPWARDS = 1 + 1e-9  # more than sums of so many positive doubles lose
+SMALLEST_DIVISOR = 1e-14
 MARGIN = 1e-12  # relative, more than the divisors beyond all resonances lose
 MOST_RADIUS = 0.85  # of |I - A DF|, so that weights make its norm less than 1
 LEAST_RATE = 0.5  # that weights are asked for
@@ -158,7 +159,8 @@ class Attempt:
         # of a column to the weight nu^n of its place
         growth = self.rows.n[:, None] - self.inside.n
         self.scales = part.nu**growth
-        self.diagonal = abs(self.divisors) - self.errors
+        # a divisor that may be zero makes the bounds huge, and the attempt fail
+        self.diagonal = np.maximum(abs(self.divisors) - self.errors, SMALLEST_DIVISOR)
 
     def importance(self) -> Floats:
         """How much the rows with free weights fail to be dominated by the diagonal."""

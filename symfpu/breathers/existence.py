@@ -62,9 +62,6 @@ class NoExistenceProof(SymfpuError):
         by = f"{value:.3g} is not below {needed:.3g}"
         super().__init__(f"no proof of existence: {name} = {by}; {advice}")
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.bound, self.value, self.needed, self.advice)
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ExistenceProof(Tabled):
@@ -139,7 +136,8 @@ class ExistenceProof(Tabled):
             "r": self.radius,
             "R": self.unique,
         }
-        known = attributes(self, seeds=(self.seed,), frequencies=(self.frequency,))
+        frequency = self.frequency
+        known = attributes(self, self.chain, seeds=(self.seed,), frequencies=(frequency,))
         return Table({"bound": list(names), "value": list(names.values())}, known)
 
 

@@ -27,6 +27,7 @@ KEYS = {
 }  # fmt: skip
 LARGEST_FILE = 2**26  # bytes
 LARGEST_N = 512
+MOST_STEPS = 10**9
 MOST_HARMONICS = 4096
 MOST_BITS = 4096
 MOST_BLOCK = 600
@@ -700,6 +701,7 @@ def check_certificate(data: Json) -> list[str]:
     """The hypotheses of the theorem, and what it then says of the orbit."""
     claim = read_claim(data)
     inverse = read_inverse(data, claim)
+    check_cost(claim, inverse)
     radius, unique = dyadic(data["radius"], "radius"), dyadic(data["unique"], "unique")
     highest = inverse.last + inverse.slope_harmonics
     bounds = Bounds(claim, Bonds(claim, highest), inverse)
@@ -712,6 +714,14 @@ def check_certificate(data: Json) -> list[str]:
         f"Y = {scientific(Y)}, Z0 + Z1 = {scientific(linear)}, "
         f"Z2 = {scientific(bounds.curvature(unique))}: recomputed with integers",
     ]
+
+
+def check_cost(claim: Claim, inverse: Inverse) -> None:
+    """Checking takes minutes at most: products of series, and entries of I - A DF."""
+    products = claim.N * max(claim.couplings) ** 2 * claim.harmonics**2
+    width = 2 * inverse.slope_harmonics + 1
+    entries = (inverse.last + 1) * width * claim.N**2
+    need(max(products, entries) <= MOST_STEPS, "checking it would take too many steps")
 
 
 def check_contraction(

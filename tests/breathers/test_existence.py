@@ -24,7 +24,7 @@ from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.verdict import assess
-from tests.tolerances import SAME_BOUNDS, SAME_DERIVATIVE
+from tests.tolerances import PROVED_RADIUS, SAME_BOUNDS, SAME_DERIVATIVE
 
 FIG9 = Chain(N=32, alpha="0.33")
 CASES = {
@@ -160,7 +160,7 @@ def test_what_the_theorem_is_not_about_is_refused():
 @pytest.mark.parametrize(("seed", "omega"), [(1, "0.09814109959448596"), (25, "1.8830741847088537"), (1, "0.09844127049688513")])
 def test_the_breathers_of_the_figures_exist(seed, omega, tmp_path):
     found = prove_existence(periodic_orbit_digits(periodic_orbit(FIG9, seed, omega), 32))
-    assert found.radius < 1e-25
+    assert found.radius < PROVED_RADIUS
     assert checked(found, tmp_path)
     assert (tmp_path / "proof.json").stat().st_size < 100_000
 
@@ -169,5 +169,5 @@ def test_the_breathers_of_the_figures_exist(seed, omega, tmp_path):
 @pytest.mark.parametrize("energy", ["0.014915", "0.75"])
 def test_breathers_of_these_energies_exist(energy, tmp_path):
     found = prove_existence(periodic_orbit_digits(breather_at_energy(FIG9, 1, energy), 30))
-    assert found.radius < 1e-25
+    assert found.radius < PROVED_RADIUS
     assert checked(found, tmp_path)

@@ -48,6 +48,7 @@ FOLDERS = {
 READ = {
     "show": ["show"],
     "verify": ["verify"],
+    "certify": ["certify"],
     "refine": ["refine"],
     "export": ["export", "--lang", "c", "-o", "unwritten.c"],
     "orbit": ["orbit", "--time", "10"],
