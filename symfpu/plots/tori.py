@@ -83,7 +83,7 @@ def _solution(result: Any) -> Solution:
     raise InputError("result", type(result).__name__, SOLUTION, ADVICE)
 
 
-def _phase_space(found: Solution, times: Floats) -> tuple[Floats, Floats]:
+def _phase_space(found: Solution, times: Any) -> tuple[Floats, Floats]:
     """Q and P at times, (T, N-1) each, in doubles; of a ring their real parts."""
     if isinstance(found, RingTorus):
         return found.mode_coordinates(times).real, found.mode_momenta(times).real
