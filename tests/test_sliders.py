@@ -22,6 +22,7 @@ NOTEBOOKS = Path(__file__).parents[1] / "notebooks"
 WITH_SLIDERS = [path for path in sorted(NOTEBOOKS.glob("*.ipynb")) if "sliders = interact(" in path.read_text()]
 TOKEN = "sliders"
 PATIENCE = 600_000  # milliseconds: all cells of a notebook on a busy machine
+READY = "window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel?.status === 'idle'"
 RUN_ALL = "window.jupyterapp.commands.execute('notebook:run-all-cells')"
 HANDLE = ".widget-slider .noUi-handle"
 PICTURE = ".widget-interact .widget-output img"
@@ -78,7 +79,7 @@ def test_a_slider_draws_anew(path, laboratory, tmp_path):
         page.set_default_timeout(PATIENCE)
         page.goto(f"{laboratory}/lab/tree/{path.name}?token={TOKEN}")
         page.wait_for_selector(".jp-Notebook .jp-CodeCell")
-        page.wait_for_function("window.jupyterapp !== undefined")
+        page.wait_for_function(READY)
         page.evaluate(RUN_ALL)
         handle = page.locator(HANDLE).first
         handle.scroll_into_view_if_needed()

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 import socket
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from html.parser import HTMLParser
 from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urlsplit
 
 ELSEWHERE = re.compile(r"https?://[\w.-]+")
-WRITTEN = ("*.md", "*.rst", "*.ipynb")
 PATIENCE = 5.0  # seconds for a host to answer
 
 
@@ -78,9 +77,9 @@ def lost_in(folder: Path) -> list[tuple[str, str]]:
     return lost_links(pages(folder), files)
 
 
-def silent_hosts(folder: Path) -> list[str]:
-    """The hosts that the pages of a folder link to, if none of them can be reached; else none."""
-    texts = [path.read_text() for kind in WRITTEN for path in folder.rglob(kind)]
+def silent_hosts(written: Iterable[Path]) -> list[str]:
+    """The hosts that some files link to, if none of them can be reached; else none."""
+    texts = [path.read_text() for path in written]
     found = {urlsplit(link).netloc for text in texts for link in ELSEWHERE.findall(text)}
     hosts = sorted(found)
     return [] if any(map(_answers, hosts)) else hosts
