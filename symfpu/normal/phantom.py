@@ -208,9 +208,10 @@ def normal_frequency_series(
     progress : called as (label, fraction done).
 
     Dimensionless. It is Eq. omeser of the torus with one seed more, exactly at A_q = 0, for about
-    three times the coefficients and four times the products of the series of D_0. `solve_normal_frequency` finds the sigma that it is itself.
-    Ours. Raises InputError, TooLarge, and ResonantDivisor where the frequency of the phantom seed
-    is resonant with those of the others.
+    three times the coefficients and four times the products of the series of D_0.
+    `solve_normal_frequency` finds the sigma that it is itself. Ours.
+    Raises InputError, TooLarge, and ResonantDivisor where the frequency of the phantom seed is
+    resonant with those of the others.
 
     >>> from symfpu import Chain, normal_frequency_series
     >>> omega = {1: "0.4", 2: "0.77"}

@@ -62,13 +62,16 @@ class ParametricResonance:
         return f"{self.left} = ({harmonic}).omega"
 
     def distance_of(self, found: Frequencies) -> float:
-        """Its distance on another torus: left side minus right side, of the real parts."""
+        """Its distance on another torus: left side minus right side, of the real parts.
+
+        found : the normal modes of that torus.
+        """
         sigma = {q: complex(w).real for q, w in found.frequencies.items()}
         omega = np.array([float(w) for w in found.torus.frequencies])
         return self.left_of(sigma) - float(np.array(self.harmonic) @ omega)
 
     def left_of(self, sigma: Mapping[int, float]) -> float:
-        """Its left side."""
+        """Its left side, a number; sigma : real parts by mode."""
         q, other = self.modes[0], self.modes[-1]
         if self.kind == OWN:
             return sigma[q]
