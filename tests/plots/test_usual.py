@@ -24,7 +24,7 @@ RESULTS = {
     "Assessment": (cases.assessment, "undecided"),
     "Orbit": (cases.orbit, "energy error"),
     "AlignmentIndices": (cases.indices, "dimension 2"),
-    "ForetoldIndices": (cases.foretold, "dimension 1"),
+    "ForetoldIndices": (cases.foretold, "slope -1, from t"),
     "FrequencyAnalysis": (cases.lines_found, "independent frequencies"),
     "Floquet": (cases.stable_floquet, "stable"),
     "Family": (cases.pair, "reached"),
