@@ -364,7 +364,7 @@ class QuasiPeriodic(Shown, Gridded, Parts):
         return worst, largest
 
     def _moved(self, theta: Numbers) -> tuple[Numbers, Numbers]:
-        """Q and d^2Q/dt^2 at angles (P, s); with digits from one table of cosines, which are dear."""
+        """Q and d^2Q/dt^2 at angles (P, s), with digits from one table of cosines."""
         if self.digits is None:
             Q = self._at_angles(theta, self._cosine_sums(self.cosines))
             return Q, self._at_angles(theta, self._cosine_sums(self._curvatures))
