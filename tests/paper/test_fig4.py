@@ -108,7 +108,7 @@ def test_panels_show_what_lies_above_the_noise():
 def test_figure_4_over_a_short_time(monkeypatch, tmp_path):
     for name, value in {"TIME": 1e3, "RANDOM_TIME": 1e3, "REALISATIONS": 2, "SLOPE_TIME": 3e2}.items():
         monkeypatch.setattr(fig4, name, value)
-    monkeypatch.setattr(torus_laws, "SIZES", {"alpha": (64, 128, 256, 512), "beta": (64, 128, 192, 256)})
+    monkeypatch.setattr(torus_laws, "SIZES", dict.fromkeys(("alpha", "beta"), (64, 128, 192, 256)))
     figure = fig4.figure4(tmp_path, unheard)
     assert figure.text[1].count("| alpha |") == 3
     assert "2 draws" in figure.text[1]
