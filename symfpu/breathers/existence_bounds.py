@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 
 FIRST_CUT = 1e-4  # norm of the slopes that may be cut
 CUT_SHARE = 0.02  # of Z1 that may come from that
+CUTS = 6  # attempts at a cut: rounding of the slopes to doubles may not allow it
 SLACK = 1.01  # of Z1 and Z2, and RADIUS_SLACK of r, so that coarser bounds suffice
 RADIUS_SLACK = 1.25
 SHRINK = 0.9
@@ -73,7 +74,7 @@ def proof_bounds(orbit: RoundedOrbit) -> tuple[ProofBounds | None, float]:
     """
     balls = BondBalls(orbit, strip(orbit))
     cut = FIRST_CUT
-    while True:
+    for _ in range(CUTS):
         found, linear = contraction(linear_part(balls, cut))
         if found is None:
             return None, linear
@@ -81,6 +82,8 @@ def proof_bounds(orbit: RoundedOrbit) -> tuple[ProofBounds | None, float]:
         if share <= CUT_SHARE:
             break
         cut *= CUT_SHARE / (2 * share)
+    if SLACK * (linear + share) >= 1:
+        return None, linear + share
     residual, beyond = newton_step(balls, found)
     return ProofBounds(residual, beyond, linear + share, found, balls), linear + share
 
