@@ -15,6 +15,7 @@ def existence_record(proof: ExistenceProof) -> dict[str, Any]:
     """Keys of the command line; A and H are the middles of intervals."""
     digits = proof.digits + 3
     return {
+        "kind": type(proof).__name__,
         **proof.chain.typed,
         "seeds": [proof.seed],
         "frequencies": {str(proof.seed): decimal(proof.frequency)},

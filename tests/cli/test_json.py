@@ -45,6 +45,8 @@ LONG = {
     "family": ["family", *CHAIN, "--seeds", "1", "--to-energy", "0.002", "--from-energy", "0.001"],
     "actions": ["actions", "TORUS"],
     "stability": ["stability", "ORBIT"],
+    "certify": ["certify", "ORBIT"],
+    "prove, all N": ["prove", "--all-N", "--model", "beta", "--seeds-number", "1", "--order", "2"],
     "orbit": ["orbit", "TORUS", "--time", "100", "--samples", "10"],
     "orbit, a state": ["orbit", *CHAIN, "--packet", "1", "--energy", "0.1", "--time", "100", "--samples", "10"],
     "gali": ["gali", "TORUS", "--time", "1000", "--vectors", "3"],
