@@ -73,6 +73,7 @@ def proof_bounds(orbit: RoundedOrbit) -> tuple[ProofBounds | None, float]:
     At the working precision of python-flint.
     """
     balls = BondBalls(orbit, strip(orbit))
+    found, linear, share = None, math.inf, 0.0
     cut = FIRST_CUT
     for _ in range(CUTS):
         found, linear = contraction(linear_part(balls, cut))
@@ -82,7 +83,7 @@ def proof_bounds(orbit: RoundedOrbit) -> tuple[ProofBounds | None, float]:
         if share <= CUT_SHARE:
             break
         cut *= CUT_SHARE / (2 * share)
-    if SLACK * (linear + share) >= 1:
+    if found is None or SLACK * (linear + share) >= 1:
         return None, linear + share
     residual, beyond = newton_step(balls, found)
     return ProofBounds(residual, beyond, linear + share, found, balls), linear + share
