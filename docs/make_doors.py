@@ -458,6 +458,7 @@ OTHERS = {
         "lennard_jones",
         "morse",
         "polynomial",
+        "prove_for_all_N",
     ),
     *("profile_distance", "recurrence", "substitute_multipliers", "toda"),
 }

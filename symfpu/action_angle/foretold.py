@@ -71,7 +71,7 @@ class ForetoldIndices(Shown, Gridded):
     >>> orbit = breather_at_amplitude(Chain(N=4, beta=1), 2, "0.4")
     >>> foretold_indices(orbit, 1e6, vectors=4, normal=normal_modes(orbit))
     ForetoldIndices(N=4, beta=1, seeds=2, t = 1e+06, regular, dimension 1: slopes of GALI_2..4
-    -1.00, -2.00, -2.98, on the torus -1, -2, -3, settled from t = 1...e+03, ..., by normal modes)
+    ..., on the torus -1, -2, -3, settled from t = ..., by normal modes)
     """
 
     torus: QuasiPeriodic

@@ -67,7 +67,7 @@ def packet_energies(
     specific_energy: float,
     modes: Sequence[int] | None = None,
     *,
-    progress: Progress = unheard,
+    progress: Progress | None = None,
 ) -> Floats:
     """Mean energies E_q on the torus with seeds 1 .. s of equal energies, by the leading terms.
 
@@ -78,7 +78,7 @@ def packet_energies(
     chain : of any potential with c_3, or with c_4 where it is even; N up to thousands.
     s : how many seeds, 1 .. N-1. specific_energy : eps = E/N, each seed has E/s. modes : beyond the
         seeds, default the middle ones of D_1, D_2, D_3. All is dimensionless.
-    progress : hears of every mode.
+    progress : called as (label, fraction), once a mode.
 
     Returns energies (n,), in the order of the modes; 0.0 for a mode that is not excited. Exact to
     rounding; the true torus differs by terms of higher order in lambda, of `packet_parameter`.
@@ -92,9 +92,10 @@ def packet_energies(
     chain, s = _chain(chain), packet_width(chain, s)
     share = chain.N * positive(specific_energy, "specific_energy") / s
     chosen = _modes(chain, s, modes)
+    tell = progress or unheard
     energies = np.zeros(len(chosen))
     for place, q in enumerate(chosen):
-        progress(f"mode {q}", place / len(chosen))
+        tell(f"mode {q}", place / len(chosen))
         energies[place] = _energy(chain, s, share, q)
     return energies
 

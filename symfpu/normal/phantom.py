@@ -89,6 +89,11 @@ class NormalFrequencySeries(Tabled):
         return bool(self.frequencies)
 
     @property
+    def omega(self) -> dict[int, Fraction]:
+        """Those of `frequencies` that are of seeds; empty in universal form."""
+        return {q: w for q, w in self.frequencies.items() if q != self.mode}
+
+    @property
     def sigma(self) -> Any:
         """The normal frequency in the divisors: a float, or an mpf with digits.
 

@@ -37,11 +37,16 @@ CHECKERS: dict[str, Checker] = {
 }
 
 
-def verified_certificate(path: str | Path) -> tuple[Json, list[str]]:
-    """A certificate, whichever kind it is, and lines that say what was checked in it.
+def verify_certificate(path: str | Path) -> list[str]:
+    """Lines that say what was checked in the certificate of a file, whichever kind it is.
 
     Raises CertificateError, with the reason, if it is not right.
     """
+    return verified_certificate(path)[1]
+
+
+def verified_certificate(path: str | Path) -> tuple[Json, list[str]]:
+    """The same with the certificate, which is read once."""
     path = Path(path)
     checker = CHECKERS.get(kind_of(path), CHECKERS[PROPAGATION])
     try:

@@ -80,8 +80,8 @@ class PreciseTorus(FourierTorus):
     >>> from symfpu import Chain, refine, torus_at_amplitudes
     >>> guess = torus_at_amplitudes(Chain(N=4, beta="0.5"), {1: "0.1", 2: "0.1"}, order=3)
     >>> refine(guess, digits=30)
-    PreciseTorus(N=4, beta=0.5, omega_1=0.76573..., omega_2=1.4151..., A_1=0.0999..., A_2=0.0999...,
-    30 digits, ... harmonics, residual below ..., error about ...)
+    PreciseTorus(N=4, beta=0.5, omega_1=0.76711..., omega_2=1.41631..., A_1=0.0999...,
+    A_2=0.1000..., 30 digits, ... harmonics, residual below ..., error about ...)
     """
 
     bound: Any = field(default=mpmath.inf)

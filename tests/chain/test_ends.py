@@ -29,7 +29,7 @@ ARGUMENTS = {
 # results: the functions that make them are tested instead
 RESULTS = {"AlignmentIndices", "Family", "LindstedtSeries", "Orbit", "ProfileInvariance", "RefinedTorus", "ShotOrbit"}
 RESULTS |= {"RingTorus", "TravellingSeries", "BirkhoffForm", "Twist", "TwistAtRest", "FrequencyAnalysis", "RefinedRingTorus"}
-RESULTS |= {"NormalFrequencySeries"}
+RESULTS |= {"NormalFrequencySeries", "ExistenceProof"}
 RESULTS |= {
     "ForetoldIndices",
     "RingTorus",
@@ -40,7 +40,6 @@ RESULTS |= {
     "FrequencyAnalysis",
     "RefinedRingTorus",
 }
-RESULTS |= {"ForetoldIndices"}
 TAKE_RINGS = {"travelling_waves", "integrate", "alignment_indices", "seconds_needed"}
 TAKE_RINGS |= {"toda_gaps", "toda_invariants", "toda_torus", "travelling_breather"}
 TAKE_RINGS |= {"packet_state", "particle_state", "random_state", "read_state"}

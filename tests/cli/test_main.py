@@ -302,7 +302,7 @@ def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
     assert "corrected-a..b as PNG, PDF and CSV" in out
     assert "amplitudes met at frequency order 22" in out
     assert "amplitudes met at no frequency order" in out
-    assert [row["label"] for row in json.loads((folder / "report.json").read_text())["table"]] == ["Fig. 1", "Fig. 8"]
+    assert [row["label"] for row in json.loads((folder / "report.json").read_text())["figures"]["table"]["numbers"]] == ["Fig. 1", "Fig. 8"]
     assert "met at no frequency order" in (folder / "report.md").read_text()
 
 
@@ -312,7 +312,7 @@ def test_reproduce_full_refines_every_row(capsys, monkeypatch, tmp_path):
     monkeypatch.setattr("symfpu.paper.table_page.SCALED_ROWS", ("Fig. 8",))
     monkeypatch.setattr("symfpu.paper.series_errors.HALVINGS", 1)
     assert run(capsys, "reproduce", "table", "--full", "-o", str(tmp_path))[0] == 0
-    rows = json.loads((tmp_path / "report.json").read_text())["table"]
+    rows = json.loads((tmp_path / "report.json").read_text())["figures"]["table"]["numbers"]
     assert [row["corrected"]["refined"] for row in rows] == [True, True]
     assert rows[0]["corrected"]["exponents_of_mu"] is None
     assert list(rows[1]["corrected"]["exponents_of_mu"]) == ["1", "2", "3", "4"]

@@ -126,7 +126,7 @@ def test_full_says_how_long_and_goes_on_where_it_was_stopped(full, monkeypatch, 
     monkeypatch.setattr(dimensions, "alignment_indices", partial(watched, 2.0))
     code, out, err = run(capsys, "fig9", "--full", "-o", str(tmp_path), "--json")
     assert code == 0
-    assert list(strict(out)) == ["fig9"]
+    assert list(strict(out)["figures"]) == ["fig9"]
     assert min(fractions) > 0.9 * reached > 0.3
     row = printed_row("Fig. 9")
     start = fpu_trajectory(row.chain, packet_amplitudes(row.chain, (1,), row.energy))

@@ -82,5 +82,5 @@ def test_one_example_over_a_short_time(monkeypatch, tmp_path):
     assert (panel.name, panel.axes[0]) == ("fig5a", "q")
     assert [curve.label for curve in panel.curves] == ["PL", "PLn"]
     assert 0.95 < panel.curves[0].y[[0, 10, 20, 30]].sum() < 1  # of the seeds; the cubic terms have a percent of H
-    assert [claim.verdict for claim in figure.claims] == [HOLDS, PARTLY, HOLDS]
+    assert [claim.verdict for claim in figure.claims] == [HOLDS, PARTLY, HOLDS, PARTLY, HOLDS]
     assert "t = 1e+03" in figure.remarks[0]

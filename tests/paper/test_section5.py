@@ -99,7 +99,7 @@ def test_patterns_of_spectra(rate, verdict):
     sequence = excitation_sequence(48, (11, 12, 13), 6)
     spectrum = np.ones(47)
     for k, modes in enumerate(sequence):
-        spectrum[np.array(modes) - 1] = 10.0 ** (-rate * k)
+        spectrum[np.array(modes, dtype=int) - 1] = 10.0 ** (-rate * k)
     assert pattern_claim("1/4", sequence, spectrum).verdict == verdict
 
 

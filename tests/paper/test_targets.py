@@ -189,7 +189,7 @@ def test_reproduce_fig6_writes_its_orders(capsys, tmp_path):
     assert main(["reproduce", "fig6", "-o", str(tmp_path)]) == 0
     captured = capsys.readouterr()
     assert captured.out.splitlines()[-1] == f"written: {tmp_path / 'report.md'}, report.json, fig6a..c as PNG, PDF and CSV"
-    assert captured.out.count("holds: section 6.3, ") == 3
+    assert captured.out.count("holds: section 6.3, ") == 6
     record = json.loads((tmp_path / "report.json").read_text())["figures"]["fig6"]["numbers"]
     for panel in "abc":
         header, *rows = rows_of(tmp_path / f"fig6{panel}.csv")

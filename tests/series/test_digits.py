@@ -482,7 +482,7 @@ def test_what_cannot_fit_is_refused_before_anything_is_allocated(monkeypatch):
         available = 10**9
 
     monkeypatch.setattr(psutil, "virtual_memory", lambda: Memory)
-    monkeypatch.setattr(sys.modules["symfpu.series.monomials"], "shared_grading", lambda *_: pytest.fail("monomials were made"))
+    monkeypatch.setattr(sys.modules["symfpu.series.monomials"], "shared_grading", lambda *_, **__: pytest.fail("monomials were made"))
     with pytest.raises(TooLarge) as caught:
         lindstedt(**LARGE, order=14, digits=200)
     error = caught.value

@@ -313,7 +313,7 @@ class SolutionTests:
             expected = precise.positions(TIMES).astype(float)
             assert np.abs(solution.positions(TIMES).astype(float) - expected).max() < self.close
             return
-        with pytest.raises(InputError, match=r"^orbit = 'a torus of 2 angles'.*digits= to lindstedt"):
+        with pytest.raises(InputError, match=r"^orbit = 'a torus of 2 angles'.*refine\(torus, digits="):
             periodic_orbit_digits(solution, 20)
 
     def test_it_is_a_guess_for_harmonic_balance(self, solution):
