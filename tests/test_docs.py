@@ -61,6 +61,9 @@ LONG = [page for page in PAGES if any(word == "long" for _, word, _ in blocks(pa
 
 # seconds of compilers, orbits, pictures
 SLOW_PAGES = {
+    "precision.md",
+    "normal-modes.md",
+    "existence.md",
     "README.md",
     "figures.md",
     "asymptotics.md",
@@ -96,6 +99,7 @@ def test_blocks_say_how_they_run(page):
     assert not INDENTED.findall(FENCE.sub("", page.read_text())), "open a fence: indented lines are not run"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_commands_have_the_options_they_are_given(page):
     group = typer.main.get_command(app)

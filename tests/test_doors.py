@@ -53,6 +53,7 @@ def test_the_page_has_every_door():
     assert rows().keys() == EVERY.keys()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("chain", ["toda", *(pytest.param(chain, marks=pytest.mark.long) for chain in ("alpha", "ring"))])
 def test_the_table_is_true(chain, tmp_path):
     """An answer is yes, or an InputError that names the chain; anything else comes up here."""

@@ -46,6 +46,7 @@ def oracle(monkeypatch):
     return lambda case: mode_space.ModeSpaceSeries(case.N, case.alpha, case.beta, case.seeds, case.frequencies, case.order)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)
 def test_series_is_that_of_mode_space(case, fixed, oracle):
     """Every coefficient of every order, coordinates and both frequency series, to the promised digits of its order."""
@@ -107,6 +108,7 @@ def test_the_nonzero_pattern_is_that_of_the_symbolic_ring(case, fixed):
         assert (table.words.any(axis=-1) == np.vectorize(lambda x: se.expand(x) != 0, otypes=[bool])(entries)).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)
 def test_twenty_digits_more_change_no_promised_digit(case, fixed):
     """Relative to the largest coefficient of each order, as `digits` promises; other units and other primes on the way."""
@@ -125,6 +127,7 @@ def promised_of_each_order(few, many):
                 assert abs(few.tables.entries(ours) - exact).max() <= allowed
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("digits", [1, 5, 15, 100])
 @pytest.mark.parametrize(
     ("chain", "seeds", "frequencies", "order"),

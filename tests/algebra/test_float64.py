@@ -74,6 +74,7 @@ def test_zeros_agree_with_the_symbolic_ring(case):
         assert ((ours == 0) == (entries == 0)).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)
 def test_series_is_that_of_mode_space(case):
     series = fast(case)

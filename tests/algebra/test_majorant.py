@@ -85,6 +85,7 @@ class Cases(dict):
 ALL = [*CASES, *(pytest.param(case, marks=pytest.mark.long) for case in LONG)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", ALL, ids=lambda c: c.name)
 def test_no_coefficient_is_off_by_more_than_its_radius(case, all_compared):
     """Measured: the largest radius of a table is 5 to 1100 times its largest error, mostly 10 to 100, growing with the order:
@@ -297,6 +298,7 @@ QUICK += [(ALONE[-5], "products"), (ALONE[-1], "products")]
 ISOLATION = [pytest.param(case, source, marks=() if (case, source) in QUICK else pytest.mark.long) for case in ALONE for source in SOURCES]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("case", "source"), ISOLATION, ids=lambda x: x if isinstance(x, str) else names(x))
 def test_each_source_of_errors_is_bounded_alone(case, source, monkeypatch):
     """Only one kind of number is rounded, only its terms are in the bound: no other term can hide a missing one."""

@@ -39,6 +39,7 @@ def test_what_lies_beyond_the_harmonic_law_does_not_cancel(law):
     assert bonds.anharmonic_stiffness(law, r) == pytest.approx(float(stiffness - 1), rel=ROUNDING)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("function", [bonds.tension, bonds.stiffness])
 def test_loops_compile_the_same_functions(law, function):

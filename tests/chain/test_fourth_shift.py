@@ -37,6 +37,7 @@ def test_every_n_at_once(text):
     assert sympy.cancel(difference) == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("text", ["poly:1", "poly:0,1", "poly:2,-3,5,7"])
 @pytest.mark.parametrize("N", [2, 3, 4, 5, 6, 8, *(pytest.param(N, marks=pytest.mark.long) for N in (7, 9, 10, 12))])
 def test_every_mode_of_a_chain(text, N):

@@ -58,6 +58,7 @@ def test_functions_are_those_of_the_expression(potential, function):
         assert all(abs(a - b) <= FORTY_DIGITS * s for a, b, s in zip(many, expected, size, strict=True))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["tension", "stiffness"])
 def test_loops_compile_the_same_functions(potential, name):
     loop, law = getattr(bond_loops, name), potential.law(DOUBLES)

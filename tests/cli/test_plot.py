@@ -34,6 +34,7 @@ def words(verb, saved):
     return [name, saved, *options]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("verb", "suffix"),
     [

@@ -79,6 +79,7 @@ def assert_close(values, expected):
     assert (error.max(axis=0) <= OF_TAIL * scale.max(axis=0)).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] * n.endswith(("four seeds", "five seeds"))) for n in CASES])
 def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
     torus = case(name)
@@ -95,6 +96,7 @@ def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
         assert_close(call(library, "sample_energy", t, given, (19,))[:, None], exact.energy(t)[:, None])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CASES)
 def test_self_test_of_the_file(name, tmp_path):
     binary = compile_c(tmp_path, {"sample.c": C.torus(program(case(name)))}, "-Dsample_SELF_TEST", "-O0")

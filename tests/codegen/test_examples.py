@@ -48,6 +48,7 @@ def of_series(torus):
     return [moved.positions(100.0)[0], omega[1], slopes.sum(axis=0)[0, 1] * 2 * A[1]]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("language", "code"), EXAMPLES, ids=lambda x: x if len(x) < 10 else OF_SERIES if OF_SERIES in x else "torus")
 def test_a_program_outside_uses_an_exported_file(language, code, torus, tmp_path):
     stem = OF_SERIES if OF_SERIES in code else "two_torus"

@@ -145,6 +145,7 @@ def test_a_torus_at_rest_stays_there(emitter, tmp_path):
     assert loaded.energy(2.5) == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_the_same_program_gives_the_same_bytes_in_short_lines(torus, emitter):
     first, second = source(torus, emitter), source(torus, emitter)

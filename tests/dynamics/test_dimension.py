@@ -54,6 +54,7 @@ def made(growth, steps, vectors=5, N=16):
     return AlignmentIndices(Chain(N, alpha="0.33"), TIMES, np.log10(TIMES)[:, None] * falls, growth / TIMES, 0.4, 1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("frame", range(6))
 @pytest.mark.parametrize(("seed", "T"), [(0, 1e4), (1, 3e4), (2, 3e3)])
 def test_a_chaotic_orbit_is_not_called_regular_before_its_chaos_shows(seed, T, frame):
@@ -78,6 +79,7 @@ def test_a_vector_that_has_grown_by_e_to_the_58_is_that_of_a_chaotic_orbit():
     assert grown.dimension().reason.startswith("|v| has grown by e^5")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize(
     ("chain", "scale"),

@@ -56,6 +56,7 @@ def state():
     return draws.normal(scale=0.3, size=6), draws.normal(scale=0.3, size=6)
 
 
+@pytest.mark.long
 @EVERY
 def test_orbits_agree_with_dop853(name, state):
     steps = {"yoshida4": 1e-3, "aba864": 5e-3, "blanes_moan6": 0.02, "kahan_li8": 0.05, "aba864_modes": 5e-3}
@@ -176,6 +177,7 @@ def test_the_stable_phase_is_where_a_harmonic_chain_begins_to_grow(name):
     assert 0 < caught.value.time < 4e3
 
 
+@pytest.mark.long
 @EVERY
 def test_an_orbit_over_the_barrier_is_stopped_at_once(name):
     """Stopped while its numbers are finite, or as soon as they are not; the time is that at which V of a bond falls without bound."""

@@ -52,6 +52,7 @@ def test_deviations_are_differences_of_orbits(N):
     assert len(there) == 2
 
 
+@pytest.mark.long
 def test_deviations_of_an_odd_orbit_are_those_of_fixed_ends():
     N = 5
     fixed, whole = Chain(N, potential="toda:1/2"), ring(2 * N, potential="toda:1/2")
@@ -77,6 +78,7 @@ def test_first_vectors_are_orthonormal_and_do_not_move_the_ring():
 TODA_TORI = [(5, (1,), ("1.210817",), 20, 4e4), (6, (1, -2), ("1.02", "1.766692"), 14, 1e4)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("N", "seeds", "omega", "order", "T"), TODA_TORI)
 def test_a_torus_of_waves_has_as_many_dimensions_as_seeds(N, seeds, omega, order, T):
     torus = travelling_torus(travelling_waves(ring(N, potential="toda:1"), seeds, omega, order))

@@ -112,6 +112,7 @@ def test_energies_grow_by_the_stated_increment(families, index):
     assert first.increment == pytest.approx(0.1 * linear_specific_energy(chain, CASES[index][2]), rel=TEN_ROUNDINGS)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("index", range(len(CASES)))
 def test_linear_mode_energies_grow_alike(families, index):
     """Eq. omeprime with J_omega = J_A^-1: each Omega^2 A^2 / 2 grows by N Delta epsilon_l / s."""

@@ -407,6 +407,7 @@ def test_the_family_goes_on_where_its_series_ends():
     assert all(missed(m, 60) > 0.01 for m in behind)
 
 
+@pytest.mark.long
 def test_at_energy_is_on_the_family():
     """Not the ratio of the nearest member's amplitudes, which changes along a family of equal energies."""
     torus = member_at_energy(folded(), "0.02", harmonic=False)

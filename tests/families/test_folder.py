@@ -109,6 +109,7 @@ class Killed(BaseException):
     pass
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("moment", [0, 1, 6, 7])
 def test_a_family_stopped_while_writing_goes_on(moment, tmp_path, monkeypatch):
     """Every member is two files put in place; before any of them."""

@@ -70,6 +70,7 @@ def test_a_result_draws_its_usual_picture(kind):
     assert ax.get_lines()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", RESULTS)
 def test_a_result_answers_in_html(kind):
     make, verdict = RESULTS[kind]

@@ -32,6 +32,7 @@ def predicted_exceptions(N, seeds):
     return set(reachable_modes(N, seeds, 1, model="beta")[1]) - set(coupled_modes(N, seeds, 1, model="beta")[1]) - set(seeds)
 
 
+@pytest.mark.long
 def test_every_seed_set_is_there_once(beta):
     assert len(beta.cases) == sum(comb(N - 1, s) for N in range(2, 10) for s in (1, 2, 3))
     assert len({(case.N, case.seeds) for case in beta.cases}) == len(beta.cases)

@@ -356,6 +356,7 @@ def value_at(body, path):
     return body
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "path"), [(name, path) for name, body in CERTIFICATES.items() for path, _ in walk(body) if path != ("digest",)]
 )

@@ -61,6 +61,7 @@ def differences(model, seeds, lengths):
     return wrong
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("model", COUPLINGS)
 @pytest.mark.parametrize("seeds", [(1,), (1, 2), ("N-2", "N-1"), (1, "N-1")], ids=str)
 def test_one_program_serves_every_chain(model, seeds):

@@ -37,6 +37,7 @@ def assert_same(a, b, rounding):
         assert np.abs(x - y).max(initial=0.0) <= rounding * np.abs(y).max(initial=0.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("text", POTENTIALS)
 def test_all_rings_agree(text, case):
     N, seeds, frequencies = case

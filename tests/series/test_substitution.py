@@ -60,6 +60,7 @@ def test_residues_are_those_of_the_ring_of_residues(case):
     assert ours.point == point
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)
 def test_digits_hold_and_their_radii_cover_the_difference(case):
     """Balls and fixed-point numbers, whose errors are bounded by other means, overlap."""
@@ -245,6 +246,7 @@ def test_the_coupling_is_a_variable():
     assert any(table.any() for table in tables)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["expanded", "factored", "cse"])
 @pytest.mark.parametrize("ring", ["symbolic", "nested"])
 def test_a_term_is_the_same_in_every_form(form, ring):

@@ -178,6 +178,7 @@ def resonance_row(seeds):
     return f"| {text} | {degree} | {found.mode} | {found.harmonic} | {found.order} | {degree - 1} |"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seeds", TABLE)
 def test_the_table_of_the_page(seeds):
     assert resonance_row(seeds) in PAGE.read_text().splitlines()

@@ -25,6 +25,7 @@ ROUND_TRIPS = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("chain", "amplitudes", "order"), ROUND_TRIPS, ids=str)
 def test_the_frequencies_give_the_amplitudes_back(chain, amplitudes, order):
     torus = torus_at_amplitudes(chain, amplitudes, order)

@@ -75,6 +75,7 @@ CASES = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("N", "seeds", "shifts", "order", "law"), CASES)
 def test_orbits_of_the_particles(N, seeds, shifts, order, law):
     found = torus(N, seeds, shifts, order, **law)

@@ -64,6 +64,7 @@ def test_good_roots_are_certified_to_the_asked_digits(name, tori):
         assert 0 < torus.certificate.radius[q] <= abs(amplitude) * mpmath.mpf(10) ** -DIGITS
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", GOOD)
 def test_the_box_holds_the_root_of_twenty_more_digits(name, tori):
     torus, better = tori[name], torus_of(name, DIGITS + 20)
@@ -206,6 +207,7 @@ def test_doubles_have_no_certificate():
     assert "certified" not in repr(torus)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", GOOD)
 def test_balls_hold_the_coefficients_of_thirty_more_digits(name, tori):
     """mu^k omega_q^(k) as balls from few digits overlap those from many, and contain the latter's midpoints."""

@@ -180,6 +180,7 @@ def at_coupling(couplings, factor, order):
     return QTorus(series=series, amplitudes={2: 0.5}, phases={2: 0.0}, frequency_order=order + 2, order=order)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("order", [1, 2, 3, 4])
 @pytest.mark.parametrize("couplings", [{"alpha": 0.2}, {"beta": 0.4}], ids=str)
 def test_the_residual_falls_as_mu_to_the_next_order(couplings, order):
@@ -189,6 +190,7 @@ def test_the_residual_falls_as_mu_to_the_next_order(couplings, order):
     assert slope == pytest.approx(order + 1, abs=SLOPE)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_the_energy_is_constant_to_the_next_order(order):
     factors, t = np.array([1.0, 0.5, 0.25]), np.linspace(0.0, 40.0, 401)

@@ -74,6 +74,7 @@ def judged(name):
     return torus, assess(torus.series, torus)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[pytest.mark.long] * n.startswith("torus of Fig. 1,")) for n in CASES if CASES[n][1]]
 )
