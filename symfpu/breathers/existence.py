@@ -196,9 +196,9 @@ def checked_orbit(orbit: object) -> QuasiPeriodic:
         raise InputError("orbit", given, "a solution of one angle", "take one seed")
     potential = orbit.chain.potential
     if potential.degree is None or not potential.exact:
-        allowed = "one of a polynomial potential with exact coefficients"
+        allowed = "a polynomial potential with exact coefficients"
         advice = "take poly: with its first coefficients"
-        raise InputError("orbit", f"one of {orbit.chain!r}", allowed, advice)
+        raise InputError("chain", orbit.chain, allowed, advice)
     return orbit
 
 
