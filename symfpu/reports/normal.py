@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from symfpu.families.normal_family import NormalEvent
 from symfpu.normal.modes import NormalMode, NormalModes
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.reports.solution import frequencies_record
@@ -27,6 +28,19 @@ def normal_record(found: NormalModes) -> dict[str, Any]:
         "signatures": {str(mode.mode): mode.signature for mode in found.modes},
         "resonances": [_resonance(one) for one in found.resonances[:SHOWN_RESONANCES]],
         "residual": fifteen_digits(found.residual),
+    }
+
+
+def normal_event_record(event: NormalEvent) -> dict[str, Any]:
+    """An event of a family of normal frequencies for JSON: what it is, and where."""
+    return {
+        "event": event.kind,
+        "resonance": _resonance(event.resonance),
+        "after": event.after,
+        "part": fifteen_digits(event.part),
+        "amplitudes": {str(q): repr(float(a)) for q, a in event.amplitudes.items()},
+        "begins": event.begins,
+        "error": fifteen_digits(event.error),
     }
 
 
