@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu import __version__
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.frames.attributes import Attributes, attributes
@@ -164,6 +165,7 @@ class Assessment(Shown, Tabled):
         certified = None if certificate is None else certificate.certified
         return {
             "kind": type(self).__name__,
+            "symfpu_version": __version__,
             "verdict": self.headline,
             "reasons": list(self.reasons),
             "best_order": self.best_order,
