@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-import typer
-
 from symfpu.breathers.existence import prove_existence
 from symfpu.bundles.bundle import load
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import solution_of
 from symfpu.cli.terminal import (
+    CertificateOption,
     FileArgument,
     JsonOption,
     path_named,
@@ -28,12 +25,7 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 @app.command(epilog="Example: symfpu certify breather.symfpu -o proof.json")
 def certify(
     file: FileArgument,
-    output: Annotated[
-        str | None,
-        typer.Option(
-            "-o", "--output", help="Write the certificate to this file.", metavar="FILE"
-        ),
-    ] = None,
+    output: CertificateOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Prove that a periodic orbit exists near a saved breather.

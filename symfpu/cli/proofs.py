@@ -17,6 +17,7 @@ from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
+    CertificateOption,
     JsonOption,
     OrderOption,
     SeedsOption,
@@ -136,12 +137,7 @@ def prove(
             metavar="FILE",
         ),
     ] = None,
-    output: Annotated[
-        str | None,
-        typer.Option(
-            "-o", "--output", help="Write the certificate to this file.", metavar="FILE"
-        ),
-    ] = None,
+    output: CertificateOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Prove or refute the propagation rule by exact arithmetic, for one N or for all.

@@ -50,6 +50,12 @@ FileArgument = Annotated[
         help="A file written by symfpu solve, breather or refine -o.", metavar="FILE"
     ),
 ]
+CertificateOption = Annotated[
+    str | None,
+    typer.Option(
+        "-o", "--output", help="Write the certificate to this file.", metavar="FILE"
+    ),
+]
 JsonOption = Annotated[
     bool, typer.Option("--json", help="Machine-readable result on standard output.")
 ]

@@ -27,18 +27,24 @@ ARGUMENTS = {
     "cosines": np.zeros((1, 7)), "frequencies": (Fraction(1, 2),), "iterations": 1, "degree": 2, "sigma": 0.0, "phases": {}, "mode": 3,
 }  # fmt: skip
 # results: the functions that make them are tested instead
-RESULTS = {"AlignmentIndices", "Family", "LindstedtSeries", "Orbit", "ProfileInvariance", "RefinedTorus", "ShotOrbit"}
-RESULTS |= {"RingTorus", "TravellingSeries", "BirkhoffForm", "Twist", "TwistAtRest", "FrequencyAnalysis", "RefinedRingTorus"}
-RESULTS |= {"NormalFrequencySeries", "ExistenceProof"}
-RESULTS |= {
-    "ForetoldIndices",
-    "RingTorus",
-    "TravellingSeries",
+RESULTS = {
+    "AlignmentIndices",
     "BirkhoffForm",
+    "ExistenceProof",
+    "Family",
+    "ForetoldIndices",
+    "FrequencyAnalysis",
+    "LindstedtSeries",
+    "NormalFrequencySeries",
+    "Orbit",
+    "ProfileInvariance",
+    "RefinedRingTorus",
+    "RefinedTorus",
+    "RingTorus",
+    "ShotOrbit",
+    "TravellingSeries",
     "Twist",
     "TwistAtRest",
-    "FrequencyAnalysis",
-    "RefinedRingTorus",
 }
 TAKE_RINGS = {"travelling_waves", "integrate", "alignment_indices", "seconds_needed"}
 TAKE_RINGS |= {"toda_gaps", "toda_invariants", "toda_torus", "travelling_breather"}
