@@ -23,13 +23,14 @@ from symfpu.breathers.exponent_bounds import (
     Slopes,
     rounded_zero,
 )
-from symfpu.breathers.exponents import FourierSystem, Guess
+from symfpu.breathers.exponents import FourierSystem, FourierZero, Guess
 from symfpu.breathers.rounded_orbit import RoundedOrbit
 from symfpu.breathers.sectors import Sector
 from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress
 
 ALL_SLOPES = 1e-14  # norm of the slopes that are left out of the residual
+FIRST_REACH, WIDER, LARGEST_REACH = 1.35, 1.5, 7.0
 FIRST_CUT = 1e-6  # and of |I - A DF|
 LEAST_CUT = 1e-12
 LOST_SHARE = 0.05  # of Z that may come from the latter
@@ -37,6 +38,7 @@ BITS = (26, 30, 34, 38, 42, 46)
 CHOICE_BITS = 46
 PART_OF_GAP = 16  # the enclosures are narrower than the nearest distance over this
 SPARE_HARMONICS = 3  # of the solution beyond M
+WIDENINGS, SMALL_END = 5, 1e-11
 MANTISSA = 16
 ADVICE = "an orbit further from a change of stability, or with more digits, is easier"
 
@@ -45,7 +47,7 @@ class NoStabilityProof(SymfpuError):
     """The bounds do not enclose an exponent, or exponents are too close to be told apart.
 
     Raised by `prove_stability`. exponent : sigma of the one that failed, or None. bound : "Newton",
-    "Z", "Y", "gap" or "count". value : of it. needed : what it would have to be below, for "gap"
+    "Z", "Y", "cut", "gap" or "count". value : of it. needed : what it would have to be below, for "gap"
     above, dimensionless. advice : what may help. Ours.
     """
 
@@ -64,6 +66,7 @@ class NoStabilityProof(SymfpuError):
             "Newton": "the last step of Newton's method",
             "Z": "the norm or spectral radius of I - A DF",
             "Y": "the Newton step, Y",
+            "cut": "what the slopes of the bonds leave out",
             "gap": "the gap to the next exponent",
             "count": "the number of exponents that were not found",
         }[bound]
@@ -104,23 +107,32 @@ def enclosed_all(
     orbit: RoundedOrbit, radius: list[int], tried: list[Guess], progress: Progress
 ) -> tuple[Slopes, list[Enclosed]]:
     """All of them, with as many harmonics of the slopes as the norms need."""
-    cut = FIRST_CUT
+    cut, reach = FIRST_CUT, FIRST_REACH
+    exact = Fraction(radius[0], 2 ** radius[1])
     while True:
-        slopes = slopes_of(orbit, Fraction(radius[0], 2 ** radius[1]), cut)
-        result = []
-        for done, guess in enumerate(tried):
-            progress("exponents", done / len(tried))
-            apart = nearest(guess, tried, slopes.omega)
-            one = enclosed_exponent(slopes, guess, apart)
-            if one is None:
-                break
-            result.append(one)
-        else:
-            return slopes, result
-        cut /= 100
+        slopes = slopes_of(orbit, exact, cut, reach)
+        try:
+            return slopes, with_slopes(slopes, tried, progress)
+        except NoStabilityProof as error:
+            if error.bound == "cut":
+                cut /= 100
+            elif error.bound == "Z" and reach < LARGEST_REACH:
+                reach *= WIDER
+            else:
+                raise
 
 
-def slopes_of(orbit: RoundedOrbit, radius: Fraction, cut: float) -> Slopes:
+def with_slopes(slopes: Slopes, tried: list[Guess], progress: Progress) -> list[Enclosed]:
+    """All of them with these harmonics."""
+    result = []
+    for done, guess in enumerate(tried):
+        progress("exponents", done / len(tried))
+        apart = nearest(guess, tried, slopes.omega)
+        result.append(enclosed_exponent(slopes, guess, apart))
+    return result
+
+
+def slopes_of(orbit: RoundedOrbit, radius: Fraction, cut: float, reach: float) -> Slopes:
     """The slopes of all bonds along the true orbit, in doubles and bounds."""
     N = orbit.chain.N
     with flint.ctx.workprec(orbit.bits + SPARE_BITS):
@@ -146,6 +158,7 @@ def slopes_of(orbit: RoundedOrbit, radius: Fraction, cut: float) -> Slopes:
         lost=lost,
         cut=(lost + float(tails[K + 1])) * (1 + 1e-9),
         entry=float(errors[0] + 2 * errors[1:].sum()),
+        reach=reach,
     )
 
 
@@ -158,14 +171,10 @@ def nearest(guess: Guess, others: list[Guess], omega: float) -> float:
     return min([x, end - x, *(abs(o.value.real - x) for o in same)])
 
 
-def enclosed_exponent(slopes: Slopes, guess: Guess, apart: float) -> Enclosed | None:
-    """One exponent; None if the slopes need more harmonics."""
+def enclosed_exponent(slopes: Slopes, guess: Guess, apart: float) -> Enclosed:
+    """One exponent."""
     sigma = guess.value + guess.base * guess.sector.folds * slopes.omega / 2
-    harmonics = slopes.free(guess.sector) + SPARE_HARMONICS
-    system = FourierSystem(
-        guess.sector, slopes.omega, slopes.linear, slopes.coupling, harmonics
-    )
-    zero = system.zero(guess)
+    zero = zero_of(slopes, guess)
     if zero is None or abs(zero.value - guess.value) > apart / 2:
         moved = math.inf if zero is None else abs(zero.value - guess.value)
         raise NoStabilityProof(sigma, "Newton", moved, apart / 2, ADVICE)
@@ -177,21 +186,35 @@ def enclosed_exponent(slopes: Slopes, guess: Guess, apart: float) -> Enclosed | 
         rounded = rounded_zero(zero, bits, slopes.N)
         bounds = Attempt(slopes, rounded).bounds(choice)
         if bounds.lost > LOST_SHARE and slopes.cut > LEAST_CUT + 2 * slopes.lost:
-            return None
+            raise NoStabilityProof(sigma, "cut", bounds.lost, LOST_SHARE, ADVICE)
         if bounds.linear >= 1:
             raise NoStabilityProof(sigma, "Z", bounds.linear, 1.0, ADVICE)
         found = bounds.radius
         if found is not None and found / bounds.weight < apart / PART_OF_GAP:
             return Enclosed(rounded, choice, bounds, dyadic_above(found))
-    return failed(sigma, bounds, apart)
+    raise failed(sigma, bounds, apart)
 
 
-def failed(sigma: complex, bounds: ExponentBounds, apart: float) -> None:
+def zero_of(slopes: Slopes, guess: Guess) -> FourierZero | None:
+    """To rounding, with as many harmonics as that takes."""
+    harmonics = slopes.free(guess.sector) + SPARE_HARMONICS
+    for _ in range(WIDENINGS):
+        system = FourierSystem(
+            guess.sector, slopes.omega, slopes.linear, slopes.coupling, harmonics
+        )
+        zero = system.zero(guess)
+        if zero is not None and zero.end < SMALL_END:
+            return zero
+        harmonics += math.ceil(harmonics / 3)
+    return zero
+
+
+def failed(sigma: complex, bounds: ExponentBounds, apart: float) -> NoStabilityProof:
     """Why the finest rounding does not do."""
     if bounds.radius is not None:
         width = PART_OF_GAP * bounds.radius / bounds.weight
-        raise NoStabilityProof(sigma, "gap", apart, width, ADVICE)
-    raise NoStabilityProof(sigma, "Y", bounds.residual, bounds.needed, ADVICE)
+        return NoStabilityProof(sigma, "gap", apart, width, ADVICE)
+    return NoStabilityProof(sigma, "Y", bounds.residual, bounds.needed, ADVICE)
 
 
 def dyadic_above(x: float) -> tuple[int, int]:

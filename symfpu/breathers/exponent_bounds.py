@@ -33,7 +33,6 @@ LEAST_RATE, LARGEST_RATE, RATES = 0.4, 0.85, 4  # that weights are asked for
 MOST_RADIUS = 0.85
 SLACK = 1.02  # of all bounds, so that coarser ones suffice
 RADIUS_SLACK = 1.25
-BEYOND = 1.35  # harmonics from which on the diagonal rules alone, over the highest mode
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +42,8 @@ class Slopes:
     coupling : shape (all + 1, N-1, N-1); K : harmonics that the norm of I - A DF sees.
     lost : above the sum over bonds of the moduli of Fourier coefficients of what is not in
         `coupling`, the orbit's own radius among it; cut : the same with harmonics beyond K.
-    entry : above the rounding of an entry, summed over harmonics.
+    entry : above the rounding of an entry, summed over harmonics. reach : the harmonics from
+        which on the diagonal rules alone, over the highest mode.
     """
 
     N: int
@@ -54,10 +54,11 @@ class Slopes:
     lost: float
     cut: float
     entry: float
+    reach: float
 
     def free(self, sector: Sector) -> int:
         """M: the diagonal rules all places with |n| > M."""
-        top = BEYOND * float(self.linear[-1]) / self.omega
+        top = self.reach * float(self.linear[-1]) / self.omega
         return math.ceil(top + sector.folds / 2) + 2
 
 

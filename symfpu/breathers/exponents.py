@@ -26,8 +26,8 @@ Values = NDArray[Any]  # float64, or complex128 for an exponent off the axes
 
 STEP = 0.1  # over the square root of the largest stiffness of a bond
 ON_CIRCLE = 1e-7  # |log |rho|| below which a multiplier is tried as one of the circle
-NEWTON_STEPS = 6
-CONVERGED = 1e-13
+INVERSES, NEWTON_STEPS = 5, 3
+CONVERGED = 1e-12
 
 
 @dataclass(frozen=True)
@@ -110,6 +110,12 @@ class FourierZero:
     q: Ints
     v: Values
 
+    @property
+    def end(self) -> float:
+        """The largest coefficient of the last two harmonics."""
+        last = np.abs(self.n) > np.abs(self.n).max() - 2
+        return float(np.abs(self.v[last]).max())
+
 
 @dataclass(frozen=True, eq=False)
 class FourierSystem:
@@ -142,25 +148,27 @@ class FourierSystem:
         return z.real if guess.circle else z
 
     def zero(self, guess: Guess) -> FourierZero | None:
-        """The nearest one by Newton's method with a fixed inverse; None if it does not converge."""
+        """The nearest one by Newton's method, an inverse for a few steps; None if it does not converge."""
         squared = self.linear[self.places[1] - 1] ** 2
-        value, shape = guess.value, len(squared)
-        z = self.angles(guess, value)
+        value, z = guess.value, self.angles(guess, guess.value)
         matrix = self.force + np.diag(1 - z**2 / squared)
-        v = np.linalg.solve(matrix, np.cos(np.arange(shape) + 0.5))
+        v = np.linalg.solve(matrix, np.cos(np.arange(len(squared)) + 0.5))
         v = np.linalg.solve(matrix, v / np.abs(v).max())
         place = int(np.argmax(np.abs(v)))
-        v /= v[place]
-        matrix[:, place] = -2 * z / squared * v
-        inverse = np.linalg.inv(matrix)
-        for _ in range(NEWTON_STEPS):
+        v = v / v[place]
+        for _ in range(INVERSES):
             z = self.angles(guess, value)
-            step = inverse @ (self.force @ v + (1 - z**2 / squared) * v)
-            value -= complex(step[place])
-            step[place] = 0
-            v = v - step
-            if np.abs(step).max() < CONVERGED:
-                return FourierZero(guess, value, place, *self.places, v)
+            matrix = self.force + np.diag(1 - z**2 / squared)
+            matrix[:, place] = -2 * z / squared * v
+            inverse = np.linalg.inv(matrix)
+            for _ in range(NEWTON_STEPS):
+                z = self.angles(guess, value)
+                step = inverse @ (self.force @ v + (1 - z**2 / squared) * v)
+                value -= complex(step[place])
+                step[place] = 0
+                v = v - step
+                if np.abs(step).max() < CONVERGED:
+                    return FourierZero(guess, value, place, *self.places, v)
         return None
 
 

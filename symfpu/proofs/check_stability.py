@@ -35,7 +35,9 @@ LARGEST_FILE = 2**26  # bytes
 PLACES = 64
 COARSE = 48  # places of the moduli of couplings
 FINE = 96  # of the slopes while they are computed
-SMALLEST_SLOPE = 24  # units: harmonics of slopes below it are left out of Y and counted as lost
+SMALLEST_SLOPE = (
+    24  # units: harmonics of slopes below it are left out of Y and counted as lost
+)
 MOST_HARMONICS = 4096
 MOST_BLOCK = 400
 MOST_STEPS = 10**9
@@ -471,9 +473,7 @@ def read_exponent(data: Json, orbit: Orbit, free: int) -> Exponent:
     places = whole(data["radius"][1], 0, 4096, "radius")
     need(len(data["radius"]) == 2, "the radius is no pair")
     radius = Fraction(mantissa, 1 << places)
-    return Exponent(
-        sector, real, imaginary, bits, kappa, rows, block, weights, radius
-    )
+    return Exponent(sector, real, imaginary, bits, kappa, rows, block, weights, radius)
 
 
 def read_rows(parts: Any, sector: Sector, count: int) -> dict[int, list[Gaussian]]:
@@ -711,7 +711,11 @@ class Bounds:
 
     def of_harmonic(self, n: int) -> int:
         """sum_q a |L v| of a harmonic, units 2^-(2 PLACES + WEIGHT_BITS + bits)."""
-        near = [(m, row) for m, row in self.exponent.rows.items() if abs(n - m) <= self.slopes.all]
+        near = [
+            (m, row)
+            for m, row in self.exponent.rows.items()
+            if abs(n - m) <= self.slopes.all
+        ]
         total = 0
         for q in self.sector.allowed(n):
             value = self.row_of_residual((n, q), near)
@@ -807,7 +811,9 @@ class Bounds:
             total = 0
             for k, table in enumerate(self.slopes.sizes):
                 even, odd = table[p]
-                sizes = sum(map(mul, inverse[2::2], even)) + sum(map(mul, inverse[1::2], odd))
+                sizes = sum(map(mul, inverse[2::2], even)) + sum(
+                    map(mul, inverse[1::2], odd)
+                )
                 total += sizes if k == 0 else 2 * sizes
             worst = max(worst, total)
         return Fraction(worst, 1 << (PLACES + COARSE))
@@ -858,7 +864,9 @@ class Bounds:
 def inverse_of(matrix: list[list[int]]) -> list[list[int]]:
     """About the inverse of a matrix with PLACES, with INVERSE_BITS: Gauss and Jordan."""
     size = len(matrix)
-    rows = [row + [ONE if i == j else 0 for j in range(size)] for i, row in enumerate(matrix)]
+    rows = [
+        row + [ONE if i == j else 0 for j in range(size)] for i, row in enumerate(matrix)
+    ]
     for i in range(size):
         best = max(range(i, size), key=lambda k: abs(rows[k][i]))
         rows[i], rows[best] = rows[best], rows[i]
@@ -869,7 +877,8 @@ def inverse_of(matrix: list[list[int]]) -> list[list[int]]:
             factor = rows[k][i]
             if k != i and factor:
                 rows[k] = [
-                    x - (factor * y >> PLACES) for x, y in zip(rows[k], rows[i], strict=True)
+                    x - (factor * y >> PLACES)
+                    for x, y in zip(rows[k], rows[i], strict=True)
                 ]
     return [[x >> (PLACES - INVERSE_BITS) for x in row[size:]] for row in rows]
 
@@ -910,13 +919,18 @@ def check_stable(orbit: Orbit, exponents: Iterable[Exponent]) -> str:
     gaps = []
     for sector in sectors_of(orbit):
         own = [one for one in listed if one.sector == sector]
-        need(len(own) == sector.count, f"a sector needs {sector.count} exponents, not {len(own)}")
+        need(
+            len(own) == sector.count,
+            f"a sector needs {sector.count} exponents, not {len(own)}",
+        )
         need(all(one.reals for one in own), "an exponent of a stable orbit is not real")
         ends = sorted((one.real - one.off, one.real + one.off) for one in own)
         zero, last = Fraction(0), sector.folds * orbit.omega / 2
         points = [(zero, zero), *ends, (last, last)]
         for a, b in zip(points, points[1:], strict=False):
-            need(a[1] < b[0], "two exponents may be the same, or one at 0 or half the period")
+            need(
+                a[1] < b[0], "two exponents may be the same, or one at 0 or half the period"
+            )
             gaps.append((b[0] - a[1]) / orbit.omega)
     return (
         "theorem: the periodic orbit of the next line is linearly stable: all its Floquet "
