@@ -278,6 +278,7 @@ NEWTON: dict[str, Door] = {
     "floquet": lambda c: symfpu.floquet(c.periodic),
     "foretold_indices": lambda c: symfpu.foretold_indices(c.breather, 1e4, vectors=2),
     "prove_existence": lambda c: symfpu.prove_existence(c.periodic),
+    "prove_stability": lambda c: symfpu.prove_stability(c.periodic),
     "normal_family": lambda c: symfpu.normal_family(
         c.breather, {1: 1.1 * c.size}, members=2, modes=[2], resonance_length=0
     ),
@@ -428,6 +429,9 @@ VERBS: dict[str, Door] = {
     "symfpu show": lambda c: c.verb("show", c.file),
     "symfpu solve": lambda c: c.file,
     "symfpu certify": lambda c: c.verb("certify", c.refined_file),
+    "symfpu certify --stability": lambda c: c.verb(
+        "certify", c.refined_file, "--stability"
+    ),
     "symfpu stability": lambda c: c.verb("stability", c.refined_file),
     "symfpu sweep": lambda c: c.verb(
         "sweep", "--order", 1, "--longest", 3, "--largest", 1, *c.rule_words

@@ -646,6 +646,8 @@ NEXT_IN_LENGTH = 0.02
 GROWTH_OF_ORBIT = 1e-7
 # Prover and checker bound the same three numbers: one in doubles and balls, the other in 60 binary places, both upwards.
 SAME_BOUNDS = 0.02
+# What a multiplier of an integrated tangent map may be off: its map is good to 1e-12, a pair near 1 or -1 to some hundred times that.
+MULTIPLIER_OF_PROOF = 1e-9
 
 # Asked of the breathers of the figures: far beyond doubles, within the 30 digits that their orbits have.
 PROVED_RADIUS = 1e-25

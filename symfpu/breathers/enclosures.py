@@ -47,8 +47,8 @@ class NoStabilityProof(SymfpuError):
     """The bounds do not enclose an exponent, or exponents are too close to be told apart.
 
     Raised by `prove_stability`. exponent : sigma of the one that failed, or None. bound : "Newton",
-    "Z", "Y", "cut", "gap" or "count". value : of it. needed : what it would have to be below, for "gap"
-    above, dimensionless. advice : what may help. Ours.
+    "Z", "Y", "cut", "gap" or "count". value : of it. needed : what it would have to be below,
+    for "gap" above, dimensionless. advice : what may help. Ours.
     """
 
     def __init__(
@@ -167,7 +167,7 @@ def nearest(guess: Guess, others: list[Guess], omega: float) -> float:
     if not guess.circle:
         return abs(guess.value.imag)
     x, end = guess.value.real, guess.sector.folds * omega / 2
-    same = (o for o in others if o.sector is guess.sector and o is not guess)
+    same = (o for o in others if o.sector == guess.sector and o is not guess)
     return min([x, end - x, *(abs(o.value.real - x) for o in same)])
 
 

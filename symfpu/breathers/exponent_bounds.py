@@ -64,7 +64,7 @@ class Slopes:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """Indices of the block into the places up to M, and a letter for the weight of each of these."""
+    """Indices of the block into the places up to M, and a letter for the weight of each place."""
 
     block: Ints
     letters: str
@@ -135,7 +135,8 @@ class RoundedZero:
     def v(self) -> Values:
         """The coefficients, shape (2 harmonics + 1, N-1)."""
         re, im = (np.ldexp(part.astype(float), -self.bits) for part in self.rows)
-        return re if self.guess.circle else re + 1j * im
+        found: Values = re if self.guess.circle else re + 1j * im
+        return found
 
 
 def rounded_zero(zero: FourierZero, bits: int, N: int) -> RoundedZero:

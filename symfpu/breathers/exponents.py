@@ -148,7 +148,7 @@ class FourierSystem:
         return z.real if guess.circle else z
 
     def zero(self, guess: Guess) -> FourierZero | None:
-        """The nearest one by Newton's method, an inverse for a few steps; None if it does not converge."""
+        """The nearest one by Newton's method, one inverse for a few steps; None if it is lost."""
         squared = self.linear[self.places[1] - 1] ** 2
         value, z = guess.value, self.angles(guess, guess.value)
         matrix = self.force + np.diag(1 - z**2 / squared)

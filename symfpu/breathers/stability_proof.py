@@ -12,6 +12,7 @@ import json
 import math
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -92,8 +93,8 @@ class StabilityProof(Tabled):
 
     existence : the theorem on the orbit. stable : which of the two. exponents : those enclosed,
         all of them up to sign if stable, else those that grow. gaps : of a stable orbit, ascending;
-        an empty tuple for an unstable one. theorem : in one sentence. body : the certificate without
-        its digest. Dimensionless. Ours: docs/stability-proofs.md.
+        an empty tuple for an unstable one. theorem : in one sentence. body : the certificate
+        without its digest. Dimensionless. Ours: docs/stability-proofs.md.
 
     >>> from symfpu import Chain, periodic_orbit, prove_stability
     >>> prove_stability(periodic_orbit(Chain(N=4, alpha="0.3"), 1, "0.7646"))
@@ -170,7 +171,7 @@ class StabilityProof(Tabled):
             frequencies=(frequency,),
             stable=self.stable,
         )
-        columns = {
+        columns: dict[str, list[Any]] = {
             "mode": [e.mode for e in rows],
             "harmonic": [e.harmonic for e in rows],
             "sigma": [e.sigma.real for e in rows],
@@ -185,7 +186,7 @@ class StabilityProof(Tabled):
 def prove_stability(
     solution: ExistenceProof | QuasiPeriodic, *, progress: Progress | None = None
 ) -> StabilityProof:
-    """A proof that a breather is linearly stable, or unstable; an error that says why there is none.
+    """A proof that a breather is linearly stable, or unstable, or an error that says why not.
 
     solution : a breather as `prove_existence` takes it, or its proof, which then is not made again.
     progress : called with a text and the fraction that is done.
@@ -197,13 +198,14 @@ def prove_stability(
     exponent and the bound that failed: that proves nothing.
 
     >>> from symfpu import Chain, breather_at_amplitude
-    >>> proof = prove_stability(breather_at_amplitude(Chain(N=4, alpha="0.5"), 2, "1"))
-    >>> proof.stable, round(proof.exponents[0].multiplier(float(proof.existence.frequency)).real, 2)
-    (False, -1.25)
+    >>> prove_stability(breather_at_amplitude(Chain(N=6, beta=1), 4, "0.6"))
+    StabilityProof(N=6, beta=1, seed 4, omega=1.9005...: linearly unstable, growth rate in
+    0.02488... .. 0.02488...)
     """
-    is_proof = isinstance(solution, ExistenceProof)
-    proof = solution if is_proof else prove_existence(solution)
-    assert isinstance(proof, ExistenceProof)
+    if isinstance(solution, ExistenceProof):
+        proof = solution
+    else:
+        proof = prove_existence(solution)
     orbit = orbit_of(proof)
     sectors = sectors_of(orbit.chain, orbit.seed)
     found = [guesses(orbit, sector) for sector in sectors]
@@ -263,19 +265,19 @@ def proved_exponent(
 def gaps_of(
     omega: Fraction, sectors: tuple[Sector, ...], enclosed: list[Enclosed]
 ) -> list[Gap]:
-    """Between neighbours of every sector, its ends among them; NoStabilityProof where they overlap."""
+    """Between neighbours of every sector, its ends among them; an error where they overlap."""
     result = []
     for number, sector in enumerate(sectors):
         points = [(Fraction(0), Fraction(0), "0")]
         for one in enclosed:
-            if one.zero.guess.sector is sector:
+            if one.zero.guess.sector == sector:
                 sigma = Fraction(one.zero.sigma[0], 2**one.zero.bits)
                 n, q = one.zero.kappa
                 label = f"mode {q}, harmonic {n}"
                 points.append((sigma / omega, one.sigma_radius / omega, label))
         points.append((Fraction(sector.folds, 2), Fraction(0), f"{sector.folds}/2 omega"))
         points.sort()
-        pairs = zip(points, points[1:], strict=False)
+        pairs = pairwise(points)
         result += [gap_between(a, b, number) for a, b in pairs]
     return sorted(result, key=lambda gap: gap.least)
 
@@ -340,7 +342,7 @@ def exponent_body(
 
 
 def vector_rows(zero: RoundedZero, part: int) -> list[list[int]]:
-    """[n, i, v, v, ..] of every harmonic: from the i-th allowed mode on, without zeros at the ends."""
+    """[n, i, v, v, ..] of every harmonic: from the i-th allowed mode on, no zeros at the ends."""
     rows = []
     for n, row in zip(
         range(-zero.harmonics, zero.harmonics + 1), zero.rows[part].tolist(), strict=True

@@ -1,8 +1,13 @@
-"""The verb certify: a proof that a periodic orbit exists near a computed one."""
+"""The verb certify: a proof that a periodic orbit exists, and of its stability."""
 
 from __future__ import annotations
 
-from symfpu.breathers.existence import prove_existence
+from typing import Annotated, Any
+
+import typer
+
+from symfpu.breathers.existence import ExistenceProof, prove_existence
+from symfpu.breathers.stability_proof import StabilityProof, prove_stability
 from symfpu.bundles.bundle import load
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import solution_of
@@ -19,6 +24,7 @@ from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
 from symfpu.files.writing import output_file
 from symfpu.reports.existence import existence_record, existence_text
+from symfpu.reports.stability_proof import stability_record, stability_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 
@@ -26,9 +32,15 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 def certify(
     file: FileArgument,
     output: CertificateOption = None,
+    stability: Annotated[
+        bool,
+        typer.Option(
+            "--stability", help="Prove as well that it is linearly stable, or unstable."
+        ),
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Prove that a periodic orbit exists near a saved breather.
+    """Prove that a periodic orbit exists near a saved breather, and whether it is stable.
 
     Exit code 1 where the bounds do not prove it.
     """
@@ -36,14 +48,31 @@ def certify(
     require_fixed_ends(orbit.chain)
     assert isinstance(orbit, QuasiPeriodic)
     target = None if output is None else output_file(path_named("output", output))
+    proof: ExistenceProof | StabilityProof
     with progress_bar("proof") as advance:
         advance("proof", NO_FRACTION)
         proof = prove_existence(orbit)
+        if stability:
+            proof = prove_stability(proof, progress=advance)
         if target is not None:
             proof.write(target)
     if as_json:
-        print_json(existence_record(proof))
+        print_json(proof_record(proof))
         return
-    say(existence_text(proof))
+    say(proof_text(proof))
     if target is not None:
         print(f"certificate: {target}")
+
+
+def proof_record(proof: ExistenceProof | StabilityProof) -> dict[str, Any]:
+    """Of either kind, for JSON."""
+    if isinstance(proof, StabilityProof):
+        return stability_record(proof)
+    return existence_record(proof)
+
+
+def proof_text(proof: ExistenceProof | StabilityProof) -> str:
+    """Of either kind, for the terminal."""
+    if isinstance(proof, StabilityProof):
+        return stability_text(proof)
+    return existence_text(proof)

@@ -16,6 +16,7 @@ import json
 import re
 from collections.abc import Iterable
 from fractions import Fraction
+from itertools import pairwise
 from math import isqrt
 from operator import mul
 from pathlib import Path
@@ -203,7 +204,7 @@ class Sector(NamedTuple):
         return range(1 if parity else 2, self.N, 2)
 
     @property
-    def count(self) -> int:
+    def exponents(self) -> int:
         """How many exponents up to sign there are beside the double multiplier 1."""
         modes = self.N - 1 if self.slope else len(self.allowed(self.start))
         return modes - int(self.trivial)
@@ -220,7 +221,7 @@ def sectors_of(orbit: Orbit) -> list[Sector]:
         other = Sector(N, 1, 0, 0, 1, 1, False)
     else:
         return [Sector(N, 0, 1, 0, 1, 2, True)]
-    return [own, other] if other.count else [own]
+    return [own, other] if other.exponents else [own]
 
 
 # --- cosines
@@ -335,7 +336,7 @@ class Slopes:
 
     K : harmonics that I - A DF sees; those up to `all` enter Y. lost : above the sum over bonds of
     the moduli of all Fourier coefficients that differ from those of the true orbit; cut : the same
-    with harmonics beyond K left out. entry : above the error of one coupling, summed over harmonics.
+    with harmonics beyond K left out. entry : above the error of a coupling, summed over harmonics.
     """
 
     def __init__(self, orbit: Orbit, K: int) -> None:
@@ -370,7 +371,8 @@ class Slopes:
         N = self.orbit.N
         cosines = Cosines(N, PLACES)
         tables = [[cosines.bond(p, j) for j in range(N)] for p in range(2 * N - 1)]
-        self.sums, errors = [], 0
+        self.sums: list[list[int]] = []
+        errors = 0
         for k in range(self.all + 1):
             column = self.halves[k] if k < len(self.halves) else [0] * N
             totals = [sum(map(mul, table, column)) for table in tables]
@@ -590,7 +592,8 @@ class Bounds:
         k = abs(n - m)
         if k > self.slopes.K:
             return 0
-        return self.slopes.sums[k][abs(q - p)] + self.slopes.sums[k][q + p]
+        row = self.slopes.sums[k]
+        return row[abs(q - p)] + row[q + p]
 
     def of_sigma(self, place: Place) -> tuple[Gaussian, int]:
         """-2 (sigma + n omega) v / Omega_q^2, and a bound of its error."""
@@ -608,7 +611,9 @@ class Bounds:
         """v 2^bits."""
         n, q = place
         row = self.exponent.rows.get(n)
-        return row[(q - self.sector.allowed(n)[0]) // 2] if row else (0, 0)
+        if not row:
+            return 0, 0
+        return row[(q - self.sector.allowed(n)[0]) // 2]
 
     def column_in_block(self, column: Place) -> list[Gaussian]:
         """Its entries of DF in the rows of the block."""
@@ -920,14 +925,14 @@ def check_stable(orbit: Orbit, exponents: Iterable[Exponent]) -> str:
     for sector in sectors_of(orbit):
         own = [one for one in listed if one.sector == sector]
         need(
-            len(own) == sector.count,
-            f"a sector needs {sector.count} exponents, not {len(own)}",
+            len(own) == sector.exponents,
+            f"a sector needs {sector.exponents} exponents, not {len(own)}",
         )
         need(all(one.reals for one in own), "an exponent of a stable orbit is not real")
         ends = sorted((one.real - one.off, one.real + one.off) for one in own)
         zero, last = Fraction(0), sector.folds * orbit.omega / 2
         points = [(zero, zero), *ends, (last, last)]
-        for a, b in zip(points, points[1:], strict=False):
+        for a, b in pairwise(points):
             need(
                 a[1] < b[0], "two exponents may be the same, or one at 0 or half the period"
             )

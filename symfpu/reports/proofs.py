@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.breathers.existence import ExistenceProof
-from symfpu.proofs import certificates, check_existence, theorem
+from symfpu.breathers.stability_proof import StabilityProof
+from symfpu.proofs import certificates, check_existence, check_stability, theorem
 from symfpu.proofs.certificates import SINGLE, PropagationProof, RuleException
 from symfpu.proofs.sweeps import Sweep, SweepCase
 from symfpu.proofs.theorem import RuleForAllN
@@ -16,6 +17,7 @@ CERTIFIED = {
     certificates.FORMAT: PropagationProof.__name__,
     theorem.FORMAT: RuleForAllN.__name__,
     check_existence.FORMAT: ExistenceProof.__name__,
+    check_stability.FORMAT: StabilityProof.__name__,
 }
 EVIDENCE = ("excited", "vanishing", "points", "coefficients", "digest")
 

@@ -42,6 +42,7 @@ RESULTS = {
     "RefinedTorus",
     "RingTorus",
     "ShotOrbit",
+    "StabilityProof",
     "TravellingSeries",
     "Twist",
     "TwistAtRest",

@@ -33,6 +33,7 @@ WITHOUT = {
     "NormalFrequencySeries": "a series, made anew",
     "NormalMode": "part of NormalModes",
     "ParametricResonance": "part of NormalModes",
+    "StabilityProof": "its certificate is its file",
     "SpectralLine": "part of FrequencyAnalysis",
     "TwistAtRest": "exact numbers of a field, made anew",
 }
