@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,7 @@ NO_DENORMALS = 1e-25  # which are slow
 LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 OCTAVE = 4  # weights are 2^(letter/4), rounded down to 8 binary places
 WEIGHTS = np.array([math.isqrt(math.isqrt(2 ** (k + 32))) / 256 for k in range(62)])
-FIRST_BLOCK, SMALLEST_GROWTH, LARGEST_BLOCK = 6, 3, 160
+FIRST_BLOCK, SMALLEST_GROWTH, LARGEST_BLOCK = 6, 4, 160
 GOOD_RADIUS = 0.6  # of |I - A DF|, so that coarse weights make its norm less than 1
 LEAST_RATE, LARGEST_RATE, RATES = 0.4, 0.85, 4  # that weights are asked for
 MOST_RADIUS = 0.85
@@ -244,16 +245,17 @@ class Attempt:
         order = np.argsort(-outside.sum(axis=1), kind="stable")
         kappa = int(np.searchsorted(own, self.kappa))
         block = np.union1d(order[:FIRST_BLOCK], kappa)
-        x = y = np.ones(len(own))
+        x = y = np.ones(len(own), dtype=np.float32)
         while True:
             defect = np.maximum(self.defect(own[block], outside, own, own), NO_DENORMALS)
-            x, radius = perron(defect, x)
-            y, _ = perron(defect.T, y)
+            single = defect.astype(np.float32)  # a choice needs no more
+            x, radius = perron(single, x)
+            y, _ = perron(single.T, y)
             if radius < GOOD_RADIUS or len(block) >= min(LARGEST_BLOCK, len(own)):
                 break
             score = x * y
             score[block] = -1
-            more = max(SMALLEST_GROWTH, len(block) // 3)
+            more = max(SMALLEST_GROWTH, len(block) // 2)
             block = np.union1d(block, np.argsort(-score, kind="stable")[:more])
         if not radius < MOST_RADIUS:
             return None, radius
@@ -373,7 +375,7 @@ class Attempt:
         return e1 * UPWARDS, e2 * UPWARDS, e3 * UPWARDS
 
 
-def perron(matrix: Floats, start: Floats) -> tuple[Floats, float]:
+def perron(matrix: NDArray[Any], start: NDArray[Any]) -> tuple[NDArray[Any], float]:
     """The eigenvector of a positive matrix from a guess, and its largest eigenvalue, about."""
     x, radius = start, math.inf
     for _ in range(POWERS):

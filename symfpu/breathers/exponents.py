@@ -149,21 +149,24 @@ class FourierSystem:
 
     def zero(self, guess: Guess) -> FourierZero | None:
         """The nearest one by Newton's method, one inverse for a few steps; None if it is lost."""
+        from scipy.linalg import lu_factor, lu_solve
+
         squared = self.linear[self.places[1] - 1] ** 2
         value, z = guess.value, self.angles(guess, guess.value)
         matrix = self.force + np.diag(1 - z**2 / squared)
-        v = np.linalg.solve(matrix, np.cos(np.arange(len(squared)) + 0.5))
-        v = np.linalg.solve(matrix, v / np.abs(v).max())
+        factors = lu_factor(matrix)
+        v = lu_solve(factors, np.cos(np.arange(len(squared)) + 0.5))
+        v = lu_solve(factors, v / np.abs(v).max())
         place = int(np.argmax(np.abs(v)))
         v = v / v[place]
         for _ in range(INVERSES):
             z = self.angles(guess, value)
             matrix = self.force + np.diag(1 - z**2 / squared)
             matrix[:, place] = -2 * z / squared * v
-            inverse = np.linalg.inv(matrix)
+            factors = lu_factor(matrix)
             for _ in range(NEWTON_STEPS):
                 z = self.angles(guess, value)
-                step = inverse @ (self.force @ v + (1 - z**2 / squared) * v)
+                step = lu_solve(factors, self.force @ v + (1 - z**2 / squared) * v)
                 value -= complex(step[place])
                 step[place] = 0
                 v = v - step

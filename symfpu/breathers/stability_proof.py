@@ -97,9 +97,9 @@ class StabilityProof(Tabled):
         without its digest. Dimensionless. Ours: docs/stability-proofs.md.
 
     >>> from symfpu import Chain, periodic_orbit, prove_stability
-    >>> prove_stability(periodic_orbit(Chain(N=4, alpha="0.3"), 1, "0.7646"))
-    StabilityProof(N=4, alpha=0.3, seed 1, omega=0.7646: linearly stable, 2 exponents within ...,
-    smallest gap 0.16... omega)
+    >>> prove_stability(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"))
+    StabilityProof(N=8, alpha=0.3, seed 1, omega=0.3905: linearly stable, 6 exponents within ...,
+    smallest gap 0.0110... omega)
     """
 
     existence: ExistenceProof
@@ -202,10 +202,7 @@ def prove_stability(
     StabilityProof(N=6, beta=1, seed 4, omega=1.9005...: linearly unstable, growth rate in
     0.02488... .. 0.02488...)
     """
-    if isinstance(solution, ExistenceProof):
-        proof = solution
-    else:
-        proof = prove_existence(solution)
+    proof = solution if isinstance(solution, ExistenceProof) else prove_existence(solution)
     orbit = orbit_of(proof)
     sectors = sectors_of(orbit.chain, orbit.seed)
     found = [guesses(orbit, sector) for sector in sectors]

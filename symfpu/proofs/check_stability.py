@@ -155,6 +155,7 @@ class Orbit(NamedTuple):
 def check_existence_of(data: Json) -> str:
     """The orbit exists: the sentence of the other checker."""
     need(data["format"] == check_existence.FORMAT, "it holds no certificate of existence")
+    need(data["schema"] == check_existence.SCHEMA, "a proof of existence of another schema")
     contents = {key: data[key] for key in data if key != "digest"}
     text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
     digest = hashlib.sha256(text.encode()).hexdigest()

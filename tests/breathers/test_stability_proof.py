@@ -1,4 +1,4 @@
-"""Proofs of stability: their intervals hold the multipliers of another route, their bounds those of the checker, and what is no exponent has none."""
+"""Proofs of stability: intervals hold the multipliers of another route, bounds are the checker's, and what is no exponent has none."""
 
 import json
 from dataclasses import replace
@@ -143,7 +143,7 @@ def test_a_wrong_linearisation_has_no_proof(monkeypatch):
 def test_a_missing_exponent_and_a_collision_are_named():
     rounded, slopes, guesses = one_guess("alpha")
     sectors = sectors_of(rounded.chain, rounded.seed)
-    with pytest.raises(NoStabilityProof, match="count|number of exponents"):
+    with pytest.raises(NoStabilityProof, match="number of exponents"):
         check_count(sectors, [guesses[1:]])
     one = enclosed_exponent(slopes, guesses[0], 0.1)
     with pytest.raises(NoStabilityProof, match="gap"):

@@ -20,6 +20,7 @@ from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.verify import CertificateError
 from tests.proofs.test_check_existence import altered, moved, numbers
 from tests.proofs.test_forgeries import sealed
+from tests.tolerances import INVERSE_OF_BLOCK
 
 CASES = {
     "stable": (Chain(4, alpha="0.3"), 1, "0.2"),
@@ -145,4 +146,4 @@ def test_the_inverse_of_a_block_is_one():
     rng = random.Random(3)
     matrix = [[rng.randrange(-ONE, ONE) for _ in range(5)] for _ in range(5)]
     inverse = np.array(inverse_of(copy.deepcopy(matrix)), dtype=float) / 2.0**check_stability.INVERSE_BITS
-    np.testing.assert_allclose(inverse @ (np.array(matrix, dtype=float) / 2.0**PLACES), np.eye(5), atol=2.0**-24)
+    np.testing.assert_allclose(inverse @ (np.array(matrix, dtype=float) / 2.0**PLACES), np.eye(5), atol=INVERSE_OF_BLOCK)
