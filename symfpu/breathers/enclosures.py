@@ -16,6 +16,7 @@ import numpy as np
 from symfpu.breathers.bond_balls import BondBalls, ball
 from symfpu.breathers.existence_bounds import SPARE_BITS, double_above, linear_part, strip
 from symfpu.breathers.exponent_bounds import (
+    WEIGHTS,
     Attempt,
     Choice,
     ExponentBounds,
@@ -47,8 +48,8 @@ class NoStabilityProof(SymfpuError):
     """The bounds do not enclose an exponent, or exponents are too close to be told apart.
 
     Raised by `prove_stability`. exponent : sigma of the one that failed, or None. bound : "Newton",
-    "Z", "Y", "cut", "gap" or "count". value : of it. needed : what it would have to be below,
-    for "gap" above, dimensionless. advice : what may help. Ours.
+    "Z", "weights", "Y", "cut", "gap" or "count". value : of it. needed : what it would have to
+    be below, for "gap" above, dimensionless. advice : what may help. Ours.
     """
 
     def __init__(
@@ -66,6 +67,7 @@ class NoStabilityProof(SymfpuError):
             "Newton": "the last step of Newton's method",
             "Z": "the norm or spectral radius of I - A DF",
             "Y": "the Newton step, Y",
+            "weights": "the largest weight of the norm",
             "cut": "what the slopes of the bonds leave out",
             "gap": "the gap to the next exponent",
             "count": "the number of exponents that were not found",
@@ -179,9 +181,12 @@ def enclosed_exponent(slopes: Slopes, guess: Guess, apart: float) -> Enclosed:
         moved = math.inf if zero is None else abs(zero.value - guess.value)
         raise NoStabilityProof(sigma, "Newton", moved, apart / 2, ADVICE)
     first = Attempt(slopes, rounded_zero(zero, CHOICE_BITS, slopes.N))
-    choice, radius = first.choice()
+    choice, bound, value = first.choice()
     if choice is None:
-        raise NoStabilityProof(sigma, "Z", radius, 1.0, ADVICE)
+        needed = 1.0 if bound == "Z" else float(WEIGHTS[-1])
+        raise NoStabilityProof(
+            sigma, bound, value, needed, f"{apart_text(apart)}; {ADVICE}"
+        )
     for bits in BITS:
         rounded = rounded_zero(zero, bits, slopes.N)
         bounds = Attempt(slopes, rounded).bounds(choice)
@@ -214,7 +219,13 @@ def failed(sigma: complex, bounds: ExponentBounds, apart: float) -> NoStabilityP
     if bounds.radius is not None:
         width = PART_OF_GAP * bounds.radius / bounds.weight
         return NoStabilityProof(sigma, "gap", apart, width, ADVICE)
-    return NoStabilityProof(sigma, "Y", bounds.residual, bounds.needed, ADVICE)
+    advice = f"{apart_text(apart)}; {ADVICE}"
+    return NoStabilityProof(sigma, "Y", bounds.residual, bounds.needed, advice)
+
+
+def apart_text(apart: float) -> str:
+    """How near the next exponent is, to rounding."""
+    return f"the next exponent of its sector, or an end, is {apart:.3g} away"
 
 
 def dyadic_above(x: float) -> tuple[int, int]:

@@ -23,11 +23,16 @@ Floats = NDArray[np.float64]
 ROUNDOFF = 2.0**-53
 UPWARDS = 1 + 1e-9
 HUGE = 1e14
-POWERS = 12
+POWERS, MEAN_OF = 12, 6
 NO_DENORMALS = 1e-25  # which are slow
-LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+LETTERS = (
+    "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+    "!#$%&()*+,-./:;<=>?@[]^_`{|}~"
+)
 OCTAVE = 4  # weights are 2^(letter/4), rounded down to 8 binary places
-WEIGHTS = np.array([math.isqrt(math.isqrt(2 ** (k + 32))) / 256 for k in range(62)])
+WEIGHTS = np.array(
+    [math.isqrt(math.isqrt(2 ** (k + 32))) / 256 for k in range(len(LETTERS))]
+)
 FIRST_BLOCK, SMALLEST_GROWTH, LARGEST_BLOCK = 6, 4, 160
 GOOD_RADIUS = 0.6  # of |I - A DF|, so that coarse weights make its norm less than 1
 LEAST_RATE, LARGEST_RATE, RATES = 0.4, 0.85, 4  # that weights are asked for
@@ -235,10 +240,10 @@ class Attempt:
         matrix = size(self.derivative(rows, columns, diagonal=False))
         return np.asarray(self.inverse_sizes[rows][:, None] * matrix)
 
-    def choice(self) -> tuple[Choice | None, float]:
-        """Block and weights that make |I - A DF| small; the spectral radius that was met.
+    def choice(self) -> tuple[Choice | None, str, float]:
+        """Block and weights that make |I - A DF| small.
 
-        None where weights cannot help.
+        None where there are none: then "Z" and its spectral radius, or "weights" and the largest.
         """
         own = self.own
         outside = self.diagonal_part(own, own)
@@ -258,9 +263,11 @@ class Attempt:
             more = max(SMALLEST_GROWTH, len(block) // 2)
             block = np.union1d(block, np.argsort(-score, kind="stable")[:more])
         if not radius < MOST_RADIUS:
-            return None, radius
-        letters = self.letters(self.whole_defect(block), radius)
-        return (None if letters is None else Choice(block, letters)), radius
+            return None, "Z", radius
+        letters, largest = self.letters(self.whole_defect(block), radius)
+        if letters is None:
+            return None, "weights", largest
+        return Choice(block, letters), "Z", radius
 
     def whole_defect(self, block: Ints) -> Floats:
         """Above |I - A DF|: all rows, columns up to M + K."""
@@ -288,8 +295,10 @@ class Attempt:
             weight=float(w[self.kappa]),
         )
 
-    def letters(self, defect: Floats, radius: float) -> str | None:
-        """A letter for each weight, w |I - A DF| <= rho w about; None if they are too large."""
+    def letters(self, defect: Floats, radius: float) -> tuple[str | None, float]:
+        """A letter for each weight, w |I - A DF| <= rho w about; the largest.
+
+        None for the letters where weights are too large."""
         rows = np.isin(np.arange(len(defect)), self.own)
         own = defect[np.ix_(rows, np.isin(self.taken, self.own))]
         leaving = defect[np.ix_(~rows, np.isin(self.taken, self.own))].sum(axis=0)
@@ -297,8 +306,8 @@ class Attempt:
             w = np.linalg.solve(rho * np.eye(len(own)) - own.T, leaving + rho)
             levels = np.rint(OCTAVE * np.log2(np.maximum(w, 1.0))).astype(int)
             if w.min() > 0 and levels.max() < len(LETTERS):
-                return "".join(LETTERS[k] for k in levels)
-        return None
+                return "".join(LETTERS[k] for k in levels), float(w.max())
+        return None, float(w.max()) if w.min() > 0 else math.inf
 
     def edge(self, n: int) -> Floats:
         """Below (sigma + n omega)^2 / Omega_q^2 - 1 for |harmonics| from n on."""
@@ -377,9 +386,10 @@ class Attempt:
 
 def perron(matrix: NDArray[Any], start: NDArray[Any]) -> tuple[NDArray[Any], float]:
     """The eigenvector of a positive matrix from a guess, and its largest eigenvalue, about."""
-    x, radius = start, math.inf
+    x, ratios = start, []
     for _ in range(POWERS):
         x = matrix @ x
-        radius = float(np.linalg.norm(x))
-        x = x / radius
-    return x, radius
+        ratios.append(float(np.linalg.norm(x)))
+        x = x / ratios[-1]
+    # places that feed each other in turn make the ratios oscillate
+    return x, math.prod(ratios[-MEAN_OF:]) ** (1 / MEAN_OF)

@@ -42,7 +42,10 @@ SMALLEST_SLOPE = (
 MOST_HARMONICS = 4096
 MOST_BLOCK = 400
 MOST_STEPS = 10**9
-LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+LETTERS = (
+    "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+    "!#$%&()*+,-./:;<=>?@[]^_`{|}~"
+)
 WEIGHT_BITS = 8
 COSINE_UNITS = 2  # of the last place, more than a cosine is off
 INVERSE_BITS = 32  # of the entries of the approximate inverse
