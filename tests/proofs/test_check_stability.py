@@ -79,7 +79,7 @@ FORGERIES = {
     "a real one": ("unstable", (*FIRST, "sigma", 1), lambda _: 0, "imaginary part"),
     "fewer harmonics": ("stable", ("free",), lambda _: 2, "wrong number of weights|too low"),
     "a weight too many": ("stable", (*FIRST, "weights"), lambda w: w + "0", "number of weights"),
-    "a weight of nothing": ("stable", (*FIRST, "weights"), lambda w: "!" + w[1:], "no readable"),
+    "a weight of nothing": ("stable", (*FIRST, "weights"), lambda w: " " + w[1:], "no readable"),
     "no block": ("stable", (*FIRST, "block"), lambda _: [], "kappa is not in the block"),
     "another orbit": ("stable", ("existence", "orbit", 1, 0), lambda c: c + c // 10**10, "no orbit is proved"),
     "another frequency": ("stable", ("existence", "omega"), lambda w: w.replace("7", "8", 1), "no orbit is proved"),
