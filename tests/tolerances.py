@@ -648,6 +648,8 @@ GROWTH_OF_ORBIT = 1e-7
 SAME_BOUNDS = 0.02
 # What a multiplier of an integrated tangent map may be off: its map is good to 1e-12, a pair near 1 or -1 to some hundred times that.
 MULTIPLIER_OF_PROOF = 1e-9
+# Of a proof of stability with 38 binary places: bounds of the rounding of doubles are a part of its Y, up to a half.
+ROUNDING_OF_RESIDUAL = 2.0
 # The checker's inverse of a block has 32 binary places: five entries of a product with one of size 10 or so.
 INVERSE_OF_BLOCK = 2.0**-24
 

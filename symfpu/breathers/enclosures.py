@@ -35,7 +35,8 @@ FIRST_REACH, WIDER, LARGEST_REACH = 1.35, 1.5, 7.0
 FIRST_CUT = 1e-6  # and of |I - A DF|
 LEAST_CUT = 1e-12
 LOST_SHARE = 0.05  # of Z that may come from the latter
-BITS = (26, 30, 34, 38, 42, 46)
+BITS = (22, 24, 26, 28, 30, 34, 38, 42, 46)
+FINE_BITS, FEW = (38, 42, 46), 8  # where few exponents make short certificates anyway
 CHOICE_BITS = 46
 PART_OF_GAP = 16  # the enclosures are narrower than the nearest distance over this
 SPARE_HARMONICS = 3  # of the solution beyond M
@@ -126,11 +127,11 @@ def enclosed_all(
 
 def with_slopes(slopes: Slopes, tried: list[Guess], progress: Progress) -> list[Enclosed]:
     """All of them with these harmonics."""
-    result = []
+    result, bits = [], FINE_BITS if len(tried) <= FEW else BITS
     for done, guess in enumerate(tried):
         progress("exponents", done / len(tried))
         apart = nearest(guess, tried, slopes.omega)
-        result.append(enclosed_exponent(slopes, guess, apart))
+        result.append(enclosed_exponent(slopes, guess, apart, bits))
     return result
 
 
@@ -173,7 +174,9 @@ def nearest(guess: Guess, others: list[Guess], omega: float) -> float:
     return min([x, end - x, *(abs(o.value.real - x) for o in same)])
 
 
-def enclosed_exponent(slopes: Slopes, guess: Guess, apart: float) -> Enclosed:
+def enclosed_exponent(
+    slopes: Slopes, guess: Guess, apart: float, bits: tuple[int, ...] = FINE_BITS
+) -> Enclosed:
     """One exponent."""
     sigma = guess.value + guess.base * guess.sector.folds * slopes.omega / 2
     zero = zero_of(slopes, guess)
@@ -187,8 +190,8 @@ def enclosed_exponent(slopes: Slopes, guess: Guess, apart: float) -> Enclosed:
         raise NoStabilityProof(
             sigma, bound, value, needed, f"{apart_text(apart)}; {ADVICE}"
         )
-    for bits in BITS:
-        rounded = rounded_zero(zero, bits, slopes.N)
+    for places in bits:
+        rounded = rounded_zero(zero, places, slopes.N)
         bounds = Attempt(slopes, rounded).bounds(choice)
         if bounds.lost > LOST_SHARE and slopes.cut > LEAST_CUT + 2 * slopes.lost:
             raise NoStabilityProof(sigma, "cut", bounds.lost, LOST_SHARE, ADVICE)

@@ -63,8 +63,8 @@ FIRST = ("exponents", 0)
 FORGERIES = {
     "another sigma": ("stable", (*FIRST, "sigma", 0), lambda x: x + x // 10**4, "exceeds r"),
     "a smaller radius": ("stable", (*FIRST, "radius", 0), lambda m: m // 3, "exceeds r"),
-    "a radius without a contraction": ("stable", (*FIRST, "radius", 1), lambda e: e - 24, "not below 1|exceeds r|may be"),
-    "another coefficient": ("stable", (*FIRST, "vector", 0, 0, -1), lambda v: v + 2**18, "exceeds r|not 1 at kappa"),
+    "a radius without a contraction": ("stable", (*FIRST, "radius", 1), lambda e: e - 36, "not below 1|exceeds r|may be"),
+    "another coefficient": ("stable", (*FIRST, "vector", 0, 0, -1), lambda v: v + 2**30, "exceeds r|not 1 at kappa"),
     "other bits": ("stable", (*FIRST, "bits"), lambda b: b + 1, "kappa"),
     "another kappa": ("stable", (*FIRST, "kappa"), lambda k: [k[0], k[1] - 2], "kappa"),
     "an exponent shifted": ("stable", (*FIRST, "base"), lambda _: 1, "exceeds r|may be the same|not below 1"),
