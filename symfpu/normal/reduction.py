@@ -226,6 +226,26 @@ def reduced(flow: LinearisedFlow, q: int, guess: float) -> Reduced | None:
     return continued(flow, q)
 
 
+def followed(
+    flow: LinearisedFlow, q: int, sigma: complex, like: Values
+) -> Reduced | None:
+    """The one that continues that of a torus nearby; None where it cannot be told.
+
+    sigma : a guess. like : its eigenfunction there, at the harmonics of this flow. Through an
+    onset, where two solutions become one, the main coefficient has to tell them apart.
+    """
+    aim = _Aim(q, sigma, like)
+    hyperbolic = bool(complex(sigma).imag)
+    for part in DEFLATED[1:] if hyperbolic else DEFLATED:
+        found = _found(flow, aim, part)
+        if found is None or aim.overlap(found) < LEAST_OVERLAP:
+            continue
+        turned = bool(complex(found.sigma).imag) != hyperbolic
+        if not turned or found.share > SURE:
+            return found
+    return None
+
+
 def continued(flow: LinearisedFlow, q: int) -> Reduced | None:
     """The same from no coupling to the whole one, step by step; each begins with the last."""
     aim = _Aim(q, float(flow.linear[q - 1]))

@@ -10,11 +10,12 @@ from symfpu.chain.chain import require_fixed_ends
 from symfpu.chain.frequency_shift import shift_coefficients
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
-from symfpu.normal.linearised import LinearisedFlow, coefficients_by_harmonic
+from symfpu.normal.linearised import LinearisedFlow, Values, coefficients_by_harmonic
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
-from symfpu.normal.reduction import Reduced, continued, reduced
+from symfpu.normal.reduction import Reduced, continued, followed, reduced
 from symfpu.normal.resonances import ParametricResonance, resonances_of
 from symfpu.numbers.typed import integer
+from symfpu.refinement.equation import Ints
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 
@@ -59,24 +60,40 @@ def normal_modes(
     torus = _checked(solution)
     chosen = checked_modes(torus, modes)
     length = integer(resonance_length, "resonance_length", 1)
-    tell = progress or unheard
-    guesses = second_order(torus)
+    search, tell = _Search(torus, length), progress or unheard
     found: dict[int, NormalMode] = {}
-    search = _Search(torus)
     for number, q in enumerate(chosen):
         tell(f"normal mode {q}", number / len(chosen))
-        mode = search.mode(q, guesses[q], found)
-        if mode is None:
-            nearest = _resonances(torus, {q: guesses[q]}, length)[0]
-            raise NoNormalModes(q, guesses[q], nearest)
-        found[q] = mode
-    real = {q: complex(mode.sigma).real for q, mode in found.items()}
-    return NormalModes(
-        torus=solution,
-        modes=tuple(found.values()),
-        guesses={q: guesses[q] for q in chosen},
-        resonances=tuple(_resonances(torus, real, length)),
-    )
+        found[q] = search.required(q, found)
+    return search.result(solution, found)
+
+
+def followed_modes(
+    solution: QuasiPeriodic,
+    before: NormalModes | None,
+    *,
+    modes: Iterable[int] | None = None,
+    progress: Progress | None = None,
+) -> tuple[NormalModes, dict[int, str]]:
+    """Normal modes of a torus, each continued from its eigenfunction on a torus nearby.
+
+    before : of the torus nearby; None, or without a mode, where there is none: then the mode is
+        sought as by `normal_modes`, and so it is where the two tori are too far apart.
+
+    Returns what was found, and by mode why one was not.
+    """
+    torus = _checked(solution)
+    chosen = checked_modes(torus, modes)
+    search, tell = _Search(torus, LENGTH, before), progress or unheard
+    found: dict[int, NormalMode] = {}
+    missing: dict[int, str] = {}
+    for number, q in enumerate(chosen):
+        tell(f"normal mode {q}", number / len(chosen))
+        try:
+            found[q] = search.required(q, found)
+        except NoNormalModes as none:
+            missing[q] = str(none)
+    return search.result(solution, found), missing
 
 
 def _checked(solution: object) -> QuasiPeriodic:
@@ -128,13 +145,39 @@ def second_order(torus: QuasiPeriodic) -> dict[int, float]:
 class _Search:
     """Linearised flows of one torus with ever more harmonics, made when they are needed."""
 
-    def __init__(self, torus: QuasiPeriodic) -> None:
+    def __init__(
+        self, torus: QuasiPeriodic, length: int, before: NormalModes | None = None
+    ) -> None:
         known = coefficients_by_harmonic(torus)
         largest = max(float(np.abs(row).max()) for row in known.values())
         least = SMALLEST_KEPT * largest
         self._known = {nu: row for nu, row in known.items() if np.abs(row).max() > least}
-        self._torus = torus
+        self._torus, self._length = torus, length
+        self._guesses = second_order(torus)
+        self._before = {mode.mode: mode for mode in before.modes} if before else {}
+        self._earlier = second_order(before.torus) if before else {}
         self._flows: list[LinearisedFlow] = []
+
+    def result(
+        self, solution: QuasiPeriodic, found: dict[int, NormalMode]
+    ) -> NormalModes:
+        """The modes that were found, with the resonances of all of them."""
+        real = {q: complex(mode.sigma).real for q, mode in found.items()}
+        return NormalModes(
+            torus=solution,
+            modes=tuple(found.values()),
+            guesses={q: self._guesses[q] for q in found},
+            resonances=tuple(_resonances(self._torus, real, self._length)),
+        )
+
+    def required(self, q: int, others: dict[int, NormalMode]) -> NormalMode:
+        """The one that continues q; NoNormalModes where there is none."""
+        guess = self._guesses[q]
+        found = self.mode(q, guess, others)
+        if found is None:
+            nearest = _resonances(self._torus, {q: guess}, self._length)[0]
+            raise NoNormalModes(q, guess, nearest)
+        return found
 
     def mode(
         self, q: int, guess: float, others: dict[int, NormalMode]
@@ -143,7 +186,7 @@ class _Search:
 
         Another that turns out to be this one is sought anew.
         """
-        found = self._sought(lambda flow: reduced(flow, q, guess))
+        found = self._sought(lambda flow: self._nearby(flow, q) or reduced(flow, q, guess))
         twin = found and _twin(found, others.values())
         if not twin:
             return found
@@ -156,6 +199,14 @@ class _Search:
             return None
         others[twin.mode] = again
         return found
+
+    def _nearby(self, flow: LinearisedFlow, q: int) -> Reduced | None:
+        """From the torus before, its frequency moved as the closed shift is."""
+        if q not in self._before:
+            return None
+        known = self._before[q]
+        moved = self._guesses[q] - self._earlier[q]
+        return followed(flow, q, known.sigma + moved, _at_harmonics(known, flow.harmonics))
 
     def _sought(
         self, find: Callable[[LinearisedFlow], Reduced | None]
@@ -178,6 +229,14 @@ class _Search:
             chosen, _ = chosen_harmonics(self._known, functions, len(torus.seeds), height)
             self._flows.append(LinearisedFlow(torus, chosen))
         return self._flows[place]
+
+
+def _at_harmonics(mode: NormalMode, harmonics: Ints) -> Values:
+    """The eigenfunction at other harmonics, 0 where it has none, of norm 1; shape (F, N-1)."""
+    rows = {tuple(nu): row for row, nu in enumerate(mode.harmonics.tolist())}
+    places = np.array([rows.get(tuple(nu), -1) for nu in harmonics.tolist()])
+    table = np.where(places[:, None] < 0, 0, mode.coefficients[places])
+    return np.asarray(table / np.linalg.norm(table))
 
 
 def _twin(found: NormalMode, others: Iterable[NormalMode]) -> NormalMode | None:
