@@ -219,7 +219,7 @@ class Reader:
     def _instance(self, node: Json) -> Any:
         if node["class"] not in self._classes:
             raise ValueError(f"no result is of the class {node['class']!r:.40}")
-        kind = self._classes[node["class"]]
+        kind: Any = self._classes[node["class"]]
         values = {name: self.value(item) for name, item in node["fields"].items()}
         own = {f.name: f for f in fields(kind) if f.init}
         due = {name for name, f in own.items() if f.default is MISSING}

@@ -226,9 +226,7 @@ def reduced(flow: LinearisedFlow, q: int, guess: float) -> Reduced | None:
     return continued(flow, q)
 
 
-def followed(
-    flow: LinearisedFlow, q: int, sigma: complex, like: Values
-) -> Reduced | None:
+def followed(flow: LinearisedFlow, q: int, sigma: complex, like: Values) -> Reduced | None:
     """The one that continues that of a torus nearby; None where it cannot be told.
 
     sigma : a guess. like : its eigenfunction there, at the harmonics of this flow. Through an

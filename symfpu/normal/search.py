@@ -74,7 +74,7 @@ def followed_modes(
     *,
     modes: Iterable[int] | None = None,
     progress: Progress | None = None,
-) -> tuple[NormalModes, dict[int, str]]:
+) -> tuple[NormalModes, dict[int, NoNormalModes]]:
     """Normal modes of a torus, each continued from its eigenfunction on a torus nearby.
 
     before : of the torus nearby; None, or without a mode, where there is none: then the mode is
@@ -86,13 +86,13 @@ def followed_modes(
     chosen = checked_modes(torus, modes)
     search, tell = _Search(torus, LENGTH, before), progress or unheard
     found: dict[int, NormalMode] = {}
-    missing: dict[int, str] = {}
+    missing: dict[int, NoNormalModes] = {}
     for number, q in enumerate(chosen):
         tell(f"normal mode {q}", number / len(chosen))
         try:
             found[q] = search.required(q, found)
         except NoNormalModes as none:
-            missing[q] = str(none)
+            missing[q] = none
     return search.result(solution, found), missing
 
 
@@ -158,9 +158,7 @@ class _Search:
         self._earlier = second_order(before.torus) if before else {}
         self._flows: list[LinearisedFlow] = []
 
-    def result(
-        self, solution: QuasiPeriodic, found: dict[int, NormalMode]
-    ) -> NormalModes:
+    def result(self, solution: QuasiPeriodic, found: dict[int, NormalMode]) -> NormalModes:
         """The modes that were found, with the resonances of all of them."""
         real = {q: complex(mode.sigma).real for q, mode in found.items()}
         return NormalModes(

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.families.normal_family import STABILITY, NormalFamily
+from symfpu.families.normal_events import STABILITY
+from symfpu.families.normal_family import NormalFamily
 from symfpu.plots.style import QUIET, Axes, axes_for, require
 from symfpu.tori.quasiperiodic import amplitudes_of
 

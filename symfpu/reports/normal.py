@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symfpu.families.normal_family import NormalEvent
+from symfpu.families.normal_events import NormalEvent
 from symfpu.normal.modes import NormalMode, NormalModes
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.reports.solution import frequencies_record

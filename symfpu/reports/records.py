@@ -20,7 +20,7 @@ from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
-from symfpu.families.normal_family import NormalEvent
+from symfpu.families.normal_events import NormalEvent
 from symfpu.frames.attributes import exact_text
 from symfpu.frames.tabled import Tabled
 from symfpu.localization.laws import ProfileLine
