@@ -92,6 +92,7 @@ from symfpu.action_angle.twist import Twist as Twist
 from symfpu.action_angle.twist import twist as twist
 
 # stability of tori: normal frequencies
+from symfpu.normal.frequencies import NormalFrequencies as NormalFrequencies
 from symfpu.normal.modes import NoNormalModes as NoNormalModes
 from symfpu.normal.modes import NormalMode as NormalMode
 from symfpu.normal.modes import NormalModes as NormalModes

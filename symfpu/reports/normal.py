@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.families.normal_events import NormalEvent
-from symfpu.normal.modes import NormalMode, NormalModes
+from symfpu.families.normal_family import NormalFamily
+from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
+from symfpu.normal.modes import NormalModes
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.reports.solution import frequencies_record
 from symfpu.reports.tables import fifteen_digits
+from symfpu.tori.quasiperiodic import amplitudes_of
 
 SHOWN_RESONANCES = 10
 
@@ -24,11 +27,65 @@ def normal_record(found: NormalModes) -> dict[str, Any]:
         "verdict": found.verdict,
         "stable": found.stable,
         "growth": fifteen_digits(found.growth),
-        "normal_frequencies": {str(mode.mode): _sigma(mode) for mode in found.modes},
+        "normal_frequencies": {str(q): _number(w) for q, w in found.frequencies.items()},
         "signatures": {str(mode.mode): mode.signature for mode in found.modes},
         "resonances": [_resonance(one) for one in found.resonances[:SHOWN_RESONANCES]],
         "residual": fifteen_digits(found.residual),
     }
+
+
+def normal_frequencies_record(found: NormalFrequencies) -> dict[str, Any]:
+    """Normal frequencies of a member of a family for JSON."""
+    sigma = {str(q): _number(w) for q, w in found.frequencies.items()}
+    return {
+        "verdict": found.verdict,
+        "stable": found.stable,
+        "growth": fifteen_digits(found.growth),
+        "normal_frequencies": sigma,
+        "signatures": {str(q): n for q, n in found.signatures.items()},
+        "residual": fifteen_digits(found.residual),
+        "missing": {str(q): why for q, why in found.missing.items()},
+    }
+
+
+def normal_family_record(found: NormalFamily) -> dict[str, Any]:
+    """A line of tori for JSON: its members, where they are, and its events."""
+    torus = found.members[0].torus
+    return {
+        "kind": type(found).__name__,
+        **torus.chain.typed,
+        "seeds": list(torus.seeds),
+        "verdict": found.verdict,
+        "members": [
+            _member_record(one, part)
+            for one, part in zip(found.members, found.parts, strict=True)
+        ],
+        "events": [normal_event_record(event) for event in found.events],
+    }
+
+
+def _member_record(found: NormalModes, part: float) -> dict[str, Any]:
+    """A member of a line; its chain and seeds are those of the line."""
+    amplitudes = amplitudes_of(found.torus).items()
+    return {
+        "part": fifteen_digits(part),
+        "amplitudes": {str(q): repr(float(a)) for q, a in amplitudes},
+        "frequencies": frequencies_record(found.torus),
+        **normal_frequencies_record(frequencies_of(found, {})),
+    }
+
+
+def normal_family_text(found: NormalFamily) -> str:
+    """A line of tori for a reader: a line a member, and the events."""
+    chain = repr(found.members[0].torus.chain).removeprefix("Chain(").removesuffix(")")
+    seeds = ",".join(map(str, found.members[0].torus.seeds))
+    lines = [f"{chain}, seeds {seeds}: {len(found.members)} tori, {found.verdict}"]
+    for one in found.members:
+        amplitudes = amplitudes_of(one.torus).items()
+        where = ", ".join(f"A_{q}={float(a):.8g}" for q, a in amplitudes)
+        lines.append(f"  {where}: {frequencies_of(one, {})!r}")
+    lines += [f"  {event!r}" for event in found.events] or ["  no events"]
+    return "\n".join(lines)
 
 
 def normal_event_record(event: NormalEvent) -> dict[str, Any]:
@@ -39,14 +96,15 @@ def normal_event_record(event: NormalEvent) -> dict[str, Any]:
         "after": event.after,
         "part": fifteen_digits(event.part),
         "amplitudes": {str(q): repr(float(a)) for q, a in event.amplitudes.items()},
+        "energy": repr(event.energy),
         "begins": event.begins,
         "error": fifteen_digits(event.error),
     }
 
 
-def _sigma(mode: NormalMode) -> str | list[str]:
-    value = complex(mode.sigma)
-    if not mode.growth:
+def _number(sigma: complex) -> str | list[str]:
+    value = complex(sigma)
+    if not value.imag:
         return repr(value.real)
     return [repr(value.real), repr(value.imag)]
 
