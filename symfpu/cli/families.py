@@ -57,7 +57,6 @@ from symfpu.reports.family import (
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import load, save
 
-
 ResonanceOption = Annotated[
     str,
     typer.Option(help="With --normal: largest sum |nu_i| of resonances.", metavar="K"),

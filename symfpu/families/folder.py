@@ -346,9 +346,11 @@ class Kept:
                 "largest": self.largest,
                 "events": [asdict(e) for e in self.events if isinstance(e, Event)],
             }
-            record |= self._normal_record(self.folder)
-            write_text(self.folder / RECORD, json.dumps(record, indent=1) + "\n")
-            forget_modes(self.folder, record.get("normal_modes_of"))
+            of_normal = self._normal_record(self.folder)
+            text = json.dumps(record | of_normal, indent=1)
+            write_text(self.folder / RECORD, text + "\n")
+            if of_normal:
+                forget_modes(self.folder, of_normal["normal_modes_of"])
 
     def _normal_record(self, folder: Path) -> Json:
         """Of the normal frequencies; those that the next are continued from go into a file."""

@@ -31,7 +31,7 @@ class NormalFrequencies:
     """
 
     torus: QuasiPeriodic = field(repr=False)
-    frequencies: Mapping[int, complex]
+    frequencies: Mapping[int, float | complex]
     signatures: Mapping[int, int]
     residual: float
     resonances: tuple[ParametricResonance, ...] = field(repr=False)

@@ -82,7 +82,8 @@ def _inline(result: Any, usual: Usual) -> str:
     draw = partial(usual.picture, result)
     content = picture_bytes(draw, ".png", size=SIZE, dpi=DPI)
     data = base64.b64encode(content).decode()
-    words = f"{usual.picture.__name__.lstrip('_')} of this {type(result).__name__}".replace("_", " ")
+    name = usual.picture.__name__.lstrip("_")
+    words = f"{name} of this {type(result).__name__}".replace("_", " ")
     return f'<img alt="{words}" src="data:image/png;base64,{data}">'
 
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
+from symfpu.errors import ResonantDivisor
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_family import NormalFamily
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
-from symfpu.normal.modes import NormalModes
+from symfpu.normal.modes import NoNormalModes, NormalMode, NormalModes
+from symfpu.normal.phantom import NormalFrequencySeries
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.reports.solution import frequencies_record
 from symfpu.reports.tables import fifteen_digits
-from symfpu.tori.quasiperiodic import amplitudes_of
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 
 SHOWN_RESONANCES = 10
 
@@ -86,6 +89,68 @@ def normal_family_text(found: NormalFamily) -> str:
         lines.append(f"  {where}: {frequencies_of(one, {})!r}")
     lines += [f"  {event!r}" for event in found.events] or ["  no events"]
     return "\n".join(lines)
+
+
+class BySeries(NamedTuple):
+    """A normal frequency by its series, or why it has none.
+
+    mode : what `normal_modes` found. series : solved; None with the reason. terms : Omega_q, and
+    mu^k sigma^(k) of every order.
+    """
+
+    mode: NormalMode
+    series: NormalFrequencySeries | None
+    terms: tuple[float, ...] = ()
+    reason: str = ""
+
+
+def by_series(
+    mode: NormalMode,
+    solve: Callable[[int], NormalFrequencySeries],
+    torus: QuasiPeriodic,
+) -> BySeries:
+    """One mode by series; solve : gives the series that is its own sigma, by mode."""
+    try:
+        series = solve(mode.mode)
+    except (NoNormalModes, ResonantDivisor) as none:
+        return BySeries(mode, None, reason=str(none))
+    amplitudes = {q: float(a) for q, a in amplitudes_of(torus).items()}
+    return BySeries(mode, series, tuple(map(float, series.terms(amplitudes))))
+
+
+def series_records(found: Sequence[BySeries]) -> dict[str, Any]:
+    """Normal frequencies by series for JSON; nothing where there are none."""
+    if not found:
+        return {}
+    return {"series": {str(one.mode.mode): _series_record(one) for one in found}}
+
+
+def _series_record(one: BySeries) -> dict[str, Any]:
+    if one.series is None:
+        return {"sigma": None, "reason": one.reason}
+    return {
+        "order": one.series.order,
+        "sigma": repr(float(one.series.sigma)),
+        "terms": list(map(repr, one.terms)),
+        "closed_shift": str(one.series.closed_shift()),
+    }
+
+
+def series_text(found: Sequence[BySeries]) -> list[str]:
+    """The same for a reader: sigma, its difference from the one found, the closed shift."""
+    lines = []
+    for one in found:
+        name = f"sigma_{one.mode.mode}"
+        if one.series is None:
+            lines.append(f"  {name}: no series: {one.reason}")
+            continue
+        sigma = float(one.series.sigma)
+        off = sigma - complex(one.mode.sigma).real
+        lines.append(f"  {name} = {sigma:.13g}, off by {off:+.1e}")
+        terms = ", ".join(f"{x:+.4e}" for x in one.terms[1:])
+        lines.append(f"    orders 1..{one.series.order}: {terms}")
+        lines.append(f"    lowest shift: {one.series.closed_shift()}")
+    return ["by series:", *lines] if lines else []
 
 
 def normal_event_record(event: NormalEvent) -> dict[str, Any]:
