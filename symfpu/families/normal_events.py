@@ -43,7 +43,14 @@ SHARE = 0.2  # of the bracket, that the points about an estimate reach out to
 ROUNDS = 6  # of estimates, each with a point on either side
 NODES = (-1.0, -0.6, -0.3, 0.3, 0.6, 1.0)  # of the last estimate, in units of the gap
 
+NARROWED = 1e-7  # of the way, to which it is halved where D is too small to interpolate
+NOISE = 1e-10  # of D, below which its sign says nothing
+
 Failed = (NoTorus, NoNormalModes)
+
+
+class Outside(Exception):
+    """An estimate of a zero leaves the places between which it is."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +151,7 @@ class Stretch:
         gap = 2 * LEAST_GAP * abs(resonance.left_of(_real(low.normal)))
         begins = values[1] < 0
         try:
-            place, error = collision(of, low.place, high.place, values, gap**2)
+            place, error = located(of, low.place, high.place, values, gap**2)
         except Failed:
             place, error = _between(low, high, values), high.place - low.place
         return self._event(STABILITY, resonance, place, begins=begins, error=error)
@@ -181,7 +188,7 @@ class Stretch:
         gap = LEAST_GAP * max(map(abs, values)) / SHARE
         try:
             place, error = collision(of, low.place, high.place, values, gap)
-        except Failed:
+        except (*Failed, Outside):
             place, error = _between(low, high, values), high.place - low.place
         return self._event(RESONANCE, resonance, place, error=error)
 
@@ -275,6 +282,36 @@ def _zero(
     return float(brentq(value, low, high, xtol=PLACE))
 
 
+def located(
+    D: Callable[[float], float],
+    low: float,
+    high: float,
+    ends: tuple[float, ...],
+    least: float,
+) -> tuple[float, float]:
+    """As `collision`, between halves of the way where it leads out of it or D is too small.
+
+    So are the ends of a narrow tongue, and of a short piece; then the error is what is left.
+    """
+    width = NARROWED * (high - low)
+    while high - low > width:
+        try:
+            if min(map(abs, ends)) > least:
+                return collision(D, low, high, ends, least)
+        except (*Failed, Outside):
+            pass
+        middle = (low + high) / 2
+        value = D(middle)
+        if abs(value) < NOISE:
+            return middle, high - low
+        first, second = ends
+        if (value < 0) == (first < 0):
+            low, ends = middle, (value, second)
+        else:
+            high, ends = middle, (first, value)
+    return (low + high) / 2, high - low
+
+
 def collision(
     D: Callable[[float], float],
     low: float,
@@ -285,11 +322,14 @@ def collision(
     """The zero of a smooth function that cannot be computed where |D| < least, and its error.
 
     By secants of higher order: the inverse interpolation through points on both sides, drawn
-    together until they stand at the least |D|. The error is what two points fewer change.
+    together until they stand at the least |D|. The error is what two points fewer change. Raises
+    Outside.
     """
     known = dict(zip((low, high), ends, strict=True))
     best = _inverse(known)
     for _ in range(ROUNDS):
+        if not low < best < high:
+            raise Outside
         slope = _slope(known, best)
         room = SHARE * min(best - low, high - best, key=abs)
         nearest = min(least / slope, room)
