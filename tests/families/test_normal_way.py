@@ -66,8 +66,8 @@ def test_the_event_of_a_family_of_tori_is_that_of_the_line():
 
 @pytest.mark.long
 def test_events_are_found_beyond_a_fold():
-    """N = 8, beta = 1, seed 1: A_1 turns at H = 0.7176, and a pair more is unstable where it falls."""
-    found = family(Chain(8, beta=1), (1,), "1", from_energy="0.4", normal=True, resonance_length=0)
+    """N = 8, beta = 1, seed 1: A_1 turns at H = 0.7176 and one pair more is unstable where it falls."""
+    found = family(Chain(8, beta=1), (1,), "1.1", from_energy="0.1", normal=True, resonance_length=0)
     [fold] = [e for e in found.events if e.what == "A_1"]
     [event] = [e for e in found.normal_events if e.resonance.modes == (6,)]
     assert event.energy > fold.energy
