@@ -30,7 +30,8 @@ from symfpu.normal.resonances import (
 )
 from symfpu.normal.search import followed_modes
 from symfpu.refinement.tori import NoTorus
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 
 STABILITY, RESONANCE = "stability", "resonance"
 RESONANCE_LENGTH = 4  # sum |nu_i| up to which a resonance that is crossed is an event
@@ -222,8 +223,8 @@ class Stretch:
         return between, (1 - part) * low + part * high
 
 
-def _measured(torus: QuasiPeriodic) -> tuple[dict[int, float], float]:
-    amplitudes = {q: float(a) for q, a in amplitudes_of(torus).items()}
+def _measured(torus: QuasiPeriodic | RingTorus) -> tuple[dict[int, float], float]:
+    amplitudes = {q: float(a) for q, a in amplitudes_by_seed(torus).items()}
     return amplitudes, float(torus.energy())
 
 

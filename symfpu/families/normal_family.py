@@ -29,7 +29,8 @@ from symfpu.normal.search import checked_modes, followed_modes
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import Number, exact, integer
 from symfpu.refinement.tori import NoTorus, RefinedTorus, refine_at_amplitudes
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
+from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.ring_torus import amplitudes_by_seed
 
 HALVINGS = 6  # of a step to a torus that Newton's method does not reach at once
 
@@ -74,7 +75,7 @@ class NormalFamily(Shown, Gridded):
 
     @staticmethod
     def _amplitudes(found: NormalModes) -> dict[int, float]:
-        return {q: float(a) for q, a in amplitudes_of(found.torus).items()}
+        return {q: float(a) for q, a in amplitudes_by_seed(found.torus).items()}
 
     def _grid(self) -> Grid:
         torus = self.members[0].torus
@@ -185,7 +186,7 @@ class _Line:
     def __init__(
         self, first: QuasiPeriodic, end: Mapping[int, float], members: int
     ) -> None:
-        self.start = {q: float(a) for q, a in amplitudes_of(first).items()}
+        self.start = {q: float(a) for q, a in amplitudes_by_seed(first).items()}
         self.end = dict(end)
         self.parts = tuple(n / (members - 1) for n in range(members))
         self._chain = first.chain

@@ -10,6 +10,7 @@ from symfpu.normal.modes import NoNormalModes, NormalModes
 from symfpu.normal.resonances import ParametricResonance, resonances_of
 from symfpu.normal.search import LENGTH
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 KEPT_RESONANCES = 10  # the nearest
 LOCKED = 1e-8  # distance up to which a hyperbolic direction is locked to a resonance
@@ -30,7 +31,7 @@ class NormalFrequencies:
     NormalFrequencies(stable, sigma_1=0.7..., sigma_3=1.8..., residual ...)
     """
 
-    torus: QuasiPeriodic = field(repr=False)
+    torus: QuasiPeriodic | RingTorus = field(repr=False)
     frequencies: Mapping[int, float | complex]
     signatures: Mapping[int, int]
     residual: float

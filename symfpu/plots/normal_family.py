@@ -11,13 +11,14 @@ from symfpu.families.family import Family
 from symfpu.families.normal_events import STABILITY, NormalEvent
 from symfpu.families.normal_family import NormalFamily
 from symfpu.plots.style import QUIET, Axes, axes_for, require
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 
 
 class _Row(NamedTuple):
     """One torus, and its normal frequencies by mode."""
 
-    torus: QuasiPeriodic
+    torus: QuasiPeriodic | RingTorus
     sigma: Mapping[int, complex]
 
     @property
@@ -74,7 +75,7 @@ def _rows(result: Any) -> tuple[list[_Row], tuple[NormalEvent, ...]]:
 
 def _axis(rows: list[_Row]) -> tuple[int, Any]:
     """The seed whose amplitude changes most, and that amplitude along the way."""
-    known = [amplitudes_of(row.torus) for row in rows]
+    known = [amplitudes_by_seed(row.torus) for row in rows]
     seed = max(known[0], key=lambda q: abs(float(known[-1][q]) - float(known[0][q])))
     return seed, np.array([float(row[seed]) for row in known])
 

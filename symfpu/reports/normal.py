@@ -14,7 +14,8 @@ from symfpu.normal.phantom import NormalFrequencySeries
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.reports.solution import frequencies_record
 from symfpu.reports.tables import fifteen_digits
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 
 SHOWN_RESONANCES = 10
 
@@ -69,7 +70,7 @@ def normal_family_record(found: NormalFamily) -> dict[str, Any]:
 
 def _member_record(found: NormalModes, part: float) -> dict[str, Any]:
     """A member of a line; its chain and seeds are those of the line."""
-    amplitudes = amplitudes_of(found.torus).items()
+    amplitudes = amplitudes_by_seed(found.torus).items()
     return {
         "part": fifteen_digits(part),
         "amplitudes": {str(q): repr(float(a)) for q, a in amplitudes},
@@ -84,7 +85,7 @@ def normal_family_text(found: NormalFamily) -> str:
     seeds = ",".join(map(str, found.members[0].torus.seeds))
     lines = [f"{chain}, seeds {seeds}: {len(found.members)} tori, {found.verdict}"]
     for one in found.members:
-        amplitudes = amplitudes_of(one.torus).items()
+        amplitudes = amplitudes_by_seed(one.torus).items()
         where = ", ".join(f"A_{q}={float(a):.8g}" for q, a in amplitudes)
         lines.append(f"  {where}: {frequencies_of(one, {})!r}")
     lines += [f"  {event!r}" for event in found.events] or ["  no events"]
@@ -107,14 +108,14 @@ class BySeries(NamedTuple):
 def by_series(
     mode: NormalMode,
     solve: Callable[[int], NormalFrequencySeries],
-    torus: QuasiPeriodic,
+    torus: QuasiPeriodic | RingTorus,
 ) -> BySeries:
     """One mode by series; solve : gives the series that is its own sigma, by mode."""
     try:
         series = solve(mode.mode)
     except (NoNormalModes, ResonantDivisor) as none:
         return BySeries(mode, None, reason=str(none))
-    amplitudes = {q: float(a) for q, a in amplitudes_of(torus).items()}
+    amplitudes = {q: float(a) for q, a in amplitudes_by_seed(torus).items()}
     return BySeries(mode, series, tuple(map(float, series.terms(amplitudes))))
 
 
