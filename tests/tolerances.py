@@ -666,3 +666,7 @@ BESIDE_A_CROSSING = 1e-3
 TODA_GROWTH = 1e-6
 # numbers of a page, written with three or four digits
 THREE_DIGITS = 1e-3
+
+# Ratio of what two tori of small waves, one twice the other, miss of a normal frequency: the next
+# power is the fourth, at amplitudes of 0.02 a part of 1e-3.
+PHANTOM_WAVE = 1e-2
