@@ -1,11 +1,13 @@
-"""Normal modes of travelling waves: Floquet, Toda's spectral curve, tori with one wave more, integrated variations."""
+"""Normal modes of waves of a ring: Floquet, Toda's spectral curve, tori with one wave more, integrated variations."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.floquet import floquet
 from symfpu.bundles.bundle import save
 from symfpu.chain import bonds
@@ -14,11 +16,13 @@ from symfpu.chain.potentials.toda import toda
 from symfpu.cli.main import main
 from symfpu.errors import InputError
 from symfpu.integrable.torus import toda_torus
+from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.tori import refine, refine_at_amplitudes
 from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.series.travelling import travelling_waves
-from symfpu.tori.ring_torus import travelling_torus
+from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.tori.ring_torus import travelling_torus, unfold
 from tests.tolerances import (
     NORMAL_CONVERGED,
     NORMAL_MULTIPLIER,
@@ -141,3 +145,63 @@ def test_rough_waves_are_refused():
     rough = travelling_torus(travelling_waves(ring(8, alpha=1), (1,), ("0.78",), 2))
     with pytest.raises(InputError, match="refine it first"):
         normal_modes(rough)
+
+
+STANDING = [(Chain(4, alpha="0.3", beta="0.4"), 1, "0.5"), (Chain(5, beta=1), 2, "0.6")]
+
+
+@pytest.mark.parametrize(("chain", "seed", "amplitude"), STANDING, ids=repr)
+def test_of_standing_waves_they_are_the_multipliers_and_those_of_fixed_ends(chain, seed, amplitude):
+    """Sines are the normal modes of the fixed ends; the cosine of the seed is hyperbolic in both."""
+    breather = breather_at_amplitude(chain, seed, amplitude)
+    waves = unfold(breather)
+    expected, found = floquet(waves), normal_modes(waves)
+    assert found.stable == expected.stable
+    ours = np.array(list(found.multipliers().values()))
+    ours = np.concatenate([ours, 1 / ours, ours.conj(), 1 / ours.conj()])
+    for one, other in ((expected.multipliers[2:], ours), (ours, expected.multipliers[2:])):
+        assert max(np.abs(other - value).min() for value in one) < NORMAL_MULTIPLIER
+    fixed = normal_modes(breather).frequencies
+    assert {q: found.frequencies[q] for q in fixed} == pytest.approx(fixed, abs=NORMAL_CONVERGED)
+    pairs = [q for q in fixed if abs(found.frequencies[q] - found.frequencies[-q]) > 1e-6]
+    assert pairs  # what is one frequency at rest is split
+    assert found.mode(-seed).growth > 0
+
+
+def test_variations_of_standing_waves():
+    """Of two angles: sines and cosines, of the norm of fixed ends."""
+    amplitudes = {1: "0.3", 2: "0.2"}
+    chain = Chain(4, beta=1)
+    torus = unfold(refine_at_amplitudes(torus_at_amplitudes(chain, amplitudes, order=6), amplitudes))
+    found = normal_modes(torus)
+    assert [mode.mode for mode in found.modes] == [-3, -2, -1, 3, 4]
+    sites = np.arange(8)
+    waves = []
+    for q in torus.chain.mode_numbers:
+        shape = np.sin if 0 < q < 4 else np.cos
+        waves.append(np.sqrt((1 if q == 4 else 2) / 4) * shape(np.pi * abs(q) * sites / 4))
+    for mode in map(found.mode, (-2, 3)):
+        inner = 1j * (mode.sigma + mode.rates)
+
+        def state(t, inner=inner, mode=mode):
+            now = np.exp(inner * t)
+            return np.concatenate([now @ mode.coefficients @ waves, (inner * now) @ mode.coefficients @ waves])
+
+        assert np.abs(varied(torus, state(0.0), 8.0) - state(8.0)).max() < NORMAL_VARIATION
+
+
+def test_a_displacement_that_costs_nothing_is_named():
+    """N = 8: sigma_-1 and omega_1 are apart by an Umklapp of high order alone."""
+    waves = unfold(breather_at_amplitude(Chain(8, beta=1), 1, "0.3"))
+    with pytest.raises(NoNormalModes, match=r"mode -1 .*sigma_-1 = \(1\)\.omega, off by"):
+        normal_modes(waves)
+    assert normal_modes(waves, modes=[-2, 2]).stable
+
+
+def test_waves_that_neither_travel_nor_stand_are_refused():
+    waves = unfold(breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.3"))
+    moved = replace(waves, modes=np.where(waves.modes == 2, 3, waves.modes))
+    uneven = replace(waves, sines=waves.sines * np.linspace(1, 1 + 1e-10, len(waves.sines)))
+    for other in (moved, uneven):
+        with pytest.raises(InputError, match=r"refine it first|other waves"):
+            normal_modes(other)
