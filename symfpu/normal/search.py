@@ -141,7 +141,7 @@ def checked_modes(torus: Solution, modes: Iterable[int] | None) -> tuple[int, ..
         return tuple(normal)
     allowed = f"different modes that are no seeds, of {normal}"
     try:
-        given = [integer(q, "modes", min(normal, default=1)) for q in modes]
+        given = [integer(q, "modes", min(torus.chain.mode_numbers)) for q in modes]
     except TypeError as error:
         raise InputError("modes", modes, allowed, "pass a list of modes") from error
     if set(given) - set(normal) or len(set(given)) < len(given):
