@@ -13,6 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
@@ -24,6 +26,7 @@ from symfpu.proofs.decided_file import DecidedFile
 from symfpu.proofs.every_length import DecidedFlat, decided_flat
 from symfpu.proofs.families import equation_text, mode_text
 from symfpu.proofs.flats import MOST_SEEDS, Arrangement, Flat, degree_of, flats
+from symfpu.proofs.seed_sums import without_odd_sums
 
 FORMAT, SCHEMA = "symfpu rule for all N certificate", 1
 MODELS = ("alpha", "beta")
@@ -95,9 +98,13 @@ class RuleForAllN(Tabled):
 
     @property
     def reason(self) -> str:
-        """What shows the excited modes: "sign" alone, or "sign and residues"."""
-        by_sign = all(found.by_sign for found in self.decided)
-        return "sign" if by_sign else "sign and residues"
+        """What shows the excited modes: "sign", where needed with "chains" and "residues"."""
+        reasons = ["sign"]
+        if any(found.chained for found in self.decided):
+            reasons.append("chains")
+        if any(found.witnesses for found in self.decided):
+            reasons.append("residues")
+        return " and ".join(reasons)
 
     @property
     def gaps(self) -> tuple[DecidedFlat, ...]:
@@ -132,10 +139,10 @@ class RuleForAllN(Tabled):
             allowed = f"{self.seeds_number} modes"
             raise InputError("seeds", tuple(seeds), allowed, "prove it for as many seeds")
         arrangement = Arrangement(self.model, self.seeds_number, self.order)
-        equations = arrangement.equations(N, modes)
+        held = arrangement.through(N, np.array([modes]))
         for found in self.decided:
             flat = found.flat
-            if arrangement.equations(flat.N, flat.seeds) == equations:
+            if (arrangement.through(flat.N, np.array([flat.seeds])) == held).all():
                 return found
         raise AssertionError("the flats are not complete")
 
@@ -284,7 +291,8 @@ def prove_for_all_N(
     known = kept.read()
     told = progress or unheard
     all_flats = flats(model, s, last, told)
-    todo = [flat for flat in all_flats if flat not in known]
+    asked = _with_odd_sums(model, last, all_flats)
+    todo = [flat for flat in asked if flat not in known]
     with ExitStack() as stack:
         pool = executor
         if pool is None and len(todo) > FEW:
@@ -293,9 +301,18 @@ def prove_for_all_N(
         for batch in _decided(pool, model, last, todo):
             kept.append(batch)
             known |= {found.flat: found for found in batch}
-            told("flats", len(known) / len(all_flats))
-    decided = tuple(known[flat] for flat in all_flats)
+            told("flats", len(known) / len(asked))
+    found = {flat: known[flat] for flat in asked}
+    decided = tuple(found.get(flat) or DecidedFlat(flat) for flat in all_flats)
     return RuleForAllN(model, s, last, _verdict(decided), decided)
+
+
+def _with_odd_sums(model: str, order: int, all_flats: Sequence[Flat]) -> list[Flat]:
+    """Those that Theorem 3 of docs/propagation.md does not decide by itself."""
+    seeds = np.array([flat.seeds for flat in all_flats], dtype=np.int64)
+    N = np.array([flat.N for flat in all_flats], dtype=np.int64)
+    open_flats = np.flatnonzero(~without_odd_sums(model, order, seeds, N))
+    return [all_flats[i] for i in open_flats]
 
 
 def _verdict(decided: Sequence[DecidedFlat]) -> str:
