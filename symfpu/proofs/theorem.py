@@ -28,7 +28,7 @@ from symfpu.proofs.families import equation_text, mode_text
 from symfpu.proofs.flats import MOST_SEEDS, Arrangement, Flat, degree_of, flats
 from symfpu.proofs.seed_sums import without_odd_sums
 
-FORMAT, SCHEMA = "symfpu rule for all N certificate", 1
+FORMAT, SCHEMA = "symfpu rule for all N certificate", 2
 MODELS = ("alpha", "beta")
 BATCH = 16  # flats in one task
 FEW = 2000  # flats that are decided without a pool of processes
@@ -156,7 +156,8 @@ class RuleForAllN(Tabled):
 
         `symfpu.proofs.verify_theorem` checks it by another route.
         """
-        points = [point for found in self.decided for point in found.points]
+        listed = self._listed()
+        points = [point for found in listed for point in found.points]
         body: dict[str, Any] = {
             "format": FORMAT,
             "schema": SCHEMA,
@@ -164,31 +165,23 @@ class RuleForAllN(Tabled):
             "seeds_number": self.seeds_number,
             "order": self.order,
             "verdict": self.verdict,
-            "flats": [[found.flat.N, *found.flat.seeds] for found in self.decided],
-            "exceptions": list(self._exception_records()),
-            "undecided": [
-                [i, q] for i, found in enumerate(self.decided) for q in found.undecided
-            ],
+            "count": self.flats,
+            "flats": [[found.flat.N, *found.flat.seeds] for found in listed],
+            "exceptions": list(_exception_records(listed)),
+            "undecided": [[i, q] for i, found in enumerate(listed) for q in found.undecided],
             "points": [[p.prime, p.root, *p.frequencies] for p in points],
-            "witnesses": list(self._witness_records()),
+            "witnesses": list(_witness_records(listed)),
         }
         text = json.dumps(body, sort_keys=True, separators=(",", ":"))
         return body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
 
-    def _exception_records(self) -> Iterator[list[int | None]]:
-        """Flat, mode, order by the rule, actual order."""
-        for i, found in enumerate(self.decided):
-            for e in found.exceptions:
-                yield [i, e.mode, e.predicted, e.actual]
-
-    def _witness_records(self) -> Iterator[list[int]]:
-        """Flat, point, mode, order, residue, and the powers of the seeds."""
-        first = 0
-        for i, found in enumerate(self.decided):
-            for w in found.witnesses:
-                powers = w.monomial[::2]
-                yield [i, first + w.point, w.mode, w.order, w.residue, *powers]
-            first += len(found.points)
+    def _listed(self) -> list[DecidedFlat]:
+        """What a checker does not find by itself: it makes the points out of the lines."""
+        return [
+            found
+            for found in self.decided
+            if found.flat.dimension or found.exceptions or found.witnesses or found.undecided
+        ]
 
     def write(self, path: Path | str) -> None:
         """Write the certificate to a path as JSON, whole or not at all.
@@ -216,6 +209,23 @@ class RuleForAllN(Tabled):
             verdict=self.verdict,
         )
         return Table(columns, known)
+
+
+def _exception_records(listed: Sequence[DecidedFlat]) -> Iterator[list[int | None]]:
+    """Flat, mode, order by the rule, actual order."""
+    for i, found in enumerate(listed):
+        for e in found.exceptions:
+            yield [i, e.mode, e.predicted, e.actual]
+
+
+def _witness_records(listed: Sequence[DecidedFlat]) -> Iterator[list[int]]:
+    """Flat, point, mode, order, residue, and the powers of the seeds."""
+    first = 0
+    for i, found in enumerate(listed):
+        for w in found.witnesses:
+            powers = w.monomial[::2]
+            yield [i, first + w.point, w.mode, w.order, w.residue, *powers]
+        first += len(found.points)
 
 
 def theorem_text(proof: RuleForAllN) -> str:

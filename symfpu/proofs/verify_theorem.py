@@ -1,18 +1,21 @@
 """Independent checker of the theorem for every N: Python integers and fractions only.
 
-It finds the hyperplanes m.q = 2 w N again, shows that the flats of the certificate are all there
-are, and decides the representative of each once more: by the signs of the products of couplings,
-by residues that the recursion of `verify` computes again, or by couplings that are zero. It
-shares no code with the prover and imports nothing but the standard library and the checker of
-certificates of one N.
+It finds the hyperplanes m.q = 2 w N again, shows that the wide flats of the certificate are all
+there are, makes the points out of them, and decides each flat once more: by sums of seeds that
+fold with one sign, by chains of couplings, by the signs of the products of couplings, by residues
+that the recursion of `verify` computes again, or by couplings that are zero. The theorems that
+make these proofs are in docs/propagation.md. It shares no code with the prover and imports
+nothing but the standard library and the checker of certificates of one N.
 """
 
 import json
 import re
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import combinations, pairwise, product
+from functools import cache
+from itertools import combinations, combinations_with_replacement, pairwise, product
 from math import gcd
+from operator import mul
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,18 +32,21 @@ from symfpu.proofs.verify import (
     check_point,
     coupled_sets,
     couplings,
+    folded,
     need,
     propagation_rule,
 )
 
 FORMAT = "symfpu rule for all N certificate"
 KEYS = (
-    "digest exceptions flats format model order points schema seeds_number undecided "
+    "count digest exceptions flats format model order points schema seeds_number undecided "
     "verdict witnesses"
 )
 MOST_SEEDS = 3
 LARGEST_ORDER = 100
 LARGEST_N = 4096
+# the last orders at which a chain of couplings holds for the frequencies of every N
+CHAINS = {"alpha": 3, "beta": 2}
 
 Json = dict[str, Any]
 Row = tuple[int, ...]
@@ -73,7 +79,7 @@ def read_theorem(path: Path) -> Json:
     need(not strange, "not JSON of plain strings, null and integers of at most 20 digits")
     data: Json = json.loads(text)
     need(data["format"] == FORMAT, "not a theorem for all N")
-    need(data["schema"] == 1, "schema version unknown: this checker supports version 1")
+    need(data["schema"] == 2, "schema version unknown: this checker supports version 2")
     once = bare.count(":") == len(data)
     need(
         once and " ".join(sorted(data)) == KEYS, "a key is missing, unknown or there twice"
@@ -108,7 +114,7 @@ def read_claim(data: Json) -> Theorem:
 
 
 def read_flats(data: Json, claim: Theorem) -> list[Row]:
-    """Representatives: N and ascending seeds."""
+    """N and ascending seeds of the representatives and points that are listed."""
     found = [tuple(row) for row in data["flats"]]
     for N, *seeds in found:
         need(N <= LARGEST_N and len(seeds) == claim.s, "a representative of wrong size")
@@ -116,6 +122,7 @@ def read_flats(data: Json, claim: Theorem) -> list[Row]:
             seeds == sorted({q for q in seeds if 0 < q < N}),
             "seeds are not ascending modes",
         )
+    need(len(set(found)) == len(found), "a flat is listed twice")
     return found
 
 
@@ -149,51 +156,62 @@ def lowest(row: Row) -> Row:
 
 def dot(m: Row, v: Row) -> int:
     """Of the normal of a row with a vector: a value at the end of the row is left out."""
-    return sum(a * b for a, b in zip(m, v, strict=False))
+    return sum(map(mul, m, v))
 
 
-def held(rows: list[Row], N: int, seeds: Row) -> int:
+def held(rows: list[Row], flat: Row) -> int:
     """Which hyperplanes hold seeds / N, as bits."""
+    N, *seeds = flat
     bits = 0
     for i, row in enumerate(rows):
-        if dot(row, seeds) == row[-1] * N:
+        if sum(map(mul, row, seeds)) == row[-1] * N:
             bits |= 1 << i
     return bits
 
 
-def check_flats(claim: Theorem, flats: list[Row]) -> list[int]:
-    """The flats are all of the arrangement, each once; returns their dimensions.
+class Arrangement(NamedTuple):
+    """The flats: dimensions of those that are listed, and the points that are not."""
 
-    The whole simplex is there, each hyperplane, where s = 3 each line, each point on a line: so
-    every intersection that meets the open simplex.
+    dimensions: list[int]
+    unlisted: list[Row]
+
+
+def check_flats(claim: Theorem, listed: list[Row], count: int) -> Arrangement:
+    """The flats are all of the arrangement, each once.
+
+    The whole simplex is listed, each hyperplane, and where s = 3 each line, by a point on no
+    further hyperplane. The points are those in which hyperplanes meet the lines: so every
+    intersection that meets the open simplex is there.
     """
     rows = hyperplanes(claim)
-    masks = {held(rows, flat[0], flat[1:]): flat for flat in flats}
-    need(len(masks) == len(flats), "two representatives of one flat")
-    directions = dict(lines(claim, rows, masks))
+    directions = dict(lines(claim, rows))
     expected = set(directions) | {0}
     if claim.s > 1:
         expected |= {1 << i for i in range(len(rows))}
-    points = set(points_on_lines(rows, directions, masks))
-    need(not points & expected, "a point that is a line")
-    missing, more = (expected | points) - set(masks), set(masks) - expected - points
-    need(not missing, f"flats are missing: {len(missing)}")
-    need(not more, f"representatives of no flat: {len(more)}")
-    return [dimension(claim, held(rows, f[0], f[1:]), directions, points) for f in flats]
+    masks = {flat: held(rows, flat) for flat in listed}
+    along = {masks[flat]: flat for flat in listed if masks[flat] in directions}
+    need(len(along) == len(directions), "a line has no representative")
+    vertices = set(points_on_lines(rows, directions, along))
+    wide = [masks[flat] for flat in listed if flat not in vertices]
+    need(len(set(wide)) == len(wide), "two representatives of one flat")
+    need(expected <= set(wide), f"flats are missing: {len(expected - set(wide))}")
+    need(set(wide) <= expected, "a representative of no flat")
+    need(count == len(expected) + len(vertices), f"there are not {count} flats")
+    dimensions = [
+        0 if flat in vertices else dimension(claim, masks[flat], directions)
+        for flat in listed
+    ]
+    return Arrangement(dimensions, sorted(vertices.difference(listed)))
 
 
-def dimension(claim: Theorem, mask: int, directions: Any, points: set[int]) -> int:
-    """Of a flat, by the hyperplanes that hold it."""
-    if mask in points:
-        return 0
+def dimension(claim: Theorem, mask: int, directions: dict[int, Row]) -> int:
+    """Of a flat that is no point, by the hyperplanes that hold it."""
     if mask in directions:
         return 1
     return claim.s if mask == 0 else claim.s - 1
 
 
-def lines(
-    claim: Theorem, rows: list[Row], masks: dict[int, Row]
-) -> Iterator[tuple[int, Row]]:
+def lines(claim: Theorem, rows: list[Row]) -> Iterator[tuple[int, Row]]:
     """The flats of dimension one and their directions."""
     if claim.s == 1:
         yield 0, (1,)
@@ -201,12 +219,22 @@ def lines(
         for i, (a, b, _) in enumerate(rows):
             yield 1 << i, (-b, a)
     if claim.s == 3:
-        for first, second in combinations(rows, 2):
-            direction = cross(first, second)
-            if any(direction):
-                start, scale = common_point(first, second, direction)
-                if meets_simplex(start, scale, direction):
-                    yield line_mask(rows, start, scale, direction), direction
+        for start, scale, direction in sorted(common_lines(rows)):
+            if meets_simplex(start, scale, direction):
+                yield line_mask(rows, start, scale, direction), direction
+
+
+def common_lines(rows: list[Row]) -> set[tuple[Row, int, Row]]:
+    """In which two planes meet, each once: one point on it is in lowest terms, as its direction."""
+    found = set()
+    for first, second in combinations(rows, 2):
+        direction = cross(first, second)
+        if any(direction):
+            start, scale = common_point(first, second, direction)
+            shared = gcd(scale, *start)
+            point = tuple(c // shared for c in start)
+            found.add((point, scale // shared, lowest(direction)))
+    return found
 
 
 def cross(a: Row, b: Row) -> Row:
@@ -255,31 +283,37 @@ def line_mask(rows: list[Row], start: Row, scale: int, direction: Row) -> int:
 
 
 def points_on_lines(
-    rows: list[Row], directions: dict[int, Row], masks: dict[int, Row]
-) -> Iterator[int]:
-    """The points in which other hyperplanes meet the lines, as hyperplanes that hold them.
+    rows: list[Row], directions: dict[int, Row], along: dict[int, Row]
+) -> Iterator[Row]:
+    """The points in which other hyperplanes meet the lines, as N and seeds in lowest terms.
 
     A line is followed from its representative.
     """
-    known = {flat: mask for mask, flat in masks.items()}
     for mask, direction in directions.items():
-        need(mask in masks, "a line has no representative")
-        N, *seeds = masks[mask]
+        N, *seeds = along[mask]
+        low, high = room(N, seeds, direction)
         for row in rows:
-            slope = dot(row, direction)
-            if slope == 0:
-                continue
-            rise = row[-1] * N - dot(row, tuple(seeds))
-            sign = 1 if slope > 0 else -1
-            place = [
-                sign * (q * slope + v * rise) for q, v in zip(seeds, direction, strict=True)
-            ]
-            ends = [0, *place, sign * N * slope]
-            if all(ends[i] < ends[i + 1] for i in range(len(ends) - 1)):
-                shared = gcd(*ends)
-                flat = (ends[-1] // shared, *(c // shared for c in place))
-                need(flat in known, f"a point has no representative: {flat}")
-                yield known[flat]
+            slope = sum(map(mul, row, direction))
+            if slope:
+                rise = row[-1] * N - sum(map(mul, row, seeds))
+                if slope < 0:
+                    slope, rise = -slope, -rise
+                if low[0] * slope < rise * low[1] and rise * high[1] < high[0] * slope:
+                    place = [q * slope + v * rise for q, v in zip(seeds, direction)]  # noqa: B905
+                    shared = gcd(N * slope, *place)
+                    yield (N * slope // shared, *(c // shared for c in place))
+
+
+def room(N: int, seeds: list[int], direction: Row) -> tuple[Row, Row]:
+    """Between which t, as fractions, all gaps of 0 < q_1 + t v_1 < .. < q_s + t v_s < N are open."""
+    ends, slopes = (0, *seeds, N), (0, *direction, 0)
+    bounds = []
+    for i in range(len(ends) - 1):
+        gap, slope = ends[i + 1] - ends[i], slopes[i + 1] - slopes[i]
+        if slope:
+            bounds.append(Fraction(-gap, slope))
+    low, high = max(t for t in bounds if t < 0), min(t for t in bounds if t > 0)
+    return low.as_integer_ratio(), high.as_integer_ratio()
 
 
 # --- what a representative decides
@@ -369,12 +403,15 @@ def read_evidence(data: Json, claim: Theorem, count: int) -> list[Evidence]:
 
 def check_flat(claim: Theorem, flat: Row, evidence: Evidence, points: list[Row]) -> None:
     """Every mode is excited at its order and at none before, or named as undecided."""
+    if not any(evidence) and not odd_sum(claim, flat):
+        return  # Theorem 3
     case = claim.case(flat)
     actual = actual_orders(claim, case, evidence)
+    shown = shown_by_sums(claim, case, actual, evidence)
     signs, left = Signs(case), dict(evidence.witnesses)
     unsure = []
     for q, k in sorted(actual.items()):
-        if k == 0 or one_sign(signs, claim, q, k):
+        if q in shown or one_sign(signs, claim, q, k):
             continue
         if (q, k) in left:
             check_residue(case, q, *left.pop((q, k)), points)
@@ -382,6 +419,72 @@ def check_flat(claim: Theorem, flat: Row, evidence: Evidence, points: list[Row])
             unsure.append(q)
     need(unsure == evidence.undecided, f"{flat}: undecided modes {unsure}")
     need(not left, f"{flat}: a witness that nothing asks for")
+
+
+NOTHING = Evidence([], {}, [])
+
+
+def odd_sum(claim: Theorem, flat: Row) -> bool:
+    """Whether fewer than d(K) signed seeds make an odd multiple of N."""
+    N, *seeds = flat
+    for m in short_sums(claim.s, claim.degree(claim.order) - 1):
+        if sum(map(mul, m, seeds)) % (2 * N) == N:
+            return True
+    return False
+
+
+@cache
+def short_sums(s: int, most: int) -> list[Row]:
+    """All m with |m| from 1 up to the most, one of m and -m."""
+    found = product(range(-most, most + 1), repeat=s)
+    return [m for m in found if 0 < sum(map(abs, m)) <= most and m == lowest_sign(m)]
+
+
+def lowest_sign(m: Row) -> Row:
+    """That of m and -m whose first number which is not zero is positive."""
+    return max(m, tuple(-c for c in m))
+
+
+def shown_by_sums(
+    claim: Theorem, case: Case, actual: dict[int, int], evidence: Evidence
+) -> set[int]:
+    """Modes of D_k of one parity, and those to which a chain leads; the seeds, of order 0."""
+    exceptional = {mode for mode, _, _ in evidence.exceptions}
+    shown = last = set(case.seeds)
+    for k in range(1, claim.order + 1):
+        members = {q for q in actual if actual[q] == k}
+        known = (members - exceptional) & one_parity(case, claim.degree(k))
+        if k <= CHAINS[claim.model]:
+            known |= {q for q in members - known if coupled_to(case, q, last)}
+        shown, last = shown | known, known
+    return shown
+
+
+def one_parity(case: Case, degree: int) -> set[int]:
+    """Modes that sums with some powers p of the seeds reach, all with w of one parity.
+
+    A sum a.q = +-q + 2wN with |a_i| up to p_i and as odd as p_i.
+    """
+    found = set()
+    for p in powers_of_degree(len(case.seeds), degree):
+        parities: dict[int, set[int]] = {}
+        for a in product(*(range(-n, n + 1, 2) for n in p)):
+            total = sum(map(mul, a, case.seeds))
+            w = (total + case.N) // (2 * case.N)
+            mode = abs(total - 2 * w * case.N)
+            parities.setdefault(mode, set()).add(w % 2)
+        found |= {q for q in parities if len(parities[q]) == 1}
+    return found
+
+
+def coupled_to(case: Case, q: int, last: set[int]) -> bool:
+    """Whether one of these modes and as many seeds as a product takes are coupled to q."""
+    for seeds in combinations_with_replacement(case.seeds, case.step):
+        for signs in product((1, -1), repeat=case.step):
+            m = folded(q + sum(map(mul, signs, seeds)), case.N)
+            if m in last and q in dict(couplings(case.N, m, *seeds)):
+                return True
+    return False
 
 
 def actual_orders(claim: Theorem, case: Case, evidence: Evidence) -> dict[int, int]:
@@ -443,11 +546,14 @@ def check_theorem(data: Json) -> list[str]:
     """Every claim in turn; what was checked."""
     claim = read_claim(data)
     flats = read_flats(data, claim)
-    dimensions = check_flats(claim, flats)
     check_points_used(data)
     evidence = read_evidence(data, claim, len(flats))
+    dimensions, unlisted = check_flats(claim, flats, data["count"])
+    check_all_are_needed(dimensions, evidence)
     for flat, found in zip(flats, evidence, strict=True):
         check_flat(claim, flat, found, data["points"])
+    for flat in unlisted:
+        check_flat(claim, flat, NOTHING, [])
     exceptional = sum(bool(found.exceptions) for found in evidence)
     undecided = any(found.undecided for found in evidence)
     verdict = "undecided" if undecided else "refuted" if exceptional else "proved"
@@ -457,10 +563,16 @@ def check_theorem(data: Json) -> list[str]:
     ]
     residues = len(data["witnesses"])
     return [
-        sentence(claim, verdict, exceptional, len(flats), len(wide)),
-        f"{len(flats)} flats: all of the arrangement, each with a representative",
-        f"{residues} modes by residues, computed again; the others by the sign",
+        sentence(claim, verdict, exceptional, data["count"], len(wide)),
+        f"{data['count']} flats: all of the arrangement, found again",
+        f"{residues} modes by residues, computed again; the others by signs and chains",
     ]
+
+
+def check_all_are_needed(dimensions: list[int], evidence: list[Evidence]) -> None:
+    """A point is listed only where something is said of it."""
+    for n, found in zip(dimensions, evidence, strict=True):
+        need(n or any(found), "a point is listed of which nothing is said")
 
 
 def check_points_used(data: Json) -> None:
