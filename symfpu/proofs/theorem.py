@@ -176,11 +176,11 @@ class RuleForAllN(Tabled):
         return body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
 
     def _listed(self) -> list[DecidedFlat]:
-        """What a checker does not find by itself: it makes the points out of the lines."""
+        """Of which something has to be said: a checker finds and decides the others by itself."""
         return [
             found
             for found in self.decided
-            if found.flat.dimension or found.exceptions or found.witnesses or found.undecided
+            if found.exceptions or found.witnesses or found.undecided
         ]
 
     def write(self, path: Path | str) -> None:

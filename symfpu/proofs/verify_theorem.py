@@ -1,7 +1,7 @@
 """Independent checker of the theorem for every N: Python integers and fractions only.
 
-It finds the hyperplanes m.q = 2 w N again, shows that the wide flats of the certificate are all
-there are, makes the points out of them, and decides each flat once more: by sums of seeds that
+It finds the hyperplanes m.q = 2 w N and all flats again, takes a seed set of its own where the
+certificate says nothing of a flat, and decides each once more: by sums of seeds that
 fold with one sign, by chains of couplings, by the signs of the products of couplings, by residues
 that the recursion of `verify` computes again, or by couplings that are zero. The theorems that
 make these proofs are in docs/propagation.md. It shares no code with the prover and imports
@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterator
 from fractions import Fraction
 from functools import cache
-from itertools import combinations, combinations_with_replacement, pairwise, product
+from itertools import combinations, combinations_with_replacement, islice, pairwise, product
 from math import gcd
 from operator import mul
 from pathlib import Path
@@ -45,6 +45,8 @@ KEYS = (
 MOST_SEEDS = 3
 LARGEST_ORDER = 100
 LARGEST_N = 4096
+TRIALS = 400  # pairs of places between which a general point is looked for
+LARGEST_TRIAL = 64  # bonds among which it is looked for else
 # the last orders at which a chain of couplings holds for the frequencies of every N
 CHAINS = {"alpha": 3, "beta": 2}
 
@@ -114,7 +116,7 @@ def read_claim(data: Json) -> Theorem:
 
 
 def read_flats(data: Json, claim: Theorem) -> list[Row]:
-    """N and ascending seeds of the representatives and points that are listed."""
+    """N and ascending seeds of the flats of which something is said."""
     found = [tuple(row) for row in data["flats"]]
     for N, *seeds in found:
         need(N <= LARGEST_N and len(seeds) == claim.s, "a representative of wrong size")
@@ -169,62 +171,100 @@ def held(rows: list[Row], flat: Row) -> int:
     return bits
 
 
+class Line(NamedTuple):
+    """The points (start + t direction) / scale."""
+
+    start: Row
+    scale: int
+    direction: Row
+
+
 class Arrangement(NamedTuple):
-    """The flats: dimensions of those that are listed, and the points that are not."""
+    """All flats: the lines and other wide ones by the hyperplanes that hold them, the points.
 
-    dimensions: list[int]
-    unlisted: list[Row]
+    wide : one point on each, N and seeds, on no further hyperplane.
+    """
+
+    rows: list[Row]
+    lines: dict[int, Line]
+    wide: dict[int, Row]
+    points: set[Row]
 
 
-def check_flats(claim: Theorem, listed: list[Row], count: int) -> Arrangement:
-    """The flats are all of the arrangement, each once.
+def arrangement(claim: Theorem) -> Arrangement:
+    """Every intersection of hyperplanes that meets the open simplex, each once.
 
-    The whole simplex is listed, each hyperplane, and where s = 3 each line, by a point on no
-    further hyperplane. The points are those in which hyperplanes meet the lines: so every
-    intersection that meets the open simplex is there.
+    That is the whole simplex, each hyperplane, where s = 3 each line, and the points in which
+    hyperplanes meet the lines.
     """
     rows = hyperplanes(claim)
-    directions = dict(lines(claim, rows))
-    expected = set(directions) | {0}
-    if claim.s > 1:
-        expected |= {1 << i for i in range(len(rows))}
-    masks = {flat: held(rows, flat) for flat in listed}
-    along = {masks[flat]: flat for flat in listed if masks[flat] in directions}
-    need(len(along) == len(directions), "a line has no representative")
-    vertices = set(points_on_lines(rows, directions, along))
-    wide = [masks[flat] for flat in listed if flat not in vertices]
-    need(len(set(wide)) == len(wide), "two representatives of one flat")
-    need(expected <= set(wide), f"flats are missing: {len(expected - set(wide))}")
-    need(set(wide) <= expected, "a representative of no flat")
-    need(count == len(expected) + len(vertices), f"there are not {count} flats")
-    dimensions = [
-        0 if flat in vertices else dimension(claim, masks[flat], directions)
-        for flat in listed
-    ]
-    return Arrangement(dimensions, sorted(vertices.difference(listed)))
-
-
-def dimension(claim: Theorem, mask: int, directions: dict[int, Row]) -> int:
-    """Of a flat that is no point, by the hyperplanes that hold it."""
-    if mask in directions:
-        return 1
-    return claim.s if mask == 0 else claim.s - 1
-
-
-def lines(claim: Theorem, rows: list[Row]) -> Iterator[tuple[int, Row]]:
-    """The flats of dimension one and their directions."""
-    if claim.s == 1:
-        yield 0, (1,)
-    if claim.s == 2:
-        for i, (a, b, _) in enumerate(rows):
-            yield 1 << i, (-b, a)
+    found = Arrangement(rows, {}, {}, set())
+    for line in lines(claim, rows):
+        mask = line_mask(rows, line)
+        places = points_on_line(rows, line)
+        found.points.update(places[1:-1])
+        found.lines[mask] = line
+        found.wide[mask] = between(places[0], places[1])
     if claim.s == 3:
-        for start, scale, direction in sorted(common_lines(rows)):
-            if meets_simplex(start, scale, direction):
-                yield line_mask(rows, start, scale, direction), direction
+        add_planes(found)
+    if claim.s > 1:
+        found.wide[0] = general_point(rows, 0, list(found.wide.values()))
+    return found
 
 
-def common_lines(rows: list[Row]) -> set[tuple[Row, int, Row]]:
+def add_planes(found: Arrangement) -> None:
+    """Each plane, from the lines on it."""
+    on_plane: dict[int, list[Row]] = {1 << i: [] for i in range(len(found.rows))}
+    for mask, place in found.wide.items():
+        for i in range(len(found.rows)):
+            if mask >> i & 1:
+                on_plane[1 << i].append(place)
+    for mask, places in on_plane.items():
+        found.wide[mask] = general_point(found.rows, mask, places)
+
+
+def general_point(rows: list[Row], mask: int, places: list[Row]) -> Row:
+    """A point on these hyperplanes and no others: between two places on them, or by trial."""
+    for first, second in islice(combinations(places, 2), TRIALS):
+        place = between(first, second)
+        if held(rows, place) == mask:
+            return place
+    for N in range(2, LARGEST_TRIAL):
+        for seeds in combinations(range(1, N), len(rows[0]) - 1):
+            if on_all(rows, mask, (N, *seeds)) and held(rows, (N, *seeds)) == mask:
+                return N, *seeds
+    raise CertificateError("this checker finds no seed set in general position")
+
+
+def on_all(rows: list[Row], mask: int, flat: Row) -> bool:
+    """Whether the hyperplanes of a mask hold a point."""
+    N, *seeds = flat
+    return all(
+        sum(map(mul, row, seeds)) == row[-1] * N for i, row in enumerate(rows) if mask >> i & 1
+    )
+
+
+def between(first: Row, second: Row) -> Row:
+    """A point strictly between two, in lowest terms."""
+    place = [a + b for a, b in zip(first, second, strict=True)]
+    shared = gcd(*place)
+    return tuple(c // shared for c in place)
+
+
+def lines(claim: Theorem, rows: list[Row]) -> Iterator[Line]:
+    """The flats of dimension one."""
+    if claim.s == 1:
+        yield Line((0,), 1, (1,))
+    if claim.s == 2:
+        for a, b, c in rows:
+            yield Line((c, 0), a, (-b, a)) if a else Line((0, c), b, (1, 0))
+    if claim.s == 3:
+        for line in sorted(common_lines(rows)):
+            if meets_simplex(line):
+                yield line
+
+
+def common_lines(rows: list[Row]) -> set[Line]:
     """In which two planes meet, each once: one point on it is in lowest terms, as its direction."""
     found = set()
     for first, second in combinations(rows, 2):
@@ -233,7 +273,7 @@ def common_lines(rows: list[Row]) -> set[tuple[Row, int, Row]]:
             start, scale = common_point(first, second, direction)
             shared = gcd(scale, *start)
             point = tuple(c // shared for c in start)
-            found.add((point, scale // shared, lowest(direction)))
+            found.add(Line(point, scale // shared, lowest(direction)))
     return found
 
 
@@ -259,64 +299,119 @@ def common_point(a: Row, b: Row, direction: Row) -> tuple[Row, int]:
     return tuple(point), scale
 
 
-def meets_simplex(start: Row, scale: int, direction: Row) -> bool:
+def meets_simplex(line: Line) -> bool:
     """Whether a line meets 0 < x_1 < .. < x_s < 1: all gaps are positive at some t."""
-    ends, slopes = (0, *start, scale), (0, *direction, 0)
+    bounds = room(line)
+    return bounds is not None and bounds[0] < bounds[1]
+
+
+def room(line: Line) -> tuple[Fraction, Fraction] | None:
+    """Between which t all gaps of 0 < x_1 < .. < x_s < 1 are open; None where one never is."""
+    ends, slopes = (0, *line.start, line.scale), (0, *line.direction, 0)
     low: list[Fraction] = []
     high: list[Fraction] = []
     for i in range(len(ends) - 1):
         gap, slope = ends[i + 1] - ends[i], slopes[i + 1] - slopes[i]
         if slope == 0 and gap <= 0:
-            return False
+            return None
         if slope:
             (low if slope > 0 else high).append(Fraction(-gap, slope))
-    return not low or not high or max(low) < min(high)
+    return max(low), min(high)
 
 
-def line_mask(rows: list[Row], start: Row, scale: int, direction: Row) -> int:
-    """Which planes hold a line, as bits."""
+def line_mask(rows: list[Row], line: Line) -> int:
+    """Which hyperplanes hold a line, as bits."""
     bits = 0
     for i, row in enumerate(rows):
-        if dot(row, direction) == 0 and dot(row, start) == row[-1] * scale:
+        if dot(row, line.direction) == 0 and dot(row, line.start) == row[-1] * line.scale:
             bits |= 1 << i
     return bits
 
 
-def points_on_lines(
-    rows: list[Row], directions: dict[int, Row], along: dict[int, Row]
-) -> Iterator[Row]:
-    """The points in which other hyperplanes meet the lines, as N and seeds in lowest terms.
-
-    A line is followed from its representative.
-    """
-    for mask, direction in directions.items():
-        N, *seeds = along[mask]
-        low, high = room(N, seeds, direction)
-        for row in rows:
-            slope = sum(map(mul, row, direction))
-            if slope:
-                rise = row[-1] * N - sum(map(mul, row, seeds))
-                if slope < 0:
-                    slope, rise = -slope, -rise
-                if low[0] * slope < rise * low[1] and rise * high[1] < high[0] * slope:
-                    place = [q * slope + v * rise for q, v in zip(seeds, direction)]  # noqa: B905
-                    shared = gcd(N * slope, *place)
-                    yield (N * slope // shared, *(c // shared for c in place))
-
-
-def room(N: int, seeds: list[int], direction: Row) -> tuple[Row, Row]:
-    """Between which t, as fractions, all gaps of 0 < q_1 + t v_1 < .. < q_s + t v_s < N are open."""
-    ends, slopes = (0, *seeds, N), (0, *direction, 0)
-    bounds = []
-    for i in range(len(ends) - 1):
-        gap, slope = ends[i + 1] - ends[i], slopes[i + 1] - slopes[i]
+def points_on_line(rows: list[Row], line: Line) -> list[Row]:
+    """Where it enters the simplex, meets hyperplanes that do not hold it, and leaves: N, seeds."""
+    bounds = room(line)
+    need(bounds, "a hyperplane beside the simplex")
+    assert bounds is not None
+    low, high = bounds
+    met = {low, high}
+    start, scale, direction = line
+    for row in rows:
+        slope = sum(map(mul, row, direction))
         if slope:
-            bounds.append(Fraction(-gap, slope))
-    low, high = max(t for t in bounds if t < 0), min(t for t in bounds if t > 0)
-    return low.as_integer_ratio(), high.as_integer_ratio()
+            rise = row[-1] * scale - sum(map(mul, row, start))
+            if slope < 0:
+                slope, rise = -slope, -rise
+            after = low.numerator * slope < rise * low.denominator
+            if after and rise * high.denominator < high.numerator * slope:
+                met.add(Fraction(rise, slope))
+    return [place_at(line, t) for t in sorted(met)]
 
 
-# --- what a representative decides
+def place_at(line: Line, t: Fraction) -> Row:
+    """The point of a parameter as N and seeds, in lowest terms."""
+    rise, slope = t.as_integer_ratio()
+    place = [
+        q * slope + v * rise for q, v in zip(line.start, line.direction, strict=True)
+    ]
+    shared = gcd(line.scale * slope, *place)
+    return (line.scale * slope // shared, *(c // shared for c in place))
+
+
+def check_flats(found: Arrangement, listed: list[Row], count: int) -> list[int]:
+    """There are so many flats, and those listed are among them; returns their dimensions.
+
+    A wide one is listed by its first seed set, of the fewest bonds.
+    """
+    there_are = len(found.wide) + len(found.points)
+    need(count == there_are, f"there are {there_are} flats")
+    dimensions = []
+    for flat in listed:
+        if flat in found.points:
+            dimensions.append(0)
+            continue
+        mask = held(found.rows, flat)
+        need(mask in found.wide, f"a representative of no flat: {flat}")
+        first = first_on(found, mask)
+        need(flat == first, f"the first seed set of its flat is {first}, not {flat}")
+        dimensions.append(dimension(found, mask))
+    return dimensions
+
+
+def dimension(found: Arrangement, mask: int) -> int:
+    """Of a flat that is no point."""
+    if mask in found.lines:
+        return 1
+    s = len(found.rows[0]) - 1
+    return s if mask == 0 else s - 1
+
+
+def first_on(found: Arrangement, mask: int) -> Row:
+    """The seed set of fewest bonds, and of those the least, on these hyperplanes alone."""
+    for N in range(2, LARGEST_N):
+        for flat in seed_sets_on(found, mask, N):
+            if held(found.rows, flat) == mask:
+                return flat
+    raise CertificateError("a flat without a seed set")
+
+
+def seed_sets_on(found: Arrangement, mask: int, N: int) -> list[Row]:
+    """Those of N bonds, ascending: on a line one coordinate gives the others."""
+    if mask not in found.lines:
+        every = combinations(range(1, N), len(found.rows[0]) - 1)
+        return [(N, *seeds) for seeds in every if on_all(found.rows, mask, (N, *seeds))]
+    line = found.lines[mask]
+    i = next(i for i, v in enumerate(line.direction) if v)
+    flats = []
+    for q in range(1, N):
+        t = Fraction(q * line.scale - line.start[i] * N, line.direction[i] * N)
+        M, *seeds = place_at(line, t)
+        if N % M == 0 and 0 < seeds[0] and all(a < b for a, b in pairwise([*seeds, M])):
+            flats.append((N, *(c * N // M for c in seeds)))
+    return sorted(flats)
+
+
+# --- what decides a flat
 
 
 class Signs:
@@ -548,11 +643,12 @@ def check_theorem(data: Json) -> list[str]:
     flats = read_flats(data, claim)
     check_points_used(data)
     evidence = read_evidence(data, claim, len(flats))
-    dimensions, unlisted = check_flats(claim, flats, data["count"])
-    check_all_are_needed(dimensions, evidence)
+    need(all(map(any, evidence)), "a flat is listed of which nothing is said")
+    there = arrangement(claim)
+    dimensions = check_flats(there, flats, data["count"])
     for flat, found in zip(flats, evidence, strict=True):
         check_flat(claim, flat, found, data["points"])
-    for flat in unlisted:
+    for flat in unlisted(there, flats):
         check_flat(claim, flat, NOTHING, [])
     exceptional = sum(bool(found.exceptions) for found in evidence)
     undecided = any(found.undecided for found in evidence)
@@ -569,10 +665,11 @@ def check_theorem(data: Json) -> list[str]:
     ]
 
 
-def check_all_are_needed(dimensions: list[int], evidence: list[Evidence]) -> None:
-    """A point is listed only where something is said of it."""
-    for n, found in zip(dimensions, evidence, strict=True):
-        need(n or any(found), "a point is listed of which nothing is said")
+def unlisted(found: Arrangement, listed: list[Row]) -> list[Row]:
+    """A seed set of each flat of which the certificate says nothing."""
+    named = {held(found.rows, flat) for flat in listed if flat not in found.points}
+    wide = [place for mask, place in found.wide.items() if mask not in named]
+    return wide + sorted(found.points.difference(listed))
 
 
 def check_points_used(data: Json) -> None:
