@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import typer
 
+from symfpu.bundles.bundle import save
 from symfpu.cli.chains import chain_of
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
@@ -38,9 +40,11 @@ from symfpu.cli.verbs import app
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
+from symfpu.files.writing import output_file
 from symfpu.reports.tables import text_table
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine, frequency_analysis
 from symfpu.spectral.mapping import FrequencyMap, frequency_map
+from symfpu.spectral.near import torus_near
 
 RANGE_PARTS = 3  # A:B:n
 SHOWN_LINES = 20
@@ -89,6 +93,22 @@ def frequencies(
             metavar="FILE",
         ),
     ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="Of one orbit: write the torus near it, for symfpu refine.",
+            metavar="FILE",
+        ),
+    ] = None,
+    angles: Annotated[
+        str | None,
+        typer.Option(
+            help="With -o: how many frequencies it has, the strongest; all, if left out.",
+            metavar="S",
+        ),
+    ] = None,
     kept_file: SaveOption = None,
     plot: PlotOption = None,
     as_json: JsonOption = False,
@@ -101,8 +121,8 @@ def frequencies(
     how: dict[str, Any] = {"T": number("time", time), "step": number("step", step)}
     how["lines"] = whole("lines", lines)
     log = None if rows is None else path_named("file", rows)
-    if energies is None and log is not None:
-        raise InputError("file", rows, "nothing without --energies", "leave it out")
+    _refuse_for_others(energies is None, rows, output, angles)
+    target = None if output is None else output_file(path_named("output", output))
     with progress_bar("frequencies", lambda: _kept(log)) as advance:
         found: FrequencyAnalysis | FrequencyMap
         if energies is None:
@@ -112,6 +132,9 @@ def frequencies(
             _refuse_beside_energies(others)
             how |= {"level": number("level", level), "file": log}
             found = _of_many(typed, packet, energies, how, advance)
+        if target is not None and isinstance(found, FrequencyAnalysis):
+            near = torus_near(found, _strongest(found, angles))
+            save(target, near, command=shlex.join(["symfpu", *context.obj]))
         keep(found, saved, context)
         draw(found.plot, picture)
     if as_json:
@@ -119,8 +142,33 @@ def frequencies(
         return
     say(found)
     _print(found, number("level", level))
+    if target is not None:
+        print(f"written: {target}")
     say_kept(saved)
     say_drawn(picture)
+
+
+def _refuse_for_others(
+    one: bool, rows: str | None, output: str | None, angles: str | None
+) -> None:
+    """InputError for the options of a map beside one orbit, and the other way round."""
+    if one and rows is not None:
+        raise InputError("file", rows, "nothing without --energies", "leave it out")
+    if not one and output is not None:
+        raise InputError("output", output, "nothing beside --energies", "use --save")
+    if output is None and angles is not None:
+        raise InputError("angles", angles, "nothing without -o", "leave it out")
+
+
+def _strongest(found: FrequencyAnalysis, angles: str | None) -> tuple[int, ...]:
+    """The seeds of so many frequencies; they come with falling strengths."""
+    if angles is None:
+        return found.seeds
+    count = whole("angles", angles)
+    if not 1 <= count <= len(found.seeds):
+        allowed = f"1 to {len(found.seeds)}, the independent frequencies"
+        raise InputError("angles", count, allowed, "choose among these")
+    return found.seeds[:count]
 
 
 def _kept(log: Path | None) -> str:

@@ -40,6 +40,16 @@ def test_a_map_is_printed_drawn_saved_and_goes_on(capsys, tmp_path):
     assert (code, record["kind"], record["seeds"]) == (0, "FrequencyMap", [1])
 
 
+def test_the_torus_near_an_orbit_is_written_for_newton(capsys, tmp_path):
+    near, refined = str(tmp_path / "near.symfpu"), str(tmp_path / "refined.symfpu")
+    words = ("-N", "4", "--alpha", "0.3", "--packet", "1", "--energy", "0.01", "--time", "5e3", "--step", "0.1")
+    code, out, _ = run(capsys, *words, "-o", near, "--angles", "2")
+    assert (code, f"written: {near}" in out) == (0, True)
+    assert main(["refine", near, "-o", refined]) == 0
+    found = load(refined).result
+    assert (found.verdict, found.seeds) == ("torus", (1, 2))
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -49,6 +59,9 @@ def test_a_map_is_printed_drawn_saved_and_goes_on(capsys, tmp_path):
         ((*CHAIN, "--energies", "0.1:1"), "FROM:TO:NUMBER"),
         (("--time", "500", "--energies", "0.1"), "give -N"),
         ((*CHAIN, "--packet", "1", "--energy", "0.1", "--file", "x.jsonl"), "nothing without --energies"),
+        ((*CHAIN, "--packet", "1", "--energy", "0.1", "--angles", "2"), "nothing without -o"),
+        ((*CHAIN, "--packet", "1", "--energy", "0.1", "-o", "x.symfpu", "--angles", "9"), "independent frequencies"),
+        ((*MAP, "-o", "x.symfpu"), "nothing beside --energies"),
     ],
 )
 def test_what_does_not_go_together_is_refused(capsys, words, said):
