@@ -127,6 +127,8 @@ from symfpu.dynamics.state_files import read_state as read_state
 from symfpu.spectral.analysis import FrequencyAnalysis as FrequencyAnalysis
 from symfpu.spectral.analysis import SpectralLine as SpectralLine
 from symfpu.spectral.analysis import frequency_analysis as frequency_analysis
+from symfpu.spectral.mapping import FrequencyMap as FrequencyMap
+from symfpu.spectral.mapping import frequency_map as frequency_map
 from symfpu.spectral.near import torus_near as torus_near
 
 # the Toda chain, exactly

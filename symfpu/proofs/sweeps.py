@@ -6,7 +6,6 @@ from which an interrupted sweep goes on. A case that raises an error loses no ot
 
 from __future__ import annotations
 
-import json
 import multiprocessing
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -25,7 +24,8 @@ from typing import Any
 
 from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.propagation import coupling_sequence
-from symfpu.errors import InputError, SymfpuError
+from symfpu.errors import SymfpuError
+from symfpu.files.lines_file import LinesFile
 from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table, joined
@@ -192,10 +192,10 @@ def sweep_propagation(
         for s in range(1, largest_set + 1)
         for seeds in combinations(range(1, N), s)
     ]
-    log = SweepLog(Path(file), name, order) if file is not None else None
-    decided = {
-        key: case for key, case in (log.read() if log else {}).items() if key in set(cases)
-    }
+    log = _log(file, name, order)
+    asked = set(cases)
+    known = {(case.N, case.seeds): case for case in log.read()}
+    decided = {key: case for key, case in known.items() if key in asked}
     todo = [case for case in cases if case not in decided]
     failures: dict[Key, Exception] = {}
     with ExitStack() as stack:
@@ -207,8 +207,7 @@ def sweep_propagation(
             for record in records:
                 case = _case(record)
                 decided[case.N, case.seeds] = case
-                if log:
-                    log.append(record)
+            log.append(records)
             if progress:
                 progress("seed sets", len(decided) / len(cases))
     sweep = Sweep(name, order, tuple(decided[case] for case in cases if case in decided))
@@ -270,53 +269,6 @@ def _case(record: dict[str, Any]) -> SweepCase:
     )
 
 
-class SweepLog:
-    """The file of a sweep: a header line, then one line for each decided case."""
-
-    def __init__(self, path: Path, model: str, order: int) -> None:
-        self.path = path
-        self.header = json.dumps(
-            {"format": HEADER, "schema": SCHEMA, "model": model, "order": order}
-        )
-
-    def read(self) -> dict[Key, SweepCase]:
-        """The cases decided so far.
-
-        Starts the file if there is none, and cuts off a last line that was not finished.
-        """
-        try:
-            text = self.path.read_text() if self.path.exists() else ""
-            start = self.header + "\n"
-            if not text.startswith(start) and not start.startswith(text):
-                raise InputError(
-                    "file",
-                    str(self.path),
-                    f"a new file, or a sweep with header {self.header}",
-                    "name another file",
-                )
-            complete = text[: text.rfind("\n") + 1] or start
-            cases = [_case(json.loads(line)) for line in complete.splitlines()[1:]]
-            if complete != text:
-                self.path.write_text(complete)
-        except OSError as error:
-            raise InputError(
-                "file",
-                str(self.path),
-                "a file that can be read and written",
-                f"name another ({error.strerror})",
-            ) from error
-        except (ValueError, KeyError, TypeError) as error:
-            if isinstance(error, InputError):
-                raise
-            raise InputError(
-                "file",
-                str(self.path),
-                "lines of a sweep",
-                "it is damaged: remove it or name another",
-            ) from error
-        return {(case.N, case.seeds): case for case in cases}
-
-    def append(self, record: dict[str, Any]) -> None:
-        """Add one decided case, flushed to the file."""
-        with self.path.open("a") as file:
-            file.write(json.dumps(record) + "\n")
+def _log(path: Path | str | None, model: str, order: int) -> LinesFile[SweepCase]:
+    header = {"format": HEADER, "schema": SCHEMA, "model": model, "order": order}
+    return LinesFile(path, header, _case, "a sweep")

@@ -35,6 +35,7 @@ from symfpu.proofs.theorem import RuleForAllN
 from symfpu.series.sample import EnergyChanges, FrequencyChanges, SampledSeries
 from symfpu.series.series import ResiduePoint
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
+from symfpu.spectral.mapping import FrequencyMap
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.resummation import PadeSum
 from symfpu.tori.torus import RootCertificate
@@ -52,6 +53,7 @@ RESULTS: tuple[type[Any], ...] = (
     ForetoldIndices,
     FrequencyAnalysis,
     FrequencyChanges,
+    FrequencyMap,
     GroupGrowth,
     GrowthExponents,
     Member,
