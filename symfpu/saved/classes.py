@@ -35,6 +35,7 @@ from symfpu.proofs.theorem import RuleForAllN
 from symfpu.series.sample import EnergyChanges, FrequencyChanges, SampledSeries
 from symfpu.series.series import ResiduePoint
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
+from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.resummation import PadeSum
 from symfpu.tori.torus import RootCertificate
@@ -68,6 +69,7 @@ RESULTS: tuple[type[Any], ...] = (
     RuleForAllN,
     SampledSeries,
     Sweep,
+    SweepRows,
     TodaInvariants,
     TodaTorus,
     Trend,
@@ -86,6 +88,8 @@ PARTS: tuple[type[Any], ...] = (
     RuleException,
     SpectralLine,
     SweepCase,
+    SweepFailure,
+    SweepRow,
     Undecided,
     Vanishing,
     Witness,

@@ -21,7 +21,7 @@ LARGEST_WHOLE = 2**63
 
 
 @dataclass(frozen=True)
-class Failure:
+class SweepFailure:
     """Why a case has no result.
 
     kind : the class of the error. message : its text. numbers : what it carries, by name, as JSON
@@ -37,7 +37,7 @@ class Failure:
 
 
 @dataclass(frozen=True)
-class Row:
+class SweepRow:
     """One case of a sweep, all as JSON holds it.
 
     case : its arguments by name. result : its record, number, list or mapping; None where it
@@ -46,7 +46,7 @@ class Row:
 
     case: Json
     result: Any = None
-    failure: Failure | None = None
+    failure: SweepFailure | None = None
 
 
 @dataclass(frozen=True)
@@ -54,9 +54,10 @@ class SweepRows(Gridded):
     """The rows of a sweep. Made by `sweep` and `read_sweep`.
 
     function : its name, with its module. fixed : the arguments that all cases share, as JSON holds
-    them. rows : in the order of the cases; `Row.case` and `Row.result`, or `Row.failure`.
+    them. rows : in the order of the cases; each a `case` with its `result` or its `failure`.
 
-    >>> rows = Row({"N": 4}, 0.25), Row({"N": 1}, None, Failure("InputError", "N = 1"))
+    >>> failure = SweepFailure("InputError", "N = 1")
+    >>> rows = SweepRow({"N": 4}, 0.25), SweepRow({"N": 1}, None, failure)
     >>> swept = SweepRows("a.function", {}, rows)
     >>> swept
     SweepRows(a.function: 2 cases, 1 failed: 1 InputError)
@@ -68,7 +69,7 @@ class SweepRows(Gridded):
 
     function: str
     fixed: Json
-    rows: tuple[Row, ...] = field(repr=False)
+    rows: tuple[SweepRow, ...] = field(repr=False)
 
     def __repr__(self) -> str:
         count = f"{len(self.rows)} case" + "s" * (len(self.rows) != 1)
@@ -80,7 +81,7 @@ class SweepRows(Gridded):
         return f"SweepRows({self.function}: {count}{failed})"
 
     @property
-    def failures(self) -> tuple[Row, ...]:
+    def failures(self) -> tuple[SweepRow, ...]:
         """The rows of the cases that failed."""
         return tuple(row for row in self.rows if row.failure is not None)
 
@@ -93,11 +94,11 @@ class SweepRows(Gridded):
             values = _column([row.get(name) for row in cells])
             variables[name] = Variable(("case",), values, name)
         fixed = {name: plain(value) for name, value in self.fixed.items()}
-        known = attributes(self, None, function=self.function, **fixed)
+        known = fixed | attributes(self, function=self.function)
         return Grid({"case": np.arange(len(cells))}, variables, known, ("case",))
 
 
-def _row_cells(row: Row) -> Iterator[tuple[str, Any]]:
+def _row_cells(row: SweepRow) -> Iterator[tuple[str, Any]]:
     """Arguments under their names, numbers of a result under theirs, the failure last."""
     taken = set()
     for name, value in _cells("", row.case):

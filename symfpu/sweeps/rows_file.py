@@ -16,7 +16,7 @@ from typing import IO, Any
 from symfpu import __version__
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.writing import output_file, write_bytes
-from symfpu.sweeps.rows import Failure, Json, Row
+from symfpu.sweeps.rows import Json, SweepFailure, SweepRow
 
 try:
     import fcntl
@@ -67,7 +67,7 @@ class RowsFile:
         advice = "choose another"
         self.path = None if path is None else output_file(Path(path), "file", advice)
         self.head = head
-        self.rows: dict[str, Row] = {}
+        self.rows: dict[str, SweepRow] = {}
         self._retry = retry
         self._stream: IO[bytes] | None = None
 
@@ -115,7 +115,7 @@ class RowsFile:
         if before is not None:
             before.close()
 
-    def append(self, row: Row) -> None:
+    def append(self, row: SweepRow) -> None:
         """Add a row, whole or not at all; FileFull where it finds no room."""
         if self._stream is not None:
             self._write(_line(_entry(row)))
@@ -155,7 +155,7 @@ def _opened(path: Path) -> IO[bytes]:
     return stream
 
 
-def read_rows(path: Path) -> tuple[Json, list[Row]]:
+def read_rows(path: Path) -> tuple[Json, list[SweepRow]]:
     """The head and the rows of a file of any sweep; InputError for another file."""
     try:
         content = path.read_bytes()
@@ -178,14 +178,14 @@ def _line(entry: Json) -> bytes:
     return json.dumps(entry).encode() + b"\n"
 
 
-def _entry(row: Row) -> Json:
+def _entry(row: SweepRow) -> Json:
     """A row as its line holds it: a result or a failure, not both."""
     if row.failure is None:
         return {"case": row.case, "result": row.result}
     return {"case": row.case, "failure": asdict(row.failure)}
 
 
-def _rows(path: Path, content: bytes, head: Json) -> dict[str, Row]:
+def _rows(path: Path, content: bytes, head: Json) -> dict[str, SweepRow]:
     """The rows of the whole lines after the head, which must be this one."""
     first, *lines = content.split(b"\n")[:-1] or [content]
     _require_same(path, first, head)
@@ -201,10 +201,10 @@ def _rows(path: Path, content: bytes, head: Json) -> dict[str, Row]:
     return by_key
 
 
-def _row(entry: Json) -> Row:
+def _row(entry: Json) -> SweepRow:
     if "failure" in entry:
-        return Row(dict(entry["case"]), None, Failure(**entry["failure"]))
-    return Row(dict(entry["case"]), entry["result"])
+        return SweepRow(dict(entry["case"]), None, SweepFailure(**entry["failure"]))
+    return SweepRow(dict(entry["case"]), entry["result"])
 
 
 def _require_same(path: Path, first: bytes, head: Json) -> None:
@@ -224,6 +224,6 @@ def _require_same(path: Path, first: bytes, head: Json) -> None:
     raise InputError("file", str(path), allowed, f"it has {said}: {NAMED}")
 
 
-def in_order(rows: Mapping[str, Row], keys: Iterable[str]) -> tuple[Row, ...]:
+def in_order(rows: Mapping[str, SweepRow], keys: Iterable[str]) -> tuple[SweepRow, ...]:
     """The rows of these cases, as far as they are there."""
     return tuple(rows[key] for key in keys if key in rows)

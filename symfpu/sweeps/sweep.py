@@ -13,15 +13,16 @@ from typing import Any
 
 import psutil
 
+from symfpu.algebra.dense import available_cores
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.typed import integer
-from symfpu.sweeps.rows import Failure, Json, Row, SweepRows
+from symfpu.sweeps.rows import Json, SweepFailure, SweepRow, SweepRows
 from symfpu.sweeps.rows_file import RowsFile, head_of, in_order, key_of, read_rows
 from symfpu.sweeps.running import Call, finished
 from symfpu.sweeps.values import argument_value, error_value, result_value
-from symfpu.sweeps.workers import ProcessWorkers, cores
+from symfpu.sweeps.workers import ProcessWorkers
 
 Case = Mapping[str, Any]
 Memory = Callable[..., float]
@@ -156,7 +157,7 @@ class Computed:
         self.limit = limit
         self.broken: BaseException | None = None
 
-    def rows(self, calls: Sequence[Call]) -> Generator[Row, None, None]:
+    def rows(self, calls: Sequence[Call]) -> Generator[SweepRow, None, None]:
         """First those that are not started, as their memory is too large or not known."""
         due = []
         for call in calls:
@@ -184,7 +185,7 @@ class Computed:
             raise CaseTooLarge(needed, self.limit)
         return call._replace(needed=needed)
 
-    def _row(self, call: Call, future: Future[Any]) -> Row | None:
+    def _row(self, call: Call, future: Future[Any]) -> SweepRow | None:
         """The row of a call that has ended; None where its executor did not compute it."""
         if future.cancelled():
             self.broken = self.broken or RuntimeError("cases were cancelled")
@@ -199,8 +200,8 @@ class Computed:
             raise error
         found = future.result()
         if "failure" in found:
-            return Row(call.case, None, Failure(**found["failure"]))
-        return Row(call.case, found["result"])
+            return SweepRow(call.case, None, SweepFailure(**found["failure"]))
+        return SweepRow(call.case, found["result"])
 
 
 def answer(function: Callable[..., Any], arguments: Json) -> Json:
@@ -220,8 +221,8 @@ def built(arguments: Json) -> Json:
     )
 
 
-def _failed(call: Call, error: Exception) -> Row:
-    return Row(call.case, None, Failure(**error_value(error)))
+def _failed(call: Call, error: Exception) -> SweepRow:
+    return SweepRow(call.case, None, SweepFailure(**error_value(error)))
 
 
 @contextmanager
@@ -230,7 +231,7 @@ def _pool(executor: Any, calls: int) -> Iterator[Executor]:
     if executor is not None:
         yield executor.get_executor() if hasattr(executor, "get_executor") else executor
         return
-    pool = ProcessWorkers(min(calls, cores()))
+    pool = ProcessWorkers(min(calls, available_cores()))
     try:
         yield pool
     except BaseException:

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 from symfpu.errors import InputError, SymfpuError
 
 STARTS = 3  # times that a process may die before it is ready
-READY = b"ready"
+READY, BEGUN = b"ready", b"begun"  # what a worker says before its answers
 # each worker is one of as many as there are cores: its libraries shall not start more threads
 THREADS = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 ENVIRONMENT = threading.Lock()
@@ -61,16 +61,15 @@ class Task(NamedTuple):
 class ProcessWorkers(Executor):
     """An executor of processes, of which those that die are replaced.
 
-    workers : how many; default the cores. A task whose process dies raises WorkerDied, a process
+    workers : how many. A task whose process dies raises WorkerDied, a process
     that does not start WorkersDoNotStart. Libraries in them run on one thread, unless the
     environment says otherwise. Ends with its `with`: what runs is waited for, or ended where
     futures are cancelled.
     """
 
-    def __init__(self, workers: int | None = None) -> None:
+    def __init__(self, workers: int) -> None:
         self._tasks: SimpleQueue[Task | None] = SimpleQueue()
-        count = workers or cores()
-        self._workers = [Worker() for _ in range(count)]
+        self._workers = [Worker() for _ in range(workers)]
         serving = [
             threading.Thread(target=self._serve, args=(worker,), daemon=True)
             for worker in self._workers
@@ -122,13 +121,6 @@ class ProcessWorkers(Executor):
         worker.close()
 
 
-def cores() -> int:
-    """The cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 class Worker:
     """A process and its pipe, started when it is first asked, and again after it died."""
 
@@ -140,26 +132,24 @@ class Worker:
 
     def answer(self, call: bytes) -> tuple[bool, Any]:
         """Whether a call succeeded, and its result or error."""
-        pipe = self._sent(call)
+        pipe = self._begun(call)
         try:
             answer: tuple[bool, Any] = pickle.loads(pipe.recv_bytes())  # noqa: S301 (from our own process)
         except (EOFError, OSError):
             raise WorkerDied(self._ended()) from None
         return answer
 
-    def _sent(self, call: bytes) -> Connection:
-        """The pipe, with the call sent to a process that lives.
+    def _begun(self, call: bytes) -> Connection:
+        """The pipe of a process that has begun a call.
 
-        One that died while it had nothing to do is replaced, and no task is lost.
+        One that died before, while it had nothing to do, is replaced, and no task is lost.
         """
-        pipe = self._started()
-        try:
-            pipe.send_bytes(call)
-        except OSError:
-            self._ended()
+        for _ in range(STARTS):
             pipe = self._started()
-            pipe.send_bytes(call)
-        return pipe
+            if _sent(pipe, call) and _says(pipe, BEGUN):
+                return pipe
+            code = self._ended()
+        raise WorkerDied(code)
 
     def _started(self) -> Connection:
         if self._pipe is not None and self._process.is_alive():
@@ -168,7 +158,7 @@ class Worker:
             if self._killed:
                 raise WorkersDoNotStart("the pool is closed")
             pipe = self._start()
-            if _is_ready(pipe):
+            if _says(pipe, READY):
                 return pipe
             code = self._ended()
         raise WorkersDoNotStart(f"exit code {code}")
@@ -176,8 +166,13 @@ class Worker:
     def _start(self) -> Connection:
         ours, theirs = self._context.Pipe()
         self._process = self._context.Process(target=serve, args=(theirs,))
-        with _one_thread_each():
-            self._process.start()
+        try:
+            with _one_thread_each():
+                self._process.start()
+        # a worker whose script starts a sweep of its own, or a system that has no more processes
+        except (RuntimeError, OSError) as error:
+            self._process = None
+            raise WorkersDoNotStart(type(error).__name__) from error
         theirs.close()  # so that the end of the process is the end of the pipe
         self._pipe = ours
         if self._killed:
@@ -205,9 +200,18 @@ class Worker:
             self._process.kill()
 
 
-def _is_ready(pipe: Connection) -> bool:
+def _sent(pipe: Connection, call: bytes) -> bool:
     try:
-        return pipe.recv_bytes() == READY
+        pipe.send_bytes(call)
+    except OSError:
+        return False
+    return True
+
+
+def _says(pipe: Connection, word: bytes) -> bool:
+    """Whether this is the next word of a process that lives."""
+    try:
+        return pipe.recv_bytes() == word
     except (EOFError, OSError):
         return False
 
@@ -235,6 +239,7 @@ def serve(pipe: Connection) -> None:
             call = pipe.recv_bytes()
         except (EOFError, OSError):
             return
+        pipe.send_bytes(BEGUN)
         pipe.send_bytes(_answer(call))
 
 

@@ -10,7 +10,7 @@ import mpmath
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.orbits import integrate
+from symfpu.chain.propagation import excitation_sequence
 from symfpu.errors import InputError
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.sweeps.rows_file import FileFull, RowsFile, head_of
@@ -91,9 +91,8 @@ def test_a_chain_and_its_arguments_are_the_same_case(tmp_path, threads):
 def test_results_are_records(threads):
     proof = sweep(prove_propagation, [{"N": 4, "seeds": (1, 2), "order": 1}], executor=threads).rows[0].result
     assert (proof["kind"], proof["verdict"], proof["N"]) == ("PropagationProof", "proved", 4)
-    start = {"positions": (0.1, 0, 0), "momenta": (0, 0, 0)}
-    (row,) = sweep(integrate, [{"T": 10}], fixed={"chain": Chain(4, beta=1), **start, "step": 0.125}, executor=threads).rows
-    assert row.result["kind"] == "Orbit"
+    (row,) = sweep(excitation_sequence, [{"seeds": (1, 2)}], fixed={"N": 4, "order": 1}, executor=threads).rows
+    assert row.result == [[1, 2], [3]]
 
 
 def test_what_json_does_not_hold_is_refused_or_text(threads):
@@ -243,10 +242,6 @@ def test_a_case_that_no_memory_holds_is_a_row(threads):
     failure = swept.failures[0].failure
     assert (failure.kind, failure.numbers) == ("CaseTooLarge", {"needed": 10**7, "free": 10**6})
     assert sweep(square, TEN, executor=threads, memory=lambda n: 1 // n).failures[0].failure.kind == "ZeroDivisionError"
-
-
-def dies_with(n):
-    raise SystemExit(n)
 
 
 def test_an_executor_that_breaks_down_leaves_no_false_rows(tmp_path):

@@ -83,24 +83,22 @@ def kill_at_random(file, cases, seconds, chance, seed, moments):
     source, deaths, seen = random.Random(seed), {"driver": 0, "workers": 0}, set()
     arguments = ["-m", "tests.sweeps.functions", str(file), str(cases), str(seconds)]
     driver = run(arguments)
-    while driver.poll() != 0:
+    while driver.poll() is None:
         time.sleep(moments * source.random())
-        if driver.poll() is not None:
-            assert driver.returncode in (0, -signal.SIGKILL), driver.communicate()
-            continue_with = driver.returncode != 0
-            driver = run(arguments) if continue_with else driver
-            continue
         workers = [process for process in children(driver.pid) if is_worker(process)]
         seen |= {process.pid for process in workers}
         if source.random() < chance:
             driver.kill()
-            driver.wait()
-            deaths["driver"] += 1
-            driver = run(arguments)
+            _, told = driver.communicate()
+            assert driver.returncode in (0, -signal.SIGKILL), told.decode()
+            if driver.returncode:
+                deaths["driver"] += 1
+                driver = run(arguments)
         elif workers:
             source.choice(workers).kill()
             deaths["workers"] += 1
-    driver.communicate()
+    _, told = driver.communicate()
+    assert driver.returncode == 0, told.decode()
     return deaths, seen
 
 
