@@ -214,14 +214,15 @@ def _require_same(path: Path, first: bytes, head: Json) -> None:
         found = None
     if found == head:
         return
-    if not isinstance(found, dict) or found.get("format") != FORMAT:
-        raise InputError("file", str(path), "a new file, or that of this sweep", NAMED)
-    differ = [name for name in head if found.get(name) != head[name]]
-    said = ", ".join(
-        f"{name} {found.get(name)!r} and not {head[name]!r}" for name in differ
-    )
     allowed = "a new file, or that of this sweep"
-    raise InputError("file", str(path), allowed, f"it has {said}: {NAMED}")
+    if not isinstance(found, dict) or "format" not in found:
+        raise InputError("file", str(path), allowed, NAMED)
+    if found["format"] != FORMAT:
+        said = f"its format is {found['format']!r} and not {FORMAT!r}"
+        raise InputError("file", str(path), allowed, f"{said}: {NAMED}")
+    differ = [name for name in head if found.get(name) != head[name]]
+    others = [f"{name} {found.get(name)!r} and not {head[name]!r}" for name in differ]
+    raise InputError("file", str(path), allowed, f"it has {', '.join(others)}: {NAMED}")
 
 
 def in_order(rows: Mapping[str, SweepRow], keys: Iterable[str]) -> tuple[SweepRow, ...]:
