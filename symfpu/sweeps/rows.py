@@ -18,6 +18,7 @@ from symfpu.frames.tabled import Gridded
 Json = dict[str, Any]
 
 LARGEST_WHOLE = 2**63
+LONGEST_LIST = 20  # in a cell of a table
 
 
 @dataclass(frozen=True)
@@ -114,12 +115,18 @@ def _row_cells(row: SweepRow) -> Iterator[tuple[str, Any]]:
 
 
 def _cells(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """A value as cells: those of a mapping under its name and theirs, a list as one text."""
+    """A value as cells: those of a mapping under its name and theirs, a short list as one text.
+
+    Longer lists, and lists of lists, are in the rows alone.
+    """
     if isinstance(value, Mapping):
         for key, item in value.items():
             yield from _cells(f"{name}_{key}" if name else str(key), item)
     elif isinstance(value, list):
-        yield name, ",".join(map(str, value))
+        if len(value) <= LONGEST_LIST and not any(
+            isinstance(x, list | dict) for x in value
+        ):
+            yield name, ",".join(map(str, value))
     elif value is not None:
         yield name, value
 
