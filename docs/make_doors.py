@@ -466,7 +466,6 @@ OTHERS = {
         "read_sweep",
         "recurrence",
         "substitute_multipliers",
-        "sweep",
         "toda",
     ),
 }

@@ -55,7 +55,8 @@ class SweepRows(Gridded):
     """The rows of a sweep. Made by `sweep` and `read_sweep`.
 
     function : its name, with its module. fixed : the arguments that all cases share, as JSON holds
-    them. rows : in the order of the cases; each a `case` with its `result` or its `failure`.
+    them. rows : in the order of the cases; each has case, and result or failure. Dimensionless.
+    Ours.
 
     >>> failure = SweepFailure("InputError", "N = 1")
     >>> rows = SweepRow({"N": 4}, 0.25), SweepRow({"N": 1}, None, failure)

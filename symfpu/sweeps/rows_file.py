@@ -28,7 +28,7 @@ NAMED = "name another file, or remove this one"
 
 
 class FileFull(SymfpuError):
-    """A row that could not be written.
+    """A row that could not be written. Raised by `sweep`.
 
     path : of the file; rows : that are in it, whole; reason : of the system. Ours.
     """

@@ -46,9 +46,9 @@ class SweepStopped(SymfpuError):
 
 
 class CaseTooLarge(SymfpuError):
-    """A case that needs more memory than there is: it is not started. Of `sweep`, in a row.
+    """A case that needs more memory than there is: it is not started.
 
-    needed, free : bytes. Ours.
+    Raised in `sweep`: the failure of a row. needed, free : bytes. Ours.
     """
 
     def __init__(self, needed: int, free: int) -> None:

@@ -30,7 +30,7 @@ ENVIRONMENT = threading.Lock()
 class WorkerDied(SymfpuError):
     """The process that worked on a task ended: it was killed, or out of memory.
 
-    Of `sweep`, the failure of a row. exit_code : of the process, -n if signal n ended it. Ours.
+    Raised in `sweep`: the failure of a row. exit_code : of the process, -n if signal n ended it. Ours.
     """
 
     def __init__(self, exit_code: int | None) -> None:
@@ -43,7 +43,10 @@ class WorkerDied(SymfpuError):
 
 
 class WorkersDoNotStart(SymfpuError, BrokenExecutor):
-    """Worker processes die before they are ready. Raised by `sweep`. Ours."""
+    """Worker processes die before they are ready.
+
+    Raised in `sweep`, the cause of SweepStopped. reason : how they end. Ours.
+    """
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
