@@ -30,7 +30,8 @@ ENVIRONMENT = threading.Lock()
 class WorkerDied(SymfpuError):
     """The process that worked on a task ended: it was killed, or out of memory.
 
-    Raised in `sweep`: the failure of a row. exit_code : of the process, -n if signal n ended it. Ours.
+    Raised in `sweep`: the failure of a row. exit_code : of the process, -n if signal n ended it.
+    Ours.
     """
 
     def __init__(self, exit_code: int | None) -> None:
