@@ -254,6 +254,7 @@ SERIES: dict[str, Door] = {
     "resum": lambda c: symfpu.resum(c.of(lambda: c.torus)),
     "same_series": lambda c: symfpu.same_series(c.symbolic, c.symbolic),
     "sample_series": lambda c: symfpu.sample_series(c.symbolic, [c.torus.frequencies]),
+    "series_bytes": lambda c: symfpu.series_bytes(c.chain, SEEDS, 4),
     "solve_amplitudes": lambda c: c.solved,
     "solve_amplitudes, digits=30": lambda c: symfpu.solve_amplitudes(
         c.lindstedt((1,), c.breather.frequencies, 4, digits=30)
@@ -466,7 +467,13 @@ OTHERS = {
         "polynomial",
         "prove_for_all_N",
     ),
-    *("profile_distance", "recurrence", "substitute_multipliers", "toda"),
+    *(
+        "profile_distance",
+        "read_sweep",
+        "recurrence",
+        "substitute_multipliers",
+        "toda",
+    ),
 }
 
 HEAD = """

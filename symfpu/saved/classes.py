@@ -36,6 +36,7 @@ from symfpu.series.sample import EnergyChanges, FrequencyChanges, SampledSeries
 from symfpu.series.series import ResiduePoint
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
 from symfpu.spectral.mapping import FrequencyMap
+from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.resummation import PadeSum
 from symfpu.tori.torus import RootCertificate
@@ -70,6 +71,7 @@ RESULTS: tuple[type[Any], ...] = (
     RuleForAllN,
     SampledSeries,
     Sweep,
+    SweepRows,
     TodaInvariants,
     TodaTorus,
     Trend,
@@ -88,6 +90,8 @@ PARTS: tuple[type[Any], ...] = (
     RuleException,
     SpectralLine,
     SweepCase,
+    SweepFailure,
+    SweepRow,
     Undecided,
     Vanishing,
     Witness,
