@@ -23,6 +23,7 @@ from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import decimal
 from symfpu.plots.families import family_frequencies
+from symfpu.plots.frequency_map import frequency_map
 from symfpu.plots.indices import alignment, foretold
 from symfpu.plots.lines import lines
 from symfpu.plots.motion import time_series
@@ -37,6 +38,7 @@ from symfpu.plots.toda import toda_gaps
 from symfpu.proofs.certificates import PropagationProof
 from symfpu.series.series import LindstedtSeries
 from symfpu.spectral.analysis import FrequencyAnalysis
+from symfpu.spectral.mapping import FrequencyMap
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -257,6 +259,15 @@ def _line_rows(found: FrequencyAnalysis) -> Rows:
     yield "drift", f"{found.drift:.2g}"
 
 
+def _map_rows(found: FrequencyMap) -> Rows:
+    yield "chain", _model(found.chain)
+    yield "seeds", _listed(found.seeds)
+    yield "to t", f"{found.T:.10g}"
+    by_energy = zip(found.energies, found.counts, found.drifts, strict=True)
+    for energy, count, drift in by_energy:
+        yield f"H = {energy:.6g}", f"{count} frequencies, drift {drift:.2g}"
+
+
 def _energy_series(orbit: Orbit, ax: Axes | None = None) -> Axes:
     return time_series(orbit, ax, quantity="E")
 
@@ -312,6 +323,12 @@ USUAL = (
         lines,
         lambda found: f"{len(found.seeds)} independent frequencies",
         _line_rows,
+    ),
+    Usual(
+        FrequencyMap,
+        frequency_map,
+        lambda found: f"{found.counts.min()} to {found.counts.max()} frequencies",
+        _map_rows,
     ),
     Usual(TodaInvariants, toda_gaps, lambda found: "gaps and actions", _toda_rows),
 )

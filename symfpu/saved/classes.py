@@ -38,6 +38,8 @@ from symfpu.proofs.theorem import RuleForAllN
 from symfpu.series.sample import EnergyChanges, FrequencyChanges, SampledSeries
 from symfpu.series.series import ResiduePoint
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
+from symfpu.spectral.mapping import FrequencyMap
+from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.resummation import PadeSum
 from symfpu.tori.torus import RootCertificate
@@ -55,6 +57,7 @@ RESULTS: tuple[type[Any], ...] = (
     ForetoldIndices,
     FrequencyAnalysis,
     FrequencyChanges,
+    FrequencyMap,
     GroupGrowth,
     GrowthExponents,
     Member,
@@ -73,6 +76,7 @@ RESULTS: tuple[type[Any], ...] = (
     RuleForAllN,
     SampledSeries,
     Sweep,
+    SweepRows,
     TodaInvariants,
     TodaTorus,
     Trend,
@@ -92,6 +96,8 @@ PARTS: tuple[type[Any], ...] = (
     RuleException,
     SpectralLine,
     SweepCase,
+    SweepFailure,
+    SweepRow,
     Undecided,
     Vanishing,
     Witness,

@@ -23,6 +23,7 @@ from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.travelling import travelling_waves
 from symfpu.spectral.analysis import frequency_analysis
+from symfpu.spectral.mapping import frequency_map
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.ring_torus import travelling_torus
@@ -106,6 +107,12 @@ def lines_found():
     chain = Chain(N=5, alpha="0.3")
     start = fpu_trajectory(chain, {1: "0.3", 3: "0.2"})
     return frequency_analysis(integrate(chain, *start, 1000, step=0.25))
+
+
+@cache
+def mapped():
+    """Three energies of a short chain."""
+    return frequency_map(Chain(N=5, alpha="0.3"), ("0.001", "0.01", "0.1"), T=500, step=0.25)
 
 
 @cache
