@@ -680,3 +680,6 @@ MAP_FREQUENCY = 1e-10
 
 # The shift of mode 1 beside its lowest order, relative: the next order at alpha = 0.3, N = 8, H = 4e-6 is 2e-3 of it.
 MAP_SHIFT = 1e-2
+
+# Two normal frequencies that are one at rest and differ on a torus: those of the tests by 2e-6 and more.
+SPLIT = 1e-6
