@@ -16,6 +16,7 @@ from symfpu.chain.commensurability import frequency_rank
 from symfpu.chain.propagation import excitation_sequence, reachable_modes
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.localization.laws import profile_law
+from symfpu.paper.appendix_a_claims import algorithm_claim
 from symfpu.paper.breather_claims import breather_claims
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.judgements import runs
@@ -48,6 +49,8 @@ def statements(folder: Path, progress: Progress, *, full: bool = False) -> Paper
         thirds_claim(),
         slopes_claim(),
     ]
+    progress("statements: Appendix A", NO_FRACTION)
+    claims.append(algorithm_claim())
     progress("statements: natural packets", NO_FRACTION)
     claims.append(natural_slopes_claim(*natural_slopes()))
     progress("statements: breathers", NO_FRACTION)
