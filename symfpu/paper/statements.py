@@ -1,4 +1,4 @@
-"""Statements of sections 2 to 6 that no figure shows: each decided by a computation of its own."""
+"""Statements of sections 2 to 7 that no figure shows: each decided by a computation of its own."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from symfpu.localization.laws import profile_law
 from symfpu.paper.appendix_a_claims import algorithm_claim
 from symfpu.paper.breather_claims import breather_claims
 from symfpu.paper.claims import Claim, PaperFigure, judged
+from symfpu.paper.conclusion_claims import conclusion_claims
 from symfpu.paper.judgements import runs
 from symfpu.paper.natural_slopes import natural_slopes, natural_slopes_claim
 from symfpu.series.lindstedt import lindstedt
@@ -55,7 +56,9 @@ def statements(folder: Path, progress: Progress, *, full: bool = False) -> Paper
     claims.append(natural_slopes_claim(*natural_slopes()))
     progress("statements: breathers", NO_FRACTION)
     claims += breather_claims()
-    title = "Statements of sections 2 to 6 that no figure shows"
+    progress("statements: conclusions", NO_FRACTION)
+    claims += conclusion_claims()
+    title = "Statements of sections 2 to 7 that no figure shows"
     return PaperFigure("statements", title, (), tuple(claims))
 
 
