@@ -66,7 +66,11 @@ def modes_of_one_parity(
 
 
 def chained_modes(
-    N: int, model: str, seeds: Sequence[int], orders: Mapping[int, int], known: Collection[int]
+    N: int,
+    model: str,
+    seeds: Sequence[int],
+    orders: Mapping[int, int],
+    known: Collection[int],
 ) -> set[int]:
     """Modes to which couplings lead from known or chained ones of the order before."""
     found: set[int] = set()
