@@ -320,7 +320,7 @@ def prove_for_all_N(
 
 
 def _with_odd_sums(model: str, order: int, all_flats: Sequence[Flat]) -> list[Flat]:
-    """Those that Theorem 3 of docs/propagation.md does not decide by itself."""
+    """Those that Theorem 7 of docs/propagation.md does not decide by itself."""
     seeds = np.array([flat.seeds for flat in all_flats], dtype=np.int64)
     N = np.array([flat.N for flat in all_flats], dtype=np.int64)
     open_flats = np.flatnonzero(~without_odd_sums(model, order, seeds, N)).tolist()

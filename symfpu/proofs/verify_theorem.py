@@ -501,7 +501,7 @@ def read_evidence(data: Json, claim: Theorem, count: int) -> list[Evidence]:
 def check_flat(claim: Theorem, flat: Row, evidence: Evidence, points: list[Row]) -> None:
     """Every mode is excited at its order and at none before, or named as undecided."""
     if not any(evidence) and not odd_sum(claim, flat):
-        return  # Theorem 3
+        return  # Theorem 7
     case = claim.case(flat)
     actual = actual_orders(claim, case, evidence)
     shown = shown_by_sums(claim, case, actual, evidence)
@@ -545,7 +545,10 @@ def lowest_sign(m: Row) -> Row:
 def shown_by_sums(
     claim: Theorem, case: Case, actual: dict[int, int], evidence: Evidence
 ) -> set[int]:
-    """Modes of D_k of one parity, and those to which a chain leads; the seeds, of order 0."""
+    """Modes of D_k of one parity (Theorem 7), and those to which a chain leads (Theorem 8).
+
+    And the seeds, of order 0.
+    """
     exceptional = {mode for mode, _, _ in evidence.exceptions}
     shown = last = set(case.seeds)
     for k in range(1, claim.order + 1):
