@@ -30,6 +30,7 @@ from symfpu.breathers.existence_bounds import (
     radii,
 )
 from symfpu.breathers.force_series import ForceSeries, ball
+from symfpu.breathers.packed_integers import packed
 from symfpu.breathers.rounded_orbit import RoundedOrbit, rounded_orbit
 from symfpu.breathers.segment import Line, direction
 from symfpu.chain.chain import Chain
@@ -87,8 +88,8 @@ class ExistenceProof(Tabled):
         doubles.
     residual, linear, curvature : Y, Z0 + Z1 and Z2 of the theorem, doubles.
     harmonics, block : of the orbit, and unknowns in the dense part of the inverse.
-    digits : of the orbit that was given. body : the certificate without its digest. Dimensionless.
-        Ours: docs/existence.md.
+    digits : of the orbit that was given. body : the certificate in plain lists, without its
+        digest. Dimensionless. Ours: docs/existence.md.
 
     >>> from symfpu import Chain, periodic_orbit, prove_existence
     >>> prove_existence(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"))
@@ -154,9 +155,10 @@ class ExistenceProof(Tabled):
 
     def certificate(self) -> dict[str, Any]:
         """What `symfpu verify` needs to check the theorem again: integers and strings."""
-        text = json.dumps(self.body, sort_keys=True, separators=(",", ":"))
+        body = self.body | packed_entries(self.body)
+        text = json.dumps(body, sort_keys=True, separators=(",", ":"))
         digest = hashlib.sha256(text.encode()).hexdigest()
-        return self.body | {"digest": digest}
+        return body | {"digest": digest}
 
     def write(self, path: Path | str) -> None:
         """Write the certificate to a path as JSON, whole or not at all.
@@ -456,6 +458,12 @@ def certificate_body(
         "energy": list(intervals["energy"]),
         "frequency": list(intervals["frequency"]) if border else empty,
     }
+
+
+def packed_entries(body: dict[str, Any]) -> dict[str, Any]:
+    """The long lists of integers as text."""
+    rows = {key: list(map(packed, body[key])) for key in ("orbit", "direction", "inverse")}
+    return rows | {"weights": packed(body["weights"])}
 
 
 def potential_entries(orbit: RoundedOrbit, force: ForceSeries) -> dict[str, Any]:
