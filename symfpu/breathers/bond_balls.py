@@ -140,20 +140,18 @@ class BondBalls:
 
 
 def _polynomial(series: Series, couplings: dict[int, Fraction]) -> Series:
-    """sum couplings[k] series^k as a cosine series; k from 1 up."""
-    terms = {k: ball(c) for k, c in couplings.items()}
-    last = len(series) - 1
-    first = _palindrome(series)
-    power, middle = first, last
-    total = [flint.arb(0)] * (max(terms, default=0) * last + 1)
-    for k in range(1, max(terms, default=0) + 1):
-        if k > 1:
-            power, middle = power * first, middle + last
-        if k in terms:
-            total[0] += terms[k] * power[middle]
-            for n in range(1, middle + 1):
-                total[n] += 2 * terms[k] * power[middle + n]
-    return total
+    """sum couplings[k] series^k as a cosine series; k from 1 up; by Horner's rule."""
+    if not couplings:
+        return [flint.arb(0)]
+    last, factor = len(series) - 1, _palindrome(series)
+    degree = max(couplings)
+    total = flint.arb_poly([ball(couplings[degree])])
+    for k in range(degree - 1, -1, -1):
+        total *= factor
+        if k in couplings:
+            total[(degree - k) * last] += ball(couplings[k])
+    middle = degree * last
+    return [total[middle], *(2 * total[middle + n] for n in range(1, middle + 1))]
 
 
 def product(a: Series, b: Series) -> Series:

@@ -51,6 +51,10 @@ MORE_HARMONICS = (
 )
 SMALLER = "an orbit of smaller amplitude is easier"
 NO_ORBIT = "more digits of it do not help: Newton's method, periodic_orbit, finds orbits"
+HALF_A_RING = (
+    "a standing breather of a ring, odd about two particles, is that of half the ring with fixed "
+    "ends; there are no proofs of travelling waves"
+)
 SHORTER = "a shorter segment can: a half width of"
 HALVINGS = 60
 NEAR = 1e-6  # relative, of a given amplitude or energy to that of the orbit
@@ -286,14 +290,12 @@ def on_line(bounds: ProofBounds, line: Line | None) -> ProofBounds:
 def checked_orbit(orbit: object) -> QuasiPeriodic:
     """An orbit that the theorem is about; InputError for any other, by name."""
     if not isinstance(orbit, QuasiPeriodic) or orbit.chain.periodic:
-        chain = getattr(orbit, "chain", None)
-        given = (
-            type(orbit).__name__
-            if chain is None
-            else f"{type(orbit).__name__} of {chain!r}"
-        )
+        name, chain = type(orbit).__name__, getattr(orbit, "chain", None)
+        given = name if chain is None else f"{name} of {chain!r}"
         allowed = "a solution of one angle of a chain with fixed ends"
-        raise InputError("orbit", given, allowed, "take one from periodic_orbit")
+        odd = chain is not None and chain.periodic
+        advice = HALF_A_RING if odd else "take one from periodic_orbit"
+        raise InputError("orbit", given, allowed, advice)
     if len(orbit.seeds) > 1:
         given = f"a torus of {len(orbit.seeds)} angles"
         raise InputError("orbit", given, "a solution of one angle", "take one seed")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import flint
@@ -68,15 +69,22 @@ class ForceSeries:
 
 def of_growth(growth: Growth, first: int, x: Any, derivative: int) -> Any:
     """Above the sum of |weight g_k| k (k-1) .. x^(k - derivative) over k from `first` on."""
-    size = abs(growth.weight)
-    for k in range(first):
-        size *= (abs(growth.rate) + abs(growth.slope) * k) / (k + 1)
-    for i in range(derivative):
-        size *= first - i
+    size = growth_size(growth, first, derivative)
     ratio = growth_ratio(growth, first, derivative) * x
     if not ratio < 1:
         return flint.arb("inf")
     return ball(size) * x ** (first - derivative) / (1 - ratio)
+
+
+@cache
+def growth_size(growth: Growth, first: int, derivative: int) -> Fraction:
+    """|weight g_k| k (k-1) .. of the first k."""
+    size = abs(growth.weight)
+    for k in range(first):
+        size *= abs(growth.rate - growth.slope * k) / (k + 1)
+    for i in range(derivative):
+        size *= first - i
+    return size
 
 
 def growth_ratio(growth: Growth, first: int, derivative: int) -> Any:
