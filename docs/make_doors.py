@@ -254,6 +254,7 @@ SERIES: dict[str, Door] = {
     "resum": lambda c: symfpu.resum(c.of(lambda: c.torus)),
     "same_series": lambda c: symfpu.same_series(c.symbolic, c.symbolic),
     "sample_series": lambda c: symfpu.sample_series(c.symbolic, [c.torus.frequencies]),
+    "series_bytes": lambda c: symfpu.series_bytes(c.chain, SEEDS, 4),
     "solve_amplitudes": lambda c: c.solved,
     "solve_amplitudes, digits=30": lambda c: symfpu.solve_amplitudes(
         c.lindstedt((1,), c.breather.frequencies, 4, digits=30)
@@ -306,6 +307,9 @@ DYNAMICS: dict[str, Door] = {
         c.chain, *c.state, 100.0, vectors=2, frames=1
     ),
     "frequency_analysis": lambda c: c.lines,
+    "frequency_map": lambda c: symfpu.frequency_map(
+        c.chain, (float(c.chain.energy(*c.state)),), T=200.0, step=0.1
+    ),
     **{
         f"integrate, {name}": lambda c, name=name: symfpu.integrate(
             c.chain, *c.state, 5.0, step=0.1, scheme=name
@@ -416,6 +420,9 @@ VERBS: dict[str, Door] = {
         1e-2 * c.size**2,
         *c.words,
     ),
+    "symfpu frequencies": lambda c: c.verb(
+        "frequencies", c.file, "--time", 200, "--step", 0.1, "--json"
+    ),
     "symfpu gali": lambda c: c.verb(
         "gali", c.file, "--time", 100, "--vectors", 2, "--json"
     ),
@@ -460,7 +467,13 @@ OTHERS = {
         "polynomial",
         "prove_for_all_N",
     ),
-    *("profile_distance", "recurrence", "substitute_multipliers", "toda"),
+    *(
+        "profile_distance",
+        "read_sweep",
+        "recurrence",
+        "substitute_multipliers",
+        "toda",
+    ),
 }
 
 HEAD = """
