@@ -307,6 +307,9 @@ DYNAMICS: dict[str, Door] = {
         c.chain, *c.state, 100.0, vectors=2, frames=1
     ),
     "frequency_analysis": lambda c: c.lines,
+    "frequency_map": lambda c: symfpu.frequency_map(
+        c.chain, (float(c.chain.energy(*c.state)),), T=200.0, step=0.1
+    ),
     **{
         f"integrate, {name}": lambda c, name=name: symfpu.integrate(
             c.chain, *c.state, 5.0, step=0.1, scheme=name
@@ -416,6 +419,9 @@ VERBS: dict[str, Door] = {
         "--to-energy",
         1e-2 * c.size**2,
         *c.words,
+    ),
+    "symfpu frequencies": lambda c: c.verb(
+        "frequencies", c.file, "--time", 200, "--step", 0.1, "--json"
     ),
     "symfpu gali": lambda c: c.verb(
         "gali", c.file, "--time", 100, "--vectors", 2, "--json"

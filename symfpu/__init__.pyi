@@ -92,6 +92,7 @@ from symfpu.action_angle.twist import Twist as Twist
 from symfpu.action_angle.twist import twist as twist
 
 # stability of tori: normal frequencies
+from symfpu.normal.frequencies import NormalFrequencies as NormalFrequencies
 from symfpu.normal.modes import NoNormalModes as NoNormalModes
 from symfpu.normal.modes import NormalMode as NormalMode
 from symfpu.normal.modes import NormalModes as NormalModes
@@ -108,7 +109,7 @@ from symfpu.families.family import Family as Family
 from symfpu.families.family import family as family
 from symfpu.families.family import member_at_energy as member_at_energy
 from symfpu.families.family import member_at_frequency as member_at_frequency
-from symfpu.families.normal_family import NormalEvent as NormalEvent
+from symfpu.families.normal_events import NormalEvent as NormalEvent
 from symfpu.families.normal_family import NormalFamily as NormalFamily
 from symfpu.families.normal_family import normal_family as normal_family
 
@@ -127,6 +128,8 @@ from symfpu.dynamics.state_files import read_state as read_state
 from symfpu.spectral.analysis import FrequencyAnalysis as FrequencyAnalysis
 from symfpu.spectral.analysis import SpectralLine as SpectralLine
 from symfpu.spectral.analysis import frequency_analysis as frequency_analysis
+from symfpu.spectral.mapping import FrequencyMap as FrequencyMap
+from symfpu.spectral.mapping import frequency_map as frequency_map
 from symfpu.spectral.near import torus_near as torus_near
 
 # the Toda chain, exactly

@@ -262,17 +262,25 @@ RESULTS = {
     "TodaInvariants": (lambda _: toda_invariants(PAIR, *fpu_trajectory(PAIR, {1: "0.1"})), lambda x: (x.gaps, x.actions, x.frequencies)),
     "TodaTorus": (lambda _: toda_torus(Chain(4, alpha="1/2"), (1, 3), actions=("0.1", "0.2"), digits=20), lambda x: x.state({3: 1})),
     "FrequencyAnalysis": (lambda _: lines_found(), lambda x: (x.drift, x.count(0.1))),
+    "FrequencyMap": (lambda _: cases.mapped(), lambda x: (x.shifts(), x.counts)),
     "SpectralLine": (lambda _: lines_found().lines[0], repr),
     "BirkhoffForm": (lambda _: birkhoff_form(PAIR, (1, 2), 2), lambda x: x.hamiltonian()),
     "BirkhoffForm, digits": (lambda _: birkhoff_form(PAIR, (1, 2), 2, digits=20), lambda x: x.frequencies_at({1: 0.1, 2: 0.1})),
     "NormalFamily": (lambda _: cases.normal_line(), lambda x: (x.events, x.verdict)),
     "NormalEvent": (lambda _: cases.normal_line().events[0], repr),
+    "NormalFrequencies": (lambda _: normal_member().normal, lambda x: (x.verdict, x.frequencies, x.resonances)),
+    "Member, normal": (lambda _: normal_member(), lambda x: x.normal.verdict),
     "NormalFrequencySeries": (lambda _: normal_frequency_series(PAIR, (1,), 2, 2), lambda x: x.correction(2)),
     "ForetoldIndices": (lambda _: foretold_indices(orbit(), 1e3), lambda x: (x.settling(), x.slopes())),
     "Twist": (lambda _: twist(orbit()), lambda x: (x.matrix, x.signature)),
     "TwistAtRest": (lambda _: twist_at_rest(PAIR, (1, 2)), lambda x: (x.matrix, x.formula())),
     "Trend": (lambda _: invariance().slope_rate, lambda x: x.rate),
 }
+
+
+@cache
+def normal_member():
+    return family(Chain(4, beta=1), (2,), "0.02", from_energy="0.01", members=1, normal=True).members[0]
 
 
 def sweep():

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from symfpu.breathers.existence import prove_existence
 from symfpu.bundles.bundle import load
 from symfpu.chain.chain import require_fixed_ends
@@ -21,16 +25,33 @@ from symfpu.files.writing import output_file
 from symfpu.reports.existence import existence_record, existence_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
+AmplitudeOption = Annotated[
+    str | None, typer.Option(help="The orbit of exactly this amplitude.", metavar="A")
+]
+EnergyOption = Annotated[
+    str | None, typer.Option(help="The orbit of exactly this energy H.", metavar="E")
+]
+HalfWidthOption = Annotated[
+    str, typer.Option(help="One for each value that is no further away.", metavar="W")
+]
 
-@app.command(epilog="Example: symfpu certify breather.symfpu -o proof.json")
+
+@app.command(
+    epilog="Examples: symfpu certify breather.symfpu -o proof.json; "
+    "symfpu certify breather.symfpu --amplitude 0.4 --half-width 1e-5"
+)
 def certify(
     file: FileArgument,
+    amplitude: AmplitudeOption = None,
+    energy: EnergyOption = None,
+    half_width: HalfWidthOption = "0",
     output: CertificateOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Prove that a periodic orbit exists near a saved breather.
 
-    Exit code 1 where the bounds do not prove it.
+    Of exactly its frequency, or of the amplitude or energy given. Exit code 1 where the bounds do
+    not prove it.
     """
     orbit = solution_of(load(path_named("FILE", file)), file)
     require_fixed_ends(orbit.chain)
@@ -38,7 +59,9 @@ def certify(
     target = None if output is None else output_file(path_named("output", output))
     with progress_bar("proof") as advance:
         advance("proof", NO_FRACTION)
-        proof = prove_existence(orbit)
+        proof = prove_existence(
+            orbit, amplitude=amplitude, energy=energy, half_width=half_width
+        )
         if target is not None:
             proof.write(target)
     if as_json:
