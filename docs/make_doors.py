@@ -284,6 +284,8 @@ NEWTON: dict[str, Door] = {
     "floquet": lambda c: symfpu.floquet(c.periodic),
     "foretold_indices": lambda c: symfpu.foretold_indices(c.breather, 1e4, vectors=2),
     "prove_existence": lambda c: symfpu.prove_existence(c.periodic),
+    "prove_residual": lambda c: symfpu.prove_residual(c.solution),
+    "prove_stay": lambda c: symfpu.prove_stay(c.refined, time=1),
     "normal_family": lambda c: symfpu.normal_family(
         c.breather, {1: 1.1 * c.size}, members=2, modes=[2], resonance_length=0
     ),

@@ -73,6 +73,20 @@ def test_a_script_without_its_guard_is_told(tmp_path):
     assert "start the sweep under `if __name__ == '__main__':`" in error.decode()
 
 
+def test_a_worker_at_work_ends_with_its_driver(tmp_path):
+    script, mark = tmp_path / "script.py", tmp_path / "mark"
+    imports = "from symfpu.sweeps.sweep import sweep\nfrom tests.sweeps.functions import mark_and_sleep\n"
+    script.write_text(f"{imports}if __name__ == '__main__':\n    sweep(mark_and_sleep, [{{'file': {str(mark)!r}}}])\n")
+    driver = run([str(script)])
+    while not (mark.exists() and mark.read_text()):
+        assert driver.poll() is None
+        time.sleep(0.05)
+    driver.kill()
+    driver.wait()
+    driver.stderr.close()
+    assert no_orphans({int(mark.read_text())})
+
+
 def run(arguments):
     path = {"PYTHONPATH": str(ROOT)}
     return subprocess.Popen([sys.executable, *arguments], cwd=ROOT, env=os.environ | path, stderr=subprocess.PIPE)
