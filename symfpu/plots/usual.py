@@ -84,7 +84,8 @@ def _inline(result: Any, usual: Usual) -> str:
     draw = partial(usual.picture, result)
     content = picture_bytes(draw, ".png", size=SIZE, dpi=DPI)
     data = base64.b64encode(content).decode()
-    words = f"{usual.picture.__name__} of this {type(result).__name__}".replace("_", " ")
+    name = usual.picture.__name__.lstrip("_")
+    words = f"{name} of this {type(result).__name__}".replace("_", " ")
     return f'<img alt="{words}" src="data:image/png;base64,{data}">'
 
 
@@ -212,6 +213,13 @@ def _normal_family_rows(found: NormalFamily) -> Rows:
         yield event.kind, repr(event)
 
 
+def _family_picture(found: Family, ax: Axes | None = None) -> Axes:
+    """Normal frequencies where they are known, else energies by frequencies."""
+    if any(m.normal for m in found.members):
+        return family_normal_frequencies(found, ax)
+    return family_frequencies(found, ax)
+
+
 def _family_rows(found: Family) -> Rows:
     energies = [m.energy for m in found.members]
     yield "chain", _model(found.chain)
@@ -221,6 +229,8 @@ def _family_rows(found: Family) -> Rows:
         count = sum(event.kind == kind for event in found.events)
         if count:
             yield f"events: {kind}", str(count)
+    for event in found.normal_events[:MOST_MODES]:
+        yield event.kind, repr(event)
 
 
 def _proof_rows(proof: PropagationProof) -> Rows:
@@ -306,7 +316,7 @@ USUAL = (
         lambda found: found.verdict,
         _normal_family_rows,
     ),
-    Usual(Family, family_frequencies, lambda found: f"it {found.ending}", _family_rows),
+    Usual(Family, _family_picture, lambda found: f"it {found.ending}", _family_rows),
     Usual(PropagationProof, propagation, lambda proof: proof.verdict, _proof_rows),
     Usual(
         FrequencyAnalysis,

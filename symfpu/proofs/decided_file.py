@@ -12,7 +12,7 @@ from symfpu.proofs.every_length import DecidedFlat
 from symfpu.proofs.flats import Flat
 from symfpu.series.series import ResiduePoint
 
-HEADER = {"format": "symfpu decided flats", "schema": 1}
+HEADER = {"format": "symfpu decided flats", "schema": 2}
 
 
 def decided_file(
@@ -29,6 +29,7 @@ def _decided(record: dict[str, Any]) -> DecidedFlat:
     return DecidedFlat(
         Flat(flat["N"], tuple(flat["seeds"]), flat["dimension"]),
         tuple(RuleException(**e) for e in record["exceptions"]),
+        tuple(record["chained"]),
         tuple(Witness(**w) for w in witnesses),
         tuple(ResiduePoint(**p) for p in points),
         tuple(record["undecided"]),
