@@ -14,7 +14,8 @@ from typing import Any
 
 import flint
 
-from symfpu.breathers.force_series import ball, force_series
+from symfpu.breathers.force_series import ball as ball
+from symfpu.breathers.force_series import force_series
 from symfpu.breathers.rounded_orbit import RoundedOrbit
 
 SPARE_BITS = 64  # beyond those of the orbit
@@ -94,6 +95,24 @@ class BondBalls:
                 divisor = 1 - n**2 * self.squared / self.linear[place]
                 rows[n][place] += divisor * x * unit
 
+    def virial_gradients(self) -> tuple[list[Series], Any]:
+        """The derivative of V + r V'/2 along every bond, and the norm of what is left out."""
+        terms = self.force.virial_terms()
+        lost = sum((self.force.virial_left_out(x) for x in self.norms), flint.arb(0))
+        return [_polynomial(bond, terms) for bond in self.stretches], lost
+
+    def mean_energy(self) -> Any:
+        """The mean of sum_j (V + r V'/2): H on a periodic orbit."""
+        powers = self.force.powers.items()
+        terms = {k: c * (Fraction(1, k + 1) + Fraction(1, 2)) for k, c in powers}
+        total = flint.arb(0)
+        for bond, size in zip(self.stretches, self.norms, strict=True):
+            lost = flint.arb(0, 2 * size * self.force.left_out(size, 0))
+            total += (
+                mean_of_product(bond, _polynomial(bond, {1: Fraction(1), **terms})) + lost
+            )
+        return total
+
     def at_rest(self) -> list[Any]:
         """The stretches at t = 0."""
         return [sum(bond, flint.arb(0)) for bond in self.stretches]
@@ -121,20 +140,18 @@ class BondBalls:
 
 
 def _polynomial(series: Series, couplings: dict[int, Fraction]) -> Series:
-    """sum couplings[k] series^k as a cosine series; k from 1 up."""
-    terms = {k: ball(c) for k, c in couplings.items()}
-    last = len(series) - 1
-    first = _palindrome(series)
-    power, middle = first, last
-    total = [flint.arb(0)] * (max(terms, default=0) * last + 1)
-    for k in range(1, max(terms, default=0) + 1):
-        if k > 1:
-            power, middle = power * first, middle + last
-        if k in terms:
-            total[0] += terms[k] * power[middle]
-            for n in range(1, middle + 1):
-                total[n] += 2 * terms[k] * power[middle + n]
-    return total
+    """sum couplings[k] series^k as a cosine series; k from 1 up; by Horner's rule."""
+    if not couplings:
+        return [flint.arb(0)]
+    last, factor = len(series) - 1, _palindrome(series)
+    degree = max(couplings)
+    total = flint.arb_poly([ball(couplings[degree])])
+    for k in range(degree - 1, -1, -1):
+        total *= factor
+        if k in couplings:
+            total[(degree - k) * last] += ball(couplings[k])
+    middle = degree * last
+    return [total[middle], *(2 * total[middle + n] for n in range(1, middle + 1))]
 
 
 def product(a: Series, b: Series) -> Series:
@@ -148,3 +165,9 @@ def _palindrome(series: Series) -> Any:
     """sum d_|n| z^n times z^last, d_0 = a_0 and d_n = a_n / 2."""
     halves = [a / 2 for a in series[:0:-1]]
     return flint.arb_poly([*halves, series[0], *reversed(halves)])
+
+
+def mean_of_product(a: Series, b: Series) -> Any:
+    """Over a period."""
+    pairs = zip(a[1:], b[1:], strict=False)
+    return a[0] * b[0] + sum((x * y for x, y in pairs), flint.arb(0)) / 2

@@ -22,7 +22,7 @@ from symfpu.chain.chain import Chain
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-INVERSE_BITS = 14
+INVERSE_BITS = 8
 WEIGHT_BITS = 6
 ROUNDOFF = 2.0**-53
 UPWARDS = 1 + 1e-9  # more than sums of so many positive doubles lose
@@ -71,30 +71,36 @@ def places_of(chain: Chain, seed: int, harmonics: int, *, bordered: bool = False
 class BorderLine:
     """The row and the column of an unknown frequency in doubles, with bounds of their rounding.
 
-    unit : omega^2 of 1. of_seed, of_modes, mode_errors, corner : derivatives of the equation by
-        c_s[1] alone, by every harmonic of a mode, and by the unknown. column : of F_q[n] by the
-        unknown, shape (H+1, N-1).
+    unit : omega^2 of 1. of_seed, rows, row_errors, corner : derivatives of the equation by c_s[1]
+        alone, by every c_q[n], shape (.., N-1), and by the unknown; nu^n times any later one is
+        below `beyond`. column : of F_q[n] by the unknown, shape (H+1, N-1).
     """
 
     seed: int
     unit: float
     of_seed: int
-    of_modes: Floats
-    mode_errors: Floats
+    rows: Floats
+    row_errors: Floats
+    beyond: float
     corner: int
     column: Floats
 
     def row(self, places: Places) -> tuple[Floats, Floats]:
         """Derivatives of the equation; nothing for the first place."""
-        values = self.of_modes[places.q - 1]
+        values, errors = at(self.rows, places), at(self.row_errors, places)
         seed = (places.n == 1) & (places.q == self.seed)
-        return values + self.of_seed * seed, self.mode_errors[places.q - 1]
+        return values + self.of_seed * seed, errors
 
     def derivatives(self, places: Places) -> tuple[Floats, Floats]:
         """Of F by the unknown."""
-        inside = places.n < len(self.column)
-        values = np.where(inside, self.column[places.n * inside, places.q - 1], 0.0)
+        values = at(self.column, places)
         return values, 16 * ROUNDOFF * np.abs(values)
+
+
+def at(table: Floats, places: Places) -> Floats:
+    """Entries of a table by harmonic and mode, 0 beyond its end."""
+    inside = places.n < len(table)
+    return np.where(inside, table[places.n * inside, places.q - 1], 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -352,9 +358,11 @@ class Attempt:
     def _farthest_of_equation(self) -> float:
         """Above the derivatives of the equation by unknowns beyond `columns`, over nu^n."""
         assert self.part.border is not None
-        line = self.part.border
-        largest = float((np.abs(line.of_modes) + line.mode_errors).max())
-        return float(largest * self.part.nu ** -(self.columns + 1.0) * UPWARDS)
+        line, nu, first = self.part.border, self.part.nu, self.columns + 1
+        largest = (np.abs(line.rows) + line.row_errors).max(axis=1)[first:]
+        powers = nu ** -np.arange(first, first + len(largest), dtype=float)
+        rest = line.beyond * nu ** (-2.0 * first)
+        return float(max((largest * powers).max(initial=0.0), rest) * UPWARDS)
 
     def _of_frequency(self, norms: Floats, beyond: Floats, weight: float) -> float:
         """A places -n^2 unit/Omega_q^2 h_q[n], from norms |A e| / |e| by place."""

@@ -30,6 +30,7 @@ from symfpu.breathers.existence_bounds import (
     radii,
 )
 from symfpu.breathers.force_series import ForceSeries, ball
+from symfpu.breathers.packed_integers import packed
 from symfpu.breathers.rounded_orbit import RoundedOrbit, rounded_orbit
 from symfpu.breathers.segment import Line, direction
 from symfpu.chain.chain import Chain
@@ -50,6 +51,10 @@ MORE_HARMONICS = (
 )
 SMALLER = "an orbit of smaller amplitude is easier"
 NO_ORBIT = "more digits of it do not help: Newton's method, periodic_orbit, finds orbits"
+HALF_A_RING = (
+    "a standing breather of a ring, odd about two particles, is that of half the ring with fixed "
+    "ends; there are no proofs of travelling waves"
+)
 SHORTER = "a shorter segment can: a half width of"
 HALVINGS = 60
 NEAR = 1e-6  # relative, of a given amplitude or energy to that of the orbit
@@ -87,8 +92,8 @@ class ExistenceProof(Tabled):
         doubles.
     residual, linear, curvature : Y, Z0 + Z1 and Z2 of the theorem, doubles.
     harmonics, block : of the orbit, and unknowns in the dense part of the inverse.
-    digits : of the orbit that was given. body : the certificate without its digest. Dimensionless.
-        Ours: docs/existence.md.
+    digits : of the orbit that was given. body : the certificate in plain lists, without its
+        digest. Dimensionless. Ours: docs/existence.md.
 
     >>> from symfpu import Chain, periodic_orbit, prove_existence
     >>> prove_existence(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"))
@@ -154,9 +159,10 @@ class ExistenceProof(Tabled):
 
     def certificate(self) -> dict[str, Any]:
         """What `symfpu verify` needs to check the theorem again: integers and strings."""
-        text = json.dumps(self.body, sort_keys=True, separators=(",", ":"))
+        body = self.body | packed_entries(self.body)
+        text = json.dumps(body, sort_keys=True, separators=(",", ":"))
         digest = hashlib.sha256(text.encode()).hexdigest()
-        return self.body | {"digest": digest}
+        return body | {"digest": digest}
 
     def write(self, path: Path | str) -> None:
         """Write the certificate to a path as JSON, whole or not at all.
@@ -284,14 +290,12 @@ def on_line(bounds: ProofBounds, line: Line | None) -> ProofBounds:
 def checked_orbit(orbit: object) -> QuasiPeriodic:
     """An orbit that the theorem is about; InputError for any other, by name."""
     if not isinstance(orbit, QuasiPeriodic) or orbit.chain.periodic:
-        chain = getattr(orbit, "chain", None)
-        given = (
-            type(orbit).__name__
-            if chain is None
-            else f"{type(orbit).__name__} of {chain!r}"
-        )
+        name, chain = type(orbit).__name__, getattr(orbit, "chain", None)
+        given = name if chain is None else f"{name} of {chain!r}"
         allowed = "a solution of one angle of a chain with fixed ends"
-        raise InputError("orbit", given, allowed, "take one from periodic_orbit")
+        odd = chain is not None and chain.periodic
+        advice = HALF_A_RING if odd else "take one from periodic_orbit"
+        raise InputError("orbit", given, allowed, advice)
     if len(orbit.seeds) > 1:
         given = f"a torus of {len(orbit.seeds)} angles"
         raise InputError("orbit", given, "a solution of one angle", "take one seed")
@@ -456,6 +460,12 @@ def certificate_body(
         "energy": list(intervals["energy"]),
         "frequency": list(intervals["frequency"]) if border else empty,
     }
+
+
+def packed_entries(body: dict[str, Any]) -> dict[str, Any]:
+    """The long lists of integers as text."""
+    rows = {key: list(map(packed, body[key])) for key in ("orbit", "direction", "inverse")}
+    return rows | {"weights": packed(body["weights"])}
 
 
 def potential_entries(orbit: RoundedOrbit, force: ForceSeries) -> dict[str, Any]:

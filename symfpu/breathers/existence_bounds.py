@@ -136,14 +136,15 @@ def border_line(balls: BondBalls, border: Border) -> BorderLine:
     rows, linear = balls.orbit.floats, balls.orbit.chain.frequencies()
     unit = float(border.unit)
     n = np.arange(len(rows))[:, None]
-    middles = np.array([float(x.mid()) for x in border.of_modes])
-    errors = np.array([double_above(x.rad()) for x in border.of_modes])
+    middles = np.array([[float(x.mid()) for x in row] for row in border.rows])
+    errors = np.array([[double_above(x.rad()) for x in row] for row in border.rows])
     return BorderLine(
         seed=balls.orbit.seed,
         unit=unit,
         of_seed=border.of_seed,
-        of_modes=middles,
-        mode_errors=errors + ROUNDOFF * np.abs(middles),
+        rows=middles,
+        row_errors=errors + ROUNDOFF * np.abs(middles),
+        beyond=double_above(border.beyond),
         corner=border.corner,
         column=-(n**2) * rows / linear**2 * unit,
     )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import flint
@@ -32,10 +33,6 @@ class ForceSeries:
     growths: tuple[Growth, ...]
     degree: int
 
-    def value(self, r: Any) -> Any:
-        """phi at a ball, without what is left out."""
-        return sum((ball(c) * r**k for k, c in self.powers.items()), flint.arb(0))
-
     def potential(self, r: Any) -> Any:
         """The integral of phi from 0 to a ball, without what is left out."""
         terms = (ball(c) * r ** (k + 1) / (k + 1) for k, c in self.powers.items())
@@ -51,6 +48,19 @@ class ForceSeries:
         terms = (ball(abs(c)) * k * (k - 1) * x ** (k - 2) for k, c in self.powers.items())
         return sum(terms, self.left_out(x, 2))
 
+    def virial_terms(self) -> dict[int, Fraction]:
+        """The derivative of V + r V'/2 by power of r."""
+        terms = {k: c * Fraction(k + 3, 2) for k, c in self.powers.items()}
+        return {1: Fraction(2), **terms}
+
+    def virial_left_out(self, x: Any) -> Any:
+        """Above the norm of what that leaves out."""
+        return (3 * self.left_out(x, 0) + x * self.left_out(x, 1)) / 2
+
+    def virial_slope_bound(self, x: Any) -> Any:
+        """Above the norm of its derivative, 2 + 2 phi' + r phi''/2, where |r|_nu is at most x."""
+        return 2 + 2 * self.slope_bound(x) + x * self.curvature_bound(x) / 2
+
     def left_out(self, x: Any, derivative: int) -> Any:
         """Above the norm of a derivative of phi minus its polynomial, where |r|_nu <= x."""
         parts = (of_growth(g, self.degree + 1, x, derivative) for g in self.growths)
@@ -59,15 +69,22 @@ class ForceSeries:
 
 def of_growth(growth: Growth, first: int, x: Any, derivative: int) -> Any:
     """Above the sum of |weight g_k| k (k-1) .. x^(k - derivative) over k from `first` on."""
-    size = abs(growth.weight)
-    for k in range(first):
-        size *= (abs(growth.rate) + abs(growth.slope) * k) / (k + 1)
-    for i in range(derivative):
-        size *= first - i
+    size = growth_size(growth, first, derivative)
     ratio = growth_ratio(growth, first, derivative) * x
     if not ratio < 1:
         return flint.arb("inf")
     return ball(size) * x ** (first - derivative) / (1 - ratio)
+
+
+@cache
+def growth_size(growth: Growth, first: int, derivative: int) -> Fraction:
+    """|weight g_k| k (k-1) .. of the first k."""
+    size = abs(growth.weight)
+    for k in range(first):
+        size *= abs(growth.rate - growth.slope * k) / (k + 1)
+    for i in range(derivative):
+        size *= first - i
+    return size
 
 
 def growth_ratio(growth: Growth, first: int, derivative: int) -> Any:

@@ -59,6 +59,14 @@ class RoundedOrbit:
         scaled = [[math.ldexp(x, -self.bits) for x in row] for row in self.rows]
         return np.array(scaled)
 
+    @cached_property
+    def powers(self) -> dict[int, Fraction]:
+        """The coefficients of phi by power of r, of a polynomial potential."""
+        potential = self.chain.potential
+        degree = potential.degree or 2
+        found = {k: potential.coefficient(k + 1) for k in range(2, degree)}
+        return {k: coupling for k, coupling in found.items() if coupling}
+
 
 def rounded_orbit(orbit: QuasiPeriodic) -> RoundedOrbit:
     """The integers nearest to an orbit; what is below their last place is left out."""

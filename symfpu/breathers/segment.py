@@ -97,9 +97,10 @@ class Line:
         total = flint.arb(
             border.corner * given.of_frequency + border.of_seed * given.rows[1][seed]
         )
-        for row in given.rows:
-            for slope, x in zip(border.of_modes, row, strict=True):
-                total += slope * x
+        for slopes, row in zip(border.rows, given.rows, strict=False):
+            total += sum(
+                (slope * x for slope, x in zip(slopes, row, strict=True)), flint.arb(0)
+            )
         return total * self.unit - border.change
 
     def _lost(self, balls: BondBalls) -> Any:

@@ -114,6 +114,11 @@ class StayProof(Tabled):
         return f"StayProof({which}, {self.digits} digits: {self.text}; {self.most})"
 
     @property
+    def omega(self) -> dict[int, Fraction]:
+        """The frequencies by seed, exact."""
+        return dict(zip(self.seeds, self.frequencies, strict=True))
+
+    @property
     def text(self) -> str:
         """The theorem in words."""
         size, apart = (

@@ -145,6 +145,22 @@ def test_members_of_a_segment_are_on_its_line(given):
         assert abs(member.frequency - found.frequency) <= max(found.frequency_radius, width)
 
 
+def test_a_fold_in_omega_is_an_ordinary_point_of_its_amplitude(tmp_path):
+    """The frequency of this oscillator falls and rises again: at its least, near A = 0.633383, DF is nearly singular.
+
+    The segment about it holds the fold: its ends have higher frequencies than its middle, by proof.
+    """
+    chain, A, width = Chain(2, potential="poly:0,-1,0,3/2"), Fraction("0.633383"), Fraction(1, 200)
+    fold = breather_at_amplitude(chain, 1, A)
+    alone, given = prove_existence(fold), prove_existence(fold, amplitude=A)
+    assert alone.unique < 1e-6 < 1e-2 < given.unique
+    assert checked(prove_existence(fold, amplitude=A, half_width=width), tmp_path)
+    for end in (A - width, A + width):
+        proved = prove_existence(breather_at_amplitude(chain, 1, end), amplitude=end)
+        rise = proved.frequency - given.frequency
+        assert rise > proved.frequency_radius + given.frequency_radius
+
+
 def test_a_segment_too_long_says_how_long_one_may_be():
     with pytest.raises(NoExistenceProof, match="of this one can be proved") as caught:
         prove_existence(orbit("alpha"), amplitude="0.4", half_width="1e-2")
@@ -155,7 +171,7 @@ def test_a_segment_too_long_says_how_long_one_may_be():
 @pytest.mark.parametrize("name", EACH)
 def test_the_checker_agrees_in_every_bound(name, tmp_path):
     found = proof(name)
-    theorem, _ = checked(found, tmp_path)
+    theorem, *_ = checked(found, tmp_path)
     assert f"N = {found.chain.N} bonds" in theorem
     data = json.loads((tmp_path / "proof.json").read_text())
     claim = check_existence.read_claim(data)
@@ -225,7 +241,7 @@ def orbit_cut(cosines):
 
 def test_what_the_theorem_is_not_about_is_refused():
     ring = travelling_breather(Chain(6, alpha="0.3", ends="periodic"), 1, amplitude="0.1")
-    with pytest.raises(InputError, match="fixed ends"):
+    with pytest.raises(InputError, match="half the ring with fixed ends"):
         prove_existence(ring)
     with pytest.raises(InputError, match="polynomial"):
         prove_existence(breather_at_amplitude(Chain(4, potential=from_expression("1 - cos(r)")), 1, "0.1"))
@@ -253,7 +269,24 @@ def test_the_breathers_of_the_figures_exist(seed, omega, tmp_path):
 
 @pytest.mark.long
 @pytest.mark.parametrize("energy", ["0.014915", "0.75"])
-def test_breathers_of_these_energies_exist(energy, tmp_path):
-    found = prove_existence(periodic_orbit_digits(breather_at_energy(FIG9, 1, energy), 30))
+@pytest.mark.parametrize("exact", [False, True])
+def test_breathers_of_these_energies_exist(energy, exact, tmp_path):
+    orbit = of_energy(energy)
+    found = prove_existence(orbit, energy=energy if exact else None)
     assert found.radius < PROVED_RADIUS
     assert checked(found, tmp_path)
+    assert (tmp_path / "proof.json").stat().st_size < 100_000
+
+
+@cache
+def of_energy(energy):
+    return periodic_orbit_digits(breather_at_energy(FIG9, 1, energy), 30)
+
+
+@pytest.mark.long
+def test_the_amplitude_of_figure_9_given_exactly():
+    """A = 1.27153895251014, of which Fig. 9's breather has all digits printed."""
+    orbit = periodic_orbit_digits(periodic_orbit(FIG9, 1, "0.09844127049688513"), 32)
+    found = prove_existence(orbit, amplitude="1.27153895251014")
+    assert found.radius < PROVED_RADIUS
+    assert abs(found.frequency - orbit.frequency) < 1e-15

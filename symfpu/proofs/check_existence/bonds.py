@@ -31,11 +31,13 @@ class Bonds:
         self.arithmetic = FixedPoint(self.places, self.norm)
         self.stretches = self.on_bonds(claim.orbit)
         self.sizes = [self.size(stretch) for stretch in self.stretches]
-        powers = [self.powers_of(series, degree) for series in self.stretches]
-        couplings = claim.force.couplings
-        self.forces = self.combinations(powers, couplings, 0)
-        slopes = {k - 1: k * c for k, c in couplings.items()}
-        self.slopes = self.combinations(powers, slopes, 1)
+        self.powers = [self.powers_of(series, degree) for series in self.stretches]
+        force = claim.force
+        rests = [force.left_out(size, 0) for size in self.sizes]
+        self.forces = self.combinations(force.couplings, rests)
+        slopes = {k - 1: k * c for k, c in force.couplings.items()}
+        rests = [force.left_out(size, 1) for size in self.sizes]
+        self.slopes = self.combinations(slopes, rests)
 
     def on_bonds(self, coefficients: dict[Place, int]) -> list[Series]:
         """sum_q c_q cos(q theta_j) of every bond."""
@@ -63,13 +65,12 @@ class Bonds:
         return found
 
     def combinations(
-        self, powers: list[dict[int, Series]], terms: dict[int, Fraction], derivative: int
+        self, terms: dict[int, Fraction], rests: list[Fraction]
     ) -> list[Series]:
-        """sum terms[k] r_j^k of every bond; what a derivative of phi has beyond is an error."""
+        """sum terms[k] r_j^k of every bond; the norms of what is left out are errors."""
         found = []
-        for of_bond, size in zip(powers, self.sizes, strict=True):
-            series = self.arithmetic.combination(of_bond, terms)
-            rest = self.claim.force.left_out(size, derivative)
+        for powers, rest in zip(self.powers, rests, strict=True):
+            series = self.arithmetic.combination(powers, terms)
             lost = up(rest * (1 << self.places))
             found.append(Series(series.values, series.error + lost))
         return found

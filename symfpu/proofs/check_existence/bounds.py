@@ -245,7 +245,7 @@ class Bounds:
             value, _ = entries.get(place, (0, 0))
             entries[place] = value + low, value + high
         if self.claim.bordered:
-            entries[BORDER] = self.condition.by(*place, self.claim.seed)
+            entries[BORDER] = self.condition.by(*place, self.claim, self.bonds)
         return entries
 
     def border_column(self) -> dict[Place, Ends]:
@@ -291,9 +291,7 @@ class Bounds:
         """What the condition adds to columns beyond `last`."""
         if not self.claim.bordered:
             return Fraction(0)
-        size = Fraction(self.condition.largest(), self.unit)
-        power = Fraction(1 << POWER_PLACES, self.norm.below[self.inverse.last + 1])
-        return self.of_condition(size * power)
+        return self.of_condition(self.condition.farthest(self.inverse.last + 1, self.bonds))
 
     def of_tail(self) -> Fraction:
         """The same for every column beyond `last`: it meets rows beyond `free` alone."""

@@ -3,7 +3,14 @@
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from symfpu.proofs.check_existence.reading import MOST_BITS, Json, fraction, need, whole
+from symfpu.proofs.check_existence.reading import (
+    MOST_BITS,
+    Json,
+    fraction,
+    need,
+    unpacked,
+    whole,
+)
 
 LARGEST_N = 512
 MOST_HARMONICS = 4096
@@ -50,6 +57,19 @@ class Force(NamedTuple):
         """Above |phi''(r)| in the norm where |r| is at most x."""
         terms = (abs(c) * k * (k - 1) * x ** (k - 2) for k, c in self.couplings.items())
         return sum(terms, self.left_out(x, 2))
+
+    def virial_terms(self) -> dict[int, Fraction]:
+        """The derivative of V + r V'/2 by power of r, 2 r + (3 phi + r phi')/2."""
+        terms = {k: c * Fraction(k + 3, 2) for k, c in self.couplings.items()}
+        return {1: Fraction(2), **terms}
+
+    def virial_left_out(self, x: Fraction) -> Fraction:
+        """Above the norm of what that leaves out."""
+        return (3 * self.left_out(x, 0) + x * self.left_out(x, 1)) / 2
+
+    def virial_slope_bound(self, x: Fraction) -> Fraction:
+        """Above the norm of its derivative, 2 + 2 phi' + r phi''/2, where |r| is at most x."""
+        return 2 + 2 * self.slope_bound(x) + x * self.curvature_bound(x) / 2
 
     def left_out(self, x: Fraction, derivative: int) -> Fraction:
         """Above the norm of a derivative of the powers of phi beyond `degree`, |r| at most x."""
@@ -144,9 +164,9 @@ def read_claim(data: Json) -> Claim:
 def read_rows(rows: Any, N: int, seed: int, force: Force) -> dict[Place, int]:
     """Coefficients by place; rows are harmonics, with the modes that the symmetry allows."""
     found = {}
-    for n, row in enumerate(rows):
-        modes = allowed_modes(N, seed, force, n)
-        need(type(row) is list and len(row) == len(modes), f"wrong length of harmonic {n}")
+    for n, text in enumerate(rows):
+        modes, row = allowed_modes(N, seed, force, n), unpacked(text, f"harmonic {n}")
+        need(len(row) == len(modes), f"wrong length of harmonic {n}")
         for q, value in zip(modes, row, strict=True):
             found[n, q] = whole(value, -(2**4000), 2**4000, "a coefficient")
     return found

@@ -1,7 +1,8 @@
 """The equation G = 0 that fixes the amplitude, the energy or the frequency of an orbit.
 
-amplitude: G = c_s[1] - A sqrt(2/N) Omega_s; energy: G = 2^-e (sum_j V(r_j(0)) - H);
-frequency: G = m - 2^f omega^2, the unknown m being 2^f omega^2. Along a segment the value is
+amplitude: G = c_s[1] - A sqrt(2/N) Omega_s; frequency: G = m - 2^f omega^2, the unknown m being
+2^f omega^2; energy: G = 2^-e (the mean of sum_j (V(r_j) + r_j V'(r_j)/2) - H), which on periodic
+orbits is the energy, as their mean kinetic energy is that of r V'/2. Along a segment the value is
 value + s half_width, s in -1 .. 1, of the frequency as far as its square goes at least.
 """
 
@@ -11,7 +12,12 @@ from typing import NamedTuple
 
 from symfpu.proofs.check_existence.bonds import COARSE, Bonds
 from symfpu.proofs.check_existence.claim import AMPLITUDE, ENERGY, FREQUENCY, Claim
-from symfpu.proofs.check_existence.fixed_point import COSINE_UNITS, Cosines, up
+from symfpu.proofs.check_existence.fixed_point import (
+    COSINE_UNITS,
+    POWER_PLACES,
+    Series,
+    up,
+)
 
 Interval = tuple[Fraction, Fraction]
 NOTHING = Fraction(0), Fraction(0)
@@ -21,27 +27,46 @@ class Condition(NamedTuple):
     """G at the orbit and its derivatives.
 
     residual : above |G|. change : ends of -dG/ds. of_seed : of G by c_s[1] alone. corner : by the
-    unknown. of_modes : ends of it by every harmonic of a mode, COARSE places. scale : 2^-e.
+    unknown. slopes : of an energy the derivatives of its bonds, f_j, times 2^-e; then those of G by
+    c_q[n] are half of sum_j cos(q theta_j) f_j[n], or all of it for n = 0.
     """
 
     residual: Fraction
     change: Interval
     of_seed: int
     corner: int
-    of_modes: dict[int, tuple[int, int]]
+    slopes: list[Series]
     scale: Fraction
 
-    def by(self, n: int, q: int, seed: int) -> tuple[int, int]:
+    def by(self, n: int, q: int, claim: Claim, bonds: Bonds) -> tuple[int, int]:
         """Ends of the derivative of G by c_q[n], COARSE places."""
-        low, high = self.of_modes.get(q, (0, 0))
-        own = self.of_seed << COARSE if (n, q) == (1, seed) else 0
-        return low + own, high + own
+        if claim.fixed != ENERGY:
+            own = self.of_seed << COARSE if (n, q) == (1, claim.seed) else 0
+            return own, own
+        values = [f.values[n] if n < len(f.values) else 0 for f in self.slopes]
+        total = sum(bonds.cosines.bond(q, j) * f for j, f in enumerate(values))
+        error = sum(map(abs, values)) * COSINE_UNITS
+        off = (error >> bonds.places) + 1 + self.errors(n, bonds)
+        drop = bonds.places - COARSE + (1 if n else 0)
+        middle = total >> bonds.places
+        return (middle - off) >> drop, ((middle + off + 1) >> drop) + 1
 
-    def largest(self) -> int:
-        """Above all derivatives of G by harmonics beyond the first, COARSE places."""
-        return max(
-            (max(abs(low), abs(high)) for low, high in self.of_modes.values()), default=0
-        )
+    def errors(self, n: int, bonds: Bonds) -> int:
+        """Above the sum over bonds of what f_j[n] is off, in units of the bonds."""
+        total = sum(f.error for f in self.slopes)
+        return (total << POWER_PLACES) // bonds.norm.below[n] + 1
+
+    def farthest(self, first: int, bonds: Bonds) -> Fraction:
+        """Above |dG/dc_q[n]| nu^-n for every n from the first on."""
+        if not self.slopes:
+            return Fraction(0)
+        longest = max(len(f.values) for f in self.slopes)
+        least = bonds.norm.below[first]
+        worst = self.errors(first, bonds)
+        for n in range(first, longest):
+            values = (abs(f.values[n]) for f in self.slopes if n < len(f.values))
+            worst = max(worst, sum(values) + self.errors(n, bonds))
+        return Fraction(worst << POWER_PLACES, least << bonds.places)
 
     def along(self, claim: Claim, bonds: Bonds) -> Fraction:
         """Above |DG t + dG/ds|, t the direction of a segment."""
@@ -50,15 +75,15 @@ class Condition(NamedTuple):
         constant = of_seed + self.corner * Fraction(claim.of_frequency, unit)
         ends = [constant - x for x in self.change]
         if claim.fixed == ENERGY:
-            low, high = energy_along(claim, bonds)
-            ends = [low * self.scale - self.change[1], high * self.scale - self.change[0]]
+            low, high = energy_along(self.slopes, claim, bonds)
+            ends = [low - self.change[1], high - self.change[0]]
         return max(map(abs, ends))
 
     def curvature(self, claim: Claim, bonds: Bonds, radius: Fraction) -> Fraction:
         """Above |D^2 G| within the radius."""
         if claim.fixed != ENERGY:
             return Fraction(0)
-        slopes = (1 + claim.force.slope_bound(x + radius) for x in bonds.sizes)
+        slopes = (claim.force.virial_slope_bound(x + radius) for x in bonds.sizes)
         return self.scale * sum(slopes, Fraction(0))
 
 
@@ -70,14 +95,42 @@ def condition_of(claim: Claim, bonds: Bonds) -> Condition:
         c = Fraction(claim.orbit[1, claim.seed], 1 << claim.bits)
         residual = max(abs(c - claim.value * x) for x in (low, high))
         change = claim.half_width * low, claim.half_width * high
-        return Condition(residual, change, 1, 0, {}, scale)
+        return Condition(residual, change, 1, 0, [], scale)
     if claim.fixed == FREQUENCY:
         width = 2 * claim.omega * claim.half_width + claim.half_width**2
-        return Condition(Fraction(0), (width / claim.unit,) * 2, 0, 1, {}, scale)
-    energy = energy_between(claim, bonds, [Fraction(0)] * claim.N)
-    residual = scale * max(abs(x - claim.value) for x in energy)
+        return Condition(Fraction(0), (width / claim.unit,) * 2, 0, 1, [], scale)
+    residual = scale * max(abs(x - claim.value) for x in mean_energy(claim, bonds))
     change = (scale * claim.half_width,) * 2
-    return Condition(residual, change, 0, 0, gradient(claim, bonds, scale), scale)
+    return Condition(residual, change, 0, 0, gradients(claim, bonds, scale), scale)
+
+
+def gradients(claim: Claim, bonds: Bonds, scale: Fraction) -> list[Series]:
+    """scale times the derivative of V + r V'/2 along every bond."""
+    terms = {k: scale * c for k, c in claim.force.virial_terms().items()}
+    rests = [scale * claim.force.virial_left_out(size) for size in bonds.sizes]
+    return bonds.combinations(terms, rests)
+
+
+def mean_energy(claim: Claim, bonds: Bonds) -> Interval:
+    """Ends of the mean of sum_j (V + r V'/2); V + r V'/2 = r w(r)."""
+    couplings = claim.force.couplings.items()
+    terms = {k: c * (Fraction(1, k + 1) + Fraction(1, 2)) for k, c in couplings}
+    rests = [2 * claim.force.left_out(size, 0) for size in bonds.sizes]
+    factors = bonds.combinations({1: Fraction(1), **terms}, rests)
+    return sum_of_means(bonds.stretches, factors, bonds)
+
+
+def sum_of_means(some: list[Series], others: list[Series], bonds: Bonds) -> Interval:
+    """Ends of the sum of the means of products; a mean is below the norm."""
+    total, error = 0, 0
+    for a, b in zip(some, others, strict=True):
+        products = [x * y for x, y in zip(a.values, b.values, strict=False)]
+        total += products[0] * 2 + sum(products[1:])
+        sizes = bonds.norm.of(a.values), bonds.norm.of(b.values)
+        error += sizes[0] * b.error + sizes[1] * a.error + a.error * b.error
+    unit = 4**bonds.places
+    middle, off = Fraction(total, 2 * unit), Fraction(error, unit)
+    return middle - off, middle + off
 
 
 def scaled_root(claim: Claim, bonds: Bonds) -> Interval:
@@ -117,41 +170,6 @@ def polynomial_between(
     return least, most
 
 
-def tensions(claim: Claim, bonds: Bonds) -> list[Interval]:
-    """Ends of V'(r_j) at t = 0."""
-    found = []
-    terms = {1: Fraction(1), **claim.force.couplings}
-    for stretch, size in zip(bonds.stretches, bonds.sizes, strict=True):
-        r, error = bonds.at_rest(stretch)
-        low, high = polynomial_between(terms, r - error, r + error)
-        lost = claim.force.left_out(size, 0)
-        found.append((low - lost, high + lost))
-    return found
-
-
-def gradient(claim: Claim, bonds: Bonds, scale: Fraction) -> dict[int, tuple[int, int]]:
-    """Ends of scale sum_j cos(q theta_j) V'(r_j), COARSE places."""
-    cosines = Cosines(claim.N, COARSE)
-    unit = scale * (1 << COARSE)
-    ends = [
-        ((low * unit).__floor__(), up(high * unit)) for low, high in tensions(claim, bonds)
-    ]
-    lost = sum(high - low for low, high in ends)
-    units = COSINE_UNITS * sum(max(abs(low), abs(high)) for low, high in ends)
-    off = lost + (units >> COARSE) + 2
-    found = {}
-    for q in range(1, claim.N):
-        total = sum(cosines.bond(q, j) * low for j, (low, _) in enumerate(ends)) >> COARSE
-        found[q] = total - off, total + off
-    return found
-
-
-def energy_along(claim: Claim, bonds: Bonds) -> Interval:
-    """Ends of sum_j V'(r_j) t_j at t = 0, t the direction of a segment."""
-    least = most = Fraction(0)
-    stretches = bonds.on_bonds(claim.direction)
-    for ends, stretch in zip(tensions(claim, bonds), stretches, strict=True):
-        t, error = bonds.at_rest(stretch)
-        products = [x * y for x in ends for y in (t - error, t + error)]
-        least, most = least + min(products), most + max(products)
-    return least, most
+def energy_along(slopes: list[Series], claim: Claim, bonds: Bonds) -> Interval:
+    """Ends of the mean of sum_j f_j t_j, t the direction of a segment."""
+    return sum_of_means(slopes, bonds.on_bonds(claim.direction), bonds)

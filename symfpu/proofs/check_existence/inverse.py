@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from symfpu.proofs.check_existence.claim import Claim, Place
-from symfpu.proofs.check_existence.reading import Json, need, whole
+from symfpu.proofs.check_existence.reading import Json, need, unpacked, whole
 
 BORDER: Place = (0, 0)  # the unknown frequency as a column, the condition as a row
 MOST_SLOPES = 4096  # harmonics of slopes and of weights
@@ -42,8 +42,8 @@ def read_inverse(data: Json, claim: Claim) -> Inverse:
     first = [BORDER] if claim.bordered else []
     places = first + [(n, q) for n in range(free + K + 1) for q in claim.allowed(n)]
     weighed = [place for place in places if place[0] <= free]
-    given = data["weights"]
-    need(type(given) is list and len(given) == len(weighed), "wrong number of weights")
+    given = unpacked(data["weights"], "weights")
+    need(len(given) == len(weighed), "wrong number of weights")
     weights = dict.fromkeys(places, 1 << weight_bits)
     for place, v in zip(weighed, given, strict=True):
         weights[place] = whole(v, 1 << weight_bits, 2**80, "a weight")
@@ -51,10 +51,10 @@ def read_inverse(data: Json, claim: Claim) -> Inverse:
     need(0 < len(block) <= MOST_BLOCK, "wrong size of the block")
     inside = block == sorted(set(block)) and set(block) <= set(weighed)
     need(inside, "the block is not of ascending places with weights")
-    rows = data["inverse"]
+    rows = [unpacked(text, "the inverse") for text in data["inverse"]]
     bits = whole(data["inverse_bits"], 0, 128, "inverse_bits")
     for row in rows:
-        need(type(row) is list and len(row) == len(block), "the inverse is not square")
+        need(len(row) == len(block), "the inverse is not square")
         for value in row:
             whole(value, -(2**128), 2**128, "an entry of the inverse")
     need(len(rows) == len(block), "the inverse is not square")

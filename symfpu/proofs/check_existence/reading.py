@@ -19,6 +19,8 @@ LARGEST_FILE = 2**26  # bytes
 MOST_BITS = 4096
 LONGEST_NUMBER = 2000  # characters
 EXACT = re.compile(r"-?[0-9]+(/[1-9][0-9]*)?")
+DIGITS = {c: k for k, c in enumerate(chr(k) for k in range(33, 127) if chr(k) not in '"\\')}
+BASE = len(DIGITS) // 2
 READING_ERRORS = (
     OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError,
     ZeroDivisionError, OverflowError,
@@ -66,6 +68,26 @@ def whole(value: Any, least: int, most: int, name: str) -> int:
     """An integer in its range."""
     need(type(value) is int and least <= value <= most, f"{name} is not in {least}..{most}")
     return int(value)
+
+
+def unpacked(text: Any, name: str) -> list[int]:
+    """The integers of a text: digits of base 46, lowest first, all but the last 46 higher.
+
+    An even number 2x is x, an odd 2x+1 is -x-1.
+    """
+    need(type(text) is str, f"{name} is no text")
+    found, total, unit = [], 0, 1
+    for character in text:
+        need(character in DIGITS, f"{name} has a character that is no digit")
+        value = DIGITS[character]
+        total += value % BASE * unit
+        unit *= BASE
+        if value < BASE:
+            need(value or unit == BASE, f"{name} has a number that begins with zeros")
+            found.append(-(total >> 1) - 1 if total % 2 else total >> 1)
+            total, unit = 0, 1
+    need(unit == 1, f"{name} ends within a number")
+    return found
 
 
 def fraction(text: Any, name: str) -> Fraction:

@@ -32,6 +32,7 @@ def check_certificate(data: Json) -> list[str]:
         theorem_text(claim, data, radius, unique),
         f"Y = {scientific(Y)}, Z0 + Z1 = {scientific(linear)}, "
         f"Z2 = {scientific(bounds.curvature(unique + length))}: recomputed with integers",
+        f"unfolded, x_(2N-j) = -x_j, it is a periodic orbit of the ring of {2 * claim.N} particles",
     ]
 
 
