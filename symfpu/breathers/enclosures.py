@@ -13,8 +13,8 @@ from fractions import Fraction
 import flint
 import numpy as np
 
-from symfpu.breathers.bond_balls import BondBalls, ball
-from symfpu.breathers.existence_bounds import SPARE_BITS, double_above, linear_part, strip
+from symfpu.breathers.bond_balls import SPARE_BITS, BondBalls
+from symfpu.breathers.existence_bounds import double_above, linear_part, strip
 from symfpu.breathers.exponent_bounds import (
     WEIGHTS,
     Attempt,
@@ -25,6 +25,7 @@ from symfpu.breathers.exponent_bounds import (
     rounded_zero,
 )
 from symfpu.breathers.exponents import FourierSystem, FourierZero, Guess
+from symfpu.breathers.force_series import ball
 from symfpu.breathers.rounded_orbit import RoundedOrbit
 from symfpu.breathers.sectors import Sector
 from symfpu.errors import SymfpuError

@@ -16,6 +16,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from symfpu.breathers.border import FREQUENCY
 from symfpu.breathers.enclosures import (
     ADVICE,
     Enclosed,
@@ -28,6 +29,7 @@ from symfpu.breathers.exponent_bounds import RoundedZero, Slopes
 from symfpu.breathers.exponents import guesses
 from symfpu.breathers.rounded_orbit import RoundedOrbit
 from symfpu.breathers.sectors import Sector, sectors_of
+from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
@@ -203,6 +205,7 @@ def prove_stability(
     0.02488... .. 0.02488...)
     """
     proof = solution if isinstance(solution, ExistenceProof) else prove_existence(solution)
+    require_exact_frequency(proof)
     orbit = orbit_of(proof)
     sectors = sectors_of(orbit.chain, orbit.seed)
     found = [guesses(orbit, sector) for sector in sectors]
@@ -221,6 +224,16 @@ def prove_stability(
         gaps=gaps,
         body=body,
     )
+
+
+def require_exact_frequency(proof: ExistenceProof) -> None:
+    """The theorem is about one orbit of an exact frequency, of a polynomial potential."""
+    if proof.fixed != FREQUENCY or proof.half_width:
+        advice = "prove existence without amplitude=, energy= and half_width="
+        raise InputError("solution", proof, "an orbit of an exact frequency", advice)
+    if proof.chain.potential.degree is None:
+        allowed = "a polynomial potential with exact coefficients"
+        raise InputError("chain", proof.chain, allowed, "take poly: with its first ones")
 
 
 def orbit_of(proof: ExistenceProof) -> RoundedOrbit:

@@ -158,7 +158,8 @@ class Orbit(NamedTuple):
 def check_existence_of(data: Json) -> str:
     """The orbit exists: the sentence of the other checker."""
     need(data["format"] == check_existence.FORMAT, "it holds no certificate of existence")
-    need(data["schema"] == check_existence.SCHEMA, "a proof of existence of another schema")
+    schema = check_existence.reading.SCHEMA
+    need(data["schema"] == schema, "a proof of existence of another schema")
     contents = {key: data[key] for key in data if key != "digest"}
     text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
     digest = hashlib.sha256(text.encode()).hexdigest()
@@ -171,19 +172,15 @@ def check_existence_of(data: Json) -> str:
 
 def orbit_of(data: Json) -> Orbit:
     """The numbers of a certificate of existence that has been checked."""
-    N, seed = data["N"], data["seed"]
-    coefficients = [Fraction(text) for text in data["coefficients"]]
-    couplings = {k: c for k, c in enumerate(coefficients, 2) if c}
-    radius = Fraction(data["radius"][0], 1 << data["radius"][1])
-    found = Orbit(N, couplings, seed, Fraction(data["omega"]), data["bits"], [], radius)
-    for n, values in enumerate(data["orbit"]):
-        row = [0] * N
-        modes = range(1 if n * seed % 2 else 2, N, 2)
-        absent = found.even and n % 2 == 0
-        for q, c in zip([] if absent else modes, values, strict=True):
-            row[q] = c
-        found.rows.append(row)
-    return found
+    claim = check_existence.read_claim(data)
+    need(not claim.bordered, "stability needs an orbit of exact frequency")
+    need(not claim.force.growths, "stability needs a polynomial potential")
+    rows = [[0] * claim.N for _ in range(claim.harmonics + 1)]
+    for (n, q), c in claim.orbit.items():
+        rows[n][q] = c
+    radius = check_existence.dyadic(data["radius"], "radius")
+    couplings = claim.force.couplings
+    return Orbit(claim.N, couplings, claim.seed, claim.omega, claim.bits, rows, radius)
 
 
 class Sector(NamedTuple):

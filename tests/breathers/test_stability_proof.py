@@ -176,6 +176,8 @@ def test_a_proof_of_existence_is_not_made_again():
 
 
 def test_what_the_theorem_is_not_about_is_refused():
+    with pytest.raises(InputError, match="exact frequency"):
+        prove_stability(prove_existence(orbit("alpha"), amplitude="0.2"))
     with pytest.raises(InputError, match="polynomial"):
         prove_stability(breather_at_amplitude(Chain(4, potential="toda:1/2"), 1, "0.1"))
 

@@ -81,9 +81,9 @@ FORGERIES = {
     "a weight too many": ("stable", (*FIRST, "weights"), lambda w: w + "0", "number of weights"),
     "a weight of nothing": ("stable", (*FIRST, "weights"), lambda w: " " + w[1:], "no readable"),
     "no block": ("stable", (*FIRST, "block"), lambda _: [], "kappa is not in the block"),
-    "another orbit": ("stable", ("existence", "orbit", 1, 0), lambda c: c + c // 10**10, "no orbit is proved"),
-    "another frequency": ("stable", ("existence", "omega"), lambda w: w.replace("7", "8", 1), "no orbit is proved"),
-    "another coupling": ("stable", ("existence", "coefficients", 0), lambda _: "31/100", "no orbit is proved"),
+    "another orbit": ("stable", ("existence", "orbit", 1), lambda t: t[:9] + ("#" if t[9] == "!" else "!") + t[10:], "no orbit is proved|no readable"),
+    "another frequency": ("stable", ("existence", "omega"), lambda w: w.replace("7", "8", 1), "no orbit is proved|no readable"),
+    "another coupling": ("stable", ("existence", "coefficients", 0), lambda _: "31/100", "no orbit is proved|no readable"),
     "another kind": ("stable", ("format",), lambda _: "symfpu existence certificate", "not a certificate"),
     "a later version": ("stable", ("schema",), lambda _: 2, "supports schema"),
 }
