@@ -8,7 +8,7 @@ import multiprocessing
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.typed import integer, seed_modes
-from symfpu.proofs.decided_file import DecidedFile
+from symfpu.proofs.decided_file import decided_file
 from symfpu.proofs.every_length import DecidedFlat, decided_flat
 from symfpu.proofs.families import equation_text, mode_text
 from symfpu.proofs.flats import MOST_SEEDS, Arrangement, Flat, degree_of, flats
@@ -299,8 +299,8 @@ def prove_for_all_N(
         allowed = f"1 to {MOST_SEEDS}"
         advice = "flats of more seeds are not enumerated; prove_propagation decides one set"
         raise InputError("seeds_number", s, allowed, advice)
-    kept = DecidedFile(file, {"model": model, "seeds_number": s, "order": last})
-    known = kept.read()
+    kept = decided_file(file, {"model": model, "seeds_number": s, "order": last})
+    known = {found.flat: found for found in kept.read()}
     told = progress or unheard
     all_flats = flats(model, s, last, told)
     asked = _with_odd_sums(model, last, all_flats)
@@ -311,7 +311,7 @@ def prove_for_all_N(
             context = multiprocessing.get_context("spawn")
             pool = stack.enter_context(ProcessPoolExecutor(mp_context=context))
         for batch in _decided(pool, model, last, todo):
-            kept.append(batch)
+            kept.append(map(asdict, batch))
             known |= {found.flat: found for found in batch}
             told("flats", len(known) / len(asked))
     found = {flat: known[flat] for flat in asked}
