@@ -154,6 +154,8 @@ def test_what_is_no_certificate_is_refused(tmp_path):
     with pytest.raises(CertificateError):
         verify(tmp_path / "none.json")
     data = prove_for_all_N("alpha", 1, 1).certificate()
+    with pytest.raises(CertificateError, match="beyond this checker"):
+        verify(written(path, data | {"order": 201}))
     path.write_text(json.dumps(data | {"order": 2}))
     with pytest.raises(CertificateError, match="digest"):
         verify(path)
