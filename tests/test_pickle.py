@@ -78,6 +78,10 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.series.sample import sample_series
 from symfpu.series.travelling import travelling_waves
 from symfpu.spectral.analysis import frequency_analysis
+from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
+from symfpu.sweeps.rows_file import FileFull
+from symfpu.sweeps.sweep import CaseTooLarge, SweepStopped
+from symfpu.sweeps.workers import WorkerDied, WorkersDoNotStart
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.at_energy import NoTorusAtEnergy, torus_at_energy
 from symfpu.tori.frequencies import NoSelfConsistentFrequencies, torus_at_amplitudes
@@ -264,15 +268,19 @@ RESULTS = {
     "ShotOrbit": (shot, lambda x: (motion(x), x.iterations)),
     "RuleForAllN": (lambda _: prove_for_all_N("beta", 1, 1), lambda x: x.certificate()),
     "Sweep": (lambda _: sweep(), lambda x: x.exceptions),
+    "SweepRows": (lambda _: swept_rows(), lambda x: x.failures),
     "TorusDimension": (lambda _: indices().dimension(), lambda x: x.weights),
     "TodaInvariants": (lambda _: toda_invariants(PAIR, *fpu_trajectory(PAIR, {1: "0.1"})), lambda x: (x.gaps, x.actions, x.frequencies)),
     "TodaTorus": (lambda _: toda_torus(Chain(4, alpha="1/2"), (1, 3), actions=("0.1", "0.2"), digits=20), lambda x: x.state({3: 1})),
     "FrequencyAnalysis": (lambda _: lines_found(), lambda x: (x.drift, x.count(0.1))),
+    "FrequencyMap": (lambda _: cases.mapped(), lambda x: (x.shifts(), x.counts)),
     "SpectralLine": (lambda _: lines_found().lines[0], repr),
     "BirkhoffForm": (lambda _: birkhoff_form(PAIR, (1, 2), 2), lambda x: x.hamiltonian()),
     "BirkhoffForm, digits": (lambda _: birkhoff_form(PAIR, (1, 2), 2, digits=20), lambda x: x.frequencies_at({1: 0.1, 2: 0.1})),
     "NormalFamily": (lambda _: cases.normal_line(), lambda x: (x.events, x.verdict)),
     "NormalEvent": (lambda _: cases.normal_line().events[0], repr),
+    "NormalFrequencies": (lambda _: normal_member().normal, lambda x: (x.verdict, x.frequencies, x.resonances)),
+    "Member, normal": (lambda _: normal_member(), lambda x: x.normal.verdict),
     "NormalFrequencySeries": (lambda _: normal_frequency_series(PAIR, (1,), 2, 2), lambda x: x.correction(2)),
     "ForetoldIndices": (lambda _: foretold_indices(orbit(), 1e3), lambda x: (x.settling(), x.slopes())),
     "Twist": (lambda _: twist(orbit()), lambda x: (x.matrix, x.signature)),
@@ -281,8 +289,19 @@ RESULTS = {
 }
 
 
+@cache
+def normal_member():
+    return family(Chain(4, beta=1), (2,), "0.02", from_energy="0.01", members=1, normal=True).members[0]
+
+
 def sweep():
     return Sweep("beta", 1, (SweepCase(4, (1, 2), "refuted", ((3, 1, None),), True),))
+
+
+def swept_rows():
+    case = {"chain": {"N": 4, "alpha": "0", "beta": "0.1"}}
+    failure = SweepFailure("WorkerDied", "it was killed", {"exit_code": -9})
+    return SweepRows("a.function", {"order": 2}, (SweepRow(case, 0.5), SweepRow({"chain": {"N": 1}}, None, failure)))
 
 
 def public_classes():
@@ -389,7 +408,12 @@ ERRORS = {
     NoPeriodicOrbit: no_periodic_orbit,
     NoBreatherAtEnergy: lambda: NoBreatherAtEnergy(3, 0.5, False, orbit(), no_periodic_orbit()),
     ShootingFailed: lambda: ShootingFailed(1, "a reason", np.array([0.1, 0.0]), (0.2, 0.1)),
-    SweepIncomplete: lambda: SweepIncomplete(sweep(), {(5, (1,)): TooLarge(9, 10**12, 10**9, 5)}),
+    SweepIncomplete: lambda: SweepIncomplete(sweep(), {(5, (1,)): SweepFailure("TooLarge", "order = 9", {"needed": 10**12})}),
+    SweepStopped: lambda: SweepStopped(swept_rows(), 3, "a reason"),
+    CaseTooLarge: lambda: CaseTooLarge(10**12, 10**9),
+    FileFull: lambda: FileFull("rows.jsonl", 3, "No space left on device"),
+    WorkerDied: lambda: WorkerDied(-9),
+    WorkersDoNotStart: lambda: WorkersDoNotStart("exit code 1"),
     Interrupted: lambda: Interrupted("nothing is kept"),
     TimeIsUp: lambda: TimeIsUp(10.0, "step 3"),
     CertificateError: lambda: CertificateError("a witness is zero"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -36,6 +36,27 @@ from symfpu.reports.certified import (
 from symfpu.reports.existence import existence_record, existence_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
+AmplitudeOption = Annotated[
+    str | None,
+    typer.Option(help="Of a breather: that of exactly this amplitude.", metavar="A"),
+]
+EnergyOption = Annotated[
+    str | None,
+    typer.Option(help="Of a breather: that of exactly this energy H.", metavar="E"),
+]
+HalfWidthOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Of a breather: one for each value that is no further away.", metavar="W"
+    ),
+]
+TimeOption = Annotated[
+    str | None, typer.Option(help="Of a torus: for how long.  Default: 1e9.", metavar="T")
+]
+ResidualOption = Annotated[
+    bool, typer.Option("--residual", help="Of a torus: its residual alone.")
+]
+
 Proof = ExistenceProof | ResidualProof | StayProof
 REPORTS: dict[type, tuple[Callable[[Any], dict[str, Any]], Callable[[Any], str]]] = {
     ExistenceProof: (existence_record, existence_text),
@@ -44,49 +65,67 @@ REPORTS: dict[type, tuple[Callable[[Any], dict[str, Any]], Callable[[Any], str]]
 }
 
 
-@app.command(epilog="Example: symfpu certify breather.symfpu -o proof.json")
+@app.command(
+    epilog="Examples: symfpu certify breather.symfpu -o proof.json; "
+    "symfpu certify breather.symfpu --amplitude 0.4 --half-width 1e-5; "
+    "symfpu certify torus.symfpu --time 1e6"
+)
 def certify(
     file: FileArgument,
-    time: Annotated[
-        str | None,
-        typer.Option(help="Of a torus: for how long.  Default: 1e9.", metavar="T"),
-    ] = None,
-    residual: Annotated[
-        bool, typer.Option("--residual", help="Of a torus: its residual alone.")
-    ] = False,
+    amplitude: AmplitudeOption = None,
+    energy: EnergyOption = None,
+    half_width: HalfWidthOption = None,
+    time: TimeOption = None,
+    residual: ResidualOption = False,
     output: CertificateOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Prove that a periodic orbit exists near a breather, or how long orbits stay near a torus.
 
-    Of a breather: existence. Of a torus of two or more angles: its residual at all angles, and
-    how near to it an orbit stays that starts on it. Exit code 1 where the bounds do not prove it.
+    Of a breather: existence, at exactly its frequency or at the amplitude or energy given. Of a
+    torus of two or more angles: its residual at all angles, and how near to it an orbit stays that
+    starts on it. Exit code 1 where the bounds do not prove it.
     """
     solution = solution_of(load(path_named("FILE", file)), file)
     require_fixed_ends(solution.chain)
     assert isinstance(solution, QuasiPeriodic)
+    of_breather = {"amplitude": amplitude, "energy": energy, "half_width": half_width}
+    of_torus = {"time": time, "residual": residual or None}
     target = None if output is None else output_file(path_named("output", output))
     with progress_bar("proof") as advance:
         advance("proof", NO_FRACTION)
-        proof = _proved(solution, time, residual, advance)
+        if len(solution.seeds) == 1:
+            _refuse(of_torus, "a breather")
+            proof = _existence(solution, of_breather)
+        else:
+            _refuse(of_breather, "a torus of two or more angles")
+            proof = _torus_proof(solution, time, residual, advance)
         if target is not None:
             proof.write(target)
     _show(proof, target, as_json)
 
 
-def _proved(
-    solution: QuasiPeriodic, time: str | None, residual: bool, advance: Progress
+def _refuse(options: Mapping[str, Any], solution: str) -> None:
+    """Options that belong to the other kind of solution."""
+    for name, value in options.items():
+        if value is not None:
+            raise InputError(name, value, f"none for {solution}", "leave it out")
+
+
+def _existence(orbit: QuasiPeriodic, options: Mapping[str, Any]) -> Proof:
+    return prove_existence(
+        orbit, **{name: value for name, value in options.items() if value is not None}
+    )
+
+
+def _torus_proof(
+    torus: QuasiPeriodic, time: str | None, residual: bool, progress: Progress
 ) -> Proof:
-    if len(solution.seeds) == 1:
-        if residual or time is not None:
-            name, value = ("residual", True) if residual else ("time", time)
-            raise InputError(name, value, "none for a breather", "leave it out")
-        return prove_existence(solution)
-    if residual:
-        if time is not None:
-            raise InputError("time", time, "none with --residual", "leave one out")
-        return prove_residual(solution)
-    return prove_stay(solution, time=TIME if time is None else time, progress=advance)
+    if not residual:
+        return prove_stay(torus, time=TIME if time is None else time, progress=progress)
+    if time is not None:
+        raise InputError("time", time, "none with --residual", "leave one out")
+    return prove_residual(torus)
 
 
 def _show(proof: Proof, target: Path | None, as_json: bool) -> None:

@@ -23,6 +23,7 @@ from symfpu.normal.resonances import ParametricResonance
 from symfpu.notebook import Shown
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 ELLIPTIC, HYPERBOLIC = "elliptic", "hyperbolic"
 
@@ -31,14 +32,18 @@ class NoNormalModes(SymfpuError):
     """The linearised flow about a torus could not be reduced to constant coefficients.
 
     Raised by `normal_modes`. mode : q of the frequency that was sought; guess : of it, from the
-    closed second-order shift; nearest : the resonance nearest to it, a ParametricResonance. Ours.
+    closed second-order shift; nearest : the resonance nearest to it, a ParametricResonance, or None
+    where no low one lets it couple. Ours.
     """
 
-    def __init__(self, mode: int, guess: float, nearest: ParametricResonance) -> None:
+    def __init__(
+        self, mode: int, guess: float, nearest: ParametricResonance | None
+    ) -> None:
         self.mode, self.guess, self.nearest = mode, guess, nearest
+        known = f"nearest resonance {nearest!r}" if nearest else "no resonance is near"
         super().__init__(
             f"no normal frequency continues mode {mode} (guess {guess:.10g}): "
-            f"nearest resonance {nearest!r}; "
+            f"{known}; "
             f"take a torus of another amplitude, or leave the mode out by modes="
         )
 
@@ -146,7 +151,7 @@ class NormalModes(Shown, Gridded):
     1     3  elliptic          1
     """
 
-    torus: QuasiPeriodic
+    torus: QuasiPeriodic | RingTorus
     modes: tuple[NormalMode, ...]
     guesses: dict[int, float] = field(repr=False)
     resonances: tuple[ParametricResonance, ...] = field(repr=False)
@@ -207,14 +212,15 @@ class NormalModes(Shown, Gridded):
     def _grid(self) -> Grid:
         rows, torus = ("mode",), self.torus
         sigma = np.array([complex(mode.sigma) for mode in self.modes])
-        linear = torus.chain.frequencies()
+        pairs = zip(torus.chain.mode_numbers, torus.chain.frequencies(), strict=True)
+        linear = dict(pairs)
         columns: dict[str, tuple[Any, str]] = {
             "sigma": (sigma.real, "normal frequency, real part"),
             "growth": (np.abs(sigma.imag), "|Im sigma|: rate of growth"),
             "kind": ([mode.kind for mode in self.modes], "elliptic or hyperbolic"),
             "signature": ([mode.signature for mode in self.modes], "Krein's signature"),
             "linear_frequency": (
-                [linear[mode.mode - 1] for mode in self.modes],
+                [linear[mode.mode] for mode in self.modes],
                 "Omega_q of small oscillations",
             ),
             "second_order": (

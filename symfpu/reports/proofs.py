@@ -26,8 +26,8 @@ Json = dict[str, Any]
 
 
 def proof_record(proof: PropagationProof) -> Json:
-    """A proof for JSON: its certificate without the evidence."""
-    return certificate_record(proof.certificate())
+    """A proof for JSON: its certificate without the evidence, and what kind that is."""
+    return certificate_record(proof.certificate()) | {"reason": proof.reason}
 
 
 def certificate_record(certificate: Json) -> Json:

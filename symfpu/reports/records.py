@@ -22,7 +22,8 @@ from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
-from symfpu.families.normal_family import NormalEvent
+from symfpu.families.normal_events import NormalEvent
+from symfpu.families.normal_family import NormalFamily
 from symfpu.frames.attributes import exact_text
 from symfpu.frames.tabled import Tabled
 from symfpu.localization.laws import ProfileLine
@@ -40,7 +41,11 @@ from symfpu.reports.dynamics import alignment_record, orbit_record
 from symfpu.reports.existence import existence_record
 from symfpu.reports.family import event_record, family_record, member_record, refined_record
 from symfpu.reports.head import headed
-from symfpu.reports.normal import normal_event_record, normal_record
+from symfpu.reports.normal import (
+    normal_event_record,
+    normal_family_record,
+    normal_record,
+)
 from symfpu.reports.proofs import proof_record, sweep_record
 from symfpu.reports.solution import floquet_record, solution_record
 from symfpu.reports.tables import fifteen_digits
@@ -181,6 +186,7 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (Sweep, _sweep_record),
     (NormalModes, normal_record),
     (NormalEvent, normal_event_record),
+    (NormalFamily, normal_family_record),
     (Twist, twist_record),
     (ProfileLine, _line_record),
     (ProfileDistance, _distance_record),

@@ -34,6 +34,7 @@ RESULTS = {
     "Family",
     "ForetoldIndices",
     "FrequencyAnalysis",
+    "FrequencyMap",
     "LindstedtSeries",
     "NormalFrequencySeries",
     "Orbit",
