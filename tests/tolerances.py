@@ -654,6 +654,15 @@ SAME_BOUNDS = 0.02
 # Asked of the breathers of the figures: far beyond doubles, within the 30 digits that their orbits have.
 PROVED_RADIUS = 1e-25
 
+# Of the frequency at a given amplitude or energy of an orbit of doubles: 22 digits of it are kept, so its ball is far below theirs.
+PROVED_FREQUENCY = 1e-18
+
+# Radius of uniqueness at a fold in omega, with the frequency given and with the amplitude: it is squeezed by the second orbit, or not.
+SQUEEZED, FREE = 1e-6, 1e-2
+
+# A frequency that proof and harmonic balance have of the same digits of A.
+SAME_FREQUENCY = 1e-15
+
 # A matrix made of bond sums against one made of samples in time, both of some hundred rounded products.
 SAME_DERIVATIVE = 1e-12
 
