@@ -181,6 +181,11 @@ class Case:
         return Path(symfpu.save(self.folder / "breather.symfpu", self.breather))
 
     @cached_property
+    def periodic_file(self) -> Path:
+        """A saved breather of its own kind."""
+        return Path(symfpu.save(self.folder / "periodic.symfpu", self.periodic))
+
+    @cached_property
     def file(self) -> Path:
         """A saved torus, by the command line."""
         path = self.folder / "solved.symfpu"
@@ -279,10 +284,12 @@ NEWTON: dict[str, Door] = {
     "floquet": lambda c: symfpu.floquet(c.periodic),
     "foretold_indices": lambda c: symfpu.foretold_indices(c.breather, 1e4, vectors=2),
     "prove_existence": lambda c: symfpu.prove_existence(c.periodic),
+    "prove_residual": lambda c: symfpu.prove_residual(c.solution),
+    "prove_stay": lambda c: symfpu.prove_stay(c.refined, time=1),
     "normal_family": lambda c: symfpu.normal_family(
         c.breather, {1: 1.1 * c.size}, members=2, modes=[2], resonance_length=0
     ),
-    "normal_modes": lambda c: symfpu.normal_modes(c.breather),
+    "normal_modes": lambda c: symfpu.normal_modes(c.periodic),
     "solve_normal_frequency": lambda c: symfpu.solve_normal_frequency(c.breather, 2, 2),
     "member_at_energy": lambda c: symfpu.member_at_energy(
         c.family, c.family.members[1].torus.energy(), harmonic=False
@@ -435,7 +442,7 @@ VERBS: dict[str, Door] = {
     "symfpu show": lambda c: c.verb("show", c.file),
     "symfpu solve": lambda c: c.file,
     "symfpu certify": lambda c: c.verb("certify", c.refined_file),
-    "symfpu stability": lambda c: c.verb("stability", c.refined_file),
+    "symfpu stability": lambda c: c.verb("stability", c.periodic_file),
     "symfpu sweep": lambda c: c.verb(
         "sweep", "--order", 1, "--longest", 3, "--largest", 1, *c.rule_words
     ),

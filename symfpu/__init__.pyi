@@ -66,6 +66,12 @@ from symfpu.refinement.tori import refine_at_amplitudes as refine_at_amplitudes
 from symfpu.refinement.tori import refine_at_energy as refine_at_energy
 from symfpu.refinement.travelling_breather import travelling_breather as travelling_breather
 
+# theorems about tori
+from symfpu.certified.residual import ResidualProof as ResidualProof
+from symfpu.certified.residual import prove_residual as prove_residual
+from symfpu.certified.stay import StayProof as StayProof
+from symfpu.certified.stay import prove_stay as prove_stay
+
 # breathers
 from symfpu.breathers.at_energy import breather_at_energy as breather_at_energy
 from symfpu.breathers.balance import PeriodicOrbit as PeriodicOrbit
@@ -216,6 +222,7 @@ from symfpu.action_angle.newton_twist import NoTwist as NoTwist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy as NoBreatherAtEnergy
 from symfpu.breathers.balance import NoPeriodicOrbit as NoPeriodicOrbit
 from symfpu.breathers.existence import NoExistenceProof as NoExistenceProof
+from symfpu.certified.stay import NoStayProof as NoStayProof
 from symfpu.breathers.shooting import ShootingFailed as ShootingFailed
 from symfpu.dynamics.frame_run import OrbitLost as OrbitLost
 from symfpu.dynamics.stopping import EscapedOrbit as EscapedOrbit

@@ -27,6 +27,8 @@ from symfpu.breathers.existence import NoExistenceProof, prove_existence
 from symfpu.breathers.floquet import floquet
 from symfpu.breathers.shooting import ShootingFailed, shoot
 from symfpu.bundles.bundle import load, save
+from symfpu.certified.residual import prove_residual
+from symfpu.certified.stay import NoStayProof, prove_stay
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.cli.terminal import Interrupted
@@ -70,7 +72,7 @@ from symfpu.proofs.leading import leading_terms
 from symfpu.proofs.sweeps import Sweep, SweepCase, SweepIncomplete
 from symfpu.proofs.theorem import prove_for_all_N
 from symfpu.proofs.verify import CertificateError
-from symfpu.refinement.tori import NoTorus, refine
+from symfpu.refinement.tori import NoTorus, refine, refine_at_amplitudes
 from symfpu.series.expandable import expandable_term
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.sample import sample_series
@@ -111,6 +113,13 @@ def torus(digits=None):
 @cache
 def refined():
     return refine(torus())
+
+
+@cache
+def two_angles():
+    """A refined torus of the smallest chain that has one."""
+    amplitudes = {1: "0.2", 2: "0.1"}
+    return refine_at_amplitudes(torus_at_amplitudes(Chain(3, alpha="0.3"), amplitudes, order=4), amplitudes)
 
 
 @cache
@@ -217,6 +226,8 @@ RESULTS = {
     "Chain": (lambda _: Chain(8, alpha="1/3", beta="0.1"), lambda x: (x.frequencies(), x.small_parameter())),
     "Event": (lambda _: Event("fold", "omega_1", 3, 0.1, 0.2), lambda x: x.kind),
     "ExistenceProof": (lambda _: prove_existence(orbit()), lambda x: x.certificate()),
+    "ResidualProof": (lambda _: prove_residual(two_angles()), lambda x: x.certificate()),
+    "StayProof": (lambda _: prove_stay(two_angles(), time=1000), lambda x: (x.certificate(), x.distance_at(10))),
     "Family": (lambda _: breathers(), lambda x: member_at_energy(x, "0.012", harmonic=False).amplitudes),
     "Floquet": (lambda _: floquet(orbit()), lambda x: (x.stable, x.multipliers)),
     "FourierTorus": (lambda _: torus().in_doubles(), motion),
@@ -390,6 +401,7 @@ ERRORS = {
     NoFurtherMember: lambda: NoFurtherMember("no root", (1,), (0.4,), "a reason"),
     NoTorus: lambda: NoTorus("a reason", refined(), 0.1),
     NoNormalModes: lambda: NoNormalModes(3, 1.1, stability().resonances[0]),
+    NoStayProof: lambda: NoStayProof(1e9, 1e5, 1e-14, 1e-12, 3.0),
     NoExistenceProof: lambda: NoExistenceProof("Y", 1e-3, 1e-5, "more digits may help"),
     NoTorusAtEnergy: no_torus_at_energy,
     NoSelfConsistentFrequencies: no_frequencies,

@@ -680,9 +680,15 @@ TODA_GROWTH = 1e-6
 # numbers of a page, written with three or four digits
 THREE_DIGITS = 1e-3
 
+# Ratio of what two tori of small waves, one twice the other, miss of a normal frequency: the next
+# power is the fourth, at amplitudes of 0.02 a part of 1e-3.
+PHANTOM_WAVE = 1e-2
 # Frequencies of a map over 500 units of time, relative: the lines of one mode are far apart there, and step 0.1 of the eighth order is
 # below it.
 MAP_FREQUENCY = 1e-10
 
 # The shift of mode 1 beside its lowest order, relative: the next order at alpha = 0.3, N = 8, H = 4e-6 is 2e-3 of it.
 MAP_SHIFT = 1e-2
+
+# Two normal frequencies that are one at rest and differ on a torus: those of the tests by 2e-6 and more.
+SPLIT = 1e-6

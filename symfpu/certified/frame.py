@@ -15,7 +15,7 @@ from fractions import Fraction
 import numpy as np
 
 from symfpu.action_angle.newton_twist import changes_by_action
-from symfpu.certified.rounded_torus import exponentials, particles_of, rounded_series
+from symfpu.certified.rounded_torus import exponentials, rounded_series
 from symfpu.certified.series import Series
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
@@ -71,7 +71,7 @@ def _of_actions(torus: FourierTorus) -> list[Direction]:
     pairs = zip(torus.seeds, changes.by_cosine, changes.twist.T, strict=True)
     for seed, change, turned in pairs:
         size = 2.0 ** -np.round(np.log2(np.abs(change).max()))
-        table = particles_of(torus.chain, change * size)
+        table = in_particles(change * size)
         parities = changes.harmonics @ np.array(torus.seeds)
         series = rounded_series(changes.harmonics, table, FRAME_BITS, parities)
         found.append(Direction(seed, Fraction(0), series, dyadics(turned * size)))
@@ -86,6 +86,14 @@ def dyadics(values: Iterable[float]) -> tuple[Fraction, ...]:
 def dyadic(value: float) -> Fraction:
     """The nearest with RATE_BITS places."""
     return Fraction(round(Fraction(value) * 2**RATE_BITS), 2**RATE_BITS)
+
+
+def in_particles(table: Floats) -> Floats:
+    """x_j = sqrt(2/N) sum_q sin(pi q j / N) Q_q of each row; (H, N-1) of (H, N-1)."""
+    N = table.shape[1] + 1
+    places = np.arange(1, N)
+    sines = np.sin(np.pi * np.outer(places, places) / N)
+    return np.asarray(np.sqrt(2 / N) * (table @ sines))
 
 
 class Polish:
@@ -125,6 +133,6 @@ class Polish:
     def _series(self, mode: int, table: Floats) -> tuple[Series, ...]:
         used = np.abs(table).max(axis=1) >= 2.0**-FRAME_BITS
         harmonics = self.flow.harmonics[used]
-        particles = particles_of(self.flow.chain, table[used])
+        particles = in_particles(table[used])
         parities = harmonics @ np.array(self.flow.seeds) + mode
         return exponentials(harmonics, particles, FRAME_BITS, parities)

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
+
+import numpy as np
 
 RATIO = Fraction(31, 32)  # of neighbouring nodes of the integral of 1/g
 NODE_BITS = 64
 SEARCH_STEPS = 60
+POINTS = 400  # of a search in doubles
+WIDER, TRIES = Fraction(65, 64), 12  # steps from what doubles found
 
 
 @dataclass(frozen=True)
@@ -46,8 +51,10 @@ class Growth:
     @property
     def quiet(self) -> Fraction:
         """A distance up to which g is nearly what it is at 0."""
-        slope = self.terms[1] + self.turning + self.terms[2]
-        return min(self.terms[0] / slope, Fraction(1)) / 64 if slope else Fraction(1)
+        residual = float(self.terms[0])
+        linear = residual / (float(self.terms[1]) + residual * float(self.turning) or 1.0)
+        curved = math.sqrt(residual / (float(sum(self.terms[2:])) or 1.0))
+        return Fraction(min(linear, curved, 1.0) / 64)
 
     def longest(self) -> Fraction:
         """A distance at which more time hardly costs less than all of it."""
@@ -57,14 +64,33 @@ class Growth:
 
     def distance(self, time: Fraction) -> Fraction | None:
         """A distance not reached before a time, nearly the least; None where none is known."""
-        high = self.longest()
-        if self.time(high) < time:
-            return None
-        low = rounded_down(self.terms[0] * time / 2)
-        while low > 0 and high / low > Fraction(129, 128):
-            middle = Fraction((float(low) * float(high)) ** 0.5)
-            low, high = (low, middle) if self.time(middle) >= time else (middle, high)
-        return high
+        most = self.longest()
+        d = Fraction(self._guess(float(time), float(most)))
+        for _ in range(TRIES):
+            if d >= most:
+                break
+            if self.time(d) >= time:
+                return d
+            d = rounded_down(d * WIDER)
+        return most if self.time(most) >= time else None
+
+    def _guess(self, time: float, most: float) -> float:
+        """The same in doubles, by bisection."""
+        least = float(self.terms[0]) * time / 2
+        for _ in range(SEARCH_STEPS):
+            middle = math.sqrt(least * most)
+            least, most = (
+                (least, middle) if self._nearly(middle) >= time else (middle, most)
+            )
+        return most
+
+    def _nearly(self, d: float) -> float:
+        """The integral of 1/g in doubles, by trapezes in log d."""
+        x = np.concatenate([[0.0], np.geomspace(min(float(self.quiet), d / 2), d, POINTS)])
+        powers = np.vander(x, len(self.terms), increasing=True)
+        above = powers @ np.array([float(term) for term in self.terms])
+        slowness = (float(self.room) - float(self.turning) * x) / above
+        return float(np.trapezoid(slowness, x))
 
 
 def nodes(d: Fraction, quiet: Fraction) -> list[Fraction]:

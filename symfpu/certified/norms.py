@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
 from symfpu.certified.bounds import (
     PLACES,
@@ -27,9 +25,7 @@ from symfpu.certified.rounded_torus import (
 )
 from symfpu.certified.series import Series
 
-Floats = NDArray[np.float64]
-
-WEIGHT_BITS = 20
+LEAST_ROOM = 0.25
 SLACK = Fraction(129, 128)  # of all bounds, so that a checker's own roundings fit
 SWEEPS = 40  # of the search for weights
 
@@ -39,9 +35,9 @@ def norms_of(row: Sequence[Series]) -> Row:
     return [series.norm for series in row]
 
 
-def dot(one: Sequence[Fraction], other: Sequence[Fraction]) -> Fraction:
+def dot(one: Sequence[Any], other: Sequence[Any]) -> Any:
     """sum a b."""
-    return sum((a * b for a, b in zip(one, other, strict=True)), Fraction(0))
+    return sum(a * b for a, b in zip(one, other, strict=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +66,13 @@ class Norms:
 
     def growth(self, weights: Sequence[Fraction]) -> Growth:
         """Of the weighted distance max |v_c| / w_c; weights : of tangents, then directions."""
+        terms, defect, turning = self.bounds(weights)
+        room = rounded_down(1 - defect * SLACK)
+        rounded = [rounded_up(x * SLACK) for x in terms]
+        return Growth(tuple(rounded), room, rounded_up(turning * SLACK))
+
+    def bounds(self, weights: Sequence[Any]) -> tuple[list[Any], Any, Any]:
+        """Residual, frame and curvatures; of 1 - L M; of the frame that turns with a tangent."""
         tangents, others = weights[: self.s], weights[self.s :]
         each = [w * n for w, n in zip(others, self.images, strict=True)]
         drift = [dot(row, others) for row in self.twist]
@@ -79,11 +82,14 @@ class Norms:
         curvatures = [self._curvature(power, each) for power in range(2, self.degree + 1)]
         curvatures[0] = [a + b for a, b in zip(curvatures[0], by_drift, strict=True)]
         linear = [dot(row, each) for row in self.left]
-        terms = [largest(row, weights) for row in (self.residual, linear, *curvatures)]
         identity = [dot(row, [*weights, *others[self.s :]]) for row in self.identity]
-        room = rounded_down(1 - largest(identity, weights) * SLACK)
-        turning = rounded_up(largest(by_tangent, weights) * SLACK)
-        return Growth(tuple(rounded_up(x * SLACK) for x in terms), room, turning)
+        terms = [largest(row, weights) for row in (self.residual, linear, *curvatures)]
+        return terms, largest(identity, weights), largest(by_tangent, weights)
+
+    def in_doubles(self) -> Norms:
+        """The same, rounded: for choices."""
+        rounded = {field.name: doubles(getattr(self, field.name)) for field in fields(self)}
+        return replace(self, **rounded)
 
     @property
     def degree(self) -> int:
@@ -119,7 +125,7 @@ class Norms:
 def taylor(couplings: dict[int, Fraction], r: Fraction, power: int) -> Fraction:
     """sum_k |c_k| binomial(k, power) r^(k - power)."""
     pairs = ((k, c) for k, c in couplings.items() if k >= power)
-    return sum((c * math.comb(k, power) * r ** (k - power) for k, c in pairs), Fraction(0))
+    return Fraction(sum(c * math.comb(k, power) * r ** (k - power) for k, c in pairs))
 
 
 def largest(row: Sequence[Fraction], weights: Sequence[Fraction]) -> Fraction:
@@ -160,7 +166,7 @@ def norms(torus: RoundedTorus, directions: Sequence[Direction], residual: Row) -
 
 
 def _image(x: Row, y: Row, column: Column) -> Fraction:
-    return dot(x, norms_of(column.x)) + dot(y, norms_of(column.y))
+    return Fraction(dot(x, norms_of(column.x)) + dot(y, norms_of(column.y)))
 
 
 def _twist(directions: Sequence[Direction], s: int) -> Iterator[list[Fraction]]:
@@ -168,29 +174,45 @@ def _twist(directions: Sequence[Direction], s: int) -> Iterator[list[Fraction]]:
         yield [d.twist[m] if d.twist else Fraction(0) for d in directions]
 
 
+def doubles(value: Any) -> Any:
+    """Fractions in lists and tables as doubles; whole numbers as they are."""
+    if isinstance(value, dict):
+        return {key: doubles(x) for key, x in value.items()}
+    if isinstance(value, list):
+        return [doubles(x) for x in value]
+    return float(value) if isinstance(value, Fraction) else value
+
+
 def weights_of(found: Norms) -> tuple[Fraction, ...]:
     """Weights that let residual times curvature be nearly least: powers of 2, one by one."""
-    count = found.s + len(found.images)
-    exponents = [0] * count
-
-    def cost() -> float:
-        growth = found.growth([Fraction(2) ** e for e in exponents])
-        if growth.room <= Fraction(1, 4):
-            return math.inf
-        return float(growth.terms[0] * growth.terms[2] / growth.room**2)
-
-    best = cost()
+    rounded = found.in_doubles()
+    exponents = [0] * (found.s + len(found.images))
+    best = cost(rounded, exponents)
     for _ in range(SWEEPS):
         before = best
-        for place in range(count):
-            for step in (1, -1):
-                exponents[place] += step
-                tried = cost()
-                if tried < best:
-                    best = tried
-                    break
-                exponents[place] -= step
+        for place in range(len(exponents)):
+            best = improved(rounded, exponents, place, best)
         if best == before:
             break
-    shift = min(exponents)
-    return tuple(Fraction(2) ** (e - shift) for e in exponents)
+    least = min(exponents)
+    return tuple(Fraction(2) ** (e - least) for e in exponents)
+
+
+def improved(found: Norms, exponents: list[int], place: int, best: float) -> float:
+    """The cost with one exponent changed by 1 where that lowers it."""
+    for step in (1, -1):
+        exponents[place] += step
+        tried = cost(found, exponents)
+        if tried < best:
+            return tried
+        exponents[place] -= step
+    return best
+
+
+def cost(found: Norms, exponents: Sequence[int]) -> float:
+    """Residual times curvature; infinite where the inverse has little room."""
+    terms, defect, _ = found.bounds([2.0**e for e in exponents])
+    room = 1 - float(defect)
+    if room <= LEAST_ROOM:
+        return math.inf
+    return float(terms[0] * terms[2]) / room**2

@@ -80,6 +80,11 @@ class ResidualProof(Tabled):
             f"{part} of the largest acceleration)"
         )
 
+    @property
+    def omega(self) -> dict[int, Fraction]:
+        """The frequencies by seed, exact."""
+        return dict(zip(self.seeds, self.frequencies, strict=True))
+
     def certificate(self) -> Body:
         """What `symfpu verify` needs to check the theorem again: integers and strings."""
         return certificate_of(self.body)

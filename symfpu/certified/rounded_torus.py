@@ -10,11 +10,13 @@ coefficients leaves something that integers bound.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -177,11 +179,18 @@ def exponentials(
 def reflected(row: Numbers, bits: int, parity: int) -> list[int]:
     """Particles 1 .. N-1 of a harmonic whose modes are all odd or all even: x_(N-j) = +-x_j."""
     N = len(row) + 1
-    half = [int(mpmath.nint(mpmath.ldexp(x, bits))) for x in row[: N // 2]]
+    half = [nearest(x, bits) for x in row[: N // 2]]
     sign = 1 if parity % 2 else -1
     if N % 2 == 0 and sign < 0:
         half[-1] = 0
     return [*half, *(sign * x for x in reversed(half[: (N - 1) // 2]))]
+
+
+def nearest(x: Any, bits: int) -> int:
+    """x 2^bits, of a double or of mpmath."""
+    if isinstance(x, float):
+        return round(math.ldexp(x, bits))
+    return int(mpmath.nint(mpmath.ldexp(x, bits)))
 
 
 def require_symmetric(table: Numbers, parities: Ints) -> None:

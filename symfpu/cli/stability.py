@@ -30,7 +30,7 @@ from symfpu.families.normal_events import RESONANCE_LENGTH
 from symfpu.families.normal_family import NormalFamily, normal_family
 from symfpu.files.writing import output_folder
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.search import LENGTH, normal_modes
+from symfpu.normal.search import LENGTH, Solution, normal_modes
 from symfpu.normal.self_consistent import solve_normal_frequency
 from symfpu.reports.normal import (
     BySeries,
@@ -95,8 +95,6 @@ def stability(
     becomes unstable: symfpu stability refined.symfpu --to-amplitudes 0.1,0.5 --members 5.
     """
     torus = solution_of(load(path_named("FILE", file)), file)
-    require_fixed_ends(torus.chain)
-    assert isinstance(torus, QuasiPeriodic)
     chosen = None if modes is None else whole_numbers("modes", modes)
     length = optional("resonance-length", resonance_length)
     order = optional("series", series)
@@ -131,19 +129,27 @@ def _refuse(option: str, given: str | None, allowed: str) -> None:
         raise InputError(option, given, allowed, "leave it out")
 
 
+def _of_fixed_ends(torus: Solution) -> QuasiPeriodic:
+    """The solution; InputError for one of a ring."""
+    require_fixed_ends(torus.chain)
+    assert isinstance(torus, QuasiPeriodic)
+    return torus
+
+
 def _modes(
-    torus: QuasiPeriodic, chosen: list[int] | None, length: int, order: int | None
+    torus: Solution, chosen: list[int] | None, length: int, order: int | None
 ) -> tuple[NormalModes, list[BySeries]]:
     """Normal modes, and those by series if an order is given."""
     with progress_bar("normal modes") as advance:
         found = normal_modes(torus, modes=chosen, resonance_length=length, progress=advance)
         if order is None:
             return found, []
+        plain = _of_fixed_ends(torus)
         records = [
             by_series(
                 mode,
-                lambda q: solve_normal_frequency(torus, q, order, progress=advance),
-                found.torus,
+                lambda q: solve_normal_frequency(plain, q, order, progress=advance),
+                plain,
             )
             for mode in found.modes
         ]
@@ -151,7 +157,7 @@ def _modes(
 
 
 def _line(
-    torus: QuasiPeriodic,
+    torus: Solution,
     amplitudes: str,
     members: str | None,
     chosen: list[int] | None,
@@ -159,6 +165,7 @@ def _line(
     output: str | None,
 ) -> NormalFamily:
     """The line from a torus to other amplitudes."""
+    plain = _of_fixed_ends(torus)
     end = by_seed(TO_AMPLITUDES, amplitudes, torus.seeds)
     folder = None if output is None else output_folder(path_named("output", output))
     note = f"tori found so far are kept in {folder}; the same command goes on from them"
@@ -168,7 +175,7 @@ def _line(
 
     with progress_bar("first torus", kept) as advance:
         return normal_family(
-            torus,
+            plain,
             end,
             members=MEMBERS if members is None else whole("members", members),
             modes=chosen,

@@ -208,7 +208,8 @@ class _Line:
     def take(self, members: list[NormalModes]) -> None:
         """Members of a run that was interrupted."""
         pairs = zip(self.parts, members, strict=False)
-        self._known |= {part: found.torus for part, found in pairs}
+        known = {part: found.torus for part, found in pairs}
+        self._known |= {x: t for x, t in known.items() if isinstance(t, QuasiPeriodic)}
 
     def amplitudes(self, part: float) -> dict[int, float]:
         """A_q by seed."""

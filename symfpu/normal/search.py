@@ -16,14 +16,19 @@ from symfpu.normal.linearised import (
     Values,
     coefficients_by_harmonic,
 )
+from symfpu.normal.linearised_standing import (
+    LinearisedStanding,
+    folded,
+    is_sine,
+    is_standing,
+)
 from symfpu.normal.linearised_waves import LinearisedWaves, wave_rows
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.reduction import Reduced, continued, followed, reduced
-from symfpu.normal.resonances import ParametricResonance, resonances_of
+from symfpu.normal.resonances import OWN, ParametricResonance, resonances_of
 from symfpu.numbers.typed import integer
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.harmonics import chosen_harmonics
-from symfpu.refinement.ring_tori import require_travelling
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 from symfpu.tori.ring_torus import RingTorus
 
@@ -36,6 +41,7 @@ SMALLEST_KEPT = (
 )
 SHOWN_DIVISORS = 5
 LENGTH = 12  # sum |nu_i| of the resonances that are listed
+UNRESOLVED = 1e-7  # difference from a frequency of the torus that a double root may have
 SAME = 1e-9  # difference of two frequencies that are one
 
 
@@ -49,19 +55,20 @@ def normal_modes(
     """Normal frequencies of a torus or breather, their eigenfunctions, signatures and resonances.
 
     solution : of any potential and of any number of angles, refined: its residual is at most
-        1e-9. With fixed ends, or travelling waves of a ring. Dimensionless; one of many digits is
-        rounded to doubles.
+        1e-9. With fixed ends, or of a ring: travelling waves, or what `unfold` gave.
+        Dimensionless; one of many digits is rounded to doubles.
     modes : which of the N-1-s modes, of a ring signed; default all.
     resonance_length : largest sum |nu_i| of the resonances listed.
     progress : called as (label, fraction), once a mode.
 
     The equations of motion (Eq. eqmo) linearised about the torus are solved by exp(i sigma t)
     p(theta), in harmonics of the angles: Newton's method from Omega_q with its closed shift of
-    second order (on a ring from Omega_q), products on the lattice that `refine` uses. Of a
-    breather, exp(2 pi i sigma/omega) are the Floquet multipliers. Of a ring the solution goes as
-    exp(i sigma t - 2 pi i q j/N); its uniform motion, which nothing couples to, is left out. Ours:
-    the paper has none. Raises InputError, also for standing waves of a ring, and NoNormalModes
-    where a resonance does not let a mode be told from others.
+    second order (of travelling waves from Omega_q), products on the lattice of `refine`. Of a
+    breather, exp(2 pi i sigma/omega) are the Floquet multipliers. About travelling waves the
+    solution goes as exp(i sigma t - 2 pi i q j/N); about standing ones q > 0 is a sine and -q, or
+    N/2, a cosine, a pair of one frequency at rest. Uniform motion, which nothing couples to, is
+    left out. Ours: the paper has none. Raises InputError, and NoNormalModes where a resonance does
+    not let a mode be told from others.
 
     >>> from symfpu import Chain, refine_at_amplitudes, torus_at_amplitudes
     >>> amplitudes = {1: "0.2", 2: "0.1"}
@@ -109,9 +116,10 @@ def followed_modes(
 
 
 def _checked(solution: object) -> Solution:
-    """The solution in doubles; InputError for what is no refined torus, and for standing waves."""
+    """The solution in doubles; InputError for what is no refined torus."""
     if isinstance(solution, RingTorus):
-        require_travelling(solution)
+        if is_standing(solution):
+            folded(solution)
         torus: Solution = solution
     else:
         require_solution(solution, "solution")
@@ -133,7 +141,7 @@ def checked_modes(torus: Solution, modes: Iterable[int] | None) -> tuple[int, ..
         return tuple(normal)
     allowed = f"different modes that are no seeds, of {normal}"
     try:
-        given = [integer(q, "modes", min(normal, default=1)) for q in modes]
+        given = [integer(q, "modes", min(torus.chain.mode_numbers)) for q in modes]
     except TypeError as error:
         raise InputError("modes", modes, allowed, "pass a list of modes") from error
     if set(given) - set(normal) or len(set(given)) < len(given):
@@ -144,12 +152,13 @@ def checked_modes(torus: Solution, modes: Iterable[int] | None) -> tuple[int, ..
 def second_order(torus: Solution) -> dict[int, float]:
     """Omega_q with the closed shift of second order by the amplitudes of the seeds, by mode.
 
-    Of a ring without it: there it has no closed form.
+    Of a ring without it, but for the sines about standing waves.
     """
     chain = torus.chain
     if isinstance(torus, RingTorus):
         linear = chain.frequencies()
-        return dict(zip(chain.mode_numbers, linear.tolist(), strict=True))
+        known = dict(zip(chain.mode_numbers, linear.tolist(), strict=True))
+        return known | (second_order(folded(torus)) if is_standing(torus) else {})
     squares = chain.frequencies() ** 2
     cubic, quartic = (float(chain.potential.coefficient(n)) for n in (3, 4))
     guesses = {}
@@ -178,8 +187,9 @@ class _Search:
         self._guesses = second_order(torus)
         self._before = {mode.mode: mode for mode in before.modes} if before else {}
         self._earlier = second_order(before.torus) if before else {}
-        ring = isinstance(torus, RingTorus)
-        self._functions = 1 if ring else (torus.chain.N + 1) // 2
+        self._travels = isinstance(torus, RingTorus) and not is_standing(torus)
+        bonds = len(next(iter(known.values()))) + 1
+        self._functions = 1 if self._travels else (bonds + 1) // 2
         self._flows: list[Linearised] = []
 
     def result(self, solution: Solution, found: dict[int, NormalMode]) -> NormalModes:
@@ -199,7 +209,23 @@ class _Search:
         if found is None:
             nearest = _resonances(self._torus, {q: guess}, self._length)
             raise NoNormalModes(q, guess, nearest[0] if nearest else None)
+        self._require_resolved(found)
         return found
+
+    def _require_resolved(self, found: NormalMode) -> None:
+        """NoNormalModes for a cosine about standing waves that turns as the torus does.
+
+        To displace standing waves costs nothing but by Umklapp of high order: then the two
+        frequencies of that direction are one to more digits than a double root has.
+        """
+        torus, sigma = self._torus, complex(found.sigma)
+        standing = isinstance(torus, RingTorus) and not self._travels
+        if not standing or is_sine(torus.chain, found.mode):
+            return
+        nearest = _resonances(torus, {found.mode: sigma.real}, self._length)
+        for one in nearest:
+            if one.kind == OWN and abs(complex(one.distance, sigma.imag)) < UNRESOLVED:
+                raise NoNormalModes(found.mode, self._guesses[found.mode], one)
 
     def mode(
         self, q: int, guess: float, others: dict[int, NormalMode]
@@ -273,9 +299,7 @@ class _Search:
         """Whether a solution has the frequency of another, or its negative, in that one's mode."""
         modes = self._torus.chain.mode_numbers
         sigma, q = complex(other.sigma).real, other.mode
-        opposite = -q if -q in modes else q
-        if not isinstance(self._torus, RingTorus):
-            opposite = q
+        opposite = -q if self._travels and -q in modes else q
         for mode, signed in ((q, sigma), (opposite, -sigma)):
             column = np.abs(found.coefficients[:, modes.index(mode)])
             rate = found.rate(int(np.argmax(column)))
@@ -286,16 +310,20 @@ class _Search:
 
 def _rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
     """Coefficients of a torus by harmonic."""
-    if isinstance(torus, RingTorus):
-        return wave_rows(torus)
-    return coefficients_by_harmonic(torus)
+    if not isinstance(torus, RingTorus):
+        return coefficients_by_harmonic(torus)
+    if is_standing(torus):
+        return coefficients_by_harmonic(folded(torus))
+    return wave_rows(torus)
 
 
 def _linearised(torus: Solution, harmonics: Ints) -> Linearised:
     """The linearised flow in these harmonics and their negatives."""
-    if isinstance(torus, RingTorus):
-        return LinearisedWaves(torus, harmonics)
-    return LinearisedFlow(torus, harmonics)
+    if not isinstance(torus, RingTorus):
+        return LinearisedFlow(torus, harmonics)
+    if is_standing(torus):
+        return LinearisedStanding(torus.chain, folded(torus), harmonics)
+    return LinearisedWaves(torus, harmonics)
 
 
 def _at_harmonics(mode: NormalMode, harmonics: Ints) -> Values:
@@ -342,4 +370,11 @@ def _resonances(
     torus: Solution, sigma: Mapping[int, float], length: int
 ) -> list[ParametricResonance]:
     omega = tuple(float(w) for w in torus.frequencies)
-    return resonances_of(torus.chain, torus.seeds, omega, sigma, length)
+    if not isinstance(torus, RingTorus) or not is_standing(torus):
+        return resonances_of(torus.chain, torus.seeds, omega, sigma, length)
+    found = []
+    for sine in (True, False):
+        part = {q: w for q, w in sigma.items() if is_sine(torus.chain, q) == sine}
+        fixed = folded(torus).chain
+        found += resonances_of(fixed, torus.seeds, omega, part, length)
+    return sorted(found, key=lambda r: abs(r.distance))

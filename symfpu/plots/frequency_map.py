@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from symfpu.plots.style import MARK, QUIET, Axes, axes_for, require
@@ -9,6 +11,8 @@ from symfpu.spectral.mapping import FrequencyMap
 
 ADVICE = "make one with frequency_map"
 WORDS = "a FrequencyMap"
+SMALLEST_SHIFT = 1e-9
+LOW_QUANTILE = 0.05
 
 
 def frequency_map(result: FrequencyMap, ax: Axes | None = None) -> Axes:
@@ -17,8 +21,8 @@ def frequency_map(result: FrequencyMap, ax: Axes | None = None) -> Axes:
     result : what `frequency_map` gave; dimensionless. Ours. ax : axes of matplotlib; default new
         ones.
 
-    A curve a mode; the numbers along the top say how many independent frequencies are above the
-    level. Returns the axes. Raises InputError.
+    A curve a mode, the axis even about 0 and logarithmic beyond; the numbers along the top say
+    how many independent frequencies are above the level. Returns the axes. Raises InputError.
 
     >>> from matplotlib.figure import Figure
     >>> from symfpu import Chain
@@ -31,6 +35,7 @@ def frequency_map(result: FrequencyMap, ax: Axes | None = None) -> Axes:
     shifts = found.shifts()
     with axes_for(ax) as axes:
         axes.set_xscale("log")
+        axes.set_yscale("symlog", linthresh=_least(shifts))
         axes.axhline(0.0, color=QUIET, lw=0.8, zorder=0)
         for q in found.chain.mode_numbers:
             shift = shifts[:, q - 1]
@@ -41,6 +46,15 @@ def frequency_map(result: FrequencyMap, ax: Axes | None = None) -> Axes:
         axes.set_ylabel(r"$\omega_q / \Omega_q - 1$")
         axes.legend()
     return axes
+
+
+def _least(shifts: Any) -> float:
+    """The size below which the axis is even: a power of ten below most shifts."""
+    sizes = np.abs(shifts[~np.isnan(shifts) & (shifts != 0)])
+    if not sizes.size:
+        return SMALLEST_SHIFT
+    low = float(np.quantile(sizes, LOW_QUANTILE))
+    return max(SMALLEST_SHIFT, float(10.0 ** np.floor(np.log10(low))))
 
 
 def _say_counts(axes: Axes, found: FrequencyMap) -> None:
@@ -76,5 +90,5 @@ def frequency_drift(result: FrequencyMap, ax: Axes | None = None) -> Axes:
         axes.set_yscale("log")
         axes.plot(found.energies, found.drifts, "o-", color=MARK, markersize=3)
         axes.set_xlabel("energy $H$")
-        axes.set_ylabel(rf"drift $|\Delta\omega|/\omega$ over $T = {found.T:.3g}$")
+        axes.set_ylabel(rf"drift $|\Delta\omega|/\omega$ over $T$ = {found.T:,.0f}")
     return axes

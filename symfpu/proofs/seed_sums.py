@@ -3,7 +3,7 @@
 A mode of D_k is a folded sum a.q = +-q + 2wN of d seeds. Where all sums of the same seeds that
 fold to it have w of one parity, all products of its term have one sign, and there is one. Where
 a coupling leads to it from a mode of order k - 1 and from seeds, the coefficient of one L_m is
-not zero (docs/propagation.md, Theorems 2 and 7).
+not zero (docs/propagation.md, Theorems 7 and 8).
 """
 
 from __future__ import annotations
@@ -66,7 +66,11 @@ def modes_of_one_parity(
 
 
 def chained_modes(
-    N: int, model: str, seeds: Sequence[int], orders: Mapping[int, int], known: Collection[int]
+    N: int,
+    model: str,
+    seeds: Sequence[int],
+    orders: Mapping[int, int],
+    known: Collection[int],
 ) -> set[int]:
     """Modes to which couplings lead from known or chained ones of the order before."""
     found: set[int] = set()

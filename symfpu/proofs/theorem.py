@@ -168,7 +168,9 @@ class RuleForAllN(Tabled):
             "count": self.flats,
             "flats": [[found.flat.N, *found.flat.seeds] for found in listed],
             "exceptions": list(_exception_records(listed)),
-            "undecided": [[i, q] for i, found in enumerate(listed) for q in found.undecided],
+            "undecided": [
+                [i, q] for i, found in enumerate(listed) for q in found.undecided
+            ],
             "points": [[p.prime, p.root, *p.frequencies] for p in points],
             "witnesses": list(_witness_records(listed)),
         }
@@ -318,10 +320,10 @@ def prove_for_all_N(
 
 
 def _with_odd_sums(model: str, order: int, all_flats: Sequence[Flat]) -> list[Flat]:
-    """Those that Theorem 3 of docs/propagation.md does not decide by itself."""
+    """Those that Theorem 7 of docs/propagation.md does not decide by itself."""
     seeds = np.array([flat.seeds for flat in all_flats], dtype=np.int64)
     N = np.array([flat.N for flat in all_flats], dtype=np.int64)
-    open_flats = np.flatnonzero(~without_odd_sums(model, order, seeds, N))
+    open_flats = np.flatnonzero(~without_odd_sums(model, order, seeds, N)).tolist()
     return [all_flats[i] for i in open_flats]
 
 

@@ -43,7 +43,7 @@ KEYS = (
     "verdict witnesses"
 )
 MOST_SEEDS = 3
-LARGEST_ORDER = 100
+LARGEST_DEGREE = {1: 201, 2: 13, 3: 5}  # by number of seeds; beyond, a check takes hours
 LARGEST_N = 4096
 TRIALS = 400  # pairs of places between which a general point is looked for
 LARGEST_TRIAL = 64  # bonds among which it is looked for else
@@ -110,9 +110,11 @@ class Theorem(NamedTuple):
 def read_claim(data: Json) -> Theorem:
     """Model, number of seeds and order, their sizes bounded."""
     model, s, order = data["model"], data["seeds_number"], data["order"]
-    fits = model in MODELS and 0 < s <= MOST_SEEDS and 0 < order <= LARGEST_ORDER
+    fits = model in MODELS and 0 < s <= MOST_SEEDS and order > 0
     need(fits, "wrong model, number of seeds or order")
-    return Theorem(model, s, order)
+    claim = Theorem(model, s, order)
+    need(claim.degree(order) <= LARGEST_DEGREE[s], f"order {order} is beyond this checker")
+    return claim
 
 
 def read_flats(data: Json, claim: Theorem) -> list[Row]:
@@ -240,7 +242,9 @@ def on_all(rows: list[Row], mask: int, flat: Row) -> bool:
     """Whether the hyperplanes of a mask hold a point."""
     N, *seeds = flat
     return all(
-        sum(map(mul, row, seeds)) == row[-1] * N for i, row in enumerate(rows) if mask >> i & 1
+        sum(map(mul, row, seeds)) == row[-1] * N
+        for i, row in enumerate(rows)
+        if mask >> i & 1
     )
 
 
@@ -351,9 +355,7 @@ def points_on_line(rows: list[Row], line: Line) -> list[Row]:
 def place_at(line: Line, t: Fraction) -> Row:
     """The point of a parameter as N and seeds, in lowest terms."""
     rise, slope = t.as_integer_ratio()
-    place = [
-        q * slope + v * rise for q, v in zip(line.start, line.direction, strict=True)
-    ]
+    place = [q * slope + v * rise for q, v in zip(line.start, line.direction, strict=True)]
     shared = gcd(line.scale * slope, *place)
     return (line.scale * slope // shared, *(c // shared for c in place))
 
@@ -406,7 +408,7 @@ def seed_sets_on(found: Arrangement, mask: int, N: int) -> list[Row]:
     for q in range(1, N):
         t = Fraction(q * line.scale - line.start[i] * N, line.direction[i] * N)
         M, *seeds = place_at(line, t)
-        if N % M == 0 and 0 < seeds[0] and all(a < b for a, b in pairwise([*seeds, M])):
+        if N % M == 0 and seeds[0] > 0 and all(a < b for a, b in pairwise([*seeds, M])):
             flats.append((N, *(c * N // M for c in seeds)))
     return sorted(flats)
 
@@ -499,7 +501,7 @@ def read_evidence(data: Json, claim: Theorem, count: int) -> list[Evidence]:
 def check_flat(claim: Theorem, flat: Row, evidence: Evidence, points: list[Row]) -> None:
     """Every mode is excited at its order and at none before, or named as undecided."""
     if not any(evidence) and not odd_sum(claim, flat):
-        return  # Theorem 3
+        return  # Theorem 7
     case = claim.case(flat)
     actual = actual_orders(claim, case, evidence)
     shown = shown_by_sums(claim, case, actual, evidence)
@@ -543,7 +545,10 @@ def lowest_sign(m: Row) -> Row:
 def shown_by_sums(
     claim: Theorem, case: Case, actual: dict[int, int], evidence: Evidence
 ) -> set[int]:
-    """Modes of D_k of one parity, and those to which a chain leads; the seeds, of order 0."""
+    """Modes of D_k of one parity (Theorem 7), and those to which a chain leads (Theorem 8).
+
+    And the seeds, of order 0.
+    """
     exceptional = {mode for mode, _, _ in evidence.exceptions}
     shown = last = set(case.seeds)
     for k in range(1, claim.order + 1):

@@ -189,10 +189,11 @@ def normal_text(found: NormalModes) -> str:
     chain = repr(found.torus.chain).removeprefix("Chain(").removesuffix(")")
     seeds = ",".join(map(str, found.torus.seeds))
     lines = [f"{chain}, seeds {seeds}: {found.verdict}"]
-    linear = found.torus.chain.frequencies()
+    chain_modes = found.torus.chain.mode_numbers
+    linear = dict(zip(chain_modes, found.torus.chain.frequencies(), strict=True))
     lines.append("  mode  normal frequency                   shift        kind, residual")
     for mode in found.modes:
-        shift = complex(mode.sigma).real - linear[mode.mode - 1]
+        shift = complex(mode.sigma).real - linear[mode.mode]
         kind = f"{mode.kind}, {mode.residual:.0e}"
         lines.append(f"  {mode.mode:4d}  {mode.text:33}  {shift:+.4e}  {kind}")
     if found.resonances:

@@ -14,6 +14,8 @@ from symfpu.action_angle.twist import Twist
 from symfpu.breathers.existence import ExistenceProof
 from symfpu.breathers.floquet import Floquet
 from symfpu.bundles.bundle import Bundle
+from symfpu.certified.residual import ResidualProof
+from symfpu.certified.stay import StayProof
 from symfpu.chain.length import label_entry
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
@@ -34,6 +36,7 @@ from symfpu.proofs.theorem import RuleForAllN
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.action_angle import twist_record
+from symfpu.reports.certified import residual_proof_record, stay_record
 from symfpu.reports.dynamics import alignment_record, orbit_record
 from symfpu.reports.existence import existence_record
 from symfpu.reports.family import event_record, family_record, member_record, refined_record
@@ -167,6 +170,8 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (RefinedRingTorus, refined_record),
     (QuasiPeriodic, solution_record),
     (ExistenceProof, existence_record),
+    (ResidualProof, residual_proof_record),
+    (StayProof, stay_record),
     (RingTorus, solution_record),
     (LindstedtSeries, series_record),
     (TravellingSeries, series_record),

@@ -49,7 +49,8 @@ def test_the_event_of_a_family_is_that_of_the_line():
     assert event.amplitudes[2] == pytest.approx(expected.amplitudes[2], abs=ONSET)
     assert event.energy == pytest.approx(expected.energy, abs=ONSET)
     stable = [m.normal.stable for m in breathers().members]
-    assert stable[event.after] and not stable[event.after + 1]
+    assert stable[event.after]
+    assert not stable[event.after + 1]
 
 
 @pytest.mark.long
@@ -138,9 +139,9 @@ def test_tables_and_records_have_the_frequencies():
 
 
 def test_series_and_bad_lengths_have_no_normal_frequencies():
-    with pytest.raises(InputError, match="^normal"):
+    with pytest.raises(InputError, match=r"^normal"):
         family(UNSTABLE, (1,), "0.1", normal=True, method="appendix-a", order=3)
-    with pytest.raises(InputError, match="^resonance_length"):
+    with pytest.raises(InputError, match=r"^resonance_length"):
         family(UNSTABLE, (1,), "0.1", normal=True, resonance_length=-1)
 
 

@@ -32,6 +32,8 @@ WITHOUT = {
     "NormalFrequencySeries": "a series, made anew",
     "NormalMode": "part of NormalModes",
     "ParametricResonance": "part of NormalModes",
+    "ResidualProof": "its certificate is its file",
+    "StayProof": "its certificate is its file",
     "SpectralLine": "part of FrequencyAnalysis",
     "TwistAtRest": "exact numbers of a field, made anew",
 }

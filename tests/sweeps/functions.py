@@ -38,8 +38,18 @@ def square_in_little_memory(n, numbers):
     return n * n + held[0]
 
 
+def mark_and_sleep(file):
+    Path(file).write_text(str(os.getpid()))
+    time.sleep(60)
+
+
 def coupling_of(chain, mode=1):
     return {"alpha": chain.alpha, "omega": chain.frequencies()[mode - 1]}
+
+
+def lists(modes, length):
+    numbers = list(range(length))
+    return {"short": modes, "long": numbers, "nested": [modes], "sum": sum(numbers)}
 
 
 def strange(n):

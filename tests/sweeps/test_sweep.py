@@ -15,7 +15,7 @@ from symfpu.errors import InputError
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.sweeps.rows_file import FileFull, RowsFile, head_of
 from symfpu.sweeps.sweep import SweepStopped, read_sweep, sweep
-from tests.sweeps.functions import coupling_of, deadly_square, slow_square, square, strange
+from tests.sweeps.functions import coupling_of, deadly_square, lists, slow_square, square, strange
 
 TEN = [{"n": n} for n in range(10)]
 
@@ -77,6 +77,15 @@ def test_a_grid_with_impossible_points_is_a_table_with_holes(threads):
     data = swept.to_xarray()
     assert (data.omega.dims, data.omega.isnull().sum().item()) == (("case",), 10)
     assert data.attrs["function"] == swept.function
+
+
+def test_lists_in_tables_are_text_and_long_ones_are_left_out(threads):
+    swept = sweep(lists, [{"modes": (1, 3), "length": n} for n in (2, 30)], executor=threads)
+    frame = swept.to_frame()
+    assert (frame.modes.tolist(), frame.short.tolist(), frame["sum"].tolist()) == (["1,3"] * 2, ["1,3"] * 2, [1, 435])
+    assert frame.long.tolist() == ["0,1", ""]
+    assert swept.rows[1].result["long"] == list(range(30))
+    assert "nested" not in frame
 
 
 def test_a_chain_and_its_arguments_are_the_same_case(tmp_path, threads):
