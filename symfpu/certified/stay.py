@@ -192,16 +192,16 @@ def prove_stay(
     long = time_of(time)
     rounded = rounded_torus(torus)
     directions = directions_of(torus, tell)
-    tell("norms", NO_FRACTION)
-    return stay_proof(rounded, directions, long)
+    return stay_proof(rounded, directions, long, tell)
 
 
 def stay_proof(
-    torus: RoundedTorus, directions: Sequence[Direction], time: Fraction
+    torus: RoundedTorus, directions: Sequence[Direction], time: Fraction, tell: Progress
 ) -> StayProof:
     """The result of a torus and its directions. Raises NoStayProof."""
-    left = [series.norm for series in residual_of(torus)]
+    left = [series.norm for series in residual_of(torus, tell)]
     residual = residual_proof(torus, left)
+    tell("norms of the frame", NO_FRACTION)
     found = norms(torus, directions, left)
     weights = weights_of(found)
     growth = found.growth(weights)

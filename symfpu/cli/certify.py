@@ -148,7 +148,7 @@ def _torus_proof(
         return prove_stay(torus, time=TIME if time is None else time, progress=progress)
     if time is not None:
         raise InputError("time", time, "none with --residual", "leave one out")
-    return prove_residual(torus)
+    return prove_residual(torus, progress=progress)
 
 
 def _show(proof: Proof, target: Path | None, as_json: bool) -> None:

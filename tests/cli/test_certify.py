@@ -63,6 +63,25 @@ def test_json_says_stable_or_unstable(tmp_path, capsys):
         assert (found["growth"][0] > 0) is not stable
 
 
+def test_an_amplitude_and_a_segment_are_given_in_words(saved, tmp_path, capsys):
+    certificate = str(tmp_path / "proof.json")
+    assert main(["certify", saved, "--amplitude", "0.3", "-o", certificate]) == 0
+    assert "seed 1, A=0.3: proved" in capsys.readouterr().out
+    assert main(["certify", saved, "--amplitude", "0.3", "--half-width", "1e-4", "-o", certificate, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["fixed"], found["value"], found["half_width"]) == ("amplitude", "0.3", "0.0001")
+    assert found["frequency_radius"] > 0
+    assert main(["verify", certificate]) == 0
+    assert "for every amplitude A from 2999/10000 to 3001/10000" in capsys.readouterr().out
+
+
+def test_a_segment_too_long_is_one_line_and_code_1(saved, capsys):
+    assert main(["certify", saved, "--half-width", "0.5"]) == 1
+    assert "a shorter segment can" in capsys.readouterr().err
+    assert main(["certify", saved, "--amplitude", "0.2"]) == 2
+    assert "breather_at_amplitude" in capsys.readouterr().err
+
+
 @pytest.mark.long
 def test_what_cannot_be_proved_is_one_line_and_code_1(tmp_path, capsys):
     """A root of a truncated series that is no orbit."""

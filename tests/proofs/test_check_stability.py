@@ -60,6 +60,7 @@ def test_every_number_altered_is_refused(name, tmp_path):
 
 
 FIRST = ("exponents", 0)
+NO_ORBIT = "no orbit is proved|no readable"
 FORGERIES = {
     "another sigma": ("stable", (*FIRST, "sigma", 0), lambda x: x + x // 10**4, "exceeds r"),
     "a smaller radius": ("stable", (*FIRST, "radius", 0), lambda m: m // 3, "exceeds r"),
@@ -81,9 +82,14 @@ FORGERIES = {
     "a weight too many": ("stable", (*FIRST, "weights"), lambda w: w + "0", "number of weights"),
     "a weight of nothing": ("stable", (*FIRST, "weights"), lambda w: " " + w[1:], "no readable"),
     "no block": ("stable", (*FIRST, "block"), lambda _: [], "kappa is not in the block"),
-    "another orbit": ("stable", ("existence", "orbit", 1), lambda t: t[:9] + ("#" if t[9] == "!" else "!") + t[10:], "no orbit is proved|no readable"),
-    "another frequency": ("stable", ("existence", "omega"), lambda w: w.replace("7", "8", 1), "no orbit is proved|no readable"),
-    "another coupling": ("stable", ("existence", "coefficients", 0), lambda _: "31/100", "no orbit is proved|no readable"),
+    "another orbit": (
+        "stable",
+        ("existence", "orbit", 1),
+        lambda t: t[:9] + ("#" if t[9] == "!" else "!") + t[10:],
+        NO_ORBIT,
+    ),
+    "another frequency": ("stable", ("existence", "omega"), lambda w: w.replace("7", "8", 1), NO_ORBIT),
+    "another coupling": ("stable", ("existence", "coefficients", 0), lambda _: "31/100", NO_ORBIT),
     "another kind": ("stable", ("format",), lambda _: "symfpu existence certificate", "not a certificate"),
     "a later version": ("stable", ("schema",), lambda _: 2, "supports schema"),
 }
