@@ -65,18 +65,26 @@ class Reduced:
 class Block:
     """L among the unknowns with the smallest divisors, the main one first of all.
 
-    mask : of all unknowns, shape (F, N-1). inside : places of the block's among them.
+    mask : of all unknowns, shape (F, N-1). inside : places of the block's among them. sizes : how
+    many they are, at least and at most.
     """
 
-    def __init__(self, flow: LinearisedFlow, q: int, sigma: float) -> None:
+    def __init__(
+        self,
+        flow: LinearisedFlow,
+        q: int,
+        sigma: float,
+        sizes: tuple[int, int] = (SMALLEST_BLOCK, LARGEST_BLOCK),
+    ) -> None:
         self.flow, self.q, self.mask = flow, q, flow.allowed(q)
         linear = flow.linear.astype(float)
         self.size = float(linear[q - 1]) ** 2
         diagonal = flow.divisors(sigma) + flow.means
         weights = np.where(self.mask, np.abs(diagonal) / linear**2, np.inf)
         weights[0, q - 1] = 0
+        least, largest = sizes
         near = int((weights < NEARNESS * np.abs(flow.slopes).max()).sum())
-        count = min(max(near, SMALLEST_BLOCK), LARGEST_BLOCK, int(self.mask.sum()))
+        count = min(max(near, least), largest, int(self.mask.sum()))
         chosen = np.sort(np.argpartition(weights, count - 1, axis=None)[:count])
         self.rows, self.columns = np.unravel_index(chosen, self.mask.shape)
         self.inside = (np.cumsum(self.mask, axis=None) - 1)[chosen]

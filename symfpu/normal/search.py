@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import Any
 
+import mpmath
 import numpy as np
 
+from symfpu.breathers.digits import PreciseOrbit
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.chain.frequency_shift import shift_coefficients
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
+from symfpu.normal.digits import PreciseModes
 from symfpu.normal.linearised import LinearisedFlow, coefficients_by_harmonic
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.reduction import Reduced, continued, reduced
 from symfpu.normal.resonances import ParametricResonance, resonances_of
+from symfpu.numbers.arithmetic import DOUBLES, arithmetic_of
 from symfpu.numbers.typed import integer
+from symfpu.refinement.digits import Failure, PreciseTorus
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 
+PRECISE = (PreciseTorus, PreciseOrbit)  # solutions whose digits are those of the equations
 REFINED = 1e-9  # residual of a torus, relative, above which it is refused
 # coefficients of the torus above these parts of its largest, and what their harmonics may leave
 HEIGHTS, TOLERANCE = (1e-8, 1e-11, 1e-14, 1e-17), 1e-10
@@ -39,7 +47,9 @@ def normal_modes(
     """Normal frequencies of a torus or breather, their eigenfunctions, signatures and resonances.
 
     solution : of any potential with fixed ends and of any number of angles, refined: its residual
-        is at most 1e-9. Dimensionless; one of many digits is rounded to doubles.
+        is at most 1e-9. Dimensionless. Of one that was refined to many digits (PreciseTorus,
+        PreciseOrbit) frequencies and eigenfunctions have as many, by sweeps in fixed point; any
+        other is rounded to doubles, as `solution.in_doubles()` is.
     modes : which of the N-1-s modes; default all.
     resonance_length : largest sum |nu_i| of the resonances listed.
     progress : called as (label, fraction), once a mode.
@@ -70,13 +80,38 @@ def normal_modes(
             nearest = _resonances(torus, {q: guesses[q]}, length)[0]
             raise NoNormalModes(q, guesses[q], nearest)
         found[q] = mode
-    real = {q: complex(mode.sigma).real for q, mode in found.items()}
+    if isinstance(solution, PRECISE):
+        found = _in_digits(solution, found, guesses, length, tell)
+    real = {q: mode.sigma.real for q, mode in found.items()}
     return NormalModes(
         torus=solution,
         modes=tuple(found.values()),
         guesses={q: guesses[q] for q in chosen},
         resonances=tuple(_resonances(torus, real, length)),
     )
+
+
+def _in_digits(
+    torus: QuasiPeriodic,
+    found: Mapping[int, NormalMode],
+    guesses: Mapping[int, float],
+    length: int,
+    tell: Progress,
+) -> dict[int, NormalMode]:
+    """Modes in doubles with the digits of the torus; NoNormalModes where that fails."""
+    precise: dict[int, NormalMode] = {}
+    search: PreciseModes | None = None
+    for number, (q, mode) in enumerate(found.items()):
+        tell(f"normal mode {q}, {torus.digits} digits", number / len(found))
+        try:
+            search = search or PreciseModes(torus)
+            precise[q] = search.refined(mode, tell)
+        except Failure as failure:
+            real = {q: complex(mode.sigma).real}
+            nearest = _resonances(torus, real, length)[0]
+            reason = f"no {torus.digits} digits of its frequency: {failure}"
+            raise NoNormalModes(q, guesses[q], nearest, reason) from None
+    return precise
 
 
 def _checked(solution: object) -> QuasiPeriodic:
@@ -227,7 +262,17 @@ def _smallest_divisors(flow: LinearisedFlow, found: Reduced) -> tuple[NormalDivi
 
 
 def _resonances(
-    torus: QuasiPeriodic, sigma: Mapping[int, float], length: int
+    torus: QuasiPeriodic, sigma: Mapping[int, Any], length: int
 ) -> list[ParametricResonance]:
+    """Those of real parts in doubles or in digits; a distance has all its digits."""
     omega = tuple(float(w) for w in torus.frequencies)
-    return resonances_of(torus.chain, torus.seeds, omega, sigma, length)
+    doubles = {q: float(w) for q, w in sigma.items()}
+    found = resonances_of(torus.chain, torus.seeds, omega, doubles, length)
+    if arithmetic_of(list(sigma.values())) is DOUBLES:
+        return found
+    with torus.numbers.context(torus.digits):
+        exact = [torus.numbers.number(w) for w in torus.frequencies]
+        distances = [r.left_of(sigma) - mpmath.fdot(r.harmonic, exact) for r in found]
+    pairs = zip(found, distances, strict=True)
+    refined = [replace(r, distance=float(distance)) for r, distance in pairs]
+    return sorted(refined, key=lambda r: abs(r.distance))

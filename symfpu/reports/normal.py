@@ -8,7 +8,7 @@ from symfpu.families.normal_family import NormalEvent
 from symfpu.normal.modes import NormalMode, NormalModes
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.reports.solution import frequencies_record
-from symfpu.reports.tables import fifteen_digits
+from symfpu.reports.tables import fifteen_digits, number_text
 
 SHOWN_RESONANCES = 10
 
@@ -23,12 +23,21 @@ def normal_record(found: NormalModes) -> dict[str, Any]:
         "frequencies": frequencies_record(torus),
         "verdict": found.verdict,
         "stable": found.stable,
-        "growth": fifteen_digits(found.growth),
+        "growth": fifteen_digits(float(found.growth)),
         "normal_frequencies": {str(mode.mode): _sigma(mode) for mode in found.modes},
         "signatures": {str(mode.mode): mode.signature for mode in found.modes},
         "resonances": [_resonance(one) for one in found.resonances[:SHOWN_RESONANCES]],
-        "residual": fifteen_digits(found.residual),
+        "residual": fifteen_digits(float(found.residual)),
+        "digits": found.digits,
+        **_error(found),
     }
+
+
+def _error(found: NormalModes) -> dict[str, str]:
+    """What is known of frequencies with digits."""
+    if found.digits is None:
+        return {}
+    return {"frequency_error": number_text(found.error, 3)}
 
 
 def normal_event_record(event: NormalEvent) -> dict[str, Any]:
@@ -45,10 +54,10 @@ def normal_event_record(event: NormalEvent) -> dict[str, Any]:
 
 
 def _sigma(mode: NormalMode) -> str | list[str]:
-    value = complex(mode.sigma)
+    real = number_text(mode.sigma.real, mode.digits)
     if not mode.growth:
-        return repr(value.real)
-    return [repr(value.real), repr(value.imag)]
+        return real
+    return [real, number_text(mode.sigma.imag, mode.digits)]
 
 
 def _resonance(one: ParametricResonance) -> dict[str, Any]:
