@@ -58,17 +58,29 @@ class PreciseModes:
             self._stage = Stage(torus, fitted_harmonics(torus), self.digits)
 
     def refined(self, mode: NormalMode, tell: Progress) -> NormalMode:
-        """A normal mode in doubles with all digits of the torus; raises Failure."""
+        """A normal mode in doubles with all digits of the torus; raises Failure.
+
+        An elliptic one that real numbers do not lead to may be hyperbolic.
+        """
         with mpmath.workdps(self.digits + CARRIED_DIGITS):
-            state = State.of_doubles(mode, self._stage.fixed.bits)
-            for _ in range(ROUNDS):
-                sweeps = NormalSweeps(self._stage, mode, state)
-                sweeps.converge(tell)
-                left = sweeps.left_over()
-                if left.error < mpmath.mpf(10) ** -self.digits:
-                    return sweeps.result(left)
-                self._stage = self._stage.extended(left.needed(self.digits))
-                state = sweeps.state
+            try:
+                return self._refined(mode, mode.sigma, tell)
+            except Failure:
+                if mode.growth:
+                    raise
+                return self._refined(mode, mode.sigma + 1j * mode.rounding, tell)
+
+    def _refined(self, mode: NormalMode, sigma: complex, tell: Progress) -> NormalMode:
+        """From a number that is complex for a hyperbolic mode."""
+        state = State.of_doubles(mode, sigma, self._stage.fixed.bits)
+        for _ in range(ROUNDS):
+            sweeps = NormalSweeps(self._stage, mode, state)
+            sweeps.converge(tell)
+            left = sweeps.left_over()
+            if left.error < mpmath.mpf(10) ** -self.digits:
+                return sweeps.result(left)
+            self._stage = self._stage.extended(left.needed(self.digits))
+            state = sweeps.state
         shown = mpmath.nstr(left.error, 2)
         raise Failure(f"{ROUNDS} choices of harmonics leave errors of {shown}")
 
@@ -123,11 +135,10 @@ class State(NamedTuple):
     rows: dict[tuple[int, ...], Integers]
 
     @staticmethod
-    def of_doubles(mode: NormalMode, bits: int) -> State:
-        """Of a mode in doubles."""
-        sigma, p = np.asarray(mode.sigma), mode.coefficients
-        unreal = bool(mode.growth)
-        parts = [sigma.real, sigma.imag] if unreal else [sigma.real]
+    def of_doubles(mode: NormalMode, sigma: complex, bits: int) -> State:
+        """Of a mode in doubles and its frequency."""
+        p, unreal = mode.coefficients, isinstance(sigma, complex)
+        parts = [np.asarray(x) for x in (sigma.real, sigma.imag)][: 1 + unreal]
         tables = [p.real, p.imag] if unreal else [p.real]
         table = np.stack([doubles_as_integers(part, bits) for part in tables], axis=1)
         rows = map(tuple, mode.harmonics.tolist())
@@ -288,7 +299,8 @@ class NormalSweeps:
         coefficients = _numbers(p, self.bits)
         shown = {"sigma": sigma, "coefficients": coefficients}
         shown |= {"action": self._action(p, kept), "residual": left.residual}
-        shown |= {"error": max(left.error, left.by_torus)}
+        error = max(left.error, left.by_torus)
+        shown |= {"error": error}
         return NormalMode(
             mode=mode.mode,
             harmonics=flow.harmonics[kept],
@@ -297,6 +309,7 @@ class NormalSweeps:
             deflated=mode.deflated,
             products=mode.products,
             digits=self.stage.digits,
+            rounding=float(error) * abs(self.start),
             **with_digits(shown, self.stage.digits),
         )
 

@@ -81,7 +81,8 @@ class NormalMode:
     digits : of sigma, coefficients and action that are mpf or mpc; None for doubles.
     error : with digits, of sigma, relative, and of a coefficient: an estimate, what one more step
         of Newton's method would change, at harmonics that were left out too, and what the error of
-        the torus makes of sigma. No proof. Ours.
+        the torus makes of sigma. No proof.
+    rounding : of sigma, about: much where two directions nearly collide. Ours.
 
     >>> from symfpu import Chain, breather_at_amplitude, normal_modes
     >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
@@ -101,6 +102,7 @@ class NormalMode:
     products: int = field(repr=False)
     digits: int | None = None
     error: Any = None
+    rounding: float = field(default=0.0, repr=False)
 
     def __repr__(self) -> str:
         kind = f"{self.kind}, signature {self.signature:+d}"
@@ -168,7 +170,8 @@ class NormalModes(Shown, Gridded):
 
     torus : the torus. modes : NormalMode of each direction, by growing q. guesses : by q, of the
         closed second-order shift.
-    resonances : the nearest, by distance. All is dimensionless.
+    resonances : the nearest, by distance. undecided : modes so near to a collision with another
+        that rounding hides whether they are stable. All is dimensionless.
 
     >>> from symfpu import Chain, breather_at_amplitude, normal_modes
     >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
@@ -185,6 +188,7 @@ class NormalModes(Shown, Gridded):
     modes: tuple[NormalMode, ...]
     guesses: dict[int, float] = field(repr=False)
     resonances: tuple[ParametricResonance, ...] = field(repr=False)
+    undecided: tuple[int, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
         torus = self.torus
@@ -223,17 +227,29 @@ class NormalModes(Shown, Gridded):
         return max((mode.growth for mode in self.modes), default=0.0)
 
     @property
-    def stable(self) -> bool:
-        """Whether all modes are elliptic."""
-        return bool(self.growth == 0)
+    def stable(self) -> bool | None:
+        """Whether all modes are elliptic; None where rounding hides it."""
+        if self._unstable:
+            return False
+        return None if self.undecided else True
+
+    @property
+    def _unstable(self) -> list[NormalMode]:
+        """Those that are hyperbolic beyond doubt."""
+        return [mode for mode in self.modes if mode.growth and mode.mode not in self.undecided]
 
     @property
     def verdict(self) -> str:
         """In words."""
         if self.stable:
             return "stable"
-        unstable = ", ".join(str(mode.mode) for mode in self.modes if mode.growth)
-        return f"unstable: modes {unstable}, growth {float(self.growth):.7g}"
+        unstable = ", ".join(str(mode.mode) for mode in self._unstable)
+        if unstable:
+            return f"unstable: modes {unstable}, growth {float(self.growth):.7g}"
+        hidden = ", ".join(map(str, self.undecided))
+        level = max(self.mode(q).rounding for q in self.undecided)
+        nearness = f"nearer to a collision than {level:.1g}"
+        return f"undecided: modes {hidden}, {nearness}; refine the torus with digits"
 
     @cached_property
     def _by_mode(self) -> dict[int, NormalMode]:

@@ -14,6 +14,7 @@ from symfpu.chain.chain import require_fixed_ends
 from symfpu.chain.frequency_shift import shift_coefficients
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
+from symfpu.normal.collisions import undecided_modes
 from symfpu.normal.digits import PreciseModes
 from symfpu.normal.linearised import LinearisedFlow, coefficients_by_harmonic
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
@@ -87,7 +88,8 @@ def normal_modes(
         torus=solution,
         modes=tuple(found.values()),
         guesses={q: guesses[q] for q in chosen},
-        resonances=tuple(_resonances(torus, real, length)),
+        resonances=tuple(_resonances(solution, real, length)),
+        undecided=undecided_modes(solution, tuple(found.values())),
     )
 
 
@@ -242,6 +244,7 @@ def _mode_of(flow: LinearisedFlow, found: Reduced) -> NormalMode:
         divisors=_smallest_divisors(flow, found),
         deflated=found.deflated,
         products=found.products,
+        rounding=found.rounding,
     )
 
 
