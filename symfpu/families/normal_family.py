@@ -359,7 +359,7 @@ def _moved(resonance: ParametricResonance, distance: float) -> ParametricResonan
 
 def discriminant(found: NormalModes, resonance: ParametricResonance) -> float:
     """D of the directions of a resonance: below zero where they are hyperbolic."""
-    growth = max(found.mode(q).growth for q in resonance.modes)
+    growth = max(float(found.mode(q).growth) for q in resonance.modes)
     if growth:
         return -4 * growth**2
     return resonance.distance_of(found) ** 2

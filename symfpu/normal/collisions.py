@@ -49,4 +49,4 @@ def _meeting(torus: QuasiPeriodic, mode: NormalMode, other: NormalMode) -> bool:
     left = float(mode.sigma) + sign * float(other.sigma)
     distances = np.abs(left - mode.rates[coupled])
     # p belongs to nu of both signs, 0 among them
-    return bool(distances.min() <= mode.rounding + other.rounding)
+    return bool((distances <= mode.rounding + other.rounding).any())

@@ -236,7 +236,9 @@ class NormalModes(Shown, Gridded):
     @property
     def _unstable(self) -> list[NormalMode]:
         """Those that are hyperbolic beyond doubt."""
-        return [mode for mode in self.modes if mode.growth and mode.mode not in self.undecided]
+        return [
+            mode for mode in self.modes if mode.growth and mode.mode not in self.undecided
+        ]
 
     @property
     def verdict(self) -> str:

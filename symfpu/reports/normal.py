@@ -23,6 +23,7 @@ def normal_record(found: NormalModes) -> dict[str, Any]:
         "frequencies": frequencies_record(torus),
         "verdict": found.verdict,
         "stable": found.stable,
+        "undecided": list(found.undecided),
         "growth": fifteen_digits(float(found.growth)),
         "normal_frequencies": {str(mode.mode): _sigma(mode) for mode in found.modes},
         "signatures": {str(mode.mode): mode.signature for mode in found.modes},
