@@ -39,14 +39,10 @@ def _hidden(mode: NormalMode) -> bool:
 
 def _meeting(torus: QuasiPeriodic, mode: NormalMode, other: NormalMode) -> bool:
     """Whether sigma and nu.omega - sigma' of the other signature may be one number."""
-    if mode is other:
-        sign = 1
-    else:
-        sign = mode.signature * other.signature or 1
+    sign = mode.signature * other.signature or 1
     coupled = mode.harmonics @ np.array(torus.seeds) % 2 == (mode.mode + other.mode) % 2
     if torus.chain.potential.even:
         coupled &= mode.harmonics.sum(axis=1) % 2 == 0
     left = float(mode.sigma) + sign * float(other.sigma)
     distances = np.abs(left - mode.rates[coupled])
-    # p belongs to nu of both signs, 0 among them
     return bool((distances <= mode.rounding + other.rounding).any())
