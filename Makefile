@@ -41,8 +41,9 @@ sweeps: install  ## decide the propagation rule for all seed sets: N <= 12, up t
 long: install  ## tests that `make test` leaves out: minutes of exact checks, notebooks, whole figures
 	$(ONE_THREAD) $(BIN)/python -m pytest -m long -n auto --dist worksteal
 
-bench: install  ## speed and memory, each beside a matrix product
-	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-columns=median,min,max -o addopts=--strict-markers
+bench: install  ## speed and memory, each beside a matrix product; kept, and compared with the last run on a like machine
+	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-autosave --benchmark-columns=median,min,max -o addopts=--strict-markers
+	$(BIN)/python docs/make_performance.py
 
 generated: install  ## the gallery of exported evaluators, byte for byte
 	$(BIN)/python -m symfpu.codegen.gallery generated

@@ -181,6 +181,11 @@ class Case:
         return Path(symfpu.save(self.folder / "breather.symfpu", self.breather))
 
     @cached_property
+    def periodic_file(self) -> Path:
+        """A saved breather of its own kind."""
+        return Path(symfpu.save(self.folder / "periodic.symfpu", self.periodic))
+
+    @cached_property
     def file(self) -> Path:
         """A saved torus, by the command line."""
         path = self.folder / "solved.symfpu"
@@ -254,6 +259,7 @@ SERIES: dict[str, Door] = {
     "resum": lambda c: symfpu.resum(c.of(lambda: c.torus)),
     "same_series": lambda c: symfpu.same_series(c.symbolic, c.symbolic),
     "sample_series": lambda c: symfpu.sample_series(c.symbolic, [c.torus.frequencies]),
+    "series_bytes": lambda c: symfpu.series_bytes(c.chain, SEEDS, 4),
     "solve_amplitudes": lambda c: c.solved,
     "solve_amplitudes, digits=30": lambda c: symfpu.solve_amplitudes(
         c.lindstedt((1,), c.breather.frequencies, 4, digits=30)
@@ -278,10 +284,12 @@ NEWTON: dict[str, Door] = {
     "floquet": lambda c: symfpu.floquet(c.periodic),
     "foretold_indices": lambda c: symfpu.foretold_indices(c.breather, 1e4, vectors=2),
     "prove_existence": lambda c: symfpu.prove_existence(c.periodic),
+    "prove_residual": lambda c: symfpu.prove_residual(c.solution),
+    "prove_stay": lambda c: symfpu.prove_stay(c.refined, time=1),
     "normal_family": lambda c: symfpu.normal_family(
         c.breather, {1: 1.1 * c.size}, members=2, modes=[2], resonance_length=0
     ),
-    "normal_modes": lambda c: symfpu.normal_modes(c.breather),
+    "normal_modes": lambda c: symfpu.normal_modes(c.periodic),
     "solve_normal_frequency": lambda c: symfpu.solve_normal_frequency(c.breather, 2, 2),
     "member_at_energy": lambda c: symfpu.member_at_energy(
         c.family, c.family.members[1].torus.energy(), harmonic=False
@@ -306,6 +314,9 @@ DYNAMICS: dict[str, Door] = {
         c.chain, *c.state, 100.0, vectors=2, frames=1
     ),
     "frequency_analysis": lambda c: c.lines,
+    "frequency_map": lambda c: symfpu.frequency_map(
+        c.chain, (float(c.chain.energy(*c.state)),), T=200.0, step=0.1
+    ),
     **{
         f"integrate, {name}": lambda c, name=name: symfpu.integrate(
             c.chain, *c.state, 5.0, step=0.1, scheme=name
@@ -416,6 +427,9 @@ VERBS: dict[str, Door] = {
         1e-2 * c.size**2,
         *c.words,
     ),
+    "symfpu frequencies": lambda c: c.verb(
+        "frequencies", c.file, "--time", 200, "--step", 0.1, "--json"
+    ),
     "symfpu gali": lambda c: c.verb(
         "gali", c.file, "--time", 100, "--vectors", 2, "--json"
     ),
@@ -428,7 +442,7 @@ VERBS: dict[str, Door] = {
     "symfpu show": lambda c: c.verb("show", c.file),
     "symfpu solve": lambda c: c.file,
     "symfpu certify": lambda c: c.verb("certify", c.refined_file),
-    "symfpu stability": lambda c: c.verb("stability", c.refined_file),
+    "symfpu stability": lambda c: c.verb("stability", c.periodic_file),
     "symfpu sweep": lambda c: c.verb(
         "sweep", "--order", 1, "--longest", 3, "--largest", 1, *c.rule_words
     ),
@@ -460,7 +474,13 @@ OTHERS = {
         "polynomial",
         "prove_for_all_N",
     ),
-    *("profile_distance", "recurrence", "substitute_multipliers", "toda"),
+    *(
+        "profile_distance",
+        "read_sweep",
+        "recurrence",
+        "substitute_multipliers",
+        "toda",
+    ),
 }
 
 HEAD = """

@@ -66,6 +66,12 @@ from symfpu.refinement.tori import refine_at_amplitudes as refine_at_amplitudes
 from symfpu.refinement.tori import refine_at_energy as refine_at_energy
 from symfpu.refinement.travelling_breather import travelling_breather as travelling_breather
 
+# theorems about tori
+from symfpu.certified.residual import ResidualProof as ResidualProof
+from symfpu.certified.residual import prove_residual as prove_residual
+from symfpu.certified.stay import StayProof as StayProof
+from symfpu.certified.stay import prove_stay as prove_stay
+
 # breathers
 from symfpu.breathers.at_energy import breather_at_energy as breather_at_energy
 from symfpu.breathers.balance import PeriodicOrbit as PeriodicOrbit
@@ -92,6 +98,7 @@ from symfpu.action_angle.twist import Twist as Twist
 from symfpu.action_angle.twist import twist as twist
 
 # stability of tori: normal frequencies
+from symfpu.normal.frequencies import NormalFrequencies as NormalFrequencies
 from symfpu.normal.modes import NoNormalModes as NoNormalModes
 from symfpu.normal.modes import NormalMode as NormalMode
 from symfpu.normal.modes import NormalModes as NormalModes
@@ -108,7 +115,7 @@ from symfpu.families.family import Family as Family
 from symfpu.families.family import family as family
 from symfpu.families.family import member_at_energy as member_at_energy
 from symfpu.families.family import member_at_frequency as member_at_frequency
-from symfpu.families.normal_family import NormalEvent as NormalEvent
+from symfpu.families.normal_events import NormalEvent as NormalEvent
 from symfpu.families.normal_family import NormalFamily as NormalFamily
 from symfpu.families.normal_family import normal_family as normal_family
 
@@ -127,6 +134,8 @@ from symfpu.dynamics.state_files import read_state as read_state
 from symfpu.spectral.analysis import FrequencyAnalysis as FrequencyAnalysis
 from symfpu.spectral.analysis import SpectralLine as SpectralLine
 from symfpu.spectral.analysis import frequency_analysis as frequency_analysis
+from symfpu.spectral.mapping import FrequencyMap as FrequencyMap
+from symfpu.spectral.mapping import frequency_map as frequency_map
 from symfpu.spectral.near import torus_near as torus_near
 
 # the Toda chain, exactly
@@ -185,6 +194,12 @@ from symfpu.proofs.sweeps import sweep_propagation as sweep_propagation
 from symfpu.proofs.theorem import RuleForAllN as RuleForAllN
 from symfpu.proofs.theorem import prove_for_all_N as prove_for_all_N
 
+# sweeps of any function
+from symfpu.series.memory import series_bytes as series_bytes
+from symfpu.sweeps.rows import SweepRows as SweepRows
+from symfpu.sweeps.sweep import read_sweep as read_sweep
+from symfpu.sweeps.sweep import sweep as sweep
+
 # files, and how to cite
 from symfpu.bundles.bundle import Bundle as Bundle
 from symfpu.reports.citation import cite as cite
@@ -207,6 +222,7 @@ from symfpu.action_angle.newton_twist import NoTwist as NoTwist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy as NoBreatherAtEnergy
 from symfpu.breathers.balance import NoPeriodicOrbit as NoPeriodicOrbit
 from symfpu.breathers.existence import NoExistenceProof as NoExistenceProof
+from symfpu.certified.stay import NoStayProof as NoStayProof
 from symfpu.breathers.shooting import ShootingFailed as ShootingFailed
 from symfpu.dynamics.frame_run import OrbitLost as OrbitLost
 from symfpu.dynamics.stopping import EscapedOrbit as EscapedOrbit
@@ -227,6 +243,11 @@ from symfpu.refinement.tori import NoTorus as NoTorus
 from symfpu.integrable.discriminant import NoDiscriminant as NoDiscriminant
 from symfpu.integrable.quadrature import BandsTooNarrow as BandsTooNarrow
 from symfpu.integrable.search import NoTodaTorus as NoTodaTorus
+from symfpu.sweeps.rows_file import FileFull as FileFull
+from symfpu.sweeps.sweep import CaseTooLarge as CaseTooLarge
+from symfpu.sweeps.sweep import SweepStopped as SweepStopped
+from symfpu.sweeps.workers import WorkerDied as WorkerDied
+from symfpu.sweeps.workers import WorkersDoNotStart as WorkersDoNotStart
 from symfpu.tori.at_energy import NoTorusAtEnergy as NoTorusAtEnergy
 from symfpu.tori.frequencies import (
     NoSelfConsistentFrequencies as NoSelfConsistentFrequencies,

@@ -75,6 +75,7 @@ SLOW_PAGES = {
     "localization.md",
     "plots.md",
     "families.md",
+    "sweeps.md",
 }
 
 

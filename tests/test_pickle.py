@@ -27,6 +27,8 @@ from symfpu.breathers.existence import NoExistenceProof, prove_existence
 from symfpu.breathers.floquet import floquet
 from symfpu.breathers.shooting import ShootingFailed, shoot
 from symfpu.bundles.bundle import load, save
+from symfpu.certified.residual import prove_residual
+from symfpu.certified.stay import NoStayProof, prove_stay
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.cli.terminal import Interrupted
@@ -70,12 +72,16 @@ from symfpu.proofs.leading import leading_terms
 from symfpu.proofs.sweeps import Sweep, SweepCase, SweepIncomplete
 from symfpu.proofs.theorem import prove_for_all_N
 from symfpu.proofs.verify import CertificateError
-from symfpu.refinement.tori import NoTorus, refine
+from symfpu.refinement.tori import NoTorus, refine, refine_at_amplitudes
 from symfpu.series.expandable import expandable_term
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.sample import sample_series
 from symfpu.series.travelling import travelling_waves
 from symfpu.spectral.analysis import frequency_analysis
+from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
+from symfpu.sweeps.rows_file import FileFull
+from symfpu.sweeps.sweep import CaseTooLarge, SweepStopped
+from symfpu.sweeps.workers import WorkerDied, WorkersDoNotStart
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.at_energy import NoTorusAtEnergy, torus_at_energy
 from symfpu.tori.frequencies import NoSelfConsistentFrequencies, torus_at_amplitudes
@@ -107,6 +113,13 @@ def torus(digits=None):
 @cache
 def refined():
     return refine(torus())
+
+
+@cache
+def two_angles():
+    """A refined torus of the smallest chain that has one."""
+    amplitudes = {1: "0.2", 2: "0.1"}
+    return refine_at_amplitudes(torus_at_amplitudes(Chain(3, alpha="0.3"), amplitudes, order=4), amplitudes)
 
 
 @cache
@@ -213,6 +226,8 @@ RESULTS = {
     "Chain": (lambda _: Chain(8, alpha="1/3", beta="0.1"), lambda x: (x.frequencies(), x.small_parameter())),
     "Event": (lambda _: Event("fold", "omega_1", 3, 0.1, 0.2), lambda x: x.kind),
     "ExistenceProof": (lambda _: prove_existence(orbit()), lambda x: x.certificate()),
+    "ResidualProof": (lambda _: prove_residual(two_angles()), lambda x: x.certificate()),
+    "StayProof": (lambda _: prove_stay(two_angles(), time=1000), lambda x: (x.certificate(), x.distance_at(10))),
     "Family": (lambda _: breathers(), lambda x: member_at_energy(x, "0.012", harmonic=False).amplitudes),
     "Floquet": (lambda _: floquet(orbit()), lambda x: (x.stable, x.multipliers)),
     "FourierTorus": (lambda _: torus().in_doubles(), motion),
@@ -253,15 +268,19 @@ RESULTS = {
     "ShotOrbit": (shot, lambda x: (motion(x), x.iterations)),
     "RuleForAllN": (lambda _: prove_for_all_N("beta", 1, 1), lambda x: x.certificate()),
     "Sweep": (lambda _: sweep(), lambda x: x.exceptions),
+    "SweepRows": (lambda _: swept_rows(), lambda x: x.failures),
     "TorusDimension": (lambda _: indices().dimension(), lambda x: x.weights),
     "TodaInvariants": (lambda _: toda_invariants(PAIR, *fpu_trajectory(PAIR, {1: "0.1"})), lambda x: (x.gaps, x.actions, x.frequencies)),
     "TodaTorus": (lambda _: toda_torus(Chain(4, alpha="1/2"), (1, 3), actions=("0.1", "0.2"), digits=20), lambda x: x.state({3: 1})),
     "FrequencyAnalysis": (lambda _: lines_found(), lambda x: (x.drift, x.count(0.1))),
+    "FrequencyMap": (lambda _: cases.mapped(), lambda x: (x.shifts(), x.counts)),
     "SpectralLine": (lambda _: lines_found().lines[0], repr),
     "BirkhoffForm": (lambda _: birkhoff_form(PAIR, (1, 2), 2), lambda x: x.hamiltonian()),
     "BirkhoffForm, digits": (lambda _: birkhoff_form(PAIR, (1, 2), 2, digits=20), lambda x: x.frequencies_at({1: 0.1, 2: 0.1})),
     "NormalFamily": (lambda _: cases.normal_line(), lambda x: (x.events, x.verdict)),
     "NormalEvent": (lambda _: cases.normal_line().events[0], repr),
+    "NormalFrequencies": (lambda _: normal_member().normal, lambda x: (x.verdict, x.frequencies, x.resonances)),
+    "Member, normal": (lambda _: normal_member(), lambda x: x.normal.verdict),
     "NormalFrequencySeries": (lambda _: normal_frequency_series(PAIR, (1,), 2, 2), lambda x: x.correction(2)),
     "ForetoldIndices": (lambda _: foretold_indices(orbit(), 1e3), lambda x: (x.settling(), x.slopes())),
     "Twist": (lambda _: twist(orbit()), lambda x: (x.matrix, x.signature)),
@@ -270,8 +289,19 @@ RESULTS = {
 }
 
 
+@cache
+def normal_member():
+    return family(Chain(4, beta=1), (2,), "0.02", from_energy="0.01", members=1, normal=True).members[0]
+
+
 def sweep():
     return Sweep("beta", 1, (SweepCase(4, (1, 2), "refuted", ((3, 1, None),), True),))
+
+
+def swept_rows():
+    case = {"chain": {"N": 4, "alpha": "0", "beta": "0.1"}}
+    failure = SweepFailure("WorkerDied", "it was killed", {"exit_code": -9})
+    return SweepRows("a.function", {"order": 2}, (SweepRow(case, 0.5), SweepRow({"chain": {"N": 1}}, None, failure)))
 
 
 def public_classes():
@@ -371,13 +401,19 @@ ERRORS = {
     NoFurtherMember: lambda: NoFurtherMember("no root", (1,), (0.4,), "a reason"),
     NoTorus: lambda: NoTorus("a reason", refined(), 0.1),
     NoNormalModes: lambda: NoNormalModes(3, 1.1, stability().resonances[0]),
+    NoStayProof: lambda: NoStayProof(1e9, 1e5, 1e-14, 1e-12, 3.0),
     NoExistenceProof: lambda: NoExistenceProof("Y", 1e-3, 1e-5, "more digits may help"),
     NoTorusAtEnergy: no_torus_at_energy,
     NoSelfConsistentFrequencies: no_frequencies,
     NoPeriodicOrbit: no_periodic_orbit,
     NoBreatherAtEnergy: lambda: NoBreatherAtEnergy(3, 0.5, False, orbit(), no_periodic_orbit()),
     ShootingFailed: lambda: ShootingFailed(1, "a reason", np.array([0.1, 0.0]), (0.2, 0.1)),
-    SweepIncomplete: lambda: SweepIncomplete(sweep(), {(5, (1,)): TooLarge(9, 10**12, 10**9, 5)}),
+    SweepIncomplete: lambda: SweepIncomplete(sweep(), {(5, (1,)): SweepFailure("TooLarge", "order = 9", {"needed": 10**12})}),
+    SweepStopped: lambda: SweepStopped(swept_rows(), 3, "a reason"),
+    CaseTooLarge: lambda: CaseTooLarge(10**12, 10**9),
+    FileFull: lambda: FileFull("rows.jsonl", 3, "No space left on device"),
+    WorkerDied: lambda: WorkerDied(-9),
+    WorkersDoNotStart: lambda: WorkersDoNotStart("exit code 1"),
     Interrupted: lambda: Interrupted("nothing is kept"),
     TimeIsUp: lambda: TimeIsUp(10.0, "step 3"),
     CertificateError: lambda: CertificateError("a witness is zero"),

@@ -12,6 +12,10 @@ INTEGER = 1e-12
 # multipliers: some hundred EPS, relative to the largest coefficient of the order, since bonds mix the modes.
 COEFFICIENT = 1024 * EPS
 
+# Next to resonances that multiply a small harmonic by 10 at each of some 20 orders, k <= 60: 6e-12 for beta with omega_1 =
+# 0.0990 (harmonic 19 in mode 25), as bonds mix its modes. Products in the angle, which mix harmonics, leave 1e-8 there.
+HIGH_ORDER = 2**17 * EPS
+
 # The reference values were made from decimal frequencies; omega - Omega, some 1e-4, is known to full accuracy, but
 # the sum of the frequency series is rounded and its derivative by A is about 2 (omega - Omega) / A.
 AMPLITUDE = 1e-13
@@ -666,3 +670,13 @@ BESIDE_A_CROSSING = 1e-3
 TODA_GROWTH = 1e-6
 # numbers of a page, written with three or four digits
 THREE_DIGITS = 1e-3
+
+# Ratio of what two tori of small waves, one twice the other, miss of a normal frequency: the next
+# power is the fourth, at amplitudes of 0.02 a part of 1e-3.
+PHANTOM_WAVE = 1e-2
+# Frequencies of a map over 500 units of time, relative: the lines of one mode are far apart there, and step 0.1 of the eighth order is
+# below it.
+MAP_FREQUENCY = 1e-10
+
+# The shift of mode 1 beside its lowest order, relative: the next order at alpha = 0.3, N = 8, H = 4e-6 is 2e-3 of it.
+MAP_SHIFT = 1e-2

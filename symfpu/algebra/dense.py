@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.grading import Ints, canonical_count, monomial_count
 from symfpu.algebra.selection import CosineModes
+from symfpu.algebra.uncompiled import TILE
 
 Floats = NDArray[np.float64]
 Bonds = TypeVar("Bonds")
@@ -82,18 +83,18 @@ class DenseRing(ABC, Generic[Bonds]):
         self, space: CosineModes, *, workers: int | None = None, points: int | None = None
     ) -> None:
         """points : values kept for each monomial; default those on half of the bonds."""
-        from symfpu.algebra import (
-            kernels,
-        )  # lazy: numba takes longer to import than all the rest
+        # lazy: numba takes longer to import than all the rest
+        from symfpu.algebra import kernels, one_seed
 
-        self._kernels = kernels
+        self._kernels, self._one_seed = kernels, one_seed
         self.space, self.grading = space, space.grading
         self.exponent = 0
         self.multiply_adds = 0
         self._workers = workers or available_cores()
         self._pool = ThreadPoolExecutor(self._workers)
         self._points = points or space.half
-        self._lanes = lane_width(self._points)
+        self._convolves = len(space.seeds) == 1 and self.modulus is None
+        self._lanes = 8 if self._convolves else lane_width(self._points)
         self._slices = -(-self._points // self._lanes)
         rows, seed_slices = int(self.grading.first_row[-1]), -(-len(space.seeds) // 8)
         self._bonds = np.zeros((self._slices, rows, self._lanes))
@@ -242,6 +243,9 @@ class DenseRing(ABC, Generic[Bonds]):
         out = np.zeros((slices, rows.stop - rows.start, width))
         if not splits:
             return out
+        if self._convolves and not sparse:
+            self._convolve(left, right, out, splits, symmetric)
+            return out
         blocks = self.grading.wanted_blocks(degree)
         lanes = (0.0,) * width
         active = self._active if sparse else self._active[:0]
@@ -274,6 +278,50 @@ class DenseRing(ABC, Generic[Bonds]):
             self.multiply_adds += count
         return self._reduced(out)
 
+    def _convolve(
+        self,
+        left: Floats,
+        right: Floats,
+        out: Floats,
+        splits: list[tuple[int, int]],
+        symmetric: bool,
+    ) -> None:
+        """Add the products of all splits of series in one seed, canonical rows only."""
+        if not symmetric:
+            self._add_convolutions(left, right, out, splits)
+            return
+        # left is right: a split into two degrees stands for both orders
+        unequal = [(d, e) for d, e in splits if d != e]
+        self._add_convolutions(left, right, out, unequal)
+        out *= 2.0
+        self._add_convolutions(left, right, out, [(d, e) for d, e in splits if d == e])
+
+    def _add_convolutions(
+        self, left: Floats, right: Floats, out: Floats, splits: list[tuple[int, int]]
+    ) -> None:
+        slices, rows, width = out.shape
+        lanes = (0.0,) * width
+        starts, table = (
+            self.grading.first_row,
+            np.array(splits, dtype=np.int64).reshape(-1, 2),
+        )
+        tiles = np.arange(rows // 2, rows, TILE)
+
+        def task(part: tuple[int, int]) -> int:
+            slice_, first = part
+            some = tiles[first::chunks]
+            count = self._one_seed.convolve(
+                lanes, left[slice_], right[slice_], out[slice_], table, starts, some
+            )
+            return int(count)
+
+        parallel = self._pairs(splits) * slices * width >= PARALLEL_FROM
+        chunks = min(4 * self._workers, len(tiles)) if parallel else 1
+        parts = [(s, c) for s in range(slices) for c in range(chunks)]
+        self.multiply_adds += sum(
+            self._pool.map(task, parts) if parallel else map(task, parts)
+        )
+
     def _pairs(self, splits: list[tuple[int, int]]) -> int:
         """How many pairs of monomials the splits have."""
         seeds = len(self.space.seeds)
@@ -285,8 +333,9 @@ class DenseRing(ABC, Generic[Bonds]):
         return np.concatenate([part[canonical] for part in values], axis=1)
 
     def _square_splits(self, degree: int) -> list[tuple[int, int]]:
+        known = set(self._degrees)
         splits = [(d, degree - d) for d in self._degrees]
-        return [(d, e) for d, e in splits if d <= e and e in self._degrees]
+        return [(d, e) for d, e in splits if d <= e and e in known]
 
     def _power_splits(self, power: int, degree: int) -> list[tuple[int, int]]:
         """Splits into a lower power and a single.
@@ -297,8 +346,9 @@ class DenseRing(ABC, Generic[Bonds]):
         for d in range(lower, degree):
             if d not in self._power_degrees.get(lower, ()):
                 self._put_power(lower, d)
+        known = set(self._degrees)
         splits = [(d, degree - d) for d in self._power_degrees.get(lower, ())]
-        return [(d, e) for d, e in splits if e in self._degrees]
+        return [(d, e) for d, e in splits if e in known]
 
     def _store_power(self, power: int, degree: int, values: Floats) -> None:
         """Keep a power of the bonds, (canonical, points), as a factor of higher powers."""
@@ -341,9 +391,9 @@ class DenseRing(ABC, Generic[Bonds]):
 
     def _seed_product(self, degree: int, corrections: Floats, seed_modes: Floats) -> Floats:
         """Sum W_q u_q over all stored pairs of degrees; (canonical, s)."""
-        splits = [(n, degree - n) for n in self._correction_degrees]
-        known = [(n, d) for n, d in splits if d in self._degrees]
-        lanes = self._product(corrections, seed_modes, degree, known, sparse=True)
+        known = set(self._degrees)
+        splits = [(n, degree - n) for n in self._correction_degrees if degree - n in known]
+        lanes = self._product(corrections, seed_modes, degree, splits, sparse=True)
         canonical = self.grading.canonical(degree)
         places = [divmod(i, 8) for i in range(len(self.space.seeds))]
         columns = [lanes[slice_, canonical, lane] for slice_, lane in places]

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+TILE = 4  # rows of a result that are summed at once
 SPLIT = 2.0**27 + 1  # cuts a double into two halves whose products are exact
 
 
@@ -50,6 +51,22 @@ def multiply_row(
             else modular_product(factor, other, modulus, 1.0 / modulus)
         )
         out[o + table[t + n]] += product
+
+
+def add_tile(
+    lanes: Any, left: Any, i: int, right: Any, j: int, count: int, out: Any, o: int
+) -> None:
+    """out[o + t] += sum of left[i + n] right[j + t - n] over n < count, for t of a tile."""
+    for t in range(TILE):
+        add_one_row(lanes, left, i, right, j + t, count, out, o + t)
+
+
+def add_one_row(
+    lanes: Any, left: Any, i: int, right: Any, j: int, count: int, out: Any, o: int
+) -> None:
+    """out[o] += sum of left[i + n] right[j - n] over n < count."""
+    backwards = right[j + 1 - count : j + 1][::-1]
+    out[o] += (left[i : i + count] * backwards).sum(axis=0)
 
 
 def _exact_product(a: Any, b: Any) -> tuple[Any, Any]:

@@ -7,19 +7,21 @@ and d_n = a_n / 2; every coefficient is a ball that holds the true one.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import flint
 
+from symfpu.breathers.force_series import ball as ball
+from symfpu.breathers.force_series import force_series
 from symfpu.breathers.rounded_orbit import RoundedOrbit
 
+SPARE_BITS = 64  # beyond those of the orbit
+
+Rows = Sequence[Sequence[int]]
 Series = list[Any]  # cosine coefficients a_0, a_1, ..., balls
-
-
-def ball(value: Fraction | int) -> Any:
-    """A ball that holds an exact number."""
-    return flint.arb(flint.fmpq(value.numerator, value.denominator))
 
 
 class BondBalls:
@@ -33,12 +35,26 @@ class BondBalls:
             [[cosines[q * (2 * j + 1) % (4 * N)] for j in range(N)] for q in range(1, N)]
         )
         unit = flint.arb(2) ** -orbit.bits
-        rows = [[unit * x for x in row] for row in orbit.rows]
-        stretches = (flint.arb_mat(rows) * self.table).tolist()
-        self.stretches: list[Series] = [list(bond) for bond in zip(*stretches, strict=True)]
+        self.stretches = self.on_bonds([[unit * x for x in row] for row in orbit.rows])
+        self.norms = [self.norm(bond) for bond in self.stretches]
+        largest = max(float(size.upper()) for size in self.norms)
+        self.force = force_series(orbit.chain, largest, orbit.bits + SPARE_BITS // 2)
         self.squared = ball(orbit.omega) ** 2
         half = [flint.fmpq(q, 2 * N) for q in range(1, N)]
         self.linear = [4 * flint.arb.sin_pi_fmpq(x) ** 2 for x in half]
+
+    def on_bonds(self, rows: list[list[Any]]) -> list[Series]:
+        """sum_q c_q cos(q theta_j) of every bond; rows are harmonics, columns modes."""
+        by_harmonic = (flint.arb_mat(rows) * self.table).tolist()
+        return [list(bond) for bond in zip(*by_harmonic, strict=True)]
+
+    def of_modes(self, bonds: list[Series]) -> list[list[Any]]:
+        """(2/N) sum_j cos(q theta_j) f_j; rows are harmonics, columns modes."""
+        harmonics = max(map(len, bonds))
+        padded = [bond + [flint.arb(0)] * (harmonics - len(bond)) for bond in bonds]
+        scaled = self.table * flint.arb_mat(padded) * (flint.arb(2) / self.orbit.chain.N)
+        rows: list[list[Any]] = scaled.transpose().tolist()
+        return rows
 
     def norm(self, series: Series) -> Any:
         """sum |a_n| nu^n."""
@@ -48,39 +64,70 @@ class BondBalls:
         return total
 
     def forces(self) -> list[Series]:
-        """phi(r_j) of every bond."""
-        terms = {k: ball(coupling) for k, coupling in self.orbit.powers.items()}
+        """phi(r_j) of every bond, without what `force` leaves out."""
+        return [_polynomial(bond, self.force.powers) for bond in self.stretches]
+
+    def forces_left_out(self) -> Any:
+        """Above the sum over bonds of the norms of what `force` leaves out."""
+        return sum((self.force.left_out(x, 0) for x in self.norms), flint.arb(0))
+
+    @cached_property
+    def slopes(self) -> list[Series]:
+        """phi'(r_j) of every bond, without what `force` leaves out."""
+        terms = {k - 1: k * coupling for k, coupling in self.force.powers.items()}
         return [_polynomial(bond, terms) for bond in self.stretches]
 
-    def slopes(self) -> list[Series]:
-        """phi'(r_j) of every bond."""
-        powers = self.orbit.powers.items()
-        terms = {k - 1: ball(k * coupling) for k, coupling in powers}
-        return [_polynomial(bond, terms) for bond in self.stretches]
+    def slopes_left_out(self) -> Any:
+        """Above the sum over bonds of the norms of what `force` leaves out."""
+        return sum((self.force.left_out(x, 1) for x in self.norms), flint.arb(0))
 
     def residual(self) -> list[list[Any]]:
         """F_q[n], rows n from 0 to the highest harmonic that is not zero, columns q."""
-        N, forces = self.orbit.chain.N, self.forces()
-        harmonics = max(map(len, forces))
-        padded = [force + [flint.arb(0)] * (harmonics - len(force)) for force in forces]
-        of_modes = (self.table * flint.arb_mat(padded) * (flint.arb(2) / N)).transpose()
-        rows: list[list[Any]] = of_modes.tolist()
+        rows = self.of_modes(self.forces())
+        self.add_linear(rows, self.orbit.rows)
+        return rows
+
+    def add_linear(self, rows: list[list[Any]], integers: Rows) -> None:
+        """lambda_q[n] c_q[n], c in units 2^-bits, added to rows."""
         unit = flint.arb(2) ** -self.orbit.bits
-        for n, row in enumerate(self.orbit.rows):
+        for n, row in enumerate(integers):
             for place, x in enumerate(row):
                 divisor = 1 - n**2 * self.squared / self.linear[place]
                 rows[n][place] += divisor * x * unit
-        return rows
+
+    def virial_gradients(self) -> tuple[list[Series], Any]:
+        """The derivative of V + r V'/2 along every bond, and the norm of what is left out."""
+        terms = self.force.virial_terms()
+        lost = sum((self.force.virial_left_out(x) for x in self.norms), flint.arb(0))
+        return [_polynomial(bond, terms) for bond in self.stretches], lost
+
+    def mean_energy(self) -> Any:
+        """The mean of sum_j (V + r V'/2): H on a periodic orbit."""
+        powers = self.force.powers.items()
+        terms = {k: c * (Fraction(1, k + 1) + Fraction(1, 2)) for k, c in powers}
+        total = flint.arb(0)
+        for bond, size in zip(self.stretches, self.norms, strict=True):
+            lost = flint.arb(0, 2 * size * self.force.left_out(size, 0))
+            total += (
+                mean_of_product(bond, _polynomial(bond, {1: Fraction(1), **terms})) + lost
+            )
+        return total
+
+    def at_rest(self) -> list[Any]:
+        """The stretches at t = 0."""
+        return [sum(bond, flint.arb(0)) for bond in self.stretches]
 
     def energy(self, radius: Any) -> Any:
         """H at t = 0, where no stretch is further than the radius from that of the orbit."""
-        around = flint.arb(0, radius)
+        return self.energy_within([radius] * self.orbit.chain.N)
+
+    def energy_within(self, radii: list[Any]) -> Any:
+        """The same with a radius for each bond."""
         total = flint.arb(0)
-        for bond in self.stretches:
-            r = sum(bond, flint.arb(0)) + around
-            total += r**2 / 2
-            for k, coupling in self.orbit.powers.items():
-                total += ball(coupling) * r ** (k + 1) / (k + 1)
+        for r, size, radius in zip(self.at_rest(), self.norms, radii, strict=True):
+            x = size + radius
+            lost = flint.arb(0, x * self.force.left_out(x, 0))
+            total += self.force.potential(r + flint.arb(0, radius)) + lost
         return total
 
     def amplitude(self, radius: Any) -> Any:
@@ -92,18 +139,35 @@ class BondBalls:
         return (c + around) * (half / self.linear[seed - 1]).sqrt()
 
 
-def _polynomial(series: Series, terms: dict[int, Any]) -> Series:
-    """sum terms[k] series^k as a cosine series; k from 1 up."""
-    last = len(series) - 1
+def _polynomial(series: Series, couplings: dict[int, Fraction]) -> Series:
+    """sum couplings[k] series^k as a cosine series; k from 1 up; by Horner's rule."""
+    if not couplings:
+        return [flint.arb(0)]
+    last, factor = len(series) - 1, _palindrome(series)
+    degree = max(couplings)
+    total = flint.arb_poly([ball(couplings[degree])])
+    for k in range(degree - 1, -1, -1):
+        total *= factor
+        if k in couplings:
+            total[(degree - k) * last] += ball(couplings[k])
+    middle = degree * last
+    return [total[middle], *(2 * total[middle + n] for n in range(1, middle + 1))]
+
+
+def product(a: Series, b: Series) -> Series:
+    """Of two cosine series."""
+    both = _palindrome(a) * _palindrome(b)
+    middle = len(a) + len(b) - 2
+    return [both[middle], *(2 * both[middle + n] for n in range(1, middle + 1))]
+
+
+def _palindrome(series: Series) -> Any:
+    """sum d_|n| z^n times z^last, d_0 = a_0 and d_n = a_n / 2."""
     halves = [a / 2 for a in series[:0:-1]]
-    first = flint.arb_poly([*halves, series[0], *reversed(halves)])
-    power, middle = first, last
-    total = [flint.arb(0)] * (max(terms, default=0) * last + 1)
-    for k in range(1, max(terms, default=0) + 1):
-        if k > 1:
-            power, middle = power * first, middle + last
-        if k in terms:
-            total[0] += terms[k] * power[middle]
-            for n in range(1, middle + 1):
-                total[n] += 2 * terms[k] * power[middle + n]
-    return total
+    return flint.arb_poly([*halves, series[0], *reversed(halves)])
+
+
+def mean_of_product(a: Series, b: Series) -> Any:
+    """Over a period."""
+    pairs = zip(a[1:], b[1:], strict=False)
+    return a[0] * b[0] + sum((x * y for x, y in pairs), flint.arb(0)) / 2

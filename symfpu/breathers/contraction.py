@@ -4,7 +4,8 @@ from zero, in doubles whose rounding is bounded.
 A is the inverse of a small block, an integer matrix times 2^-INVERSE_BITS, and 1/lambda_q[n] =
 1/(1 - n^2 omega^2/Omega_q^2) elsewhere. Weights are w = v nu^n with integers v 2^-WEIGHT_BITS for
 n up to FREE harmonics, 1 beyond. The slopes of the bonds enter with K harmonics, rounded to
-doubles; the norm of the rest is a bound of its own. Ours; docs/existence.md has the proof.
+doubles; the norm of the rest is a bound of its own. Where the frequency is an unknown, it and its
+equation are the first place, n = q = 0, always in the block. Ours; docs/existence.md has the proof.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from symfpu.chain.chain import Chain
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-INVERSE_BITS = 14
+INVERSE_BITS = 8
 WEIGHT_BITS = 6
 ROUNDOFF = 2.0**-53
 UPWARDS = 1 + 1e-9  # more than sums of so many positive doubles lose
@@ -38,13 +39,21 @@ FIRST_BLOCK, SMALLEST_GROWTH, LARGEST_BLOCK = 8, 4, 400
 
 @dataclass(frozen=True)
 class Places:
-    """The unknowns up to a harmonic, ascending: their harmonics n and modes q."""
+    """The unknowns up to a harmonic, ascending: their harmonics n and modes q.
+
+    An unknown frequency is the first, n = q = 0.
+    """
 
     n: Ints
     q: Ints
 
+    @property
+    def bordered(self) -> bool:
+        """Whether the frequency is among them."""
+        return bool(self.q[0] == 0)
 
-def places_of(chain: Chain, seed: int, harmonics: int) -> Places:
+
+def places_of(chain: Chain, seed: int, harmonics: int, *, bordered: bool = False) -> Places:
     """Those that the symmetry allows."""
     n, q = np.indices((harmonics + 1, chain.N - 1))
     q += 1
@@ -52,7 +61,46 @@ def places_of(chain: Chain, seed: int, harmonics: int) -> Places:
     if chain.potential.even:
         allowed &= n % 2 == 1
     harmonic, mode = np.nonzero(allowed)
-    return Places(harmonic, mode + 1)
+    first = [0] if bordered else []
+    return Places(
+        np.append(first, harmonic).astype(int), np.append(first, mode + 1).astype(int)
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class BorderLine:
+    """The row and the column of an unknown frequency in doubles, with bounds of their rounding.
+
+    unit : omega^2 of 1. of_seed, rows, row_errors, corner : derivatives of the equation by c_s[1]
+        alone, by every c_q[n], shape (.., N-1), and by the unknown; nu^n times any later one is
+        below `beyond`. column : of F_q[n] by the unknown, shape (H+1, N-1).
+    """
+
+    seed: int
+    unit: float
+    of_seed: int
+    rows: Floats
+    row_errors: Floats
+    beyond: float
+    corner: int
+    column: Floats
+
+    def row(self, places: Places) -> tuple[Floats, Floats]:
+        """Derivatives of the equation; nothing for the first place."""
+        values, errors = at(self.rows, places), at(self.row_errors, places)
+        seed = (places.n == 1) & (places.q == self.seed)
+        return values + self.of_seed * seed, errors
+
+    def derivatives(self, places: Places) -> tuple[Floats, Floats]:
+        """Of F by the unknown."""
+        values = at(self.column, places)
+        return values, 16 * ROUNDOFF * np.abs(values)
+
+
+def at(table: Floats, places: Places) -> Floats:
+    """Entries of a table by harmonic and mode, 0 beyond its end."""
+    inside = places.n < len(table)
+    return np.where(inside, table[places.n * inside, places.q - 1], 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +117,7 @@ class LinearPart:
     nu: float
     slopes: Floats
     rest: float
+    border: BorderLine | None = None
 
     @property
     def K(self) -> int:
@@ -78,7 +127,10 @@ class LinearPart:
     def divisors(self, places: Places) -> Floats:
         """lambda_q[n] = 1 - n^2 omega^2 / Omega_q^2."""
         linear = self.chain.frequencies()[places.q - 1]
-        return np.asarray(1 - (places.n * self.omega / linear) ** 2)
+        divisors = np.asarray(1 - (places.n * self.omega / linear) ** 2)
+        if self.border is not None:
+            divisors[0] = self.border.corner
+        return divisors
 
     def divisor_errors(self, places: Places) -> Floats:
         """Above the rounding of the divisors."""
@@ -115,7 +167,12 @@ class LinearPart:
         apart, total = np.minimum(abs(n - m), K + 1), np.minimum(n + m, K + 1)
         folds = n > 0
         values = padded[(apart, *pair)] + np.where(folds, padded[(total, *pair)], 0.0)
-        return values, errors[apart] + np.where(folds, errors[total], 0.0)
+        errors = errors[apart] + np.where(folds, errors[total], 0.0)
+        if self.border is not None:
+            values[0], errors[0] = self.border.row(columns)
+            values[:, 0], errors[:, 0] = self.border.derivatives(rows)
+            values[0, 0] = errors[0, 0] = 0.0  # the corner is among the divisors
+        return values, errors
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,6 +186,7 @@ class Contraction:
         sum_q nu^-n |A e_q[n]| for every n; 2/N times it bounds A on what a bond gives.
     columns_of_inverse : above |A e| nu^-n by place, up to `columns`; beyond, those of every mode
         are below `beyond`.
+    of_frequency : above |A d^2 F/dm dc h| / (|m| |h|), where the frequency is an unknown, else 0.
     """
 
     part: LinearPart
@@ -141,6 +199,7 @@ class Contraction:
     spread: float
     columns_of_inverse: Floats
     beyond: Floats
+    of_frequency: float
 
 
 class Attempt:
@@ -149,8 +208,12 @@ class Attempt:
     def __init__(self, part: LinearPart, free: int) -> None:
         chain, seed = part.chain, part.seed
         self.part, self.free, self.columns = part, free, free + part.K
-        self.inside = places_of(chain, seed, self.columns)
-        self.rows = places_of(chain, seed, self.columns + part.K)
+        bordered = part.border is not None
+        last = self.columns + part.K
+        if part.border is not None:
+            last = max(last, len(part.border.column) - 1)
+        self.inside = places_of(chain, seed, self.columns, bordered=bordered)
+        self.rows = places_of(chain, seed, last, bordered=bordered)
         self.divisors = part.divisors(self.rows)
         self.errors = part.divisor_errors(self.rows)
         self.count = len(self.inside.n)
@@ -165,7 +228,10 @@ class Attempt:
     def importance(self) -> Floats:
         """How much the rows with free weights fail to be dominated by the diagonal."""
         sums = np.abs(self.force[: self.free_count]).sum(axis=1)
-        return np.asarray(sums / abs(self.divisors[: self.free_count]))
+        scores = sums / self.diagonal[: self.free_count]
+        if self.inside.bordered:
+            scores[0] = math.inf
+        return np.asarray(scores)
 
     def order(self) -> Ints:
         """Places, those that need the block most first."""
@@ -264,13 +330,16 @@ class Attempt:
         v = np.ones(len(self.rows.n))
         v[: self.free_count] = np.ldexp(chosen.astype(float), -WEIGHT_BITS)
         of_columns = (v @ defect) / v[: self.count]
-        linear = max(float(of_columns.max()) * UPWARDS, self.tail())
         norms = v[: self.count] / self.diagonal[: self.count]
         sizes = np.abs(np.ldexp(inverse.astype(float), -INVERSE_BITS))
         norms[block] = v[block] @ (sizes * self.scales[np.ix_(block, block)])
         norms *= UPWARDS
         beyond = UPWARDS / self._beyond(self.columns + 1)
-        sums = np.bincount(self.inside.n, weights=norms)
+        tail, first = self.tail(), int(self.inside.bordered)
+        if self.part.border is not None:
+            tail += norms[0] * self._farthest_of_equation()
+        linear = max(float(of_columns.max()), tail) * UPWARDS
+        sums = np.bincount(self.inside.n[first:], weights=norms[first:])
         spread = max(float(sums.max()), float(beyond.sum())) * UPWARDS
         return Contraction(
             part=self.part,
@@ -283,7 +352,27 @@ class Attempt:
             spread=spread,
             columns_of_inverse=norms,
             beyond=beyond,
+            of_frequency=self._of_frequency(norms / v[: self.count], beyond, v[0]),
         )
+
+    def _farthest_of_equation(self) -> float:
+        """Above the derivatives of the equation by unknowns beyond `columns`, over nu^n."""
+        assert self.part.border is not None
+        line, nu, first = self.part.border, self.part.nu, self.columns + 1
+        largest = (np.abs(line.rows) + line.row_errors).max(axis=1)[first:]
+        powers = nu ** -np.arange(first, first + len(largest), dtype=float)
+        rest = line.beyond * nu ** (-2.0 * first)
+        return float(max((largest * powers).max(initial=0.0), rest) * UPWARDS)
+
+    def _of_frequency(self, norms: Floats, beyond: Floats, weight: float) -> float:
+        """A places -n^2 unit/Omega_q^2 h_q[n], from norms |A e| / |e| by place."""
+        if self.part.border is None:
+            return 0.0
+        squares = self.part.chain.frequencies() ** 2
+        n, q = self.inside.n[1:], self.inside.q[1:]
+        inside = float((norms[1:] * n**2 / squares[q - 1]).max())
+        outside = float((beyond * (self.columns + 1) ** 2 / squares).max())
+        return float(max(inside, outside) * self.part.border.unit / weight * UPWARDS)
 
 
 def perron(matrix: Floats) -> tuple[Floats, float]:
@@ -299,14 +388,19 @@ def perron(matrix: Floats) -> tuple[Floats, float]:
     return x, size
 
 
+def first_free(part: LinearPart) -> int:
+    """The last harmonic with free weights to begin with, above all resonances."""
+    top = float(part.chain.frequencies()[-1]) / part.omega
+    return math.ceil(FIRST_FREE * top) + 2
+
+
 def contraction(part: LinearPart) -> tuple[Contraction | None, float]:
     """A contraction with a small block, and the smallest norm or spectral radius that was met.
 
     The block grows by the places that matter most to the spectral radius of |I - A DF|; where the
     weights cannot end at the last free harmonic, more are freed.
     """
-    top = float(part.chain.frequencies()[-1]) / part.omega
-    free = math.ceil(FIRST_FREE * top) + 2
+    free = first_free(part)
     attempt = Attempt(part, free)
     block = np.sort(attempt.order()[:FIRST_BLOCK])
     least, widened = math.inf, 0

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -17,9 +17,11 @@ from typing import Any
 import flint
 import mpmath
 
+from symfpu.breathers.bond_balls import SPARE_BITS, Rows
+from symfpu.breathers.border import AMPLITUDE, ENERGY, FREQUENCY, Fixed
+from symfpu.breathers.bordered_newton import fixed_orbit
 from symfpu.breathers.contraction import INVERSE_BITS, WEIGHT_BITS
 from symfpu.breathers.existence_bounds import (
-    SPARE_BITS,
     ProofBounds,
     Radii,
     double_above,
@@ -27,18 +29,21 @@ from symfpu.breathers.existence_bounds import (
     proof_bounds,
     radii,
 )
+from symfpu.breathers.force_series import ForceSeries, ball
+from symfpu.breathers.packed_integers import packed
 from symfpu.breathers.rounded_orbit import RoundedOrbit, rounded_orbit
+from symfpu.breathers.segment import Line, direction
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
-from symfpu.numbers.typed import decimal
+from symfpu.numbers.typed import Number, decimal, exact
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 FORMAT = "symfpu existence certificate"
-SCHEMA = 1
+SCHEMA = 2
 ROOM = 2  # times the radius of the stated intervals of A and H
 MORE_DIGITS = "more digits may help: periodic_orbit_digits(orbit, 40)"
 MORE_HARMONICS = (
@@ -46,6 +51,13 @@ MORE_HARMONICS = (
 )
 SMALLER = "an orbit of smaller amplitude is easier"
 NO_ORBIT = "more digits of it do not help: Newton's method, periodic_orbit, finds orbits"
+HALF_A_RING = (
+    "a standing breather of a ring, odd about two particles, is that of half the ring with fixed "
+    "ends; there are no proofs of travelling waves"
+)
+SHORTER = "a shorter segment can: a half width of"
+HALVINGS = 60
+NEAR = 1e-6  # relative, of a given amplitude or energy to that of the orbit
 FAR = 1e-3  # a Newton step over the orbit: above it this is no orbit to rounding
 
 
@@ -67,7 +79,11 @@ class NoExistenceProof(SymfpuError):
 class ExistenceProof(Tabled):
     """A theorem: the chain has a periodic orbit of this frequency near the computed one.
 
-    chain, seed : the model and the mode. frequency : omega, exact.
+    chain, seed : the model and the mode. fixed : "frequency", "amplitude" or "energy", what the
+        orbit has exactly; value : that, a fraction; half_width : of the interval of values about
+        it that a segment of the family has, else 0.
+    frequency, frequency_radius : omega, exact where it is fixed and its radius 0; else the middle
+        and the radius of an interval that holds it.
     radius : above the distance of the true orbit from the computed one: of every stretch of a
         bond at all times, and of the weighted sum of all Fourier coefficients. unique : within it
         there is no other one of the same symmetry. nu : the orbit is analytic where
@@ -76,8 +92,8 @@ class ExistenceProof(Tabled):
         doubles.
     residual, linear, curvature : Y, Z0 + Z1 and Z2 of the theorem, doubles.
     harmonics, block : of the orbit, and unknowns in the dense part of the inverse.
-    digits : of the orbit that was given. body : the certificate without its digest. Dimensionless.
-        Ours: docs/existence.md.
+    digits : of the orbit that was given. body : the certificate in plain lists, without its
+        digest. Dimensionless. Ours: docs/existence.md.
 
     >>> from symfpu import Chain, periodic_orbit, prove_existence
     >>> prove_existence(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"))
@@ -87,7 +103,11 @@ class ExistenceProof(Tabled):
 
     chain: Chain
     seed: int
+    fixed: str
+    value: Fraction
+    half_width: Fraction
     frequency: Fraction
+    frequency_radius: float
     radius: float
     unique: float
     nu: Fraction
@@ -105,19 +125,44 @@ class ExistenceProof(Tabled):
 
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        omega = decimal(self.frequency)
         found = f"a periodic orbit within {self.radius:.2g} of the computed one"
         only = f"the only one within {self.unique:.2g}"
-        A = interval_text(self.amplitude, self.amplitude_radius)
-        H = interval_text(self.energy, self.energy_radius)
-        case = f"{chain}, seed {self.seed}, omega={omega}"
-        return f"ExistenceProof({case}: {found}, {only}; A = {A}, H = {H})"
+        case = f"{chain}, seed {self.seed}, {self.condition}"
+        return f"ExistenceProof({case}: {found}, {only}; {', '.join(self.intervals)})"
+
+    @property
+    def condition(self) -> str:
+        """What the orbit has exactly, in words."""
+        sign = {FREQUENCY: "omega", AMPLITUDE: "A", ENERGY: "H"}[self.fixed]
+        if not self.half_width:
+            return f"{sign}={decimal(self.value)}"
+        return f"every {sign} within {float(self.half_width):.3g} of {decimal(self.value)}"
+
+    @property
+    def intervals(self) -> tuple[str, ...]:
+        """Those that hold the two of A, H and omega that are not given, in words."""
+        omega = "" if self.fixed == FREQUENCY else self._omega_interval()
+        A = f"A = {interval_text(self.amplitude, self.amplitude_radius)}"
+        H = f"H = {interval_text(self.energy, self.energy_radius)}"
+        found = (
+            omega,
+            "" if self.fixed == AMPLITUDE else A,
+            "" if self.fixed == ENERGY else H,
+        )
+        return tuple(text for text in found if text)
+
+    def _omega_interval(self) -> str:
+        places, exact_middle = self.body["frequency"][2], self.frequency
+        with mpmath.workprec(places + 53):
+            middle = mpmath.mpf(exact_middle.numerator) / exact_middle.denominator
+            return f"omega = {interval_text(middle, self.frequency_radius)}"
 
     def certificate(self) -> dict[str, Any]:
         """What `symfpu verify` needs to check the theorem again: integers and strings."""
-        text = json.dumps(self.body, sort_keys=True, separators=(",", ":"))
+        body = self.body | packed_entries(self.body)
+        text = json.dumps(body, sort_keys=True, separators=(",", ":"))
         digest = hashlib.sha256(text.encode()).hexdigest()
-        return self.body | {"digest": digest}
+        return body | {"digest": digest}
 
     def write(self, path: Path | str) -> None:
         """Write the certificate to a path as JSON, whole or not at all.
@@ -149,54 +194,115 @@ def interval_text(middle: Any, radius: float) -> str:
         return f"{mpmath.nstr(middle, digits)} +- {radius:.1g}"
 
 
-def prove_existence(orbit: QuasiPeriodic) -> ExistenceProof:
+def prove_existence(
+    orbit: QuasiPeriodic,
+    *,
+    amplitude: Number | None = None,
+    energy: Number | None = None,
+    half_width: Number = 0,
+) -> ExistenceProof:
     """A proof that the chain has a periodic orbit near the computed one, or an error that says why.
 
-    orbit : of one angle, of a chain with fixed ends and a polynomial potential: from
-        `periodic_orbit`, `periodic_orbit_digits`, `breather_at_energy` and their sisters, or a
-        series of one seed. Its phase does not matter. All is dimensionless.
+    orbit : of one angle, of a chain with fixed ends: from `periodic_orbit`,
+        `periodic_orbit_digits`, `breather_at_energy` and their sisters, or a series of one seed.
+        Its phase does not matter. All is dimensionless.
+    amplitude, energy : that of the orbit, an exact number: the true orbit has exactly this A or H,
+        and its frequency is in an interval. Without them it has exactly the orbit's frequency.
+    half_width : of an interval about the frequency, amplitude or energy: a proof for each of its
+        values, of a segment of the family as one analytic curve.
 
     Newton's method and a contraction in a weighted space of Fourier coefficients, every rounding
-    bounded (docs/existence.md; ours): the orbit exists with the frequency exactly as given, is the
-    only one nearby, and analytic. The radius falls with the digits of the orbit.
+    bounded (docs/existence.md; ours): the orbit exists, is the only one nearby, and analytic. The
+    radius falls with the digits of the orbit; along a segment with the square of its length.
     Raises InputError for what is not such an orbit; NoExistenceProof with the bound that failed:
     that is no proof that there is none.
 
     >>> from symfpu import Chain, periodic_orbit
-    >>> proof = prove_existence(periodic_orbit(Chain(N=2, beta=1), 1, "1.5"))
+    >>> orbit = periodic_orbit(Chain(N=2, beta=1), 1, "1.5")
+    >>> proof = prove_existence(orbit)
     >>> proof.radius < 1e-13 < 1e-4 < proof.unique
     True
+    >>> prove_existence(orbit, half_width="1e-4").fixed
+    'frequency'
     """
     checked = checked_orbit(orbit)
+    fixed = fixed_value(checked, amplitude, energy, half_width)
     rounded = rounded_orbit(checked)
     with flint.ctx.workprec(rounded.bits + SPARE_BITS):
-        bounds, linear = proof_bounds(rounded)
+        if fixed.kind != FREQUENCY:
+            rounded = fixed_orbit(rounded, fixed)
+        bounds, linear = proof_bounds(rounded, fixed)
         if bounds is None:
             raise NoExistenceProof("Z1", linear, 1.0, f"{MORE_HARMONICS}; {SMALLER}")
+        line = line_of(bounds) if fixed.half_width else None
+        bounds = on_line(bounds, line)
         found = radii(bounds)
         if found is None:
-            bound, value, needed, advice = not_small(bounds)
-            raise NoExistenceProof(bound, value, needed, advice)
-        return assembled(rounded, bounds, found)
+            raise NoExistenceProof(*not_small(bounds))
+        return assembled(bounds, found, fixed, line)
+
+
+def fixed_value(
+    orbit: QuasiPeriodic,
+    amplitude: Number | None,
+    energy: Number | None,
+    half_width: Number,
+) -> Fixed:
+    """What the orbit has exactly; InputError where it does not have it."""
+    width = exact(half_width, "half_width")
+    if width < 0:
+        raise InputError("half_width", half_width, "a number from 0 up", "take its size")
+    if amplitude is not None and energy is not None:
+        given = f"amplitude={amplitude} and energy={energy}"
+        raise InputError("energy", given, "one of the two", "leave one out")
+    if amplitude is not None:
+        fixed = Fixed(AMPLITUDE, exact(amplitude, "amplitude"), width)
+        return near(fixed, orbit.amplitude, "breather_at_amplitude")
+    if energy is not None:
+        fixed = Fixed(ENERGY, exact(energy, "energy"), width)
+        return near(fixed, orbit.energy(), "breather_at_energy")
+    return Fixed(FREQUENCY, orbit.frequency, width)
+
+
+def near(fixed: Fixed, own: Any, maker: str) -> Fixed:
+    """The same where it is about the orbit's own."""
+    if abs(float(fixed.value) - float(own)) > NEAR * abs(float(own)):
+        allowed = f"about that of the orbit, {float(own):.10g}"
+        given = decimal(fixed.value)
+        raise InputError(fixed.kind, given, allowed, f"take an orbit from {maker}")
+    return fixed
+
+
+def line_of(bounds: ProofBounds) -> Line:
+    """Of the segment's orbits, along the tangent of the family."""
+    assert bounds.border is not None
+    given = direction(bounds.balls, bounds.border)
+    return Line(bounds.balls, bounds.border, bounds.found, given)
+
+
+def on_line(bounds: ProofBounds, line: Line | None) -> ProofBounds:
+    """The bounds for every orbit of a line."""
+    if line is None:
+        return bounds
+    return replace(bounds, length=line.length, drift=line.drift)
 
 
 def checked_orbit(orbit: object) -> QuasiPeriodic:
     """An orbit that the theorem is about; InputError for any other, by name."""
     if not isinstance(orbit, QuasiPeriodic) or orbit.chain.periodic:
-        chain = getattr(orbit, "chain", None)
-        given = (
-            type(orbit).__name__
-            if chain is None
-            else f"{type(orbit).__name__} of {chain!r}"
-        )
+        name, chain = type(orbit).__name__, getattr(orbit, "chain", None)
+        given = name if chain is None else f"{name} of {chain!r}"
         allowed = "a solution of one angle of a chain with fixed ends"
-        raise InputError("orbit", given, allowed, "take one from periodic_orbit")
+        odd = chain is not None and chain.periodic
+        advice = HALF_A_RING if odd else "take one from periodic_orbit"
+        raise InputError("orbit", given, allowed, advice)
     if len(orbit.seeds) > 1:
         given = f"a torus of {len(orbit.seeds)} angles"
         raise InputError("orbit", given, "a solution of one angle", "take one seed")
     potential = orbit.chain.potential
-    if potential.degree is None or not potential.exact:
-        allowed = "a polynomial potential with exact coefficients"
+    series = potential.degree is not None or potential.growths()
+    if not potential.exact or not series:
+        allowed = "a polynomial with exact coefficients, or toda:, morse: or lennard-jones:"
         advice = "take poly: with its first coefficients"
         raise InputError("chain", orbit.chain, allowed, advice)
     return orbit
@@ -207,6 +313,9 @@ def not_small(bounds: ProofBounds) -> tuple[str, float, float, str]:
     Y = double_above(bounds.residual)
     at_zero = double_above(bounds.curvature(flint.arb(0)))
     needed = (1 - bounds.linear) ** 2 / (4 * at_zero) if at_zero else math.inf
+    share = widest_share(bounds) if bounds.length else 0.0
+    if share:
+        return "Y", Y, needed, f"{SHORTER} {share:.2g} of this one can be proved"
     size = float(sum(abs(bounds.balls.orbit.floats).max(axis=0)))
     if FAR * size < Y:
         return "Y", Y, needed, NO_ORBIT
@@ -214,22 +323,38 @@ def not_small(bounds: ProofBounds) -> tuple[str, float, float, str]:
     return "Y", Y, needed, MORE_HARMONICS if tail else MORE_DIGITS
 
 
-def assembled(orbit: RoundedOrbit, bounds: ProofBounds, found: Radii) -> ExistenceProof:
+def widest_share(bounds: ProofBounds) -> float:
+    """Of a segment that cannot be proved, the share that can about; 0 if none."""
+    share = 1.0
+    for _ in range(HALVINGS):
+        share *= 0.7
+        shorter = replace(bounds, length=share * bounds.length, drift=share * bounds.drift)
+        if radii(shorter):
+            return share
+    return 0.0
+
+
+def assembled(
+    bounds: ProofBounds, found: Radii, fixed: Fixed, line: Line | None
+) -> ExistenceProof:
     """The result with its certificate."""
-    radius, unique = of_dyadic(found.existence), of_dyadic(found.uniqueness)
-    around = flint.arb(flint.fmpq(radius.numerator, radius.denominator))
-    amplitude = stated(bounds.balls.amplitude(around), orbit.bits)
-    energy = stated(bounds.balls.energy(around), orbit.bits)
-    A, A_radius = interval(amplitude)
-    H, H_radius = interval(energy)
-    curvature = bounds.curvature(
-        flint.arb(flint.fmpq(unique.numerator, unique.denominator))
-    )
+    orbit = bounds.balls.orbit
+    unique = of_dyadic(found.uniqueness)
+    intervals = stated_intervals(bounds, ball(of_dyadic(found.existence)), line)
+    A, A_radius = interval(intervals["amplitude"])
+    H, H_radius = interval(intervals["energy"])
+    omega_radius = 0.0
+    if fixed.bordered:
+        omega_radius = radius_about(orbit.omega, intervals["frequency"])
     return ExistenceProof(
         chain=orbit.chain,
         seed=orbit.seed,
+        fixed=fixed.kind,
+        value=fixed.value,
+        half_width=fixed.half_width,
         frequency=orbit.omega,
-        radius=math.nextafter(float(radius), math.inf),
+        frequency_radius=omega_radius,
+        radius=math.nextafter(float(of_dyadic(found.existence)), math.inf),
         unique=math.nextafter(float(unique), 0),
         nu=bounds.balls.strip,
         amplitude=A,
@@ -238,12 +363,33 @@ def assembled(orbit: RoundedOrbit, bounds: ProofBounds, found: Radii) -> Existen
         energy_radius=H_radius,
         residual=double_above(bounds.residual),
         linear=bounds.linear,
-        curvature=double_above(curvature),
+        curvature=double_above(bounds.curvature(ball(unique) + bounds.length)),
         harmonics=orbit.harmonics,
         block=len(bounds.found.block),
         digits=orbit.digits,
-        body=certificate_body(orbit, bounds, found, amplitude, energy),
+        body=certificate_body(bounds, found, fixed, line, intervals),
     )
+
+
+def stated_intervals(
+    bounds: ProofBounds, radius: Any, line: Line | None
+) -> dict[str, Interval]:
+    """That hold A, H and the frequency of the orbit, or of all of a segment."""
+    balls, border = bounds.balls, bounds.border
+    bits, seed = balls.orbit.bits, balls.orbit.seed
+    of_seed, of_bonds, of_border = flint.arb(0), [flint.arb(0)] * balls.orbit.chain.N, 0
+    if line is not None:
+        of_seed, of_bonds = abs(line.given.rows[1][seed - 1]) * line.unit, line.at_rest
+        of_border = abs(line.given.of_frequency) * line.unit
+    found = {
+        "amplitude": stated(balls.amplitude(radius + of_seed), bits),
+        "energy": stated(balls.energy_within([radius + x for x in of_bonds]), bits),
+    }
+    if border is not None:
+        weight = flint.arb(int(bounds.found.weights[0])) / 2**WEIGHT_BITS
+        around = flint.arb(0, (radius / weight + of_border) * border.unit)
+        found["frequency"] = stated((balls.squared + around).sqrt(), bits)
+    return found
 
 
 Interval = tuple[int, int, int]  # middle, radius, places: units 2^-places
@@ -266,29 +412,41 @@ def interval(entry: Interval) -> tuple[Any, float]:
     return value, math.nextafter(float(Fraction(radius, 2**places)), math.inf)
 
 
+def radius_about(value: Fraction, entry: Interval) -> float:
+    """A double above the distance of an interval's ends from a number."""
+    middle, radius, places = entry
+    off = abs(value - Fraction(middle, 2**places)) + Fraction(radius, 2**places)
+    return math.nextafter(float(off), math.inf)
+
+
 def certificate_body(
-    orbit: RoundedOrbit,
     bounds: ProofBounds,
     found: Radii,
-    amplitude: Interval,
-    energy: Interval,
+    fixed: Fixed,
+    line: Line | None,
+    intervals: dict[str, Interval],
 ) -> dict[str, Any]:
     """The certificate without its digest."""
-    choice, potential = bounds.found, orbit.chain.potential
-    assert potential.degree is not None
-    coefficients = [potential.coefficient(k) for k in range(3, potential.degree + 1)]
+    choice, orbit, border = bounds.found, bounds.balls.orbit, bounds.border
     places = choice.places
-    block = [[int(places.n[i]), int(places.q[i])] for i in choice.block]
+    block = [[int(places.n[i]), int(places.q[i])] for i in choice.block if places.q[i]]
+    empty: list[int] = []
     return {
         "format": FORMAT,
         "schema": SCHEMA,
         "N": orbit.chain.N,
-        "coefficients": [str(c) for c in coefficients],
+        **potential_entries(orbit, bounds.balls.force),
         "seed": orbit.seed,
+        "fixed": fixed.kind,
+        "value": str(fixed.value),
+        "half_width": str(fixed.half_width),
         "omega": str(orbit.omega),
         "nu": str(bounds.balls.strip),
         "bits": orbit.bits,
-        "orbit": allowed_rows(orbit),
+        "orbit": allowed_rows(orbit, orbit.rows),
+        "scales": [border.unknown_places, border.equation_places] if border else empty,
+        "direction": [] if line is None else allowed_rows(orbit, line.given.rows),
+        "direction_frequency": 0 if line is None else line.given.of_frequency,
         "slope_harmonics": choice.part.K,
         "free": choice.free,
         "block": block,
@@ -298,15 +456,32 @@ def certificate_body(
         "weights": choice.weights.tolist(),
         "radius": list(found.existence),
         "unique": list(found.uniqueness),
-        "amplitude": list(amplitude),
-        "energy": list(energy),
+        "amplitude": list(intervals["amplitude"]),
+        "energy": list(intervals["energy"]),
+        "frequency": list(intervals["frequency"]) if border else empty,
     }
 
 
-def allowed_rows(orbit: RoundedOrbit) -> list[list[int]]:
+def packed_entries(body: dict[str, Any]) -> dict[str, Any]:
+    """The long lists of integers as text."""
+    rows = {key: list(map(packed, body[key])) for key in ("orbit", "direction", "inverse")}
+    return rows | {"weights": packed(body["weights"])}
+
+
+def potential_entries(orbit: RoundedOrbit, force: ForceSeries) -> dict[str, Any]:
+    """Coefficients of a polynomial; else its functions and the degree of phi that is used."""
+    potential = orbit.chain.potential
+    if potential.degree is None:
+        growths = [[str(x) for x in growth] for growth in force.growths]
+        return {"coefficients": [], "growths": growths, "degree": force.degree}
+    coefficients = [str(potential.coefficient(k)) for k in range(3, potential.degree + 1)]
+    return {"coefficients": coefficients, "growths": [], "degree": potential.degree - 1}
+
+
+def allowed_rows(orbit: RoundedOrbit, of_harmonics: Rows) -> list[list[int]]:
     """Of every harmonic the coefficients of the modes that the symmetry allows, ascending."""
     even, rows = orbit.chain.potential.even, []
-    for n, row in enumerate(orbit.rows):
+    for n, row in enumerate(of_harmonics):
         first = 0 if n * orbit.seed % 2 else 1
         absent = even and n % 2 == 0
         rows.append([] if absent else list(row[first::2]))

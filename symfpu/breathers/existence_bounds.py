@@ -15,8 +15,16 @@ import flint
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.bond_balls import BondBalls, ball
-from symfpu.breathers.contraction import Contraction, LinearPart, contraction
+from symfpu.breathers.bond_balls import BondBalls
+from symfpu.breathers.border import Border, Fixed, border_of
+from symfpu.breathers.contraction import (
+    ROUNDOFF,
+    BorderLine,
+    Contraction,
+    LinearPart,
+    contraction,
+)
+from symfpu.breathers.force_series import ball
 from symfpu.breathers.rounded_orbit import RoundedOrbit
 
 Floats = NDArray[np.float64]
@@ -28,7 +36,6 @@ SLACK = 1.01  # of Z1 and Z2, and RADIUS_SLACK of r, so that coarser bounds suff
 RADIUS_SLACK = 1.25
 SHRINK = 0.9
 MOST_RATE = 0.99  # Z1 + Z2 R that uniqueness is claimed for
-SPARE_BITS = 64
 MANTISSA = 20  # bits of the radii
 
 
@@ -36,29 +43,40 @@ MANTISSA = 20  # bits of the radii
 class ProofBounds:
     """What the theorem asks for.
 
-    residual : Y, a ball; beyond : the part of it from harmonics beyond the last of the orbit.
-    linear : Z0 + Z1. curvature : Z2 without the radius, at 0.
+    newton : |A F| at the orbit, a ball; beyond : the part of it from harmonics beyond the last of
+        the orbit. linear : Z0 + Z1. length, drift : of the line of a segment, else 0.
     """
 
-    residual: Any
+    newton: Any
     beyond: Any
     linear: float
     found: Contraction
     balls: BondBalls
+    border: Border | None
+    length: Any = 0
+    drift: Any = 0
+
+    @property
+    def residual(self) -> Any:
+        """Y, at every orbit of the line."""
+        bend = self.curvature(self.length) * self.length**2 / 2 if self.length else 0
+        return self.newton + self.drift + bend
 
     def curvature(self, radius: Any) -> Any:
-        """Z2 for points within the radius."""
-        orbit = self.balls.orbit
-        total = flint.arb(0)
-        for bond in self.balls.stretches:
-            size = self.balls.norm(bond) + radius
-            for k, c in orbit.powers.items():
-                total += ball(abs(c)) * k * (k - 1) * size ** (k - 2)
-        return total * 2 / orbit.chain.N * flint.arb(self.found.spread)
+        """Z2 for points within the radius of the middle."""
+        bounds = (self.balls.force.curvature_bound(x + radius) for x in self.balls.norms)
+        total = sum(bounds, flint.arb(0))
+        of_bonds = total * 2 / self.balls.orbit.chain.N * flint.arb(self.found.spread)
+        if self.border is None:
+            return of_bonds
+        condition = flint.arb(float(self.found.columns_of_inverse[0]))
+        of_condition = condition * self.border.curvature(self.balls, radius)
+        return of_bonds + of_condition + flint.arb(self.found.of_frequency)
 
     def rate(self, radius: Any) -> Any:
-        """The contraction within the radius."""
-        return SLACK * (self.linear + self.curvature(radius) * radius)
+        """The contraction within the radius of every orbit of the line."""
+        reach = radius + self.length
+        return SLACK * (self.linear + self.curvature(reach) * reach)
 
 
 def strip(orbit: RoundedOrbit) -> Fraction:
@@ -67,16 +85,17 @@ def strip(orbit: RoundedOrbit) -> Fraction:
     return 1 + Fraction(1, 2**places)
 
 
-def proof_bounds(orbit: RoundedOrbit) -> tuple[ProofBounds | None, float]:
+def proof_bounds(orbit: RoundedOrbit, fixed: Fixed) -> tuple[ProofBounds | None, float]:
     """The bounds, and Z0 + Z1 or what is nearest to it; None where that is not below 1.
 
     At the working precision of python-flint.
     """
     balls = BondBalls(orbit, strip(orbit))
+    border = border_of(balls, fixed) if fixed.bordered else None
     found, linear, share = None, math.inf, 0.0
     cut = FIRST_CUT
     for _ in range(CUTS):
-        found, linear = contraction(linear_part(balls, cut))
+        found, linear = contraction(linear_part(balls, cut, border))
         if found is None:
             return None, linear
         share = 2 / orbit.chain.N * found.spread * found.part.rest
@@ -85,14 +104,15 @@ def proof_bounds(orbit: RoundedOrbit) -> tuple[ProofBounds | None, float]:
         cut *= CUT_SHARE / (2 * share)
     if found is None or SLACK * (linear + share) >= 1:
         return None, linear + share
-    residual, beyond = newton_step(balls, found)
-    return ProofBounds(residual, beyond, linear + share, found, balls), linear + share
+    residual, beyond = newton_step(balls, found, border)
+    bounds = ProofBounds(residual, beyond, linear + share, found, balls, border)
+    return bounds, linear + share
 
 
-def linear_part(balls: BondBalls, cut: float) -> LinearPart:
+def linear_part(balls: BondBalls, cut: float, border: Border | None = None) -> LinearPart:
     """DF with so many harmonics of the slopes that the norm of the rest is below the cut."""
     orbit, nu = balls.orbit, float(balls.nu)
-    slopes = balls.slopes()
+    slopes = balls.slopes
     halves = np.array([[float(a.mid()) for a in bond] for bond in slopes]).T
     halves[1:] /= 2
     sizes = np.abs(halves).sum(axis=1) * nu ** np.arange(len(halves))
@@ -100,24 +120,57 @@ def linear_part(balls: BondBalls, cut: float) -> LinearPart:
     small = np.flatnonzero(tails < cut / 4)
     length = max(int(small[0]) if len(small) else len(halves), 2)
     kept = halves[:length]
-    rest = flint.arb(0)
+    rest = balls.slopes_left_out()
     for j, bond in enumerate(slopes):
         left = list(bond)
         for k in range(min(length, len(bond))):
             left[k] = bond[k] - flint.arb(float(kept[k, j])) * (2 if k else 1)
         rest += balls.norm(left)
     omega = float(orbit.omega)
-    return LinearPart(orbit.chain, orbit.seed, omega, nu, kept, double_above(rest))
+    line = None if border is None else border_line(balls, border)
+    return LinearPart(orbit.chain, orbit.seed, omega, nu, kept, double_above(rest), line)
 
 
-def newton_step(balls: BondBalls, found: Contraction) -> tuple[Any, Any]:
+def border_line(balls: BondBalls, border: Border) -> BorderLine:
+    """The row and the column of an unknown frequency in doubles."""
+    rows, linear = balls.orbit.floats, balls.orbit.chain.frequencies()
+    unit = float(border.unit)
+    n = np.arange(len(rows))[:, None]
+    middles = np.array([[float(x.mid()) for x in row] for row in border.rows])
+    errors = np.array([[double_above(x.rad()) for x in row] for row in border.rows])
+    return BorderLine(
+        seed=balls.orbit.seed,
+        unit=unit,
+        of_seed=border.of_seed,
+        rows=middles,
+        row_errors=errors + ROUNDOFF * np.abs(middles),
+        beyond=double_above(border.beyond),
+        corner=border.corner,
+        column=-(n**2) * rows / linear**2 * unit,
+    )
+
+
+def newton_step(
+    balls: BondBalls, found: Contraction, border: Border | None
+) -> tuple[Any, Any]:
     """Y, above the norm of A F, and its part from harmonics that the orbit does not have."""
+    total, beyond = norm_of_image(balls, found, balls.residual())
+    lost = balls.forces_left_out() * 2 / balls.orbit.chain.N * flint.arb(found.spread)
+    if border is not None:
+        lost += abs(border.residual) * float(found.columns_of_inverse[0])
+    return total + lost, beyond
+
+
+def norm_of_image(
+    balls: BondBalls, found: Contraction, image: list[list[Any]]
+) -> tuple[Any, Any]:
+    """Above |A f| of rows by harmonic, and the part of harmonics beyond those of the orbit."""
     places = zip(found.places.n.tolist(), found.places.q.tolist(), strict=True)
     norms = dict(zip(places, found.columns_of_inverse.tolist(), strict=True))
     last, harmonics = int(found.places.n.max()), balls.orbit.harmonics
     total = beyond = flint.arb(0)
     power = flint.arb(1)
-    for n, row in enumerate(balls.residual()):
+    for n, row in enumerate(image):
         of_harmonic = flint.arb(0)
         for q, value in enumerate(row, 1):
             norm = float(found.beyond[q - 1]) if n > last else norms.get((n, q), 0.0)
@@ -139,18 +192,21 @@ class Radii:
 
 def radii(bounds: ProofBounds) -> Radii | None:
     """The radii that the bounds allow; None where there are none."""
+    Y, least = bounds.residual, bounds.rate(flint.arb(0))
     unique = flint.arb(1)
     while not bounds.rate(unique) < MOST_RATE:
         unique *= SHRINK
-        if unique < bounds.residual:
+        if not unique > Y:
             return None
     unique_pair = dyadic(unique, above=False)
-    radius = bounds.residual * RADIUS_SLACK / (1 - SLACK * bounds.linear)
-    pair = dyadic(radius, above=True)
-    radius, unique = ball(of_dyadic(pair)), ball(of_dyadic(unique_pair))
-    reached = SLACK * bounds.residual + bounds.rate(radius) * radius
-    if reached <= radius and radius <= unique:
-        return Radii(pair, unique_pair)
+    unique, radius = ball(of_dyadic(unique_pair)), Y * RADIUS_SLACK / (1 - least)
+    while radius <= unique:
+        pair = dyadic(radius, above=True)
+        rounded = ball(of_dyadic(pair))
+        reached = SLACK * Y + bounds.rate(rounded) * rounded
+        if reached <= rounded and rounded <= unique:
+            return Radii(pair, unique_pair)
+        radius *= RADIUS_SLACK
     return None
 
 

@@ -61,7 +61,7 @@ class RoundedOrbit:
 
     @cached_property
     def powers(self) -> dict[int, Fraction]:
-        """The coefficients of phi by power of r."""
+        """The coefficients of phi by power of r, of a polynomial potential."""
         potential = self.chain.potential
         degree = potential.degree or 2
         found = {k: potential.coefficient(k + 1) for k in range(2, degree)}

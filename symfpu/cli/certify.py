@@ -1,9 +1,17 @@
-"""The verb certify: a proof that a periodic orbit exists near a computed one."""
+"""The verb certify: theorems about a saved breather or torus."""
 
 from __future__ import annotations
 
-from symfpu.breathers.existence import prove_existence
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from symfpu.breathers.existence import ExistenceProof, prove_existence
 from symfpu.bundles.bundle import load
+from symfpu.certified.residual import ResidualProof, prove_residual
+from symfpu.certified.stay import TIME, StayProof, prove_stay
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import solution_of
 from symfpu.cli.terminal import (
@@ -16,34 +24,115 @@ from symfpu.cli.terminal import (
     say,
 )
 from symfpu.cli.verbs import app
-from symfpu.files.progress import NO_FRACTION
+from symfpu.errors import InputError
+from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.files.writing import output_file
+from symfpu.reports.certified import (
+    residual_proof_record,
+    residual_proof_text,
+    stay_record,
+    stay_text,
+)
 from symfpu.reports.existence import existence_record, existence_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
+AmplitudeOption = Annotated[
+    str | None,
+    typer.Option(help="Of a breather: that of exactly this amplitude.", metavar="A"),
+]
+EnergyOption = Annotated[
+    str | None,
+    typer.Option(help="Of a breather: that of exactly this energy H.", metavar="E"),
+]
+HalfWidthOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Of a breather: one for each value that is no further away.", metavar="W"
+    ),
+]
+TimeOption = Annotated[
+    str | None, typer.Option(help="Of a torus: for how long.  Default: 1e9.", metavar="T")
+]
+ResidualOption = Annotated[
+    bool, typer.Option("--residual", help="Of a torus: its residual alone.")
+]
 
-@app.command(epilog="Example: symfpu certify breather.symfpu -o proof.json")
+Proof = ExistenceProof | ResidualProof | StayProof
+REPORTS: dict[type, tuple[Callable[[Any], dict[str, Any]], Callable[[Any], str]]] = {
+    ExistenceProof: (existence_record, existence_text),
+    ResidualProof: (residual_proof_record, residual_proof_text),
+    StayProof: (stay_record, stay_text),
+}
+
+
+@app.command(
+    epilog="Examples: symfpu certify breather.symfpu -o proof.json; "
+    "symfpu certify breather.symfpu --amplitude 0.4 --half-width 1e-5; "
+    "symfpu certify torus.symfpu --time 1e6"
+)
 def certify(
     file: FileArgument,
+    amplitude: AmplitudeOption = None,
+    energy: EnergyOption = None,
+    half_width: HalfWidthOption = None,
+    time: TimeOption = None,
+    residual: ResidualOption = False,
     output: CertificateOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Prove that a periodic orbit exists near a saved breather.
+    """Prove that a periodic orbit exists near a breather, or how long orbits stay near a torus.
 
-    Exit code 1 where the bounds do not prove it.
+    Of a breather: existence, at exactly its frequency or at the amplitude or energy given. Of a
+    torus of two or more angles: its residual at all angles, and how near to it an orbit stays that
+    starts on it. Exit code 1 where the bounds do not prove it.
     """
-    orbit = solution_of(load(path_named("FILE", file)), file)
-    require_fixed_ends(orbit.chain)
-    assert isinstance(orbit, QuasiPeriodic)
+    solution = solution_of(load(path_named("FILE", file)), file)
+    require_fixed_ends(solution.chain)
+    assert isinstance(solution, QuasiPeriodic)
+    of_breather = {"amplitude": amplitude, "energy": energy, "half_width": half_width}
+    of_torus = {"time": time, "residual": residual or None}
     target = None if output is None else output_file(path_named("output", output))
     with progress_bar("proof") as advance:
         advance("proof", NO_FRACTION)
-        proof = prove_existence(orbit)
+        if len(solution.seeds) == 1:
+            _refuse(of_torus, "a breather")
+            proof = _existence(solution, of_breather)
+        else:
+            _refuse(of_breather, "a torus of two or more angles")
+            proof = _torus_proof(solution, time, residual, advance)
         if target is not None:
             proof.write(target)
+    _show(proof, target, as_json)
+
+
+def _refuse(options: Mapping[str, Any], solution: str) -> None:
+    """Options that belong to the other kind of solution."""
+    for name, value in options.items():
+        if value is not None:
+            raise InputError(name, value, f"none for {solution}", "leave it out")
+
+
+def _existence(orbit: QuasiPeriodic, options: Mapping[str, Any]) -> Proof:
+    return prove_existence(
+        orbit, **{name: value for name, value in options.items() if value is not None}
+    )
+
+
+def _torus_proof(
+    torus: QuasiPeriodic, time: str | None, residual: bool, progress: Progress
+) -> Proof:
+    if not residual:
+        return prove_stay(torus, time=TIME if time is None else time, progress=progress)
+    if time is not None:
+        raise InputError("time", time, "none with --residual", "leave one out")
+    return prove_residual(torus)
+
+
+def _show(proof: Proof, target: Path | None, as_json: bool) -> None:
+    record, text = REPORTS[type(proof)]
     if as_json:
-        print_json(existence_record(proof))
+        print_json(record(proof))
         return
-    say(existence_text(proof))
+    say(text(proof))
     if target is not None:
         print(f"certificate: {target}")

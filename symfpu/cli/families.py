@@ -38,6 +38,7 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.families.family import METHODS, Family, family
+from symfpu.families.normal_events import RESONANCE_LENGTH
 from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_file, output_folder
 from symfpu.refinement.digits import PreciseTorus
@@ -55,6 +56,11 @@ from symfpu.reports.family import (
 )
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import load, save
+
+ResonanceOption = Annotated[
+    str,
+    typer.Option(help="With --normal: largest sum |nu_i| of resonances.", metavar="K"),
+]
 
 
 @app.command("refine", epilog="Example: symfpu refine torus.symfpu -o refined.symfpu")
@@ -225,6 +231,14 @@ def follow_family(
     multipliers: Annotated[
         bool, typer.Option("--multipliers", help="Floquet multipliers (one seed).")
     ] = False,
+    normal: Annotated[
+        bool,
+        typer.Option(
+            "--normal",
+            help="Normal frequencies of every member, and where they collide or resonate.",
+        ),
+    ] = False,
+    resonance_length: ResonanceOption = str(RESONANCE_LENGTH),
     method: Annotated[
         str, choice("--method", tuple(METHODS), "How it is followed.")
     ] = "arclength",
@@ -261,6 +275,8 @@ def follow_family(
             from_energy=from_energy,
             members=whole("members", members),
             multipliers=multipliers,
+            normal=normal,
+            resonance_length=whole("resonance-length", resonance_length),
             method=method,
             order=optional("order", order),
             folder=folder,

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
+import numpy as np
 import typer
 
+from symfpu.action_angle.foretold import ForetoldIndices, flow_of, indices_by
+from symfpu.action_angle.linear_flow import LinearFlow
 from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
@@ -48,8 +53,13 @@ from symfpu.dynamics.alignment import (
     seconds_needed,
 )
 from symfpu.dynamics.schemes import PARTICLE_SCHEMES
+from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
+from symfpu.normal.search import normal_modes
+from symfpu.plots.indices import foretold as draw_foretold
+from symfpu.reports.tables import fifteen_digits
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
@@ -107,6 +117,13 @@ def gali(
             "--estimate", help="Only say how long it would take, from a trial of a second."
         ),
     ] = False,
+    foretold: Annotated[
+        bool,
+        typer.Option(
+            "--foretold",
+            help="Beside them those of the torus in closed form; FILE has to be refined.",
+        ),
+    ] = False,
     kept_file: SaveOption = None,
     plot: PlotOption = None,
     as_json: JsonOption = False,
@@ -130,6 +147,8 @@ def gali(
         )
         _print_estimate(seconds, as_json)
         return
+    drawn = whole("seed", seed)
+    forecast = _forecast(start) if foretold else None
     kept = None if checkpoint is None else path_named("checkpoint", checkpoint)
     folder = None if output is None else output_folder(path_named("output", output))
     with progress_bar("alignment indices", lambda: kept_run(kept)) as advance:
@@ -142,25 +161,92 @@ def gali(
             step=h,
             scheme=scheme,
             samples=whole("samples", samples),
-            seed=whole("seed", seed),
+            seed=drawn,
             frames=many,
             file=kept,
             progress=advance,
         )
+        closed = forecast.of(found, drawn) if forecast else None
         if folder is not None:
-            _write_table(found, folder / "gali.csv")
+            _write_table(found, folder / "gali.csv", closed)
             draw_alignment(found, folder)
         keep(found, saved, context)
-        draw(found.plot, picture)
+        draw(_plot(found, closed), picture)
     if as_json:
-        print_json(_record(found, start))
+        print_json(_record(found, start) | _foretold_record(found, closed))
     else:
-        say("\n".join(_text(found, start)))
+        say("\n".join([*_text(found, start), *_foretold_text(found, closed)]))
         if folder is not None:
             pictures = "gali.png, gali.pdf, gali-lyapunov.png, gali-lyapunov.pdf"
             print(f"written: {folder}: gali.csv, {pictures}")
         say_kept(saved)
         say_drawn(picture)
+
+
+class _Forecast(NamedTuple):
+    """The linearised flow about a torus: what foretells its indices."""
+
+    torus: QuasiPeriodic
+    flow: LinearFlow
+
+    def of(self, found: AlignmentIndices, seed: int) -> ForetoldIndices:
+        """The indices of the first frame at the times of those integrated."""
+        return indices_by(self.flow, self.torus, found.times, found.vectors, seed)
+
+
+def _forecast(start: Start) -> _Forecast:
+    """Of the torus of a file; InputError for other starts, and for a torus not refined."""
+    torus = start.torus
+    if not isinstance(torus, QuasiPeriodic):
+        allowed = "only for a FILE with a torus of fixed ends"
+        raise InputError("foretold", True, allowed, "leave --foretold out")
+    with progress_bar("normal modes") as advance:
+        normal = normal_modes(torus, progress=advance)
+        return _Forecast(torus, flow_of(torus, normal))
+
+
+def _plot(found: AlignmentIndices, closed: ForetoldIndices | None) -> Callable[..., object]:
+    """Indices, or those in closed form with the integrated ones on them."""
+    if closed is None:
+        return found.plot
+    return partial(draw_foretold, closed, observed=found)
+
+
+def _apart(found: AlignmentIndices, closed: ForetoldIndices) -> float:
+    """The largest difference of log10 GALI_k, of the first frame."""
+    return float(np.abs(found.log10_gali - closed.log10_gali).max())
+
+
+def _foretold_record(
+    found: AlignmentIndices, closed: ForetoldIndices | None
+) -> dict[str, Any]:
+    """What the torus foretells, for JSON; nothing where it was not asked for."""
+    if closed is None:
+        return {}
+    settled = closed.settling().items()
+    return {
+        "foretold": {
+            "verdict": closed.verdict,
+            "slopes": {str(s.k): fifteen_digits(s.value) for s in closed.slopes()},
+            "asymptotic_slopes": {str(k): n for k, n in closed.asymptotic_slopes.items()},
+            "settled": {str(k): repr(t) for k, t in settled},
+            "largest_difference": fifteen_digits(_apart(found, closed)),
+        }
+    }
+
+
+def _foretold_text(found: AlignmentIndices, closed: ForetoldIndices | None) -> list[str]:
+    """The same for a reader."""
+    if closed is None:
+        return []
+    apart = f"log10 GALI_k of frame 1 differ by up to {_apart(found, closed):.2g}"
+    lines = [f"foretold           {closed.verdict}   ({apart})"]
+    settled = closed.settling()
+    for slope in closed.slopes():
+        due = f"on the torus {closed.asymptotic_slopes[slope.k]}"
+        since = f"settled from t = {settled[slope.k]:.3g}"
+        lines.append(f"GALI_{slope.k:<3} slope {slope.value:8.3f}   {due}, {since}")
+    return lines
 
 
 def _print_estimate(seconds: float, as_json: bool) -> None:
@@ -207,12 +293,18 @@ def _by_frame(values: tuple[int | None, ...]) -> str:
     return ", ".join("-" if value is None else str(value) for value in values)
 
 
-def _write_table(found: AlignmentIndices, path: Path) -> None:
-    """Time, log10 GALI_k and the Lyapunov estimate of every sample."""
+def _write_table(
+    found: AlignmentIndices, path: Path, closed: ForetoldIndices | None
+) -> None:
+    """Time, log10 GALI_k, the Lyapunov estimate and what is foretold, of every sample."""
     indices = [f"log10 GALI_{k}" for k in range(2, found.vectors + 1)]
-    samples = zip(found.times, found.log10_gali, found.lyapunov, strict=True)
+    due = [] if closed is None else [f"foretold {name}" for name in indices]
+    columns = (found.times, found.log10_gali, found.lyapunov)
+    nothing = np.empty((len(found.times), 0))
+    ours = nothing if closed is None else closed.log10_gali
+    samples = zip(*columns, ours, strict=True)
     with path.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
-        writer.writerow(["t", *indices, "lyapunov"])
-        for t, values, exponent in samples:
-            writer.writerow([repr(float(v)) for v in (t, *values, exponent)])
+        writer.writerow(["t", *indices, "lyapunov", *due])
+        for t, values, exponent, told in samples:
+            writer.writerow([repr(float(v)) for v in (t, *values, exponent, *told)])

@@ -190,7 +190,8 @@ def _print_proof(proof: PropagationProof) -> None:
         say(
             f"mode {case.mode}: predicted at order {case.predicted}, actually {found}{doubt}"
         )
-    say(f"verdict: {proof.verdict}")
+    how = f"   (excited modes by {proof.reason})" if proof.excited else ""
+    say(f"verdict: {proof.verdict}{how}")
 
 
 @app.command(epilog="Example: symfpu verify proof.json")

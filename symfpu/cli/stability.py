@@ -1,4 +1,4 @@
-"""The verb stability: normal frequencies of a saved torus or breather."""
+"""The verb stability: normal frequencies of a saved torus or breather, and along a line from it."""
 
 from __future__ import annotations
 
@@ -9,10 +9,14 @@ import typer
 from symfpu.bundles.bundle import load
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import solution_of
+from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
+    NOTHING_KEPT,
     FileArgument,
     JsonOption,
+    by_seed,
+    optional,
     path_named,
     print_json,
     progress_bar,
@@ -21,36 +25,161 @@ from symfpu.cli.terminal import (
     whole_numbers,
 )
 from symfpu.cli.verbs import app
-from symfpu.normal.search import LENGTH, normal_modes
-from symfpu.reports.normal import normal_record, normal_text
+from symfpu.errors import InputError
+from symfpu.families.normal_events import RESONANCE_LENGTH
+from symfpu.families.normal_family import NormalFamily, normal_family
+from symfpu.files.writing import output_folder
+from symfpu.normal.modes import NormalModes
+from symfpu.normal.search import LENGTH, Solution, normal_modes
+from symfpu.normal.self_consistent import solve_normal_frequency
+from symfpu.reports.normal import (
+    BySeries,
+    by_series,
+    normal_family_text,
+    normal_text,
+    series_records,
+    series_text,
+)
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+MEMBERS = 9
+TO_AMPLITUDES = "to-amplitudes"
 
 
 @app.command("stability", epilog="Example: symfpu stability refined.symfpu")
 def stability(
+    context: typer.Context,
     file: FileArgument,
     modes: Annotated[
         str | None, typer.Option(help="Only these modes.  Default: all.", metavar="Q,Q,...")
     ] = None,
     resonance_length: Annotated[
-        str,
-        typer.Option(help="Largest sum |nu_i| of the resonances listed.", metavar="K"),
-    ] = str(LENGTH),
+        str | None,
+        typer.Option(
+            help=f"Largest sum |nu_i| of resonances.  Default: {LENGTH} in the list, "
+            f"{RESONANCE_LENGTH} as events on a line.",
+            metavar="K",
+        ),
+    ] = None,
+    series: Annotated[
+        str | None,
+        typer.Option(help="Beside them those by series of this order.", metavar="K"),
+    ] = None,
+    to_amplitudes: Annotated[
+        str | None,
+        typer.Option(
+            help="Also along the line of tori to these amplitudes, with events.",
+            metavar="A,A,...",
+        ),
+    ] = None,
+    members: Annotated[
+        str | None,
+        typer.Option(help=f"With --to-amplitudes: number of tori.  Default: {MEMBERS}."),
+    ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="With --to-amplitudes: folder of the tori; the same command goes on from it.",
+            metavar="FOLDER",
+        ),
+    ] = None,
+    kept_file: SaveOption = None,
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Normal frequencies of a refined torus or breather: is it stable, what is it near?"""
+    """Normal frequencies of a refined torus or breather: is it stable, what is it near?
+
+    With --to-amplitudes A,A also of the tori on the way to these amplitudes, and where one of them
+    becomes unstable: symfpu stability refined.symfpu --to-amplitudes 0.1,0.5 --members 5.
+    """
     torus = solution_of(load(path_named("FILE", file)), file)
+    chosen = None if modes is None else whole_numbers("modes", modes)
+    length = optional("resonance-length", resonance_length)
+    order = optional("series", series)
+    picture, saved = picture_named(plot), file_named(kept_file)
+    found: NormalModes | NormalFamily
+    if to_amplitudes is not None:
+        _refuse("series", series, "only without --to-amplitudes")
+        found = _line(torus, to_amplitudes, members, chosen, length, output)
+        records: list[BySeries] = []
+    else:
+        _refuse("members", members, f"a number only with --{TO_AMPLITUDES}")
+        _refuse(
+            "output", output, f"a folder only with --{TO_AMPLITUDES}; --save keeps this"
+        )
+        found, records = _modes(torus, chosen, LENGTH if length is None else length, order)
+    keep(found, saved, context)
+    draw(found.plot, picture)
+    if as_json:
+        print_json(found.record() | series_records(records))
+        return
+    text = (
+        normal_text(found) if isinstance(found, NormalModes) else normal_family_text(found)
+    )
+    say("\n".join([text, *series_text(records)]))
+    say_kept(saved)
+    say_drawn(picture)
+
+
+def _refuse(option: str, given: str | None, allowed: str) -> None:
+    """InputError for an option that says nothing here."""
+    if given is not None:
+        raise InputError(option, given, allowed, "leave it out")
+
+
+def _of_fixed_ends(torus: Solution) -> QuasiPeriodic:
+    """The solution; InputError for one of a ring."""
     require_fixed_ends(torus.chain)
     assert isinstance(torus, QuasiPeriodic)
-    chosen = None if modes is None else whole_numbers("modes", modes)
-    length = whole("resonance-length", resonance_length)
-    picture = picture_named(plot)
+    return torus
+
+
+def _modes(
+    torus: Solution, chosen: list[int] | None, length: int, order: int | None
+) -> tuple[NormalModes, list[BySeries]]:
+    """Normal modes, and those by series if an order is given."""
     with progress_bar("normal modes") as advance:
         found = normal_modes(torus, modes=chosen, resonance_length=length, progress=advance)
-        draw(found.plot, picture)
-    if as_json:
-        print_json(normal_record(found))
-        return
-    say(normal_text(found))
-    say_drawn(picture)
+        if order is None:
+            return found, []
+        plain = _of_fixed_ends(torus)
+        records = [
+            by_series(
+                mode,
+                lambda q: solve_normal_frequency(plain, q, order, progress=advance),
+                plain,
+            )
+            for mode in found.modes
+        ]
+    return found, records
+
+
+def _line(
+    torus: Solution,
+    amplitudes: str,
+    members: str | None,
+    chosen: list[int] | None,
+    length: int | None,
+    output: str | None,
+) -> NormalFamily:
+    """The line from a torus to other amplitudes."""
+    plain = _of_fixed_ends(torus)
+    end = by_seed(TO_AMPLITUDES, amplitudes, torus.seeds)
+    folder = None if output is None else output_folder(path_named("output", output))
+    note = f"tori found so far are kept in {folder}; the same command goes on from them"
+
+    def kept() -> str:
+        return NOTHING_KEPT if folder is None or not any(folder.iterdir()) else note
+
+    with progress_bar("first torus", kept) as advance:
+        return normal_family(
+            plain,
+            end,
+            members=MEMBERS if members is None else whole("members", members),
+            modes=chosen,
+            resonance_length=RESONANCE_LENGTH if length is None else length,
+            folder=folder,
+            progress=advance,
+        )

@@ -30,6 +30,7 @@ VERBS = {
     "stability": "stability",
     "certify": "certify",
     "orbit": "orbit",
+    "frequencies": "frequencies",
     "gali": "gali",
     "export": "export",
     "reproduce": "reproduce",

@@ -27,6 +27,7 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.normal.frequencies import NormalFrequencies
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import (
     Amplitude,
@@ -113,8 +114,8 @@ class Member(Tabled):
         angles zero.
     residual : of the equations of motion, relative to the largest acceleration.
         warnings : reasons to doubt it.
-    multipliers : of a breather, if asked for. Ours; Appendix A has the linear specific energy of
-        Eq. linespe instead.
+    multipliers : of a breather, normal : NormalFrequencies, if asked for. Ours; Appendix A has
+        the linear specific energy of Eq. linespe instead.
 
     >>> from symfpu import Chain, family
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").members[0]
@@ -132,6 +133,7 @@ class Member(Tabled):
     residual: float
     warnings: tuple[str, ...] = ()
     multipliers: Floquet | None = field(repr=False, default=None)
+    normal: NormalFrequencies | None = field(repr=False, default=None)
 
     @property
     def verdict(self) -> str:
@@ -145,6 +147,8 @@ class Member(Tabled):
         stability = ""
         if self.multipliers is not None:
             stability = ", stable" if self.multipliers.stable else ", unstable"
+        if self.normal is not None:
+            stability = f", {self.normal.verdict}"
         doubts = "".join(f"; {w}" for w in self.warnings)
         where = f"H={self.energy:.10g}, {rates}, {amplitudes}, residual {self.residual:.2g}"
         return f"Member({self.verdict}, {where}{stability}{doubts})"
@@ -176,6 +180,8 @@ def members_grid(result: object, members: Sequence[Member]) -> Grid:
     variables["frequency"] = Variable(each, frequencies, "frequency omega_q of a seed")
     variables["amplitude"] = Variable(each, amplitudes, "amplitude A_q of a seed")
     variables["average_energy"] = Variable(("member", "mode"), spectra, average)
+    if any(one.normal for one in members):
+        variables |= _normal_variables(members)
     return Grid(
         axes={
             "member": range(len(members)),
@@ -187,6 +193,22 @@ def members_grid(result: object, members: Sequence[Member]) -> Grid:
         rows=("member",),
         across="seed",
     )
+
+
+def _normal_variables(members: Sequence[Member]) -> dict[str, Variable]:
+    """Normal frequencies by member and mode; NaN for seeds and where there are none."""
+    modes = members[0].torus.chain.mode_numbers
+    unknown = complex(math.nan, math.nan)
+    sigma = np.full((len(members), len(modes)), unknown)
+    for row, one in enumerate(members):
+        known = one.normal.frequencies if one.normal else {}
+        for q, value in known.items():
+            sigma[row, modes.index(q)] = value
+    axes = ("member", "mode")
+    return {
+        "sigma": Variable(axes, sigma.real, "normal frequency, real part"),
+        "growth": Variable(axes, np.abs(sigma.imag), "|Im sigma|: rate of growth"),
+    }
 
 
 @dataclass(frozen=True)
@@ -285,8 +307,13 @@ def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
     return QTorus(series, dict(amplitudes), phases, 0, GUESS_ORDER)
 
 
-def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
-    """A torus with its energies, its residual and, for a breather, its multipliers."""
+def member(
+    torus: RefinedTorus, *, multipliers: bool, normal: NormalFrequencies | None = None
+) -> Member:
+    """A torus with its energies, its residual and, for a breather, its multipliers.
+
+    normal : its normal frequencies, if they are asked for.
+    """
     return Member(
         torus=torus,
         amplitudes=torus.amplitudes,
@@ -295,6 +322,7 @@ def member(torus: RefinedTorus, *, multipliers: bool) -> Member:
         residual=torus.residual(),
         warnings=torus.warnings,
         multipliers=floquet(torus) if multipliers else None,
+        normal=normal,
     )
 
 

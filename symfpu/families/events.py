@@ -23,6 +23,8 @@ from symfpu.families.continuation import (
     extrapolated,
     member,
 )
+from symfpu.families.normal_events import NormalEvent
+from symfpu.families.normal_way import NormalWay
 from symfpu.refinement.conditions import Crossing, ratio_conditions
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.invariance import DIGITS, long
@@ -280,11 +282,14 @@ def stability_change(way: Way, first: Member, second: Member, after: int) -> Eve
     return Event("stability", what, after, energy, unstable.largest)
 
 
-def events_between(way: Way, first: Member, second: Member, after: int) -> list[Event]:
+def events_between(
+    way: Way, first: Member, second: Member, after: int, normal: NormalWay | None
+) -> list[Event | NormalEvent]:
     """What happens between the last two members of the way, and the folds at the first of them."""
     change = stability_change(way, first, second, after)
     changes = [change] if change else []
-    return [*folds(way, after - 1), *resonances(way, after), *changes]
+    of_normal = normal.events(way, first, second, after) if normal else []
+    return [*folds(way, after - 1), *resonances(way, after), *changes, *of_normal]
 
 
 class Found(NamedTuple):
@@ -295,18 +300,23 @@ class Found(NamedTuple):
 
     kept: int
     member: Member
-    events: list[Event]
+    events: list[Event | NormalEvent]
 
 
 def continued(
-    way: Way, members: Sequence[Member], goal: Level, *, multipliers: bool
+    way: Way,
+    members: Sequence[Member],
+    goal: Level,
+    *,
+    multipliers: bool,
+    normal: NormalWay | None,
 ) -> Iterator[Found]:
     """Members and events from the end of a way on, as long as they are asked for.
 
     Ends with NoTorus where the family cannot be followed.
 
     members : so far, the last of the way; it grows with what is found. The member at the goal has
-        its energy.
+        its energy. normal : of the normal frequencies, if they are asked for.
     """
     while True:
         way.advance(goal)
@@ -315,5 +325,8 @@ def continued(
             number, torus = passed
             kept += number - 2
             way.tori = [*way.tori[-3:][:number], torus]
-        found = member(way.tori[-1], multipliers=multipliers)
-        yield Found(kept, found, events_between(way, members[kept - 1], found, kept - 1))
+        torus = way.tori[-1]
+        frequencies = normal.of(torus) if normal else None
+        found = member(torus, multipliers=multipliers, normal=frequencies)
+        events = events_between(way, members[kept - 1], found, kept - 1, normal)
+        yield Found(kept, found, events)

@@ -32,20 +32,20 @@ from symfpu.families.continuation import (
     Way,
     extrapolated,
     first_at,
-    member,
     members_grid,
     returned,
     series_member,
 )
 from symfpu.families.events import continued, events_between
 from symfpu.families.folder import BEGINNING, Kept, Plan, checked_family
+from symfpu.families.normal_events import RESONANCE_LENGTH, NormalEvent
 from symfpu.files.progress import Progress, unheard
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.table import joined
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
-from symfpu.numbers.typed import Number, exact
+from symfpu.numbers.typed import Number, exact, integer
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
 from symfpu.refinement.tori import (
@@ -99,7 +99,8 @@ class Family(Shown, Gridded):
 
     chain, seeds : the model and the s modes. members : in order of the way.
     events : folds, resonances and changes of stability, between members. ending : why it was not
-        followed further.
+        followed further. normal_events : what the normal frequencies do between members, where they
+        are asked for.
     harmonic : whether its goal was a harmonic energy.
     energy_ratio : of the averaged mode energies by seed, where it is these that keep their ratio.
 
@@ -119,6 +120,7 @@ class Family(Shown, Gridded):
     ending: str
     harmonic: bool = False
     energy_ratio: Mapping[int, float] | None = field(repr=False, default=None)
+    normal_events: tuple[NormalEvent, ...] = ()
 
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
@@ -130,7 +132,9 @@ class Family(Shown, Gridded):
         H = f"H = {min(energies):.6g} .. {max(energies):.6g}"
         counts = Counter(event.kind for event in self.events)
         kinds = [kind for kind in ("fold", "resonance", "stability") if counts[kind]]
-        events = ", ".join(_counted(counts[kind], kind) for kind in kinds) or "no events"
+        counted = [_counted(counts[kind], kind) for kind in kinds]
+        counted += list(map(repr, self.normal_events))
+        events = ", ".join(counted) or "no events"
         return f"Family({chain}, seeds={seeds}, {members}, {H}, {events}; it {self.ending})"
 
     def _grid(self) -> Grid:
@@ -270,6 +274,8 @@ def family(
     from_energy: Number | None = None,
     members: int = MEMBERS,
     multipliers: bool = False,
+    normal: bool = False,
+    resonance_length: int = RESONANCE_LENGTH,
     tolerance: float = TOLERANCE,
     method: str = "arclength",
     order: int | None = None,
@@ -288,8 +294,10 @@ def family(
         'appendix-a', or where the family in the folder began; where the series there lead to no
         torus it is reached by a family from below.
     members : the most.
-    multipliers : of breathers, with changes of stability. tolerance : as for `refine`. Both only
-        with 'arclength'.
+    multipliers : of breathers, with changes of stability. normal : normal frequencies of every
+        member, each continued from the member before, with the places where they collide and
+        those of resonances up to sum |nu_i| = resonance_length (`normal_family` says how).
+        tolerance : as for `refine`. All only with 'arclength' and fixed ends.
     method : 'arclength', Newton's method and pseudo-arclength continuation; or 'appendix-a', the
         algorithm of the paper's Appendix A, corrected, whose members are truncated series of
         `order` and whose mode energies grow alike (no ratio is kept).
@@ -323,13 +331,14 @@ def family(
             f"an order with method = {APPENDIX_A!r}, none with others",
             "give both or neither",
         )
-    if order is not None and multipliers:
+    if order is not None and (multipliers or normal):
         raise InputError(
-            "multipliers",
-            multipliers,
+            "multipliers" if multipliers else "normal",
+            True,
             f"False with method = {APPENDIX_A!r}",
             "its members are series: leave it out",
         )
+    length = integer(resonance_length, "resonance_length", 0)
     arguments = (
         to_energy,
         harmonic,
@@ -340,14 +349,15 @@ def family(
         multipliers,
         tolerance,
         order,
+        length if normal else None,
     )
     plan = checked_family(chain, seeds, *arguments)
-    kept = Kept(plan, None if folder is None else Path(folder))
     tell = progress or unheard
 
     def of_member(label: str, _: float) -> None:
         tell(f"member {len(kept.members) + 1}: {label}", kept.plan.done(kept.members))
 
+    kept = Kept(plan, None if folder is None else Path(folder), of_member)
     try:
         return (
             _by_arclength(kept.plan, kept, of_member)
@@ -373,7 +383,7 @@ def _by_arclength(
 
         def at_goal(k: int) -> Member:
             way = _way(plan, kept, progress, _refined(kept.members[k - 1 : k + 1]))
-            return member(way.between(plan.level), multipliers=plan.multipliers)
+            return kept.measured(way.between(plan.level))
 
         return _up_to_goal(plan, kept, at_goal)
     why = _begun(plan, kept, progress, lower=lower) or _ending(plan, kept)
@@ -381,7 +391,11 @@ def _by_arclength(
         way = _way(plan, kept, progress)
         try:
             for found in continued(
-                way, kept.members, plan.level, multipliers=plan.multipliers
+                way,
+                kept.members,
+                plan.level,
+                multipliers=plan.multipliers,
+                normal=kept.normal,
             ):
                 kept.step, kept.largest = way.step, way.largest
                 kept.cut(found.kept)
@@ -412,11 +426,20 @@ def _way(
 
 
 def _family(
-    plan: Plan, members: Sequence[Member], events: Sequence[Event], why: str
+    plan: Plan,
+    members: Sequence[Member],
+    events: Sequence[Event | NormalEvent],
+    why: str,
 ) -> Family:
-    ratio = plan.ratio if plan.energies and plan.order is None else None
     return Family(
-        plan.chain, plan.seeds, tuple(members), tuple(events), why, plan.harmonic, ratio
+        chain=plan.chain,
+        seeds=plan.seeds,
+        members=tuple(members),
+        events=tuple(e for e in events if isinstance(e, Event)),
+        ending=why,
+        harmonic=plan.harmonic,
+        energy_ratio=plan.ratio if plan.energies and plan.order is None else None,
+        normal_events=tuple(e for e in events if isinstance(e, NormalEvent)),
     )
 
 
@@ -434,7 +457,9 @@ def _ending(plan: Plan, kept: Kept) -> str:
 def _turned(kept: Kept) -> str:
     """Where the energy turned, if it did."""
     folds = [
-        event.energy for event in kept.events if (event.kind, event.what) == ("fold", "H")
+        event.energy
+        for event in kept.events
+        if isinstance(event, Event) and (event.kind, event.what) == ("fold", "H")
     ]
     return f"turned at H = {folds[-1]:.7g} and " if folds else ""
 
@@ -492,10 +517,9 @@ def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
         tori, why = _led_up(plan, kept, progress)
     way = _way(plan, kept, progress, tori)
     for torus in tori[len(kept.members) : plan.most]:
-        found = member(torus, multipliers=plan.multipliers)
-        kept.add(
-            found, events_between(way, kept.members[-1], found, 0) if kept.members else []
-        )
+        found, before = kept.measured(torus), kept.members[-1:]
+        events = [e for m in before for e in events_between(way, m, found, 0, kept.normal)]
+        kept.add(found, events)
     return why
 
 
@@ -529,8 +553,9 @@ def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[RefinedTor
     """
     goal = Level(plan.first, plan.harmonic)
     low = {q: a * math.sqrt(Fraction(BEGINNING)) for q, a in plan.start.items()}
-    below = replace(plan, goal=goal.energy, start=low, most=MEMBERS, multipliers=False)
-    led = Kept(below, None)
+    below = replace(plan, goal=goal.energy, start=low, most=MEMBERS)
+    below = replace(below, multipliers=False, normal=None)
+    led = Kept(below, None, progress)
     leading = _by_arclength(below, led, progress, lower=False)
     if below.done(led.members) < 1:
         energies = [goal.of_member(m) for m in led.members]

@@ -24,7 +24,20 @@ from symfpu.families.continuation import (
     member,
     series_member,
 )
+from symfpu.families.normal_events import NormalEvent
+from symfpu.families.normal_folder import (
+    event_entry,
+    event_from,
+    forget_modes,
+    normal_entry,
+    normal_from,
+    read_modes,
+    write_modes,
+)
+from symfpu.families.normal_way import NormalWay
+from symfpu.files.progress import Progress
 from symfpu.files.writing import write_text
+from symfpu.normal.frequencies import NormalFrequencies
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.tori.torus import QTorus
@@ -42,7 +55,8 @@ class Plan:
     """Checked arguments.
 
     start : amplitudes that have the first energy in the linear chain; chosen : by from_energy, not
-    from the goal.
+    from the goal. normal : the largest sum |nu_i| of resonances of normal frequencies that are
+    events, None where these are not asked for.
     """
 
     chain: Chain
@@ -57,6 +71,7 @@ class Plan:
     tolerance: float
     order: int | None
     chosen: bool
+    normal: int | None = None
 
     @property
     def first(self) -> float:
@@ -94,6 +109,7 @@ class Plan:
             "start": start,
             "order": self.order,
             "multipliers": self.multipliers,
+            "normal": self.normal,
             "tolerance": repr(self.tolerance),
         }
 
@@ -110,8 +126,9 @@ def checked_family(
     multipliers: bool,
     tolerance: float,
     order: int | None,
+    normal: int | None,
 ) -> Plan:
-    """The arguments of `family`, checked."""
+    """The arguments of `family`, checked; normal : as of the Plan."""
     chosen = tuple(sorted(seed_modes(seeds, chain.N)))
     first, goal = _checked_energies(from_energy, to_energy, order)
     if amplitude_ratio is not None and energy_ratio is not None:
@@ -144,6 +161,7 @@ def checked_family(
         tolerance=tolerance,
         order=order,
         chosen=from_energy is not None,
+        normal=normal,
     )
 
 
@@ -188,10 +206,12 @@ class Kept:
     They are on disk only if there is a folder.
     """
 
-    def __init__(self, plan: Plan, folder: Path | None) -> None:
+    def __init__(self, plan: Plan, folder: Path | None, progress: Progress) -> None:
         self.plan, self.folder = plan, folder
         self.members: list[Member] = []
-        self.events: list[Event] = []
+        self.events: list[Event | NormalEvent] = []
+        length = plan.normal
+        self.normal = None if length is None else NormalWay(length, progress)
         self.step, self.largest = FIRST_STEP, 0.0
         if folder is not None:
             self._read(folder)
@@ -224,6 +244,8 @@ class Kept:
             self.events = [
                 Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in known
             ]
+            self.events += map(event_from, record.get("normal_events", []))
+            entries = record.get("normal") or [None] * count
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise InputError(
                 "folder",
@@ -246,9 +268,26 @@ class Kept:
         for k in range(count):
             torus = self._torus(k)
             if isinstance(torus, RefinedTorus):
-                self.members.append(member(torus, multipliers=self.plan.multipliers))
+                normal = self._normal(folder, torus, entries[k])
+                multipliers = self.plan.multipliers
+                self.members.append(member(torus, multipliers=multipliers, normal=normal))
             else:
                 self.members.append(series_member(torus))
+        if (
+            self.normal is not None
+            and (known_at := record.get("normal_modes_of")) is not None
+        ):
+            self.normal.known = [read_modes(folder, int(known_at))]
+
+    def _normal(
+        self, folder: Path, torus: RefinedTorus, entry: Json | None
+    ) -> NormalFrequencies | None:
+        """Of a member in the folder; InputError where the record of it is damaged."""
+        try:
+            return normal_from(entry, torus)
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            advice = f"{RECORD} is damaged; choose another folder"
+            raise InputError("folder", str(folder), "a family", advice) from error
 
     def _torus(self, index: int) -> RefinedTorus | QTorus:
         """A member that the record counts.
@@ -284,7 +323,12 @@ class Kept:
         del self.members[number:]
         self.events = [event for event in self.events if event.after < number - 1]
 
-    def add(self, found: Member, events: list[Event]) -> None:
+    def measured(self, torus: RefinedTorus) -> Member:
+        """A torus as the next member, with all that is asked for."""
+        normal = self.normal.of(torus) if self.normal else None
+        return member(torus, multipliers=self.plan.multipliers, normal=normal)
+
+    def add(self, found: Member, events: list[Event | NormalEvent]) -> None:
         """The member first, then the record that counts it: a run may be stopped at any time."""
         if self.folder is not None and isinstance(found.torus, (RefinedTorus, QTorus)):
             save(
@@ -300,6 +344,25 @@ class Kept:
                 "members": len(self.members),
                 "step": self.step,
                 "largest": self.largest,
-                "events": [asdict(event) for event in self.events],
+                "events": [asdict(e) for e in self.events if isinstance(e, Event)],
             }
-            write_text(self.folder / RECORD, json.dumps(record, indent=1) + "\n")
+            of_normal = self._normal_record(self.folder)
+            text = json.dumps(record | of_normal, indent=1)
+            write_text(self.folder / RECORD, text + "\n")
+            if of_normal:
+                forget_modes(self.folder, of_normal["normal_modes_of"])
+
+    def _normal_record(self, folder: Path) -> Json:
+        """Of the normal frequencies; those that the next are continued from go into a file."""
+        if self.normal is None:
+            return {}
+        last = len(self.members) - 1
+        if self.normal.known and self.members[-1].normal is not None:
+            write_modes(folder, last, self.normal.known[-1])
+        with_modes = [k for k, m in enumerate(self.members) if m.normal is not None]
+        found = [e for e in self.events if isinstance(e, NormalEvent)]
+        return {
+            "normal": [normal_entry(m.normal) for m in self.members],
+            "normal_events": [event_entry(event) for event in found],
+            "normal_modes_of": with_modes[-1] if with_modes else None,
+        }

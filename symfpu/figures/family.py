@@ -13,10 +13,11 @@ from symfpu.plots.families import (
     family_multipliers,
     family_spectra,
 )
+from symfpu.plots.normal_family import family_normal_frequencies
 
 
 def draw_family(found: Family, folder: Path, stem: str = "family") -> list[Path]:
-    """The panels as PNG and PDF, multipliers only where they are known; returns the paths."""
+    """The panels as PNG and PDF, what is not known left out; returns the paths."""
     panels = {
         "shifts": ("Energy against relative frequency shift", family_frequencies),
         "amplitudes": ("Amplitudes", family_amplitudes),
@@ -24,6 +25,8 @@ def draw_family(found: Family, folder: Path, stem: str = "family") -> list[Path]
     }
     if any(m.multipliers is not None for m in found.members):
         panels["multipliers"] = ("Floquet multipliers", family_multipliers)
+    if any(m.normal is not None for m in found.members):
+        panels["normal"] = ("Normal frequencies", family_normal_frequencies)
     chain = repr(found.chain)[6:-1]
     word = "seed" if len(found.seeds) == 1 else "seeds"
     seeds = ", ".join(map(str, found.seeds))

@@ -13,12 +13,17 @@ import numpy as np
 
 from symfpu.normal.modes import NormalMode
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 LEAST_ACTION = 1e-6  # |action| over sigma: with less another direction is met, known or not
 
 
-def undecided_modes(torus: QuasiPeriodic, modes: Sequence[NormalMode]) -> tuple[int, ...]:
-    """Those of the modes that may be elliptic or hyperbolic."""
+def undecided_modes(
+    torus: QuasiPeriodic | RingTorus, modes: Sequence[NormalMode]
+) -> tuple[int, ...]:
+    """Those of the modes that may be elliptic or hyperbolic; of a ring none is said to be."""
+    if isinstance(torus, RingTorus):
+        return ()
     found = {mode.mode for mode in modes if _hidden(mode)}
     elliptic = [mode for mode in modes if not mode.growth]
     for place, mode in enumerate(elliptic):

@@ -25,6 +25,7 @@ from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import MULTIPRECISION, text, with_digits
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 ELLIPTIC, HYPERBOLIC = "elliptic", "hyperbolic"
 SIGMA_DIGITS, GROWTH_DIGITS = 13, 10  # that are shown of doubles
@@ -34,20 +35,26 @@ class NoNormalModes(SymfpuError):
     """The linearised flow about a torus could not be reduced to constant coefficients.
 
     Raised by `normal_modes`. mode : q of the frequency that was sought; guess : of it, from the
-    closed second-order shift; nearest : the resonance nearest to it, a ParametricResonance.
-    reason : why digits fail where doubles do not; empty where these do. Ours.
+    closed second-order shift; nearest : the resonance nearest to it, a ParametricResonance, or None
+    where no low one lets it couple. reason : why digits fail where doubles do not; empty where
+    these do. Ours.
     """
 
     def __init__(
-        self, mode: int, guess: float, nearest: ParametricResonance, reason: str = ""
+        self,
+        mode: int,
+        guess: float,
+        nearest: ParametricResonance | None,
+        reason: str = "",
     ) -> None:
         self.mode, self.guess, self.nearest, self.reason = mode, guess, nearest, reason
         place = f"mode {mode} (guess {guess:.10g})"
+        known = f"nearest resonance {nearest!r}" if nearest else "no resonance is near"
         advice = "take a torus of another amplitude, or leave the mode out by modes="
         problem = f"no normal frequency continues {place}"
         if reason:
             problem, advice = f"{place}: {reason}", "take normal_modes(torus.in_doubles())"
-        super().__init__(f"{problem}: nearest resonance {nearest!r}; {advice}")
+        super().__init__(f"{problem}: {known}; {advice}")
 
 
 @dataclass(frozen=True)
@@ -184,7 +191,7 @@ class NormalModes(Shown, Gridded):
     1     3  elliptic          1
     """
 
-    torus: QuasiPeriodic
+    torus: QuasiPeriodic | RingTorus
     modes: tuple[NormalMode, ...]
     guesses: dict[int, float] = field(repr=False)
     resonances: tuple[ParametricResonance, ...] = field(repr=False)
@@ -279,14 +286,15 @@ class NormalModes(Shown, Gridded):
     def _grid(self) -> Grid:
         rows, torus = ("mode",), self.torus
         sigma = np.array([complex(mode.sigma) for mode in self.modes])
-        linear = torus.chain.frequencies()
+        pairs = zip(torus.chain.mode_numbers, torus.chain.frequencies(), strict=True)
+        linear = dict(pairs)
         columns: dict[str, tuple[Any, str]] = {
             "sigma": (sigma.real, "normal frequency, real part"),
             "growth": (np.abs(sigma.imag), "|Im sigma|: rate of growth"),
             "kind": ([mode.kind for mode in self.modes], "elliptic or hyperbolic"),
             "signature": ([mode.signature for mode in self.modes], "Krein's signature"),
             "linear_frequency": (
-                [linear[mode.mode - 1] for mode in self.modes],
+                [linear[mode.mode] for mode in self.modes],
                 "Omega_q of small oscillations",
             ),
             "second_order": (

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symfpu.normal.linearised import LinearisedFlow, Mask, Values
+from symfpu.normal.linearised import Linearised, Mask, Values
 from symfpu.refinement.equation import Floats
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 600, 150  # unknowns
@@ -26,7 +26,7 @@ MOST_DEFLATED = 12
 MIXED = (
     4  # vectors, deflated too, into which the mode is mixed most, over their eigenvalues
 )
-TINY = 1e-300
+TINY = 1e-100
 KRYLOV, RESTARTS = 60, 4
 ROUGH, FINE = 1e-4, 1e-11  # accuracies of Krylov solutions, over Omega_q^2
 ITERATIONS = 9
@@ -46,24 +46,20 @@ LEAST_OVERLAP = 0.6  # of the eigenfunctions of two steps
 class Reduced:
     """A normal frequency with its eigenfunction.
 
-    coefficients : p (F, N-1), of norm 1. residual : of L p, at all harmonics of the lattice, over
-    Omega_q^2. action : sum of (sigma + nu.omega) |p|^2. deflated : r. products : with L.
-    rounding : of sigma, about.
+    coefficients : p (F, C), of norm 1. share : |p_q[0]| of the mode that it is named after.
+    residual : of L p, at all harmonics of the lattice, over Omega_q^2. action : sum of
+    (sigma + nu.omega) |p|^2. deflated : r. products : with L. rounding : of sigma, about.
     """
 
     mode: int
     sigma: complex
     coefficients: Values
+    share: float
     residual: float
     action: float
     deflated: int
     products: int
     rounding: float
-
-    @property
-    def share(self) -> float:
-        """|p_q[0]| of the mode that it is named after, of 1."""
-        return float(abs(self.coefficients[0, self.mode - 1]))
 
 
 class Block:
@@ -75,17 +71,17 @@ class Block:
 
     def __init__(
         self,
-        flow: LinearisedFlow,
+        flow: Linearised,
         q: int,
         sigma: float,
         sizes: tuple[int, int] = (SMALLEST_BLOCK, LARGEST_BLOCK),
     ) -> None:
         self.flow, self.q, self.mask = flow, q, flow.allowed(q)
-        linear = flow.linear.astype(float)
-        self.size = float(linear[q - 1]) ** 2
+        linear = np.maximum(flow.linear.astype(float), TINY)
+        self.size = flow.frequency(q) ** 2
         diagonal = flow.divisors(sigma) + flow.means
         weights = np.where(self.mask, np.abs(diagonal) / linear**2, np.inf)
-        weights[0, q - 1] = 0
+        weights[0, flow.column(q)] = 0
         least, largest = sizes
         near = int((weights < NEARNESS * np.abs(flow.slopes).max()).sum())
         count = min(max(near, least), largest, int(self.mask.sum()))
@@ -226,21 +222,39 @@ class Bordered:
         return self._precondition(found)
 
 
-def reduced(flow: LinearisedFlow, q: int, guess: float) -> Reduced | None:
+def reduced(flow: Linearised, q: int, guess: float) -> Reduced | None:
     """The normal mode that continues the linear mode q; None where no way leads to one.
 
     guess : of its frequency, in real numbers.
     """
     for part in DEFLATED:
-        found = _found(flow, _Aim(q, guess), part)
+        found = _found(flow, _Aim(q, guess, flow.column(q)), part)
         if found and found.share > SURE:
             return found
     return continued(flow, q)
 
 
-def continued(flow: LinearisedFlow, q: int) -> Reduced | None:
+def followed(flow: Linearised, q: int, sigma: complex, like: Values) -> Reduced | None:
+    """The one that continues that of a torus nearby; None where it cannot be told.
+
+    sigma : a guess. like : its eigenfunction there, at the harmonics of this flow. Through an
+    onset, where two solutions become one, the main coefficient has to tell them apart.
+    """
+    aim = _Aim(q, sigma, flow.column(q), like)
+    hyperbolic = bool(complex(sigma).imag)
+    for part in DEFLATED[1:] if hyperbolic else DEFLATED:
+        found = _found(flow, aim, part)
+        if found is None or aim.overlap(found) < LEAST_OVERLAP:
+            continue
+        turned = bool(complex(found.sigma).imag) != hyperbolic
+        if not turned or found.share > SURE:
+            return found
+    return None
+
+
+def continued(flow: Linearised, q: int) -> Reduced | None:
     """The same from no coupling to the whole one, step by step; each begins with the last."""
-    aim = _Aim(q, float(flow.linear[q - 1]))
+    aim = _Aim(q, flow.frequency(q), flow.column(q))
     part, step = 0.0, FIRST_PART
     last: Reduced | None = None
     while part < 1:
@@ -252,7 +266,7 @@ def continued(flow: LinearisedFlow, q: int) -> Reduced | None:
                 return None
             continue
         part, last = part + step, found
-        aim = _Aim(q, found.sigma, found.coefficients)
+        aim = _Aim(q, found.sigma, flow.column(q), found.coefficients)
         step *= 1.5
     return last
 
@@ -260,15 +274,17 @@ def continued(flow: LinearisedFlow, q: int) -> Reduced | None:
 class _Aim:
     """What is looked for: a mode near a frequency, most like a function."""
 
-    def __init__(self, q: int, sigma: complex, like: Values | None = None) -> None:
-        self.q, self.sigma, self._like = q, sigma, like
+    def __init__(
+        self, q: int, sigma: complex, column: int, like: Values | None = None
+    ) -> None:
+        self.q, self.sigma, self._column, self._like = q, sigma, column, like
 
     def vector(self, mask: Mask) -> Values:
         """The function as a vector of the unknowns, of norm 1."""
         if self._like is not None:
             return np.asarray(self._like[mask])
         table = np.zeros(mask.shape)
-        table[0, self.q - 1] = 1
+        table[0, self._column] = 1
         return table[mask]
 
     def overlap(self, found: Reduced) -> float:
@@ -278,7 +294,7 @@ class _Aim:
         return float(abs(np.vdot(self._like, found.coefficients)))
 
 
-def _found(flow: LinearisedFlow, aim: _Aim, part: float) -> Reduced | None:
+def _found(flow: Linearised, aim: _Aim, part: float) -> Reduced | None:
     """With a part of the block deflated; None where Newton's method does not converge."""
     sigma, near = aim.sigma, float(complex(aim.sigma).real)
     block = Block(flow, aim.q, near)
@@ -364,7 +380,8 @@ def _result(
 ) -> Reduced:
     size = float(np.linalg.norm(vector))
     p = system.table(vector / size)
-    p = p / _phase(p[0, system.block.q - 1])
+    main = p[0, system.flow.column(system.block.q)]
+    p = p / _phase(main)
     if complex(sigma).imag < 0:
         sigma, p = complex(sigma).conjugate(), p.conj()
     inside = float(np.linalg.norm(image)) / size
@@ -375,6 +392,7 @@ def _result(
         mode=system.block.q,
         sigma=sigma,
         coefficients=p,
+        share=float(abs(main)),
         residual=float(np.hypot(inside, outside)) / system.block.size,
         action=action,
         deflated=system.W.shape[1],

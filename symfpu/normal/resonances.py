@@ -18,6 +18,7 @@ from symfpu.chain.chain import Chain
 from symfpu.refinement.equation import Ints
 from symfpu.refinement.invariance import dilated
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 
 class Frequencies(Protocol):
@@ -27,7 +28,7 @@ class Frequencies(Protocol):
     def frequencies(self) -> Mapping[int, complex]: ...
 
     @property
-    def torus(self) -> QuasiPeriodic: ...
+    def torus(self) -> QuasiPeriodic | RingTorus: ...
 
 
 PARAMETRIC, SUM, DIFFERENCE, OWN = "parametric", "sum", "difference", "own"
@@ -103,10 +104,10 @@ def resonances_of(
     harmonics = harmonics_up_to(len(seeds), length)
     rates = harmonics @ np.array(omega)
     even = harmonics.sum(axis=1) % 2 == 0
-    parity = harmonics @ np.array(seeds) % 2
+    waves = harmonics @ np.array(seeds)
     found = []
-    for kind, modes, value, odd in _combinations(sigma):
-        allowed = parity == odd
+    for kind, modes, value, wave in _combinations(sigma):
+        allowed = (waves - wave) % _turn(chain) == 0
         if chain.potential.even:
             allowed &= even if kind != OWN else ~even
         if allowed.any():
@@ -129,15 +130,15 @@ def crossed_resonances(
     chain, seeds = first.torus.chain, first.torus.seeds
     harmonics = harmonics_up_to(len(seeds), length)
     harmonics = harmonics[(harmonics != 0).any(axis=1)]
-    parity = harmonics @ np.array(seeds) % 2
+    waves = harmonics @ np.array(seeds)
     even = harmonics.sum(axis=1) % 2 == 0
     before, after = (_sides(found, harmonics) for found in (first, second))
     common = {q: w for q, w in before.sigma.items() if q in after.sigma}
     found = []
-    for kind, modes, value, odd in _combinations(common):
+    for kind, modes, value, wave in _combinations(common):
         if kind == OWN:
             continue
-        allowed = parity == odd
+        allowed = (waves - wave) % _turn(chain) == 0
         if chain.potential.even:
             allowed &= even
         resonance = ParametricResonance(kind, modes, (), 0.0)
@@ -171,12 +172,16 @@ def harmonics_up_to(s: int, length: int) -> Ints:
 def _combinations(
     sigma: Mapping[int, float],
 ) -> Iterator[tuple[str, tuple[int, ...], float, int]]:
-    """Kind, modes, left side, and the parity of nu.seeds that couples them."""
+    """Kind, modes, left side, and the wave nu.seeds that couples them, modulo `_turn`."""
     modes = list(sigma)
     for i, q in enumerate(modes):
-        yield OWN, (q,), sigma[q], q % 2
-        yield PARAMETRIC, (q,), 2 * sigma[q], 0
+        yield OWN, (q,), sigma[q], q
+        yield PARAMETRIC, (q,), 2 * sigma[q], 2 * q
         for other in modes[i + 1 :]:
-            odd = (q + other) % 2
-            yield SUM, (q, other), sigma[q] + sigma[other], odd
-            yield DIFFERENCE, (q, other), sigma[q] - sigma[other], odd
+            yield SUM, (q, other), sigma[q] + sigma[other], q + other
+            yield DIFFERENCE, (q, other), sigma[q] - sigma[other], q - other
+
+
+def _turn(chain: Chain) -> int:
+    """What waves are told apart by: a ring keeps its own, fixed ends the reflection."""
+    return 2 if chain.ends == "fixed" else chain.N

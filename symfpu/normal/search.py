@@ -16,16 +16,31 @@ from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.normal.collisions import undecided_modes
 from symfpu.normal.digits import PreciseModes
-from symfpu.normal.linearised import LinearisedFlow, coefficients_by_harmonic
+from symfpu.normal.linearised import (
+    Linearised,
+    LinearisedFlow,
+    Values,
+    coefficients_by_harmonic,
+)
+from symfpu.normal.linearised_standing import (
+    LinearisedStanding,
+    folded,
+    is_sine,
+    is_standing,
+)
+from symfpu.normal.linearised_waves import LinearisedWaves, wave_rows
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
-from symfpu.normal.reduction import Reduced, continued, reduced
-from symfpu.normal.resonances import ParametricResonance, resonances_of
+from symfpu.normal.reduction import Reduced, continued, followed, reduced
+from symfpu.normal.resonances import OWN, ParametricResonance, resonances_of
 from symfpu.numbers.arithmetic import DOUBLES, arithmetic_of
 from symfpu.numbers.typed import integer
 from symfpu.refinement.digits import Failure, PreciseTorus
+from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
+from symfpu.tori.ring_torus import RingTorus
 
+Solution = QuasiPeriodic | RingTorus
 PRECISE = (PreciseTorus, PreciseOrbit)  # solutions whose digits are those of the equations
 REFINED = 1e-9  # residual of a torus, relative, above which it is refused
 # coefficients of the torus above these parts of its largest, and what their harmonics may leave
@@ -35,11 +50,12 @@ SMALLEST_KEPT = (
 )
 SHOWN_DIVISORS = 5
 LENGTH = 12  # sum |nu_i| of the resonances that are listed
+UNRESOLVED = 1e-7  # difference from a frequency of the torus that a double root may have
 SAME = 1e-9  # difference of two frequencies that are one
 
 
 def normal_modes(
-    solution: QuasiPeriodic,
+    solution: Solution,
     *,
     modes: Iterable[int] | None = None,
     resonance_length: int = LENGTH,
@@ -47,19 +63,23 @@ def normal_modes(
 ) -> NormalModes:
     """Normal frequencies of a torus or breather, their eigenfunctions, signatures and resonances.
 
-    solution : of any potential with fixed ends and of any number of angles, refined: its residual
-        is at most 1e-9. Dimensionless. Of one that was refined to many digits (PreciseTorus,
-        PreciseOrbit) frequencies and eigenfunctions have as many, by sweeps in fixed point; any
-        other is rounded to doubles, as `solution.in_doubles()` is.
-    modes : which of the N-1-s modes; default all.
+    solution : of any potential and of any number of angles, refined: its residual is at most
+        1e-9. With fixed ends, or of a ring: travelling waves, or what `unfold` gave.
+        Dimensionless. Of one that was refined to many digits (PreciseTorus, PreciseOrbit)
+        frequencies and eigenfunctions have as many, by sweeps in fixed point; any other is rounded
+        to doubles, as `solution.in_doubles()` is.
+    modes : which of the N-1-s modes, of a ring signed; default all.
     resonance_length : largest sum |nu_i| of the resonances listed.
     progress : called as (label, fraction), once a mode.
 
     The equations of motion (Eq. eqmo) linearised about the torus are solved by exp(i sigma t)
     p(theta), in harmonics of the angles: Newton's method from Omega_q with its closed shift of
-    second order, products on the lattice that `refine` uses. Of a breather, exp(2 pi i
-    sigma/omega) are the Floquet multipliers. Ours: the paper has none. Raises InputError, and
-    NoNormalModes where a resonance does not let a mode be told from others.
+    second order (of travelling waves from Omega_q), products on the lattice of `refine`. Of a
+    breather, exp(2 pi i sigma/omega) are the Floquet multipliers. About travelling waves the
+    solution goes as exp(i sigma t - 2 pi i q j/N); about standing ones q > 0 is a sine and -q, or
+    N/2, a cosine, a pair of one frequency at rest. Uniform motion, which nothing couples to, is
+    left out. Ours: the paper has none. Raises InputError, and NoNormalModes where a resonance does
+    not let a mode be told from others.
 
     >>> from symfpu import Chain, refine_at_amplitudes, torus_at_amplitudes
     >>> amplitudes = {1: "0.2", 2: "0.1"}
@@ -70,33 +90,19 @@ def normal_modes(
     torus = _checked(solution)
     chosen = checked_modes(torus, modes)
     length = integer(resonance_length, "resonance_length", 1)
-    tell = progress or unheard
-    guesses = second_order(torus)
+    search, tell = _Search(torus, length), progress or unheard
     found: dict[int, NormalMode] = {}
-    search = _Search(torus)
     for number, q in enumerate(chosen):
         tell(f"normal mode {q}", number / len(chosen))
-        mode = search.mode(q, guesses[q], found)
-        if mode is None:
-            nearest = _resonances(torus, {q: guesses[q]}, length)[0]
-            raise NoNormalModes(q, guesses[q], nearest)
-        found[q] = mode
+        found[q] = search.required(q, found)
     if isinstance(solution, PRECISE):
-        found = _in_digits(solution, found, guesses, length, tell)
-    real = {q: mode.sigma.real for q, mode in found.items()}
-    return NormalModes(
-        torus=solution,
-        modes=tuple(found.values()),
-        guesses={q: guesses[q] for q in chosen},
-        resonances=tuple(_resonances(solution, real, length)),
-        undecided=undecided_modes(solution, tuple(found.values())),
-    )
+        found = _in_digits(solution, found, length, tell)
+    return search.result(solution, found)
 
 
 def _in_digits(
     torus: QuasiPeriodic,
     found: Mapping[int, NormalMode],
-    guesses: Mapping[int, float],
     length: int,
     tell: Progress,
 ) -> dict[int, NormalMode]:
@@ -109,20 +115,54 @@ def _in_digits(
             search = search or PreciseModes(torus)
             precise[q] = search.refined(mode, tell)
         except Failure as failure:
-            real = {q: complex(mode.sigma).real}
-            nearest = _resonances(torus, real, length)[0]
+            real = complex(mode.sigma).real
+            nearest = _resonances(torus, {q: real}, length)
             reason = f"no {torus.digits} digits of its frequency: {failure}"
-            raise NoNormalModes(q, guesses[q], nearest, reason) from None
+            none = NoNormalModes(q, real, nearest[0] if nearest else None, reason)
+            raise none from None
     return precise
 
 
-def _checked(solution: object) -> QuasiPeriodic:
-    """The solution in doubles; InputError for what is no refined torus of fixed ends."""
-    require_solution(solution, "solution")
-    assert isinstance(solution, QuasiPeriodic)
-    require_fixed_ends(solution.chain)
-    torus = solution.in_doubles()
-    residual = solution.residual()
+def followed_modes(
+    solution: Solution,
+    before: NormalModes | None,
+    *,
+    modes: Iterable[int] | None = None,
+    progress: Progress | None = None,
+) -> tuple[NormalModes, dict[int, NoNormalModes]]:
+    """Normal modes of a torus, each continued from its eigenfunction on a torus nearby.
+
+    before : of the torus nearby; None, or without a mode, where there is none: then the mode is
+        sought as by `normal_modes`, and so it is where the two tori are too far apart.
+
+    Returns what was found, and by mode why one was not; in doubles.
+    """
+    torus = _checked(solution)
+    chosen = checked_modes(torus, modes)
+    search, tell = _Search(torus, LENGTH, before), progress or unheard
+    found: dict[int, NormalMode] = {}
+    missing: dict[int, NoNormalModes] = {}
+    for number, q in enumerate(chosen):
+        tell(f"normal mode {q}", number / len(chosen))
+        try:
+            found[q] = search.required(q, found)
+        except NoNormalModes as none:
+            missing[q] = none
+    return search.result(solution, found), missing
+
+
+def _checked(solution: object) -> Solution:
+    """The solution in doubles; InputError for what is no refined torus."""
+    if isinstance(solution, RingTorus):
+        if is_standing(solution):
+            folded(solution)
+        torus: Solution = solution
+    else:
+        require_solution(solution, "solution")
+        assert isinstance(solution, QuasiPeriodic)
+        require_fixed_ends(solution.chain)
+        torus = solution.in_doubles()
+    residual = torus.residual()
     if not residual <= REFINED:
         given = f"a torus whose residual is {residual:.2g}"
         allowed = f"one that solves the equations of motion to {REFINED:.0e}"
@@ -130,14 +170,14 @@ def _checked(solution: object) -> QuasiPeriodic:
     return torus
 
 
-def checked_modes(torus: QuasiPeriodic, modes: Iterable[int] | None) -> tuple[int, ...]:
+def checked_modes(torus: Solution, modes: Iterable[int] | None) -> tuple[int, ...]:
     """Those asked for, ascending; InputError for what is no normal mode."""
     normal = [q for q in torus.chain.mode_numbers if q not in torus.seeds]
     if modes is None:
         return tuple(normal)
     allowed = f"different modes that are no seeds, of {normal}"
     try:
-        given = [integer(q, "modes", 1) for q in modes]
+        given = [integer(q, "modes", min(torus.chain.mode_numbers)) for q in modes]
     except TypeError as error:
         raise InputError("modes", modes, allowed, "pass a list of modes") from error
     if set(given) - set(normal) or len(set(given)) < len(given):
@@ -145,9 +185,16 @@ def checked_modes(torus: QuasiPeriodic, modes: Iterable[int] | None) -> tuple[in
     return tuple(sorted(given))
 
 
-def second_order(torus: QuasiPeriodic) -> dict[int, float]:
-    """Omega_q with the closed shift of second order by the amplitudes of the seeds, by mode."""
+def second_order(torus: Solution) -> dict[int, float]:
+    """Omega_q with the closed shift of second order by the amplitudes of the seeds, by mode.
+
+    Of a ring without it, but for the sines about standing waves.
+    """
     chain = torus.chain
+    if isinstance(torus, RingTorus):
+        linear = chain.frequencies()
+        known = dict(zip(chain.mode_numbers, linear.tolist(), strict=True))
+        return known | (second_order(folded(torus)) if is_standing(torus) else {})
     squares = chain.frequencies() ** 2
     cubic, quartic = (float(chain.potential.coefficient(n)) for n in (3, 4))
     guesses = {}
@@ -165,13 +212,58 @@ def second_order(torus: QuasiPeriodic) -> dict[int, float]:
 class _Search:
     """Linearised flows of one torus with ever more harmonics, made when they are needed."""
 
-    def __init__(self, torus: QuasiPeriodic) -> None:
-        known = coefficients_by_harmonic(torus)
+    def __init__(
+        self, torus: Solution, length: int, before: NormalModes | None = None
+    ) -> None:
+        known = _rows(torus)
         largest = max(float(np.abs(row).max()) for row in known.values())
         least = SMALLEST_KEPT * largest
         self._known = {nu: row for nu, row in known.items() if np.abs(row).max() > least}
-        self._torus = torus
-        self._flows: list[LinearisedFlow] = []
+        self._torus, self._length = torus, length
+        self._guesses = second_order(torus)
+        earlier = before.modes if before else ()
+        self._before = {mode.mode: mode.in_doubles() for mode in earlier}
+        self._earlier = second_order(before.torus) if before else {}
+        self._travels = isinstance(torus, RingTorus) and not is_standing(torus)
+        bonds = len(next(iter(known.values()))) + 1
+        self._functions = 1 if self._travels else (bonds + 1) // 2
+        self._flows: list[Linearised] = []
+
+    def result(self, solution: Solution, found: dict[int, NormalMode]) -> NormalModes:
+        """The modes that were found, with the resonances of all of them."""
+        real = {q: mode.sigma.real for q, mode in found.items()}
+        return NormalModes(
+            torus=solution,
+            modes=tuple(found.values()),
+            guesses={q: self._guesses[q] for q in found},
+            resonances=tuple(_resonances(solution, real, self._length)),
+            undecided=undecided_modes(solution, tuple(found.values())),
+        )
+
+    def required(self, q: int, others: dict[int, NormalMode]) -> NormalMode:
+        """The one that continues q; NoNormalModes where there is none."""
+        guess = self._guesses[q]
+        found = self.mode(q, guess, others)
+        if found is None:
+            nearest = _resonances(self._torus, {q: guess}, self._length)
+            raise NoNormalModes(q, guess, nearest[0] if nearest else None)
+        self._require_resolved(found)
+        return found
+
+    def _require_resolved(self, found: NormalMode) -> None:
+        """NoNormalModes for a cosine about standing waves that turns as the torus does.
+
+        To displace standing waves costs nothing but by Umklapp of high order: then the two
+        frequencies of that direction are one to more digits than a double root has.
+        """
+        torus, sigma = self._torus, complex(found.sigma)
+        standing = isinstance(torus, RingTorus) and not self._travels
+        if not standing or is_sine(torus.chain, found.mode):
+            return
+        nearest = _resonances(torus, {found.mode: sigma.real}, self._length)
+        for one in nearest:
+            if one.kind == OWN and abs(complex(one.distance, sigma.imag)) < UNRESOLVED:
+                raise NoNormalModes(found.mode, self._guesses[found.mode], one)
 
     def mode(
         self, q: int, guess: float, others: dict[int, NormalMode]
@@ -180,27 +272,39 @@ class _Search:
 
         Another that turns out to be this one is sought anew.
         """
-        found = self._sought(lambda flow: reduced(flow, q, guess))
-        twin = found and _twin(found, others.values())
+        found = self._sought(
+            q, lambda flow: self._nearby(flow, q) or reduced(flow, q, guess)
+        )
+        twin = found and self._twin(found, others.values())
         if not twin:
             return found
-        found = self._sought(lambda flow: continued(flow, q))
-        twin = found and _twin(found, others.values())
+        found = self._sought(q, lambda flow: continued(flow, q))
+        twin = found and self._twin(found, others.values())
         if not found or not twin:
             return found
-        again = self._sought(lambda flow: continued(flow, twin.mode))
-        if again is None or _twin(again, [found, *others.values()]):
+        other = twin.mode
+        again = self._sought(other, lambda flow: continued(flow, other))
+        if again is None or self._twin(again, [found, *others.values()]):
             return None
         others[twin.mode] = again
         return found
 
+    def _nearby(self, flow: Linearised, q: int) -> Reduced | None:
+        """From the torus before, its frequency moved as the closed shift is."""
+        if q not in self._before:
+            return None
+        known = self._before[q]
+        moved = self._guesses[q] - self._earlier[q]
+        like = flow.table(_at_harmonics(known, flow.harmonics))
+        return followed(flow, q, known.sigma + moved, like)
+
     def _sought(
-        self, find: Callable[[LinearisedFlow], Reduced | None]
+        self, q: int, find: Callable[[Linearised], Reduced | None]
     ) -> NormalMode | None:
         """With as many harmonics as the tolerance needs; the best one met if none do."""
         best: NormalMode | None = None
         for place in range(len(HEIGHTS)):
-            flow = self._flow(place)
+            flow = self._flow(place).of(q)
             found = find(flow)
             if found and (best is None or found.residual < best.residual):
                 best = _mode_of(flow, found)
@@ -208,37 +312,73 @@ class _Search:
                 break
         return best
 
-    def _flow(self, place: int) -> LinearisedFlow:
+    def _flow(self, place: int) -> Linearised:
         if place == len(self._flows):
             torus, height = self._torus, HEIGHTS[place]
-            functions = (torus.chain.N + 1) // 2
-            chosen, _ = chosen_harmonics(self._known, functions, len(torus.seeds), height)
-            self._flows.append(LinearisedFlow(torus, chosen))
+            s = len(torus.seeds)
+            chosen, _ = chosen_harmonics(self._known, self._functions, s, height)
+            self._flows.append(_linearised(torus, chosen))
         return self._flows[place]
 
+    def _twin(self, found: NormalMode, others: Iterable[NormalMode]) -> NormalMode | None:
+        """One of the others that is the same solution, shifted by a harmonic or conjugate.
 
-def _twin(found: NormalMode, others: Iterable[NormalMode]) -> NormalMode | None:
-    """One of the others that is the same solution, shifted by a harmonic or conjugate.
+        Of a hyperbolic mode the partner in a quartet, with two more solutions between them, is
+        none.
+        """
+        for other in others:
+            if found.growth or other.growth or found.mode == other.mode:
+                continue
+            if self._same(found, other):
+                return other
+        return None
 
-    Of a hyperbolic mode the partner in a quartet, with two more solutions between them, is none.
-    """
-    for other in others:
-        if found.growth or other.growth or found.mode == other.mode:
-            continue
-        at = int(np.argmax(np.abs(found.coefficients[:, other.mode - 1])))
-        rate = found.rate(at)
-        if abs(abs(rate) - complex(other.sigma).real) < SAME:
-            return other
-    return None
+    def _same(self, found: NormalMode, other: NormalMode) -> bool:
+        """Whether a solution has the frequency of another, or its negative, in that one's mode."""
+        modes = self._torus.chain.mode_numbers
+        sigma, q = complex(other.sigma).real, other.mode
+        opposite = -q if self._travels and -q in modes else q
+        for mode, signed in ((q, sigma), (opposite, -sigma)):
+            column = np.abs(found.coefficients[:, modes.index(mode)])
+            rate = found.rate(int(np.argmax(column)))
+            if column.any() and abs(rate - signed) < SAME:
+                return True
+        return False
 
 
-def _mode_of(flow: LinearisedFlow, found: Reduced) -> NormalMode:
+def _rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
+    """Coefficients of a torus by harmonic."""
+    if not isinstance(torus, RingTorus):
+        return coefficients_by_harmonic(torus)
+    if is_standing(torus):
+        return coefficients_by_harmonic(folded(torus))
+    return wave_rows(torus)
+
+
+def _linearised(torus: Solution, harmonics: Ints) -> Linearised:
+    """The linearised flow in these harmonics and their negatives."""
+    if not isinstance(torus, RingTorus):
+        return LinearisedFlow(torus, harmonics)
+    if is_standing(torus):
+        return LinearisedStanding(torus.chain, folded(torus), harmonics)
+    return LinearisedWaves(torus, harmonics)
+
+
+def _at_harmonics(mode: NormalMode, harmonics: Ints) -> Values:
+    """The eigenfunction at other harmonics, 0 where it has none, of norm 1; shape (F, N-1)."""
+    rows = {tuple(nu): row for row, nu in enumerate(mode.harmonics.tolist())}
+    places = np.array([rows.get(tuple(nu), -1) for nu in harmonics.tolist()])
+    table = np.where(places[:, None] < 0, 0, mode.coefficients[places])
+    return np.asarray(table / np.linalg.norm(table))
+
+
+def _mode_of(flow: Linearised, found: Reduced) -> NormalMode:
     return NormalMode(
         mode=found.mode,
         sigma=found.sigma,
         harmonics=flow.harmonics,
         rates=flow.rates.astype(float),
-        coefficients=found.coefficients,
+        coefficients=flow.by_mode(found.coefficients),
         action=found.action,
         residual=found.residual,
         divisors=_smallest_divisors(flow, found),
@@ -248,10 +388,10 @@ def _mode_of(flow: LinearisedFlow, found: Reduced) -> NormalMode:
     )
 
 
-def _smallest_divisors(flow: LinearisedFlow, found: Reduced) -> tuple[NormalDivisor, ...]:
+def _smallest_divisors(flow: Linearised, found: Reduced) -> tuple[NormalDivisor, ...]:
     every = flow.divisors(found.sigma)
     sizes = np.where(flow.allowed(found.mode), np.abs(every), np.inf)
-    sizes[0, found.mode - 1] = np.inf
+    sizes[0, flow.column(found.mode)] = np.inf
     order = np.argsort(sizes, axis=None)[:SHOWN_DIVISORS]
     places = zip(*np.unravel_index(order, sizes.shape), strict=True)
     nearest = []
@@ -260,22 +400,39 @@ def _smallest_divisors(flow: LinearisedFlow, found: Reduced) -> tuple[NormalDivi
             harmonic = tuple(flow.harmonics[row].tolist())
             divisor = every[row, column].item()
             coefficient = found.coefficients[row, column].item()
-            nearest.append(NormalDivisor(int(column) + 1, harmonic, divisor, coefficient))
+            mode = flow.mode_at(int(row), int(column))
+            nearest.append(NormalDivisor(mode, harmonic, divisor, coefficient))
     return tuple(nearest)
 
 
 def _resonances(
-    torus: QuasiPeriodic, sigma: Mapping[int, Any], length: int
+    torus: Solution, sigma: Mapping[int, Any], length: int
 ) -> list[ParametricResonance]:
     """Those of real parts in doubles or in digits; a distance has all its digits."""
     omega = tuple(float(w) for w in torus.frequencies)
     doubles = {q: float(w) for q, w in sigma.items()}
-    found = resonances_of(torus.chain, torus.seeds, omega, doubles, length)
-    if arithmetic_of(list(sigma.values())) is DOUBLES:
-        return found
+    if isinstance(torus, RingTorus) and is_standing(torus):
+        found = []
+        for sine in (True, False):
+            part = {q: w for q, w in doubles.items() if is_sine(torus.chain, q) == sine}
+            fixed = folded(torus).chain
+            found += resonances_of(fixed, torus.seeds, omega, part, length)
+    else:
+        found = resonances_of(torus.chain, torus.seeds, omega, doubles, length)
+        if (
+            isinstance(torus, PRECISE)
+            and arithmetic_of(list(sigma.values())) is not DOUBLES
+        ):
+            found = _in_all_digits(torus, found, sigma)
+    return sorted(found, key=lambda r: abs(r.distance))
+
+
+def _in_all_digits(
+    torus: QuasiPeriodic, found: list[ParametricResonance], sigma: Mapping[int, Any]
+) -> list[ParametricResonance]:
+    """Resonances with the distances of frequencies in digits."""
     with torus.numbers.context(torus.digits):
         exact = [torus.numbers.number(w) for w in torus.frequencies]
         distances = [r.left_of(sigma) - mpmath.fdot(r.harmonic, exact) for r in found]
     pairs = zip(found, distances, strict=True)
-    refined = [replace(r, distance=float(distance)) for r, distance in pairs]
-    return sorted(refined, key=lambda r: abs(r.distance))
+    return [replace(r, distance=float(distance)) for r, distance in pairs]

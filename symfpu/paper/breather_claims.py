@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
-from symfpu.files.progress import unheard
 from symfpu.paper.claims import Claim, judged
 from symfpu.paper.printed import PrintedTorus
-from symfpu.paper.starts import integrated_orbit, printed_row, printed_torus
+from symfpu.paper.starts import period_digits, printed_row, printed_torus
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
@@ -27,8 +26,6 @@ BREATHERS = ("Fig. 7", "Fig. 8")  # that of Fig. 9 has its rows there
 ENERGY_CHAIN, ENERGY_SEED = 6, 4  # 2N/3: one mode that moves alone
 COUPLING = "0.33"
 BELOW, ABOVE, FAR_ABOVE = 0.9, 1.1, 100.0  # of the energy of the saddle
-PERIOD_STEP = 0.02  # twelve digits of a period of the highest mode
-EPS = float(np.finfo(float).eps)
 ARRIVED_FACTOR = 10.0  # of the least residual: the first order below has arrived
 SERIES_LIMIT = 50  # "near k_0 = 50"
 STATED_DIGITS = (4.0, 6.0)
@@ -130,25 +127,6 @@ def start_claim(row: PrintedTorus) -> Claim:
 
 def _harmonic(chain: Chain, Q: Floats) -> float:
     return float(np.sum((chain.frequencies() * Q) ** 2) / 2)
-
-
-def period_digits(row: PrintedTorus, torus: QTorus) -> float:
-    """To how many digits an orbit is back at its start after 2 pi/omega, omega as printed."""
-    period = 2 * math.pi / float(row.frequencies[0])
-    orbit = integrated_orbit(
-        f"{row.label} period",
-        row.chain,
-        torus,
-        period,
-        unheard,
-        step=PERIOD_STEP,
-        samples=1,
-        averages=False,
-    )
-    off_Q = np.abs(orbit.Q[-1] - orbit.Q[0]).max()
-    off_P = np.abs(orbit.P[-1] - orbit.P[0]).max()
-    off = float(max(off_Q, off_P) / np.abs(orbit.Q[0]).max())
-    return -math.log10(max(off, EPS))
 
 
 def pairs_claim(closings: Mapping[str, Closing]) -> Claim:

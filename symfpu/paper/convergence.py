@@ -17,6 +17,7 @@ from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import decimal
 from symfpu.paper.claims import PaperFigure
+from symfpu.paper.convergence_claims import convergence_claims
 from symfpu.paper.convergence_fig1 import CancellationStudy, cancellation_study
 from symfpu.paper.convergence_fig9 import BreatherStudy, SchemeLimit, breather_study
 from symfpu.reports.tables import fifteen_digits, markdown_table
@@ -56,7 +57,8 @@ def convergence_figure(
     panels = (*cancellation_panels(cancellation), *breather_panels(breather))
     text = (*cancellation_text(cancellation), *breather_text(breather))
     numbers = convergence_numbers(cancellation, breather)
-    return PaperFigure("convergence", title, panels, (), text=text, numbers=numbers)
+    claims = convergence_claims(cancellation)
+    return PaperFigure("convergence", title, panels, claims, text=text, numbers=numbers)
 
 
 def cancellation_text(data: CancellationStudy) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ A fixed fraction of the modes at fixed energy a particle. The claims are those o
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -54,6 +54,7 @@ LAMBDAS = {"weak": (5e-10, 5e-9, 5e-8), "strong": (5e-4, 5e-3, 5e-2)}
 # of slopes and intercepts of a law: half a unit of the last printed digit
 LAW_TOLERANCE = 0.005
 RATE_TOLERANCE = 0.05  # relative
+LEFT_LAW = 0.1  # relative: a slope that has left the law
 CURVE_START, CURVE_POINTS = 0.01, 200  # kappa of the line of the caption
 BOTTOM_SHARE = 10  # of the least energy shown, the bottom of the picture
 
@@ -77,7 +78,9 @@ def figure4(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     claims += map(invariance_claim, laws, random)
     claims += map(factor_claim, laws)
     progress("fig4: slopes by energy", NO_FRACTION)
-    claims += [logarithm_claim(name, _rates(name)) for name in LAMBDAS]
+    rates = {name: _rates(name) for name in LAMBDAS}
+    claims += [logarithm_claim(name, found) for name, found in rates.items()]
+    claims.append(validity_claim({name: found[0] for name, found in rates.items()}))
     claims += map(condition_claim, lines)
     remark = f"Phases 0 to t = {TIME:.0e}; random phases, {REALISATIONS} realisations, "
     remark += f"to {RANDOM_TIME:.0e}. Seeds share the energy equally. "
@@ -257,6 +260,25 @@ def logarithm_claim(name: str, found: tuple[Trend, float, float]) -> Claim:
     text = f"the slope goes as log(energy), Eq. eksa2: {name} packets"
     as_expected = abs(trend.rate / expected - 1) <= RATE_TOLERANCE
     return Claim("6.1.1", text, "1/M a decade", ours, judged(as_expected, trend.rate > 0))
+
+
+def validity_claim(trends: Mapping[str, Trend]) -> Claim:
+    """From which lambda on the slope leaves the law by more than a tenth."""
+    factor = SLOPE_CHAIN / SLOPE_SEEDS
+    off = {}
+    for name, trend in trends.items():
+        for value, slope in zip(LAMBDAS[name], trend.y, strict=True):
+            law = math.log10(value) * factor
+            off[value] = abs(float(slope) / law - 1)
+    left = [value for value in sorted(off) if off[value] > LEFT_LAW]
+    shown = ", ".join(f"{value:g}: {off[value]:.0%}" for value in sorted(off))
+    text = "the analysis of leading terms ceases to be valid as lambda approaches 1"
+    ours = f"slope beside its law by lambda - {shown}"
+    if left:
+        ours += f"; off by more than {LEFT_LAW:.0%} from lambda = {left[0]:g} on"
+    kept = [value for value in off if value not in left]
+    ends = bool(left) and bool(kept) and max(kept) < min(left)
+    return Claim("6.1.1", text, "", ours, judged(ends, bool(left)))
 
 
 def condition_claim(line: PrintedLine) -> Claim:

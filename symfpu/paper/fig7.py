@@ -5,7 +5,6 @@ The claims are those of section 6.4.1.
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 from symfpu.breathers.balance import periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.figures.panels import Curve, Panel
-from symfpu.files.progress import Progress, unheard
+from symfpu.files.progress import Progress
 from symfpu.localization.profiles import fpu_trajectory
 from symfpu.paper.breather_profiles import (
     ALIKE_TEXT,
@@ -35,6 +34,7 @@ from symfpu.paper.starts import (
     energies_panel,
     integrated_orbit,
     normalised_floor,
+    period_digits,
     printed_amplitudes,
     printed_row,
     printed_torus,
@@ -45,8 +45,6 @@ from symfpu.tori.torus import QTorus
 Floats = NDArray[np.float64]
 TIME, LOOKS = 1e5, 2001  # of the instantaneous energies, our choice
 NEWTON_DIGITS = 40  # of the periodic orbit: its tails end below 1e-60 of the energy
-EPS = float(np.finfo(float).eps)
-RETURN_STEP = 0.05  # for a period to 12 digits
 RETURN_DIGITS = 10  # "up to 10 significant digits"
 MEAN_DECADES = 0.3  # a factor of two: means that "follow closely"
 VARYING_DECADES = 1.0  # "more than one order of magnitude"
@@ -127,21 +125,7 @@ def _claims(
 
 def return_claim(row: PrintedTorus, torus: QTorus) -> Claim:
     """Back at its start after a period, by integration."""
-    period = 2 * math.pi / float(row.frequencies[0])
-    orbit = integrated_orbit(
-        "fig7 period",
-        row.chain,
-        torus,
-        period,
-        unheard,
-        step=RETURN_STEP,
-        samples=1,
-        averages=False,
-    )
-    off_Q = np.abs(orbit.Q[-1] - orbit.Q[0]).max()
-    off_P = np.abs(orbit.P[-1] - orbit.P[0]).max()
-    off = float(max(off_Q, off_P) / np.abs(orbit.Q[0]).max())
-    digits = -math.log10(max(off, EPS))
+    digits = period_digits(row, torus)
     ours = f"to {digits:.1f} digits of the largest coordinate, "
     ours += "with the amplitude that belongs to the printed frequency"
     text = "the series at k_0 = 51 returns to its start after a period "

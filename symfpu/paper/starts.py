@@ -6,6 +6,7 @@ The paper's tori from its printed frequencies, their orbits, and profiles beside
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Protocol
@@ -16,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import Orbit, integrate
 from symfpu.figures.panels import Curve, Panel
-from symfpu.files.progress import Progress
+from symfpu.files.progress import Progress, unheard
 from symfpu.localization.floors import spectrum_floor
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS, PrintedTorus
 from symfpu.series.lindstedt import lindstedt
@@ -39,6 +40,8 @@ AMPLITUDE_ORDERS = {
 }
 # tails far below the rounding of the largest mode; two looks in a period of E_q
 SCHEME, MODE_STEP = "aba864_modes", 0.7
+PERIOD_STEP = 0.02  # twelve digits of a period of the highest mode
+EPS = float(np.finfo(float).eps)
 
 
 class Starting(Protocol):
@@ -105,6 +108,28 @@ def integrated_orbit(
         workers=2,
         progress=progress,
     )
+
+
+def period_digits(row: PrintedTorus, torus: QTorus) -> float:
+    """To how many digits of its largest coordinate an orbit is back at its start.
+
+    After 2 pi/omega, omega as printed.
+    """
+    period = 2 * math.pi / float(row.frequencies[0])
+    orbit = integrated_orbit(
+        f"{row.label} period",
+        row.chain,
+        torus,
+        period,
+        unheard,
+        step=PERIOD_STEP,
+        samples=1,
+        averages=False,
+    )
+    off_Q = np.abs(orbit.Q[-1] - orbit.Q[0]).max()
+    off_P = np.abs(orbit.P[-1] - orbit.P[0]).max()
+    off = float(max(off_Q, off_P) / np.abs(orbit.Q[0]).max())
+    return -math.log10(max(off, EPS))
 
 
 def profile_panel(

@@ -1,4 +1,4 @@
-"""Statements of sections 2 to 6 that no figure shows: each decided by a computation of its own."""
+"""Statements of sections 2 to 7 that no figure shows: each decided by a computation of its own."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ from symfpu.chain.commensurability import frequency_rank
 from symfpu.chain.propagation import excitation_sequence, reachable_modes
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.localization.laws import profile_law
+from symfpu.paper.appendix_a_claims import algorithm_claim
 from symfpu.paper.breather_claims import breather_claims
 from symfpu.paper.claims import Claim, PaperFigure, judged
+from symfpu.paper.conclusion_claims import conclusion_claims
 from symfpu.paper.judgements import runs
 from symfpu.paper.natural_slopes import natural_slopes, natural_slopes_claim
 from symfpu.series.lindstedt import lindstedt
@@ -48,11 +50,15 @@ def statements(folder: Path, progress: Progress, *, full: bool = False) -> Paper
         thirds_claim(),
         slopes_claim(),
     ]
+    progress("statements: Appendix A", NO_FRACTION)
+    claims.append(algorithm_claim())
     progress("statements: natural packets", NO_FRACTION)
     claims.append(natural_slopes_claim(*natural_slopes()))
     progress("statements: breathers", NO_FRACTION)
     claims += breather_claims()
-    title = "Statements of sections 2 to 6 that no figure shows"
+    progress("statements: conclusions", NO_FRACTION)
+    claims += conclusion_claims()
+    title = "Statements of sections 2 to 7 that no figure shows"
     return PaperFigure("statements", title, (), tuple(claims))
 
 

@@ -18,6 +18,7 @@ from symfpu.paper.corrected_page import (
 )
 from symfpu.paper.series_errors import ScalingStudy, scaling_study
 from symfpu.paper.table import AmplitudeRow, amplitude_table
+from symfpu.paper.table_claims import table_claims
 from symfpu.reports.tables import markdown_table
 from symfpu.reports.torus import torus_record
 
@@ -65,7 +66,8 @@ def table(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigur
     found = list(studies.values())
     text = (*table_text(rows), *corrected_text(corrected, found))
     panels = corrected_panels(corrected, found)
-    return PaperFigure("table", TITLE, panels, (), (), text, records, tuple(lines))
+    claims = table_claims(rows)
+    return PaperFigure("table", TITLE, panels, claims, (), text, records, tuple(lines))
 
 
 def row_record(row: AmplitudeRow) -> dict[str, Any]:

@@ -4,6 +4,8 @@ from symfpu.plots.families import family_amplitudes as family_amplitudes
 from symfpu.plots.families import family_frequencies as family_frequencies
 from symfpu.plots.families import family_multipliers as family_multipliers
 from symfpu.plots.families import family_spectra as family_spectra
+from symfpu.plots.frequency_map import frequency_drift as frequency_drift
+from symfpu.plots.frequency_map import frequency_map as frequency_map
 from symfpu.plots.indices import alignment as alignment
 from symfpu.plots.indices import foretold as foretold
 from symfpu.plots.indices import lyapunov as lyapunov

@@ -22,7 +22,7 @@ def normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
         ones.
 
     Of hyperbolic modes the real part is shown; the title has the rate of growth. Crosses are the
-    closed shifts of second order. Returns the axes. Raises InputError.
+    closed shifts of second order, with fixed ends. Returns the axes. Raises InputError.
 
     >>> from matplotlib.figure import Figure
     >>> from symfpu import Chain, breather_at_amplitude, normal_modes
@@ -31,7 +31,8 @@ def normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     'stable'
     """
     found = require(result, NormalModes, "normal modes", "pass what normal_modes gave")
-    linear = found.torus.chain.frequencies()
+    chain = found.torus.chain
+    linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
     with axes_for(ax) as axes:
         for kind, style in LOOKS.items():
             modes = [mode for mode in found.modes if mode.kind == kind]
@@ -39,11 +40,12 @@ def normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
                 q = np.array([mode.mode for mode in modes])
                 sigma = np.array([complex(mode.sigma).real for mode in modes])
                 label = f"{kind}: {len(modes)}"
-                axes.plot(q, sigma - linear[q - 1], ls="none", label=label, **style)
-        q = np.array(list(found.guesses), dtype=int)
-        closed = np.array(list(found.guesses.values())) - linear[q - 1]
-        cross = {"marker": "x", "color": QUIET, "ms": 7, "zorder": 0}
-        axes.plot(q, closed, ls="none", label="second order", **cross)
+                shifts = sigma - [linear[mode.mode] for mode in modes]
+                axes.plot(q, shifts, ls="none", label=label, **style)
+        if chain.ends == "fixed":
+            closed = [guess - linear[q] for q, guess in found.guesses.items()]
+            cross = {"marker": "x", "color": QUIET, "ms": 7, "zorder": 0}
+            axes.plot(list(found.guesses), closed, ls="none", label="second order", **cross)
         whole_numbers(axes.xaxis)
         axes.set_xlabel(r"$q$")
         axes.set_ylabel(r"$\mathrm{Re}\,\sigma_q - \Omega_q$")

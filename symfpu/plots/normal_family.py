@@ -1,21 +1,37 @@
-"""Normal frequencies along a line of tori, with their events."""
+"""Normal frequencies along a line or a family of tori, with their events."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from symfpu.families.normal_family import STABILITY, NormalFamily
+from symfpu.families.family import Family
+from symfpu.families.normal_events import STABILITY, NormalEvent
+from symfpu.families.normal_family import NormalFamily
 from symfpu.plots.style import QUIET, Axes, axes_for, require
-from symfpu.tori.quasiperiodic import amplitudes_of
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
+
+
+class _Row(NamedTuple):
+    """One torus, and its normal frequencies by mode."""
+
+    torus: QuasiPeriodic | RingTorus
+    sigma: Mapping[int, complex]
+
+    @property
+    def stable(self) -> bool:
+        """Whether all that are known are elliptic."""
+        return not any(complex(w).imag for w in self.sigma.values())
 
 
 def family_normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
-    """Shifts sigma_q - Omega_q along a line of tori, by the amplitude that changes most.
+    """Shifts sigma_q - Omega_q along a line or a family, by the amplitude that changes most.
 
-    result : what `normal_family` gave; dimensionless. Ours. ax : axes of matplotlib; default new
-        ones.
+    result : what `normal_family` gave, or `family` with normal=True; dimensionless. Ours. ax :
+        axes of matplotlib; default new ones.
 
     Elliptic directions have full marks, hyperbolic ones, of which the real part is shown, empty
     diamonds; vertical lines are events: broken where stability changes, dotted
@@ -28,30 +44,40 @@ def family_normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     >>> family_normal_frequencies(found, Figure().add_subplot()).get_title()
     '2 tori, stable'
     """
-    advice = "pass what symfpu.normal_family gave"
-    found = require(result, NormalFamily, "normal frequencies of a line of tori", advice)
-    linear = found.members[0].torus.chain.frequencies()
-    seed, x = _axis(found)
+    rows, events = _rows(result)
+    linear = rows[0].torus.chain.frequencies()
+    seed, x = _axis(rows)
+    unstable = sum(not row.stable for row in rows)
+    verdict = f"{unstable} of them unstable" if unstable else "stable"
     with axes_for(ax) as axes:
-        for place, mode in enumerate(found.members[0].modes):
-            q = mode.mode
-            sigma = np.array([complex(m.modes[place].sigma) for m in found.members])
+        for q in rows[0].sigma:
+            sigma = np.array([complex(row.sigma.get(q, np.nan)) for row in rows])
             _line(axes, x, sigma - linear[q - 1], f"$q={q}$")
-        for event in found.events:
+        for event in events:
             style = "--" if event.kind == STABILITY else ":"
             axes.axvline(event.amplitudes[seed], color=QUIET, ls=style, lw=1, zorder=0)
         axes.set_xlabel(f"$A_{{{seed}}}$")
         axes.set_ylabel(r"$\mathrm{Re}\,\sigma_q - \Omega_q$")
-        axes.set_title(f"{len(found.members)} tori, {found.verdict}")
+        axes.set_title(f"{len(rows)} tori, {verdict}")
         axes.legend()
     return axes
 
 
-def _axis(found: NormalFamily) -> tuple[int, Any]:
-    """The seed whose amplitude changes most, and that amplitude along the line."""
-    rows = [amplitudes_of(member.torus) for member in found.members]
-    seed = max(rows[0], key=lambda q: abs(float(rows[-1][q]) - float(rows[0][q])))
-    return seed, np.array([float(row[seed]) for row in rows])
+def _rows(result: Any) -> tuple[list[_Row], tuple[NormalEvent, ...]]:
+    """The members whose normal frequencies are known, and the events."""
+    if isinstance(result, Family) and any(m.normal for m in result.members):
+        known = [m.normal for m in result.members if m.normal]
+        return [_Row(one.torus, one.frequencies) for one in known], result.normal_events
+    advice = "pass what symfpu.normal_family gave, or symfpu.family with normal=True"
+    found = require(result, NormalFamily, "normal frequencies of a family of tori", advice)
+    return [_Row(one.torus, one.frequencies) for one in found.members], found.events
+
+
+def _axis(rows: list[_Row]) -> tuple[int, Any]:
+    """The seed whose amplitude changes most, and that amplitude along the way."""
+    known = [amplitudes_by_seed(row.torus) for row in rows]
+    seed = max(known[0], key=lambda q: abs(float(known[-1][q]) - float(known[0][q])))
+    return seed, np.array([float(row[seed]) for row in known])
 
 
 def _line(axes: Axes, x: Any, shift: Any, label: str) -> None:

@@ -23,6 +23,7 @@ from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import decimal
 from symfpu.plots.families import family_frequencies
+from symfpu.plots.frequency_map import frequency_map
 from symfpu.plots.indices import alignment, foretold
 from symfpu.plots.lines import lines
 from symfpu.plots.motion import time_series
@@ -37,6 +38,7 @@ from symfpu.plots.toda import toda_gaps
 from symfpu.proofs.certificates import PropagationProof
 from symfpu.series.series import LindstedtSeries
 from symfpu.spectral.analysis import FrequencyAnalysis
+from symfpu.spectral.mapping import FrequencyMap
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -82,7 +84,8 @@ def _inline(result: Any, usual: Usual) -> str:
     draw = partial(usual.picture, result)
     content = picture_bytes(draw, ".png", size=SIZE, dpi=DPI)
     data = base64.b64encode(content).decode()
-    words = f"{usual.picture.__name__} of this {type(result).__name__}".replace("_", " ")
+    name = usual.picture.__name__.lstrip("_")
+    words = f"{name} of this {type(result).__name__}".replace("_", " ")
     return f'<img alt="{words}" src="data:image/png;base64,{data}">'
 
 
@@ -210,6 +213,13 @@ def _normal_family_rows(found: NormalFamily) -> Rows:
         yield event.kind, repr(event)
 
 
+def _family_picture(found: Family, ax: Axes | None = None) -> Axes:
+    """Normal frequencies where they are known, else energies by frequencies."""
+    if any(m.normal for m in found.members):
+        return family_normal_frequencies(found, ax)
+    return family_frequencies(found, ax)
+
+
 def _family_rows(found: Family) -> Rows:
     energies = [m.energy for m in found.members]
     yield "chain", _model(found.chain)
@@ -219,6 +229,8 @@ def _family_rows(found: Family) -> Rows:
         count = sum(event.kind == kind for event in found.events)
         if count:
             yield f"events: {kind}", str(count)
+    for event in found.normal_events[:MOST_MODES]:
+        yield event.kind, repr(event)
 
 
 def _proof_rows(proof: PropagationProof) -> Rows:
@@ -245,6 +257,15 @@ def _line_rows(found: FrequencyAnalysis) -> Rows:
     unknown = sum(line.harmonic is None for line in found.lines)
     yield "lines", f"{len(found.lines)}, {unknown} of them unidentified"
     yield "drift", f"{found.drift:.2g}"
+
+
+def _map_rows(found: FrequencyMap) -> Rows:
+    yield "chain", _model(found.chain)
+    yield "seeds", _listed(found.seeds)
+    yield "to t", f"{found.T:.10g}"
+    by_energy = zip(found.energies, found.counts, found.drifts, strict=True)
+    for energy, count, drift in by_energy:
+        yield f"H = {energy:.6g}", f"{count} frequencies, drift {drift:.2g}"
 
 
 def _energy_series(orbit: Orbit, ax: Axes | None = None) -> Axes:
@@ -295,13 +316,19 @@ USUAL = (
         lambda found: found.verdict,
         _normal_family_rows,
     ),
-    Usual(Family, family_frequencies, lambda found: f"it {found.ending}", _family_rows),
+    Usual(Family, _family_picture, lambda found: f"it {found.ending}", _family_rows),
     Usual(PropagationProof, propagation, lambda proof: proof.verdict, _proof_rows),
     Usual(
         FrequencyAnalysis,
         lines,
         lambda found: f"{len(found.seeds)} independent frequencies",
         _line_rows,
+    ),
+    Usual(
+        FrequencyMap,
+        frequency_map,
+        lambda found: f"{found.counts.min()} to {found.counts.max()} frequencies",
+        _map_rows,
     ),
     Usual(TodaInvariants, toda_gaps, lambda found: "gaps and actions", _toda_rows),
 )

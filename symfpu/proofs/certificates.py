@@ -32,6 +32,7 @@ from symfpu.frames.table import Columns, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import integer, seed_modes
+from symfpu.proofs.seed_sums import modes_of_one_parity
 from symfpu.series.force import force_numbers
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
@@ -169,6 +170,29 @@ class PropagationProof(Shown, Tabled):
             verdict += f"; {len(self.exceptions) - 3} more"
         case = f"N={self.N}, {self.model}, seeds={seeds}, order {self.order}"
         return f"PropagationProof({case}: {verdict})"
+
+    @property
+    def reason(self) -> str:
+        """What shows the excited modes: "sign", "residues", or "sign and residues".
+
+        "couplings" where none is excited, as they leave nothing.
+        The sign argument is for the models of one coupling, and shows more: the mode is excited
+        for the frequencies of every N on the same flat (docs/propagation.md, Theorem 7).
+        """
+        excited = {witness.mode for witness in self.excited}
+        by_sign = excited & self.by_sign
+        reasons = ["sign"] if by_sign else []
+        if excited > by_sign:
+            reasons.append("residues")
+        return " and ".join(reasons) or "couplings"
+
+    @property
+    def by_sign(self) -> frozenset[int]:
+        """Modes that sums of the seeds, which fold with one sign, show excited by themselves."""
+        if self.model not in SINGLE:
+            return frozenset()
+        orders = {q: k for k, modes in enumerate(self.rule) for q in modes}
+        return frozenset(modes_of_one_parity(self.N, self.model, self.seeds, orders))
 
     def certificate(self) -> dict[str, Any]:
         """The certificate as plain integers, strings, lists and dictionaries.

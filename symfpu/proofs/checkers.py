@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from symfpu.proofs import check_existence, verify, verify_theorem
+from symfpu.proofs import check_existence, check_torus, verify, verify_theorem
 from symfpu.proofs.verify import CertificateError
 
 Json = dict[str, Any]
@@ -30,6 +30,9 @@ CHECKERS: dict[str, Checker] = {
     PROPAGATION: Checker(verify.read_certificate, verify.check_certificate),
     check_existence.FORMAT: Checker(
         check_existence.read_certificate, check_existence.check_certificate
+    ),
+    check_torus.FORMAT: Checker(
+        check_torus.read_certificate, check_torus.check_certificate
     ),
     verify_theorem.FORMAT: Checker(
         verify_theorem.read_theorem, verify_theorem.check_theorem
@@ -54,7 +57,7 @@ def verified_certificate(path: str | Path) -> tuple[Json, list[str]]:
         return certificate, checker.check(certificate)
     except CertificateError:
         raise
-    except check_existence.ExistenceError as error:
+    except (check_existence.ExistenceError, check_torus.TorusError) as error:
         raise CertificateError(str(error)) from error
     except verify.READING_ERRORS as error:
         raise CertificateError(f"no readable certificate: {error!r:.200}") from None

@@ -1,9 +1,9 @@
 """The propagation rule for every N: one seed set decides each of finitely many flats.
 
-A mode is shown excited by the sign argument, which holds for every seed set of the flat and the
-true frequencies, or by a residue, which holds there for the L_q(nu) as independent symbols. It is
-shown not to be excited by the couplings. Statement, proofs and what is left between the two are
-in docs/propagation.md.
+A mode is shown excited by the sign argument or a chain of couplings, which hold for every seed
+set of the flat and the true frequencies, or by a residue, which holds there for the L_q(nu) as
+independent symbols. It is shown not to be excited by the couplings. Statement, proofs and what is
+left between the two are in docs/propagation.md.
 """
 
 from __future__ import annotations
@@ -16,22 +16,25 @@ from symfpu.chain.propagation import coupling_sequence, excitation_sequence
 from symfpu.proofs.certificates import RuleException, Witness, random_point
 from symfpu.proofs.flats import Flat, degree_of
 from symfpu.proofs.plus_terms import PlusResidues, PlusTerms
+from symfpu.proofs.seed_sums import chained_modes, modes_of_one_parity
 from symfpu.series.series import ResiduePoint
 
 ATTEMPTS = 4  # points at which a residue may be zero before a mode counts as undecided
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class DecidedFlat:
     """What the representative of a flat decides, for every N and seeds of the flat.
 
     flat : its representative. exceptions : modes of the representative whose order is not that of
-    the rule. witnesses : residues of the modes that the sign argument leaves. points : where they
-    were taken. undecided : modes that neither decides.
+    the rule. chained : excited modes that a chain of couplings shows, not the sign. witnesses :
+    residues of the modes that both leave. points : where they were taken. undecided : modes that
+    nothing decides.
     """
 
     flat: Flat
     exceptions: tuple[RuleException, ...] = ()
+    chained: tuple[int, ...] = ()
     witnesses: tuple[Witness, ...] = ()
     points: tuple[ResiduePoint, ...] = ()
     undecided: tuple[int, ...] = ()
@@ -39,32 +42,45 @@ class DecidedFlat:
     @property
     def by_sign(self) -> bool:
         """Whether the sign argument shows every excited mode."""
-        return not self.witnesses and not self.undecided
+        return not self.chained and not self.witnesses and not self.undecided
 
 
 def decided_flat(model: str, order: int, flat: Flat) -> DecidedFlat:
     """Decide one flat by its representative."""
-    rule = _by_mode(excitation_sequence(flat.N, flat.seeds, order, model=model))
-    terms = PlusTerms(flat.N, model, flat.seeds)
-    # the rule can only be too early: outside its sets there is no term
-    missing = [
-        q for q, k in rule.items() if k and not _has_terms(terms, q, degree_of(model, k))
-    ]
-    actual = dict(rule)
-    if missing:
-        sets = coupling_sequence(flat.N, flat.seeds, order, model=model)
-        actual = _by_mode(sets)
+    N, seeds = flat.N, flat.seeds
+    rule = _by_mode(excitation_sequence(N, seeds, order, model=model))
+    by_sign = modes_of_one_parity(N, model, seeds, rule) | set(seeds)
+    chained = chained_modes(N, model, seeds, rule, by_sign)
+    if rule.keys() <= by_sign | chained:
+        return DecidedFlat(flat, chained=tuple(sorted(chained - by_sign)))
+    terms = PlusTerms(N, model, seeds)
+    actual = _actual(terms, model, order, rule, by_sign | chained)
+    exceptions = _exceptions(N, rule, actual)
+    chained = chained_modes(N, model, seeds, actual, by_sign)
+    shown = by_sign | chained
     left = [
         (q, k)
         for q, k in sorted(actual.items())
-        if k and terms.decided_by_sign(q, degree_of(model, k)) is None
+        if q not in shown and terms.decided_by_sign(q, degree_of(model, k)) is None
     ]
     witnesses, points = _witnesses(terms, model, left)
-    shown = {witness.mode for witness in witnesses}
+    shown |= {witness.mode for witness in witnesses}
     undecided = tuple(q for q, _ in left if q not in shown)
-    return DecidedFlat(
-        flat, _exceptions(flat.N, rule, actual), witnesses, points, undecided
-    )
+    in_chains = tuple(sorted(chained - by_sign))
+    return DecidedFlat(flat, exceptions, in_chains, witnesses, points, undecided)
+
+
+def _actual(
+    terms: PlusTerms, model: str, order: int, rule: dict[int, int], shown: set[int]
+) -> dict[int, int]:
+    """The rule where all its modes have terms, else the corrected one.
+
+    The rule can only be too early: outside its sets there is no term.
+    """
+    for q, k in rule.items():
+        if q not in shown and not _has_terms(terms, q, degree_of(model, k)):
+            return _by_mode(coupling_sequence(terms.N, terms.seeds, order, model=model))
+    return rule
 
 
 def _by_mode(sequence: Sequence[Sequence[int]]) -> dict[int, int]:

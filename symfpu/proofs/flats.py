@@ -26,10 +26,11 @@ Ints = NDArray[np.int64]
 Row = tuple[int, ...]  # m_1, ..., m_s, c of m.x = c
 MOST_SEEDS = 3  # of which the flats can be enumerated
 LONGEST = 400  # bonds among which representatives are sought
+CANDIDATES = 1 << 20  # points looked at together
 DIGIT = 1 << 12  # above every denominator of a point
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Flat:
     """A flat by its representative: N, the seeds, and the dimension."""
 
@@ -204,46 +205,116 @@ def points_on(arrangement: Arrangement, line: Line) -> Ints:
     rise = line.scale * values - normals @ start
     sign = np.sign(slope)[:, None]
     places = (start * slope[:, None] + direction * rise[:, None]) * sign
-    table = np.concatenate([places, np.abs(slope)[:, None] * line.scale], axis=1)
+    return reduced_points(places, np.abs(slope) * line.scale)
+
+
+def reduced_points(places: Ints, N: Ints) -> Ints:
+    """Those of the points places / N that lie in the simplex, as rows q_1 .. q_s, N."""
+    table = np.concatenate([places, N[:, None]], axis=1)
     grows = np.diff(table, axis=1).min(axis=1) > 0
     table = table[grows & (table[:, 0] > 0)]
     reduced: Ints = table // np.gcd.reduce(table, axis=1)[:, None]
     return reduced
 
 
+def keys_of(table: Ints) -> Ints:
+    """Rows q_1 .. q_s, N as single numbers: ascending by N, then by seeds."""
+    if table.size and table.max() >= DIGIT:
+        raise SymfpuError(f"a point of denominator {table.max()}; take a lower order")
+    keys: Ints = table @ _weights(table.shape[1])
+    return keys
+
+
+def rows_of(keys: Ints, width: int) -> Ints:
+    """What `keys_of` was given."""
+    rows: Ints = keys[:, None] // _weights(width) % DIGIT
+    return rows
+
+
+def _weights(width: int) -> Ints:
+    seeds = DIGIT ** np.arange(width - 2, -1, -1)
+    return np.append(seeds, DIGIT ** (width - 1))
+
+
 def points(arrangement: Arrangement, found_lines: Sequence[Line], told: Progress) -> Ints:
-    """All flats of dimension zero, as rows q_1 .. q_s, N: each once, ascending by N."""
-    weights = DIGIT ** np.arange(arrangement.s + 1)
+    """All flats of dimension zero as keys, each once, ascending."""
     keys = np.zeros(0, dtype=np.int64)
     fresh: list[Ints] = []
     for i, line in enumerate(found_lines):
-        table = points_on(arrangement, line)
-        if table.size and table.max() >= DIGIT:
-            raise SymfpuError(f"a point of denominator {table.max()}; take a lower order")
-        fresh.append(np.unique(table @ weights))
+        fresh.append(np.unique(keys_of(points_on(arrangement, line))))
         if i % 1000 == 999:
             keys, fresh = np.unique(np.concatenate([keys, *fresh])), []
             told("points of the arrangement", i / len(found_lines))
-    keys = np.unique(np.concatenate([keys, *fresh]))
-    return (keys[:, None] // weights % DIGIT).astype(np.int64)
+    found: Ints = np.unique(np.concatenate([keys, *fresh]))
+    return found
+
+
+def points_between(found_lines: Sequence[Line], vertices: Ints, told: Progress) -> Ints:
+    """For each line the key of the first point in it that is no vertex of the arrangement.
+
+    Such a point lies on no hyperplane but those that hold the line.
+    """
+    table = np.array([(*line.start, *line.direction, line.scale) for line in found_lines])
+    chosen = np.zeros(len(table), dtype=np.int64)
+    for N in range(2, LONGEST):
+        left = np.flatnonzero(chosen == 0)
+        if not left.size:
+            return chosen
+        for block in np.array_split(left, 1 + left.size * N // CANDIDATES):
+            chosen[block] = _first_of_length(N, table[block], vertices)
+        told("seed sets in general position", 1 - left.size / len(table))
+    raise SymfpuError(f"no seed sets for {np.sum(chosen == 0)} lines below N = {LONGEST}")
+
+
+def _first_of_length(N: int, table: Ints, vertices: Ints) -> Ints:
+    """The least key of a point with these N bonds that is no vertex, line by line; 0 for none."""
+    s = table.shape[1] // 2
+    starts, directions, scale = table[:, :s], table[:, s : 2 * s], table[:, 2 * s]
+    # the one coordinate that is free is that of the parameter
+    numbers = np.arange(1, N)
+    places = N * starts[:, None] + numbers[:, None] * directions[:, None]
+    whole = (places % scale[:, None, None] == 0).all(axis=2)
+    lines, rows = np.nonzero(whole)
+    seeds = places[lines, rows] // scale[lines, None]
+    ends = np.zeros(len(seeds), dtype=np.int64)
+    chain = np.column_stack([ends, seeds, ends + N])
+    inside = (np.diff(chain, axis=1) > 0).all(axis=1)
+    lines, chain = lines[inside], chain[inside, 1:]
+    chain //= np.gcd.reduce(chain, axis=1)[:, None]
+    keys = keys_of(chain)
+    general = ~_among(keys, vertices)
+    none = np.iinfo(np.int64).max
+    least = np.full(len(table), none)
+    np.minimum.at(least, lines[general], keys[general])
+    found: Ints = np.where(least == none, 0, least)
+    return found
+
+
+def _among(keys: Ints, ascending: Ints) -> NDArray[np.bool_]:
+    """Which keys stand in an ascending list."""
+    if not ascending.size:
+        return np.zeros(len(keys), dtype=np.bool_)
+    place = np.searchsorted(ascending, keys)
+    known: NDArray[np.bool_] = ascending[np.minimum(place, len(ascending) - 1)] == keys
+    return known
 
 
 def representatives(
-    arrangement: Arrangement, wide: Mapping[bytes, tuple[int, Line | None]], told: Progress
+    arrangement: Arrangement, wide: Mapping[bytes, int], told: Progress
 ) -> list[Flat]:
-    """The seed set of smallest N in each flat of dimension one and more."""
+    """The seed set of smallest N in each flat of dimension two and more."""
     s, found = arrangement.s, dict[bytes, Flat]()
     for N in range(s + 1, LONGEST):
+        if len(found) == len(wide):
+            return list(found.values())
         seeds = np.array(list(combinations(range(1, N), s)), dtype=np.int64)
         packed = np.packbits(arrangement.through(N, seeds), axis=1)
         # NumPy compares rows as strings of bytes
         strings = np.ascontiguousarray(packed).view(f"V{packed.shape[1]}")[:, 0]
         for row, key in enumerate(map(bytes, strings)):
             if key in wide and key not in found:
-                found[key] = Flat(N, tuple(map(int, seeds[row])), wide[key][0])
+                found[key] = Flat(N, tuple(map(int, seeds[row])), wide[key])
         told("seed sets in general position", len(found) / len(wide))
-        if len(found) == len(wide):
-            return list(found.values())
     raise SymfpuError(
         f"no seed sets for {len(wide) - len(found)} flats below N = {LONGEST}"
     )
@@ -258,7 +329,15 @@ def flats(model: str, s: int, order: int, progress: Progress | None = None) -> l
     told = progress or unheard
     arrangement = Arrangement(model, s, order)
     wide = wide_flats(arrangement)
-    vertices = points(arrangement, [line for _, line in wide.values() if line], told)
-    found = representatives(arrangement, wide, told)
-    found += [Flat(row[-1], tuple(row[:-1]), 0) for row in vertices.tolist()]
-    return sorted(found, key=lambda flat: (-flat.dimension, flat.N, flat.seeds))
+    lines = [line for _, line in wide.values() if line]
+    wider = {key: dimension for key, (dimension, line) in wide.items() if not line}
+    vertices = points(arrangement, lines, told)
+    found = representatives(arrangement, wider, told)
+    found.sort(key=lambda flat: (-flat.dimension, flat.N, flat.seeds))
+    between = np.sort(points_between(lines, vertices, told))
+    return [*found, *_flats_at(between, s, 1), *_flats_at(vertices, s, 0)]
+
+
+def _flats_at(keys: Ints, s: int, dimension: int) -> list[Flat]:
+    rows = rows_of(keys, s + 1).tolist()
+    return [Flat(row[-1], tuple(row[:-1]), dimension) for row in rows]

@@ -44,7 +44,7 @@ class PlusTerms:
 
     def of_degree(self, degree: int) -> list[Powers]:
         """All powers of this degree, the most even ones last."""
-        return list(_powers(len(self.seeds), degree))
+        return list(powers_of_degree(len(self.seeds), degree))
 
     def signs(self, p: Powers) -> dict[int, int]:
         """By mode: PLUS, MINUS or BOTH; a mode without products is not there."""
@@ -143,6 +143,7 @@ def _splits(p: Powers, factors: int, most: Powers) -> Iterator[tuple[Powers, ...
 
 
 @lru_cache(maxsize=256)
-def _powers(s: int, degree: int) -> tuple[Powers, ...]:
+def powers_of_degree(s: int, degree: int) -> tuple[Powers, ...]:
+    """All powers of so many seeds with this sum, the most even ones last."""
     found: list[Any] = [p for p in product(range(degree + 1), repeat=s) if sum(p) == degree]
     return tuple(sorted(found, key=max, reverse=True))

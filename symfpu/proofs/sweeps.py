@@ -1,23 +1,14 @@
 """Sweeps of the propagation rule over all seed sets: how often it holds, and every exception.
 
-Cases run through the standard Executor interface, and each finished case is one line of a file,
-from which an interrupted sweep goes on. A case that raises an error loses no other.
+One use of `symfpu.sweeps`: each seed set is a case, and each case a row of a file, from which an
+interrupted sweep goes on. A case that raises an error loses no other.
 """
 
 from __future__ import annotations
 
-import json
-import multiprocessing
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import (
-    BrokenExecutor,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    as_completed,
-)
-from contextlib import ExitStack
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, field
 from itertools import combinations
 from pathlib import Path
@@ -25,22 +16,17 @@ from typing import Any
 
 from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.propagation import coupling_sequence
-from symfpu.errors import InputError, SymfpuError
+from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.typed import integer
 from symfpu.proofs.certificates import law_name, prove_propagation, proved_chain
-
-HEADER, SCHEMA = "symfpu propagation sweep", 1
-BATCH = 16  # cases in one task
-GUARD = "call sweep_propagation under `if __name__ == '__main__':`, or pass executor="
-DEAD_WORKERS = f"the worker processes died: in a script, {GUARD}"
+from symfpu.sweeps.rows import SweepFailure, SweepRow
+from symfpu.sweeps.sweep import SweepStopped, sweep
 
 Key = tuple[int, tuple[int, ...]]  # N and the seeds
-# records of decided cases, errors of others
-Decided = tuple[list[dict[str, Any]], dict[Key, Exception]]
 
 
 @dataclass(frozen=True)
@@ -111,43 +97,28 @@ class SweepIncomplete(SymfpuError):
 
     All other cases are then decided.
 
-    sweep : of all other cases. failures : the errors by (N, seeds). Ours.
+    sweep : of all other cases. failures : what went wrong by (N, seeds): kind of error, message,
+    numbers. Ours.
     """
 
-    def __init__(self, sweep: Sweep, failures: Mapping[Key, Exception]) -> None:
+    def __init__(self, sweep: Sweep, failures: Mapping[Key, SweepFailure]) -> None:
         self.sweep = sweep
         self.failures = dict(failures)
-        (N, seeds), error = next(iter(self.failures.items()))
-        dead = isinstance(error, BrokenExecutor)
-        reason = DEAD_WORKERS if dead else f"{type(error).__name__}: {error}"
-        first = f"the first N = {N}, seeds {seeds} ({reason})"
+        (N, seeds), failure = next(iter(self.failures.items()))
+        first = f"the first N = {N}, seeds {seeds} ({failure})"
         undecided = f"{len(self.failures)} seed sets were not decided, {first}"
         others = f"the {len(sweep.cases)} others are in the attribute sweep"
         advice = "and in the file if there is one: call again to go on from it"
         super().__init__(f"{undecided}; {others}, {advice}")
 
 
-def decide(cases: Sequence[Key], potential: str, order: int) -> Decided:
-    """Decide some seed sets on one core.
-
-    Plain data and errors out, so that any executor can carry it.
-    """
-    records, failures = [], {}
-    for N, seeds in cases:
-        try:
-            records.append(asdict(_decided(N, seeds, potential, order)))
-        # whatever it is, it is reported at the end and costs no other case
-        except Exception as error:
-            failures[N, seeds] = error
-    return records, failures
-
-
-def _decided(N: int, seeds: tuple[int, ...], potential: str, order: int) -> SweepCase:
+def decide(N: int, seeds: tuple[int, ...], *, potential: str, order: int) -> dict[str, Any]:
+    """One seed set on one core, as plain data."""
     proof = prove_propagation(N, seeds, order, potential=potential, workers=1)
     sets = coupling_sequence(N, seeds, order, potential=potential)
     corrected = tuple(sets) == proof.actual
     exceptions = tuple((e.mode, e.predicted, e.actual) for e in proof.exceptions)
-    return SweepCase(N, tuple(seeds), proof.verdict, exceptions, corrected)
+    return asdict(SweepCase(N, tuple(seeds), proof.verdict, exceptions, corrected))
 
 
 def sweep_propagation(
@@ -166,10 +137,7 @@ def sweep_propagation(
     lengths : numbers of bonds N. largest_set : most seeds. order : the last k. model : 'alpha'
         (default) or 'beta'. potential : in its place, that of any chain with exact coefficients.
         All are dimensionless integers.
-    executor : any concurrent.futures.Executor, such as dask.distributed's client.get_executor();
-        default a pool of processes, which a script must start under `if __name__ == "__main__":`.
-    file : JSON lines, one for each decided case; an existing file of the same sweep is continued,
-        its last line dropped if it was cut.
+    executor, file : as of `sweep`; failures in the file are decided again.
     progress : called as (label, fraction done).
 
     Every case is decided as by `prove_propagation` (Eqs. app, dk). Raises InputError, also for a
@@ -186,80 +154,44 @@ def sweep_propagation(
     largest_set, order = integer(largest_set, "largest_set", 1), integer(order, "order", 0)
     chain = proved_chain(2, model, potential)
     law, name = chain.potential.text, law_name(chain)
-    cases = [
-        (N, seeds)
+    cases: list[dict[str, Any]] = [
+        {"N": N, "seeds": seeds}
         for N in lengths
         for s in range(1, largest_set + 1)
         for seeds in combinations(range(1, N), s)
     ]
-    log = SweepLog(Path(file), name, order) if file is not None else None
-    decided = {
-        key: case for key, case in (log.read() if log else {}).items() if key in set(cases)
-    }
-    todo = [case for case in cases if case not in decided]
-    failures: dict[Key, Exception] = {}
-    with ExitStack() as stack:
-        pool = executor or stack.enter_context(
-            ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn"))
-        )
-        for records, failed in _results(pool, _batches(todo), law, order):
-            failures |= failed
-            for record in records:
-                case = _case(record)
-                decided[case.N, case.seeds] = case
-                if log:
-                    log.append(record)
-            if progress:
-                progress("seed sets", len(decided) / len(cases))
-    sweep = Sweep(name, order, tuple(decided[case] for case in cases if case in decided))
+    shared = {"potential": law, "order": order}
+    options: dict[str, Any] = {"executor": executor, "file": file, "progress": progress}
+    rows, reason = _rows(cases, shared, options)
+    decided, failures = [], {}
+    for case in cases:
+        key = (case["N"], case["seeds"])
+        row = rows.get(key)
+        if row is not None and row.failure is None:
+            decided.append(_case(row.result))
+        else:
+            failures[key] = reason if row is None or row.failure is None else row.failure
+    result = Sweep(name, order, tuple(decided))
     if failures:
-        ordered = {case: failures[case] for case in cases if case in failures}
-        raise SweepIncomplete(sweep, ordered) from next(iter(ordered.values()))
-    return sweep
+        raise SweepIncomplete(result, failures)
+    return result
 
 
-def _results(
-    pool: Executor, batches: Sequence[Sequence[Key]], potential: str, order: int
-) -> Iterator[Decided]:
-    """What became of every batch, as it ends; the others are cancelled if the caller stops."""
-    batch_of: dict[Future[Decided], Sequence[Key]] = {}
+def _rows(
+    cases: Sequence[Mapping[str, Any]], shared: Mapping[str, Any], options: dict[str, Any]
+) -> tuple[dict[Key, SweepRow], SweepFailure]:
+    """The rows by N and seeds, and why others are missing if the executor broke down."""
+    reason = SweepFailure(SweepStopped.__name__, "the executor broke down")
     try:
-        for batch in batches:
-            batch_of[_submitted(pool, batch, potential, order)] = batch
-        for task in as_completed(batch_of):
-            error = task.exception()
-            if error is None:
-                yield task.result()
-            # the worker died, or what it decided could not be carried
-            elif isinstance(error, Exception):
-                yield [], dict.fromkeys(batch_of[task], error)
-            else:
-                raise error
-    finally:
-        for task in batch_of:
-            task.cancel()
+        found = sweep(decide, cases, fixed=shared, retry=True, **options)
+    except SweepStopped as stopped:
+        found = stopped.rows
+        reason = SweepFailure(SweepStopped.__name__, str(stopped))
+    rows = {(row.case["N"], tuple(row.case["seeds"])): row for row in found.rows}
+    return rows, reason
 
 
-def _submitted(
-    pool: Executor, batch: Sequence[Key], potential: str, order: int
-) -> Future[Decided]:
-    """The task of a batch, submitted.
-
-    One that has failed already in a pool whose workers died while it was filled.
-    """
-    try:
-        return pool.submit(decide, batch, potential, order)
-    except BrokenExecutor as error:
-        failed: Future[Decided] = Future()
-        failed.set_exception(error)
-        return failed
-
-
-def _batches(cases: Sequence[Key]) -> list[list[Key]]:
-    return [list(cases[i : i + BATCH]) for i in range(0, len(cases), BATCH)]
-
-
-def _case(record: dict[str, Any]) -> SweepCase:
+def _case(record: Mapping[str, Any]) -> SweepCase:
     exceptions = tuple((int(m), p, a) for m, p, a in record["exceptions"])
     return SweepCase(
         record["N"],
@@ -268,55 +200,3 @@ def _case(record: dict[str, Any]) -> SweepCase:
         exceptions,
         record["corrected_rule_holds"],
     )
-
-
-class SweepLog:
-    """The file of a sweep: a header line, then one line for each decided case."""
-
-    def __init__(self, path: Path, model: str, order: int) -> None:
-        self.path = path
-        self.header = json.dumps(
-            {"format": HEADER, "schema": SCHEMA, "model": model, "order": order}
-        )
-
-    def read(self) -> dict[Key, SweepCase]:
-        """The cases decided so far.
-
-        Starts the file if there is none, and cuts off a last line that was not finished.
-        """
-        try:
-            text = self.path.read_text() if self.path.exists() else ""
-            start = self.header + "\n"
-            if not text.startswith(start) and not start.startswith(text):
-                raise InputError(
-                    "file",
-                    str(self.path),
-                    f"a new file, or a sweep with header {self.header}",
-                    "name another file",
-                )
-            complete = text[: text.rfind("\n") + 1] or start
-            cases = [_case(json.loads(line)) for line in complete.splitlines()[1:]]
-            if complete != text:
-                self.path.write_text(complete)
-        except OSError as error:
-            raise InputError(
-                "file",
-                str(self.path),
-                "a file that can be read and written",
-                f"name another ({error.strerror})",
-            ) from error
-        except (ValueError, KeyError, TypeError) as error:
-            if isinstance(error, InputError):
-                raise
-            raise InputError(
-                "file",
-                str(self.path),
-                "lines of a sweep",
-                "it is damaged: remove it or name another",
-            ) from error
-        return {(case.N, case.seeds): case for case in cases}
-
-    def append(self, record: dict[str, Any]) -> None:
-        """Add one decided case, flushed to the file."""
-        with self.path.open("a") as file:
-            file.write(json.dumps(record) + "\n")

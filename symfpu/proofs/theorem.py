@@ -8,10 +8,12 @@ import multiprocessing
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
@@ -20,12 +22,13 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.typed import integer, seed_modes
-from symfpu.proofs.decided_file import DecidedFile
+from symfpu.proofs.decided_file import decided_file
 from symfpu.proofs.every_length import DecidedFlat, decided_flat
 from symfpu.proofs.families import equation_text, mode_text
 from symfpu.proofs.flats import MOST_SEEDS, Arrangement, Flat, degree_of, flats
+from symfpu.proofs.seed_sums import without_odd_sums
 
-FORMAT, SCHEMA = "symfpu rule for all N certificate", 1
+FORMAT, SCHEMA = "symfpu rule for all N certificate", 2
 MODELS = ("alpha", "beta")
 BATCH = 16  # flats in one task
 FEW = 2000  # flats that are decided without a pool of processes
@@ -95,9 +98,13 @@ class RuleForAllN(Tabled):
 
     @property
     def reason(self) -> str:
-        """What shows the excited modes: "sign" alone, or "sign and residues"."""
-        by_sign = all(found.by_sign for found in self.decided)
-        return "sign" if by_sign else "sign and residues"
+        """What shows the excited modes: "sign", where needed with "chains" and "residues"."""
+        reasons = ["sign"]
+        if any(found.chained for found in self.decided):
+            reasons.append("chains")
+        if any(found.witnesses for found in self.decided):
+            reasons.append("residues")
+        return " and ".join(reasons)
 
     @property
     def gaps(self) -> tuple[DecidedFlat, ...]:
@@ -132,10 +139,10 @@ class RuleForAllN(Tabled):
             allowed = f"{self.seeds_number} modes"
             raise InputError("seeds", tuple(seeds), allowed, "prove it for as many seeds")
         arrangement = Arrangement(self.model, self.seeds_number, self.order)
-        equations = arrangement.equations(N, modes)
+        held = arrangement.through(N, np.array([modes]))
         for found in self.decided:
             flat = found.flat
-            if arrangement.equations(flat.N, flat.seeds) == equations:
+            if (arrangement.through(flat.N, np.array([flat.seeds])) == held).all():
                 return found
         raise AssertionError("the flats are not complete")
 
@@ -149,7 +156,8 @@ class RuleForAllN(Tabled):
 
         `symfpu.proofs.verify_theorem` checks it by another route.
         """
-        points = [point for found in self.decided for point in found.points]
+        listed = self._listed()
+        points = [point for found in listed for point in found.points]
         body: dict[str, Any] = {
             "format": FORMAT,
             "schema": SCHEMA,
@@ -157,31 +165,25 @@ class RuleForAllN(Tabled):
             "seeds_number": self.seeds_number,
             "order": self.order,
             "verdict": self.verdict,
-            "flats": [[found.flat.N, *found.flat.seeds] for found in self.decided],
-            "exceptions": list(self._exception_records()),
+            "count": self.flats,
+            "flats": [[found.flat.N, *found.flat.seeds] for found in listed],
+            "exceptions": list(_exception_records(listed)),
             "undecided": [
-                [i, q] for i, found in enumerate(self.decided) for q in found.undecided
+                [i, q] for i, found in enumerate(listed) for q in found.undecided
             ],
             "points": [[p.prime, p.root, *p.frequencies] for p in points],
-            "witnesses": list(self._witness_records()),
+            "witnesses": list(_witness_records(listed)),
         }
         text = json.dumps(body, sort_keys=True, separators=(",", ":"))
         return body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
 
-    def _exception_records(self) -> Iterator[list[int | None]]:
-        """Flat, mode, order by the rule, actual order."""
-        for i, found in enumerate(self.decided):
-            for e in found.exceptions:
-                yield [i, e.mode, e.predicted, e.actual]
-
-    def _witness_records(self) -> Iterator[list[int]]:
-        """Flat, point, mode, order, residue, and the powers of the seeds."""
-        first = 0
-        for i, found in enumerate(self.decided):
-            for w in found.witnesses:
-                powers = w.monomial[::2]
-                yield [i, first + w.point, w.mode, w.order, w.residue, *powers]
-            first += len(found.points)
+    def _listed(self) -> list[DecidedFlat]:
+        """Of which something has to be said: a checker finds and decides the others by itself."""
+        return [
+            found
+            for found in self.decided
+            if found.exceptions or found.witnesses or found.undecided
+        ]
 
     def write(self, path: Path | str) -> None:
         """Write the certificate to a path as JSON, whole or not at all.
@@ -209,6 +211,23 @@ class RuleForAllN(Tabled):
             verdict=self.verdict,
         )
         return Table(columns, known)
+
+
+def _exception_records(listed: Sequence[DecidedFlat]) -> Iterator[list[int | None]]:
+    """Flat, mode, order by the rule, actual order."""
+    for i, found in enumerate(listed):
+        for e in found.exceptions:
+            yield [i, e.mode, e.predicted, e.actual]
+
+
+def _witness_records(listed: Sequence[DecidedFlat]) -> Iterator[list[int]]:
+    """Flat, point, mode, order, residue, and the powers of the seeds."""
+    first = 0
+    for i, found in enumerate(listed):
+        for w in found.witnesses:
+            powers = w.monomial[::2]
+            yield [i, first + w.point, w.mode, w.order, w.residue, *powers]
+        first += len(found.points)
 
 
 def theorem_text(proof: RuleForAllN) -> str:
@@ -280,22 +299,32 @@ def prove_for_all_N(
         allowed = f"1 to {MOST_SEEDS}"
         advice = "flats of more seeds are not enumerated; prove_propagation decides one set"
         raise InputError("seeds_number", s, allowed, advice)
-    kept = DecidedFile(file, {"model": model, "seeds_number": s, "order": last})
-    known = kept.read()
+    kept = decided_file(file, {"model": model, "seeds_number": s, "order": last})
+    known = {found.flat: found for found in kept.read()}
     told = progress or unheard
     all_flats = flats(model, s, last, told)
-    todo = [flat for flat in all_flats if flat not in known]
+    asked = _with_odd_sums(model, last, all_flats)
+    todo = [flat for flat in asked if flat not in known]
     with ExitStack() as stack:
         pool = executor
         if pool is None and len(todo) > FEW:
             context = multiprocessing.get_context("spawn")
             pool = stack.enter_context(ProcessPoolExecutor(mp_context=context))
         for batch in _decided(pool, model, last, todo):
-            kept.append(batch)
+            kept.append(map(asdict, batch))
             known |= {found.flat: found for found in batch}
-            told("flats", len(known) / len(all_flats))
-    decided = tuple(known[flat] for flat in all_flats)
+            told("flats", len(known) / len(asked))
+    found = {flat: known[flat] for flat in asked}
+    decided = tuple(found.get(flat) or DecidedFlat(flat) for flat in all_flats)
     return RuleForAllN(model, s, last, _verdict(decided), decided)
+
+
+def _with_odd_sums(model: str, order: int, all_flats: Sequence[Flat]) -> list[Flat]:
+    """Those that Theorem 7 of docs/propagation.md does not decide by itself."""
+    seeds = np.array([flat.seeds for flat in all_flats], dtype=np.int64)
+    N = np.array([flat.N for flat in all_flats], dtype=np.int64)
+    open_flats = np.flatnonzero(~without_odd_sums(model, order, seeds, N)).tolist()
+    return [all_flats[i] for i in open_flats]
 
 
 def _verdict(decided: Sequence[DecidedFlat]) -> str:

@@ -1,18 +1,21 @@
 """Independent checker of the theorem for every N: Python integers and fractions only.
 
-It finds the hyperplanes m.q = 2 w N again, shows that the flats of the certificate are all there
-are, and decides the representative of each once more: by the signs of the products of couplings,
-by residues that the recursion of `verify` computes again, or by couplings that are zero. It
-shares no code with the prover and imports nothing but the standard library and the checker of
-certificates of one N.
+It finds the hyperplanes m.q = 2 w N and all flats again, takes a seed set of its own where the
+certificate says nothing of a flat, and decides each once more: by sums of seeds that
+fold with one sign, by chains of couplings, by the signs of the products of couplings, by residues
+that the recursion of `verify` computes again, or by couplings that are zero. The theorems that
+make these proofs are in docs/propagation.md. It shares no code with the prover and imports
+nothing but the standard library and the checker of certificates of one N.
 """
 
 import json
 import re
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import combinations, pairwise, product
+from functools import cache
+from itertools import combinations, combinations_with_replacement, islice, pairwise, product
 from math import gcd
+from operator import mul
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,18 +32,23 @@ from symfpu.proofs.verify import (
     check_point,
     coupled_sets,
     couplings,
+    folded,
     need,
     propagation_rule,
 )
 
 FORMAT = "symfpu rule for all N certificate"
 KEYS = (
-    "digest exceptions flats format model order points schema seeds_number undecided "
+    "count digest exceptions flats format model order points schema seeds_number undecided "
     "verdict witnesses"
 )
 MOST_SEEDS = 3
-LARGEST_ORDER = 100
+LARGEST_DEGREE = {1: 201, 2: 13, 3: 5}  # by number of seeds; beyond, a check takes hours
 LARGEST_N = 4096
+TRIALS = 400  # pairs of places between which a general point is looked for
+LARGEST_TRIAL = 64  # bonds among which it is looked for else
+# the last orders at which a chain of couplings holds for the frequencies of every N
+CHAINS = {"alpha": 3, "beta": 2}
 
 Json = dict[str, Any]
 Row = tuple[int, ...]
@@ -73,7 +81,7 @@ def read_theorem(path: Path) -> Json:
     need(not strange, "not JSON of plain strings, null and integers of at most 20 digits")
     data: Json = json.loads(text)
     need(data["format"] == FORMAT, "not a theorem for all N")
-    need(data["schema"] == 1, "schema version unknown: this checker supports version 1")
+    need(data["schema"] == 2, "schema version unknown: this checker supports version 2")
     once = bare.count(":") == len(data)
     need(
         once and " ".join(sorted(data)) == KEYS, "a key is missing, unknown or there twice"
@@ -102,13 +110,15 @@ class Theorem(NamedTuple):
 def read_claim(data: Json) -> Theorem:
     """Model, number of seeds and order, their sizes bounded."""
     model, s, order = data["model"], data["seeds_number"], data["order"]
-    fits = model in MODELS and 0 < s <= MOST_SEEDS and 0 < order <= LARGEST_ORDER
+    fits = model in MODELS and 0 < s <= MOST_SEEDS and order > 0
     need(fits, "wrong model, number of seeds or order")
-    return Theorem(model, s, order)
+    claim = Theorem(model, s, order)
+    need(claim.degree(order) <= LARGEST_DEGREE[s], f"order {order} is beyond this checker")
+    return claim
 
 
 def read_flats(data: Json, claim: Theorem) -> list[Row]:
-    """Representatives: N and ascending seeds."""
+    """N and ascending seeds of the flats of which something is said."""
     found = [tuple(row) for row in data["flats"]]
     for N, *seeds in found:
         need(N <= LARGEST_N and len(seeds) == claim.s, "a representative of wrong size")
@@ -116,6 +126,7 @@ def read_flats(data: Json, claim: Theorem) -> list[Row]:
             seeds == sorted({q for q in seeds if 0 < q < N}),
             "seeds are not ascending modes",
         )
+    need(len(set(found)) == len(found), "a flat is listed twice")
     return found
 
 
@@ -149,64 +160,125 @@ def lowest(row: Row) -> Row:
 
 def dot(m: Row, v: Row) -> int:
     """Of the normal of a row with a vector: a value at the end of the row is left out."""
-    return sum(a * b for a, b in zip(m, v, strict=False))
+    return sum(map(mul, m, v))
 
 
-def held(rows: list[Row], N: int, seeds: Row) -> int:
+def held(rows: list[Row], flat: Row) -> int:
     """Which hyperplanes hold seeds / N, as bits."""
+    N, *seeds = flat
     bits = 0
     for i, row in enumerate(rows):
-        if dot(row, seeds) == row[-1] * N:
+        if sum(map(mul, row, seeds)) == row[-1] * N:
             bits |= 1 << i
     return bits
 
 
-def check_flats(claim: Theorem, flats: list[Row]) -> list[int]:
-    """The flats are all of the arrangement, each once; returns their dimensions.
+class Line(NamedTuple):
+    """The points (start + t direction) / scale."""
 
-    The whole simplex is there, each hyperplane, where s = 3 each line, each point on a line: so
-    every intersection that meets the open simplex.
+    start: Row
+    scale: int
+    direction: Row
+
+
+class Arrangement(NamedTuple):
+    """All flats: the lines and other wide ones by the hyperplanes that hold them, the points.
+
+    wide : one point on each, N and seeds, on no further hyperplane.
+    """
+
+    rows: list[Row]
+    lines: dict[int, Line]
+    wide: dict[int, Row]
+    points: set[Row]
+
+
+def arrangement(claim: Theorem) -> Arrangement:
+    """Every intersection of hyperplanes that meets the open simplex, each once.
+
+    That is the whole simplex, each hyperplane, where s = 3 each line, and the points in which
+    hyperplanes meet the lines.
     """
     rows = hyperplanes(claim)
-    masks = {held(rows, flat[0], flat[1:]): flat for flat in flats}
-    need(len(masks) == len(flats), "two representatives of one flat")
-    directions = dict(lines(claim, rows, masks))
-    expected = set(directions) | {0}
-    if claim.s > 1:
-        expected |= {1 << i for i in range(len(rows))}
-    points = set(points_on_lines(rows, directions, masks))
-    need(not points & expected, "a point that is a line")
-    missing, more = (expected | points) - set(masks), set(masks) - expected - points
-    need(not missing, f"flats are missing: {len(missing)}")
-    need(not more, f"representatives of no flat: {len(more)}")
-    return [dimension(claim, held(rows, f[0], f[1:]), directions, points) for f in flats]
-
-
-def dimension(claim: Theorem, mask: int, directions: Any, points: set[int]) -> int:
-    """Of a flat, by the hyperplanes that hold it."""
-    if mask in points:
-        return 0
-    if mask in directions:
-        return 1
-    return claim.s if mask == 0 else claim.s - 1
-
-
-def lines(
-    claim: Theorem, rows: list[Row], masks: dict[int, Row]
-) -> Iterator[tuple[int, Row]]:
-    """The flats of dimension one and their directions."""
-    if claim.s == 1:
-        yield 0, (1,)
-    if claim.s == 2:
-        for i, (a, b, _) in enumerate(rows):
-            yield 1 << i, (-b, a)
+    found = Arrangement(rows, {}, {}, set())
+    for line in lines(claim, rows):
+        mask = line_mask(rows, line)
+        places = points_on_line(rows, line)
+        found.points.update(places[1:-1])
+        found.lines[mask] = line
+        found.wide[mask] = between(places[0], places[1])
     if claim.s == 3:
-        for first, second in combinations(rows, 2):
-            direction = cross(first, second)
-            if any(direction):
-                start, scale = common_point(first, second, direction)
-                if meets_simplex(start, scale, direction):
-                    yield line_mask(rows, start, scale, direction), direction
+        add_planes(found)
+    if claim.s > 1:
+        found.wide[0] = general_point(rows, 0, list(found.wide.values()))
+    return found
+
+
+def add_planes(found: Arrangement) -> None:
+    """Each plane, from the lines on it."""
+    on_plane: dict[int, list[Row]] = {1 << i: [] for i in range(len(found.rows))}
+    for mask, place in found.wide.items():
+        for i in range(len(found.rows)):
+            if mask >> i & 1:
+                on_plane[1 << i].append(place)
+    for mask, places in on_plane.items():
+        found.wide[mask] = general_point(found.rows, mask, places)
+
+
+def general_point(rows: list[Row], mask: int, places: list[Row]) -> Row:
+    """A point on these hyperplanes and no others: between two places on them, or by trial."""
+    for first, second in islice(combinations(places, 2), TRIALS):
+        place = between(first, second)
+        if held(rows, place) == mask:
+            return place
+    for N in range(2, LARGEST_TRIAL):
+        for seeds in combinations(range(1, N), len(rows[0]) - 1):
+            if on_all(rows, mask, (N, *seeds)) and held(rows, (N, *seeds)) == mask:
+                return N, *seeds
+    raise CertificateError("this checker finds no seed set in general position")
+
+
+def on_all(rows: list[Row], mask: int, flat: Row) -> bool:
+    """Whether the hyperplanes of a mask hold a point."""
+    N, *seeds = flat
+    return all(
+        sum(map(mul, row, seeds)) == row[-1] * N
+        for i, row in enumerate(rows)
+        if mask >> i & 1
+    )
+
+
+def between(first: Row, second: Row) -> Row:
+    """A point strictly between two, in lowest terms."""
+    place = [a + b for a, b in zip(first, second, strict=True)]
+    shared = gcd(*place)
+    return tuple(c // shared for c in place)
+
+
+def lines(claim: Theorem, rows: list[Row]) -> Iterator[Line]:
+    """The flats of dimension one."""
+    if claim.s == 1:
+        yield Line((0,), 1, (1,))
+    if claim.s == 2:
+        for a, b, c in rows:
+            yield Line((c, 0), a, (-b, a)) if a else Line((0, c), b, (1, 0))
+    if claim.s == 3:
+        for line in sorted(common_lines(rows)):
+            if meets_simplex(line):
+                yield line
+
+
+def common_lines(rows: list[Row]) -> set[Line]:
+    """In which two planes meet, each once: one point on it is in lowest terms, as its direction."""
+    found = set()
+    for first, second in combinations(rows, 2):
+        direction = cross(first, second)
+        if any(direction):
+            start, scale = common_point(first, second, direction)
+            shared = gcd(scale, *start)
+            point = tuple(c // shared for c in start)
+            found.add(Line(point, scale // shared, lowest(direction)))
+    return found
 
 
 def cross(a: Row, b: Row) -> Row:
@@ -231,58 +303,117 @@ def common_point(a: Row, b: Row, direction: Row) -> tuple[Row, int]:
     return tuple(point), scale
 
 
-def meets_simplex(start: Row, scale: int, direction: Row) -> bool:
+def meets_simplex(line: Line) -> bool:
     """Whether a line meets 0 < x_1 < .. < x_s < 1: all gaps are positive at some t."""
-    ends, slopes = (0, *start, scale), (0, *direction, 0)
+    bounds = room(line)
+    return bounds is not None and bounds[0] < bounds[1]
+
+
+def room(line: Line) -> tuple[Fraction, Fraction] | None:
+    """Between which t all gaps of 0 < x_1 < .. < x_s < 1 are open; None where one never is."""
+    ends, slopes = (0, *line.start, line.scale), (0, *line.direction, 0)
     low: list[Fraction] = []
     high: list[Fraction] = []
     for i in range(len(ends) - 1):
         gap, slope = ends[i + 1] - ends[i], slopes[i + 1] - slopes[i]
         if slope == 0 and gap <= 0:
-            return False
+            return None
         if slope:
             (low if slope > 0 else high).append(Fraction(-gap, slope))
-    return not low or not high or max(low) < min(high)
+    return max(low), min(high)
 
 
-def line_mask(rows: list[Row], start: Row, scale: int, direction: Row) -> int:
-    """Which planes hold a line, as bits."""
+def line_mask(rows: list[Row], line: Line) -> int:
+    """Which hyperplanes hold a line, as bits."""
     bits = 0
     for i, row in enumerate(rows):
-        if dot(row, direction) == 0 and dot(row, start) == row[-1] * scale:
+        if dot(row, line.direction) == 0 and dot(row, line.start) == row[-1] * line.scale:
             bits |= 1 << i
     return bits
 
 
-def points_on_lines(
-    rows: list[Row], directions: dict[int, Row], masks: dict[int, Row]
-) -> Iterator[int]:
-    """The points in which other hyperplanes meet the lines, as hyperplanes that hold them.
+def points_on_line(rows: list[Row], line: Line) -> list[Row]:
+    """Where it enters the simplex, meets hyperplanes that do not hold it, and leaves: N, seeds."""
+    bounds = room(line)
+    need(bounds, "a hyperplane beside the simplex")
+    assert bounds is not None
+    low, high = bounds
+    met = {low, high}
+    start, scale, direction = line
+    for row in rows:
+        slope = sum(map(mul, row, direction))
+        if slope:
+            rise = row[-1] * scale - sum(map(mul, row, start))
+            if slope < 0:
+                slope, rise = -slope, -rise
+            after = low.numerator * slope < rise * low.denominator
+            if after and rise * high.denominator < high.numerator * slope:
+                met.add(Fraction(rise, slope))
+    return [place_at(line, t) for t in sorted(met)]
 
-    A line is followed from its representative.
+
+def place_at(line: Line, t: Fraction) -> Row:
+    """The point of a parameter as N and seeds, in lowest terms."""
+    rise, slope = t.as_integer_ratio()
+    place = [q * slope + v * rise for q, v in zip(line.start, line.direction, strict=True)]
+    shared = gcd(line.scale * slope, *place)
+    return (line.scale * slope // shared, *(c // shared for c in place))
+
+
+def check_flats(found: Arrangement, listed: list[Row], count: int) -> list[int]:
+    """There are so many flats, and those listed are among them; returns their dimensions.
+
+    A wide one is listed by its first seed set, of the fewest bonds.
     """
-    known = {flat: mask for mask, flat in masks.items()}
-    for mask, direction in directions.items():
-        need(mask in masks, "a line has no representative")
-        N, *seeds = masks[mask]
-        for row in rows:
-            slope = dot(row, direction)
-            if slope == 0:
-                continue
-            rise = row[-1] * N - dot(row, tuple(seeds))
-            sign = 1 if slope > 0 else -1
-            place = [
-                sign * (q * slope + v * rise) for q, v in zip(seeds, direction, strict=True)
-            ]
-            ends = [0, *place, sign * N * slope]
-            if all(ends[i] < ends[i + 1] for i in range(len(ends) - 1)):
-                shared = gcd(*ends)
-                flat = (ends[-1] // shared, *(c // shared for c in place))
-                need(flat in known, f"a point has no representative: {flat}")
-                yield known[flat]
+    there_are = len(found.wide) + len(found.points)
+    need(count == there_are, f"there are {there_are} flats")
+    dimensions = []
+    for flat in listed:
+        if flat in found.points:
+            dimensions.append(0)
+            continue
+        mask = held(found.rows, flat)
+        need(mask in found.wide, f"a representative of no flat: {flat}")
+        first = first_on(found, mask)
+        need(flat == first, f"the first seed set of its flat is {first}, not {flat}")
+        dimensions.append(dimension(found, mask))
+    return dimensions
 
 
-# --- what a representative decides
+def dimension(found: Arrangement, mask: int) -> int:
+    """Of a flat that is no point."""
+    if mask in found.lines:
+        return 1
+    s = len(found.rows[0]) - 1
+    return s if mask == 0 else s - 1
+
+
+def first_on(found: Arrangement, mask: int) -> Row:
+    """The seed set of fewest bonds, and of those the least, on these hyperplanes alone."""
+    for N in range(2, LARGEST_N):
+        for flat in seed_sets_on(found, mask, N):
+            if held(found.rows, flat) == mask:
+                return flat
+    raise CertificateError("a flat without a seed set")
+
+
+def seed_sets_on(found: Arrangement, mask: int, N: int) -> list[Row]:
+    """Those of N bonds, ascending: on a line one coordinate gives the others."""
+    if mask not in found.lines:
+        every = combinations(range(1, N), len(found.rows[0]) - 1)
+        return [(N, *seeds) for seeds in every if on_all(found.rows, mask, (N, *seeds))]
+    line = found.lines[mask]
+    i = next(i for i, v in enumerate(line.direction) if v)
+    flats = []
+    for q in range(1, N):
+        t = Fraction(q * line.scale - line.start[i] * N, line.direction[i] * N)
+        M, *seeds = place_at(line, t)
+        if N % M == 0 and seeds[0] > 0 and all(a < b for a, b in pairwise([*seeds, M])):
+            flats.append((N, *(c * N // M for c in seeds)))
+    return sorted(flats)
+
+
+# --- what decides a flat
 
 
 class Signs:
@@ -369,12 +500,15 @@ def read_evidence(data: Json, claim: Theorem, count: int) -> list[Evidence]:
 
 def check_flat(claim: Theorem, flat: Row, evidence: Evidence, points: list[Row]) -> None:
     """Every mode is excited at its order and at none before, or named as undecided."""
+    if not any(evidence) and not odd_sum(claim, flat):
+        return  # Theorem 7
     case = claim.case(flat)
     actual = actual_orders(claim, case, evidence)
+    shown = shown_by_sums(claim, case, actual, evidence)
     signs, left = Signs(case), dict(evidence.witnesses)
     unsure = []
     for q, k in sorted(actual.items()):
-        if k == 0 or one_sign(signs, claim, q, k):
+        if q in shown or one_sign(signs, claim, q, k):
             continue
         if (q, k) in left:
             check_residue(case, q, *left.pop((q, k)), points)
@@ -382,6 +516,75 @@ def check_flat(claim: Theorem, flat: Row, evidence: Evidence, points: list[Row])
             unsure.append(q)
     need(unsure == evidence.undecided, f"{flat}: undecided modes {unsure}")
     need(not left, f"{flat}: a witness that nothing asks for")
+
+
+NOTHING = Evidence([], {}, [])
+
+
+def odd_sum(claim: Theorem, flat: Row) -> bool:
+    """Whether fewer than d(K) signed seeds make an odd multiple of N."""
+    N, *seeds = flat
+    for m in short_sums(claim.s, claim.degree(claim.order) - 1):
+        if sum(map(mul, m, seeds)) % (2 * N) == N:
+            return True
+    return False
+
+
+@cache
+def short_sums(s: int, most: int) -> list[Row]:
+    """All m with |m| from 1 up to the most, one of m and -m."""
+    found = product(range(-most, most + 1), repeat=s)
+    return [m for m in found if 0 < sum(map(abs, m)) <= most and m == lowest_sign(m)]
+
+
+def lowest_sign(m: Row) -> Row:
+    """That of m and -m whose first number which is not zero is positive."""
+    return max(m, tuple(-c for c in m))
+
+
+def shown_by_sums(
+    claim: Theorem, case: Case, actual: dict[int, int], evidence: Evidence
+) -> set[int]:
+    """Modes of D_k of one parity (Theorem 7), and those to which a chain leads (Theorem 8).
+
+    And the seeds, of order 0.
+    """
+    exceptional = {mode for mode, _, _ in evidence.exceptions}
+    shown = last = set(case.seeds)
+    for k in range(1, claim.order + 1):
+        members = {q for q in actual if actual[q] == k}
+        known = (members - exceptional) & one_parity(case, claim.degree(k))
+        if k <= CHAINS[claim.model]:
+            known |= {q for q in members - known if coupled_to(case, q, last)}
+        shown, last = shown | known, known
+    return shown
+
+
+def one_parity(case: Case, degree: int) -> set[int]:
+    """Modes that sums with some powers p of the seeds reach, all with w of one parity.
+
+    A sum a.q = +-q + 2wN with |a_i| up to p_i and as odd as p_i.
+    """
+    found = set()
+    for p in powers_of_degree(len(case.seeds), degree):
+        parities: dict[int, set[int]] = {}
+        for a in product(*(range(-n, n + 1, 2) for n in p)):
+            total = sum(map(mul, a, case.seeds))
+            w = (total + case.N) // (2 * case.N)
+            mode = abs(total - 2 * w * case.N)
+            parities.setdefault(mode, set()).add(w % 2)
+        found |= {q for q in parities if len(parities[q]) == 1}
+    return found
+
+
+def coupled_to(case: Case, q: int, last: set[int]) -> bool:
+    """Whether one of these modes and as many seeds as a product takes are coupled to q."""
+    for seeds in combinations_with_replacement(case.seeds, case.step):
+        for signs in product((1, -1), repeat=case.step):
+            m = folded(q + sum(map(mul, signs, seeds)), case.N)
+            if m in last and q in dict(couplings(case.N, m, *seeds)):
+                return True
+    return False
 
 
 def actual_orders(claim: Theorem, case: Case, evidence: Evidence) -> dict[int, int]:
@@ -443,11 +646,15 @@ def check_theorem(data: Json) -> list[str]:
     """Every claim in turn; what was checked."""
     claim = read_claim(data)
     flats = read_flats(data, claim)
-    dimensions = check_flats(claim, flats)
     check_points_used(data)
     evidence = read_evidence(data, claim, len(flats))
+    need(all(map(any, evidence)), "a flat is listed of which nothing is said")
+    there = arrangement(claim)
+    dimensions = check_flats(there, flats, data["count"])
     for flat, found in zip(flats, evidence, strict=True):
         check_flat(claim, flat, found, data["points"])
+    for flat in unlisted(there, flats):
+        check_flat(claim, flat, NOTHING, [])
     exceptional = sum(bool(found.exceptions) for found in evidence)
     undecided = any(found.undecided for found in evidence)
     verdict = "undecided" if undecided else "refuted" if exceptional else "proved"
@@ -457,10 +664,17 @@ def check_theorem(data: Json) -> list[str]:
     ]
     residues = len(data["witnesses"])
     return [
-        sentence(claim, verdict, exceptional, len(flats), len(wide)),
-        f"{len(flats)} flats: all of the arrangement, each with a representative",
-        f"{residues} modes by residues, computed again; the others by the sign",
+        sentence(claim, verdict, exceptional, data["count"], len(wide)),
+        f"{data['count']} flats: all of the arrangement, found again",
+        f"{residues} modes by residues, computed again; the others by signs and chains",
     ]
+
+
+def unlisted(found: Arrangement, listed: list[Row]) -> list[Row]:
+    """A seed set of each flat of which the certificate says nothing."""
+    named = {held(found.rows, flat) for flat in listed if flat not in found.points}
+    wide = [place for mask, place in found.wide.items() if mask not in named]
+    return wide + sorted(found.points.difference(listed))
 
 
 def check_points_used(data: Json) -> None:

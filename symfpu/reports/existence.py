@@ -6,7 +6,7 @@ from typing import Any
 
 import mpmath
 
-from symfpu.breathers.existence import ExistenceProof, interval_text
+from symfpu.breathers.existence import ExistenceProof
 from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import fifteen_digits
 
@@ -19,7 +19,11 @@ def existence_record(proof: ExistenceProof) -> dict[str, Any]:
         **proof.chain.typed,
         "seeds": [proof.seed],
         "frequencies": {str(proof.seed): decimal(proof.frequency)},
+        "frequency_radius": fifteen_digits(proof.frequency_radius),
         "proved": True,
+        "fixed": proof.fixed,
+        "value": decimal(proof.value),
+        "half_width": decimal(proof.half_width),
         "radius": fifteen_digits(proof.radius),
         "unique": fifteen_digits(proof.unique),
         "nu": str(proof.nu),
@@ -40,16 +44,16 @@ def existence_record(proof: ExistenceProof) -> dict[str, Any]:
 def existence_text(proof: ExistenceProof) -> str:
     """The theorem, the intervals, and the bounds."""
     chain = repr(proof.chain).removeprefix("Chain(").removesuffix(")")
-    A = interval_text(proof.amplitude, proof.amplitude_radius)
-    H = interval_text(proof.energy, proof.energy_radius)
+    given = (
+        f"of this {proof.fixed}" if not proof.half_width else f"of each such {proof.fixed}"
+    )
     return "\n".join(
         [
-            f"{chain}, seed {proof.seed}, omega = {decimal(proof.frequency)}: proved",
-            f"  a periodic orbit of this frequency exists within {proof.radius:.2g} "
+            f"{chain}, seed {proof.seed}, {proof.condition}: proved",
+            f"  a periodic orbit {given} exists within {proof.radius:.2g} "
             f"of the computed one, the only one within {proof.unique:.2g},",
             f"  analytic for |Im omega t| < log {proof.nu}",
-            f"  A = {A}",
-            f"  H = {H}",
+            *(f"  {interval}" for interval in proof.intervals),
             f"  Y = {proof.residual:.2g}, Z0 + Z1 = {proof.linear:.3g}, "
             f"Z2 = {proof.curvature:.3g}; {proof.harmonics} harmonics, block of {proof.block}",
         ]

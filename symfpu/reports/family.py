@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,6 +12,7 @@ from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
+from symfpu.reports.normal import normal_event_record, normal_frequencies_record
 from symfpu.reports.solution import frequencies_record, solution_record
 from symfpu.reports.tables import fifteen_digits, number_text
 
@@ -99,6 +101,8 @@ def family_record(found: Family) -> dict[str, Any]:
     record["ending"] = found.ending
     record["members"] = [member_record(m) for m in found.members]
     record["events"] = [event_record(e) for e in found.events]
+    if any(m.normal for m in found.members):
+        record["normal_events"] = [normal_event_record(e) for e in found.normal_events]
     return record
 
 
@@ -128,6 +132,8 @@ def member_record(m: Member) -> dict[str, Any]:
     if m.multipliers is not None:
         record["stable"] = m.multipliers.stable
         record["largest_multiplier"] = fifteen_digits(m.multipliers.largest)
+    if m.normal is not None:
+        record["normal"] = normal_frequencies_record(m.normal)
     return record
 
 
@@ -142,6 +148,9 @@ def family_table(found: Family) -> list[list[str]]:
     head += ["residual", "verdict"]
     if any(m.multipliers is not None for m in found.members):
         head.append("largest multiplier")
+    normal = [q for q in found.chain.mode_numbers if q not in found.seeds]
+    if any(m.normal for m in found.members):
+        head += [f"{name}_{q}" for q in normal for name in ("sigma", "growth")]
     table = [head]
     for m in found.members:
         row = [f"{m.energy:.15g}", f"{m.harmonic_energy:.15g}"]
@@ -150,6 +159,9 @@ def family_table(found: Family) -> list[list[str]]:
         row += [f"{m.residual:.2g}", m.verdict]
         if m.multipliers is not None:
             row.append(f"{m.multipliers.largest:.15g}")
+        if m.normal is not None:
+            known = (complex(m.normal.frequencies.get(q, math.nan)) for q in normal)
+            row += [f"{x:.15g}" for w in known for x in (w.real, abs(w.imag))]
         table.append(row)
     return table
 
@@ -164,6 +176,8 @@ def family_text(found: Family) -> Iterator[str]:
     events = sorted(found.events, key=_weight, reverse=True)[:SHOWN_EVENTS]
     for event in sorted(events, key=lambda e: e.after):
         yield f"  {event!r}"
+    for normal_event in found.normal_events:
+        yield f"  {normal_event!r}"
     weaker = len(found.events) - SHOWN_EVENTS
     if weaker > 0:
         yield f"  ... and {weaker} weaker resonances"

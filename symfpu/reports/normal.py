@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
-from symfpu.families.normal_family import NormalEvent
-from symfpu.normal.modes import NormalMode, NormalModes
+from symfpu.errors import ResonantDivisor
+from symfpu.families.normal_events import NormalEvent
+from symfpu.families.normal_family import NormalFamily
+from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
+from symfpu.normal.modes import NoNormalModes, NormalMode, NormalModes
+from symfpu.normal.phantom import NormalFrequencySeries
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.reports.solution import frequencies_record
 from symfpu.reports.tables import fifteen_digits, number_text
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 
 SHOWN_RESONANCES = 10
 
@@ -25,7 +32,9 @@ def normal_record(found: NormalModes) -> dict[str, Any]:
         "stable": found.stable,
         "undecided": list(found.undecided),
         "growth": fifteen_digits(float(found.growth)),
-        "normal_frequencies": {str(mode.mode): _sigma(mode) for mode in found.modes},
+        "normal_frequencies": {
+            str(q): _number(w, found.digits) for q, w in found.frequencies.items()
+        },
         "signatures": {str(mode.mode): mode.signature for mode in found.modes},
         "resonances": [_resonance(one) for one in found.resonances[:SHOWN_RESONANCES]],
         "residual": fifteen_digits(float(found.residual)),
@@ -41,6 +50,122 @@ def _error(found: NormalModes) -> dict[str, str]:
     return {"frequency_error": number_text(found.error, 3)}
 
 
+def normal_frequencies_record(found: NormalFrequencies) -> dict[str, Any]:
+    """Normal frequencies of a member of a family for JSON."""
+    sigma = {str(q): _number(w) for q, w in found.frequencies.items()}
+    return {
+        "verdict": found.verdict,
+        "stable": found.stable,
+        "growth": fifteen_digits(found.growth),
+        "normal_frequencies": sigma,
+        "signatures": {str(q): n for q, n in found.signatures.items()},
+        "residual": fifteen_digits(found.residual),
+        "missing": {str(q): why for q, why in found.missing.items()},
+    }
+
+
+def normal_family_record(found: NormalFamily) -> dict[str, Any]:
+    """A line of tori for JSON: its members, where they are, and its events."""
+    torus = found.members[0].torus
+    return {
+        "kind": type(found).__name__,
+        **torus.chain.typed,
+        "seeds": list(torus.seeds),
+        "verdict": found.verdict,
+        "members": [
+            _member_record(one, part)
+            for one, part in zip(found.members, found.parts, strict=True)
+        ],
+        "events": [normal_event_record(event) for event in found.events],
+    }
+
+
+def _member_record(found: NormalModes, part: float) -> dict[str, Any]:
+    """A member of a line; its chain and seeds are those of the line."""
+    amplitudes = amplitudes_by_seed(found.torus).items()
+    return {
+        "part": fifteen_digits(part),
+        "amplitudes": {str(q): repr(float(a)) for q, a in amplitudes},
+        "frequencies": frequencies_record(found.torus),
+        **normal_frequencies_record(frequencies_of(found, {})),
+    }
+
+
+def normal_family_text(found: NormalFamily) -> str:
+    """A line of tori for a reader: a line a member, and the events."""
+    chain = repr(found.members[0].torus.chain).removeprefix("Chain(").removesuffix(")")
+    seeds = ",".join(map(str, found.members[0].torus.seeds))
+    lines = [f"{chain}, seeds {seeds}: {len(found.members)} tori, {found.verdict}"]
+    for one in found.members:
+        amplitudes = amplitudes_by_seed(one.torus).items()
+        where = ", ".join(f"A_{q}={float(a):.8g}" for q, a in amplitudes)
+        lines.append(f"  {where}: {frequencies_of(one, {})!r}")
+    lines += [f"  {event!r}" for event in found.events] or ["  no events"]
+    return "\n".join(lines)
+
+
+class BySeries(NamedTuple):
+    """A normal frequency by its series, or why it has none.
+
+    mode : what `normal_modes` found. series : solved; None with the reason. terms : Omega_q, and
+    mu^k sigma^(k) of every order.
+    """
+
+    mode: NormalMode
+    series: NormalFrequencySeries | None
+    terms: tuple[float, ...] = ()
+    reason: str = ""
+
+
+def by_series(
+    mode: NormalMode,
+    solve: Callable[[int], NormalFrequencySeries],
+    torus: QuasiPeriodic | RingTorus,
+) -> BySeries:
+    """One mode by series; solve : gives the series that is its own sigma, by mode."""
+    try:
+        series = solve(mode.mode)
+    except (NoNormalModes, ResonantDivisor) as none:
+        return BySeries(mode, None, reason=str(none))
+    amplitudes = {q: float(a) for q, a in amplitudes_by_seed(torus).items()}
+    return BySeries(mode, series, tuple(map(float, series.terms(amplitudes))))
+
+
+def series_records(found: Sequence[BySeries]) -> dict[str, Any]:
+    """Normal frequencies by series for JSON; nothing where there are none."""
+    if not found:
+        return {}
+    return {"series": {str(one.mode.mode): _series_record(one) for one in found}}
+
+
+def _series_record(one: BySeries) -> dict[str, Any]:
+    if one.series is None:
+        return {"sigma": None, "reason": one.reason}
+    return {
+        "order": one.series.order,
+        "sigma": repr(float(one.series.sigma)),
+        "terms": list(map(repr, one.terms)),
+        "closed_shift": str(one.series.closed_shift()),
+    }
+
+
+def series_text(found: Sequence[BySeries]) -> list[str]:
+    """The same for a reader: sigma, its difference from the one found, the closed shift."""
+    lines = []
+    for one in found:
+        name = f"sigma_{one.mode.mode}"
+        if one.series is None:
+            lines.append(f"  {name}: no series: {one.reason}")
+            continue
+        sigma = float(one.series.sigma)
+        off = sigma - complex(one.mode.sigma).real
+        lines.append(f"  {name} = {sigma:.13g}, off by {off:+.1e}")
+        terms = ", ".join(f"{x:+.4e}" for x in one.terms[1:])
+        lines.append(f"    orders 1..{one.series.order}: {terms}")
+        lines.append(f"    lowest shift: {one.series.closed_shift()}")
+    return ["by series:", *lines] if lines else []
+
+
 def normal_event_record(event: NormalEvent) -> dict[str, Any]:
     """An event of a family of normal frequencies for JSON: what it is, and where."""
     return {
@@ -49,16 +174,17 @@ def normal_event_record(event: NormalEvent) -> dict[str, Any]:
         "after": event.after,
         "part": fifteen_digits(event.part),
         "amplitudes": {str(q): repr(float(a)) for q, a in event.amplitudes.items()},
+        "energy": repr(event.energy),
         "begins": event.begins,
         "error": fifteen_digits(event.error),
     }
 
 
-def _sigma(mode: NormalMode) -> str | list[str]:
-    real = number_text(mode.sigma.real, mode.digits)
-    if not mode.growth:
+def _number(sigma: Any, digits: int | None = None) -> str | list[str]:
+    real = number_text(sigma.real, digits)
+    if not sigma.imag:
         return real
-    return [real, number_text(mode.sigma.imag, mode.digits)]
+    return [real, number_text(sigma.imag, digits)]
 
 
 def _resonance(one: ParametricResonance) -> dict[str, Any]:
@@ -75,11 +201,12 @@ def normal_text(found: NormalModes) -> str:
     chain = repr(found.torus.chain).removeprefix("Chain(").removesuffix(")")
     seeds = ",".join(map(str, found.torus.seeds))
     lines = [f"{chain}, seeds {seeds}: {found.verdict}"]
-    linear = found.torus.chain.frequencies()
+    chain_modes = found.torus.chain.mode_numbers
+    linear = dict(zip(chain_modes, found.torus.chain.frequencies(), strict=True))
     lines.append("  mode  normal frequency                   shift        kind, residual")
     for mode in found.modes:
-        shift = complex(mode.sigma).real - linear[mode.mode - 1]
-        kind = f"{mode.kind}, {mode.residual:.0e}"
+        shift = complex(mode.sigma).real - linear[mode.mode]
+        kind = f"{mode.kind}, {float(mode.residual):.0e}"
         lines.append(f"  {mode.mode:4d}  {mode.text:33}  {shift:+.4e}  {kind}")
     if found.resonances:
         lines.append("nearest resonances:")

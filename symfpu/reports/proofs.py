@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.breathers.existence import ExistenceProof
-from symfpu.proofs import certificates, check_existence, theorem
+from symfpu.certified.residual import ResidualProof
+from symfpu.certified.stay import StayProof
+from symfpu.proofs import certificates, check_existence, check_torus, theorem
 from symfpu.proofs.certificates import SINGLE, PropagationProof, RuleException
 from symfpu.proofs.sweeps import Sweep, SweepCase
 from symfpu.proofs.theorem import RuleForAllN
@@ -16,6 +18,7 @@ CERTIFIED = {
     certificates.FORMAT: PropagationProof.__name__,
     theorem.FORMAT: RuleForAllN.__name__,
     check_existence.FORMAT: ExistenceProof.__name__,
+    check_torus.FORMAT: ResidualProof.__name__,
 }
 EVIDENCE = ("excited", "vanishing", "points", "coefficients", "digest")
 
@@ -23,13 +26,15 @@ Json = dict[str, Any]
 
 
 def proof_record(proof: PropagationProof) -> Json:
-    """A proof for JSON: its certificate without the evidence."""
-    return certificate_record(proof.certificate())
+    """A proof for JSON: its certificate without the evidence, and what kind that is."""
+    return certificate_record(proof.certificate()) | {"reason": proof.reason}
 
 
 def certificate_record(certificate: Json) -> Json:
     """The same of a certificate that was read, of any kind; of others what is no list or table."""
-    kind = CERTIFIED[certificate["format"]]
+    kind = (
+        StayProof.__name__ if certificate.get("stay") else CERTIFIED[certificate["format"]]
+    )
     if kind == PropagationProof.__name__:
         kept = {key: certificate[key] for key in certificate if key not in EVIDENCE}
     else:

@@ -14,13 +14,16 @@ from symfpu.action_angle.twist import Twist
 from symfpu.breathers.existence import ExistenceProof
 from symfpu.breathers.floquet import Floquet
 from symfpu.bundles.bundle import Bundle
+from symfpu.certified.residual import ResidualProof
+from symfpu.certified.stay import StayProof
 from symfpu.chain.length import label_entry
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
-from symfpu.families.normal_family import NormalEvent
+from symfpu.families.normal_events import NormalEvent
+from symfpu.families.normal_family import NormalFamily
 from symfpu.frames.attributes import exact_text
 from symfpu.frames.tabled import Tabled
 from symfpu.localization.laws import ProfileLine
@@ -33,11 +36,16 @@ from symfpu.proofs.theorem import RuleForAllN
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.action_angle import twist_record
+from symfpu.reports.certified import residual_proof_record, stay_record
 from symfpu.reports.dynamics import alignment_record, orbit_record
 from symfpu.reports.existence import existence_record
 from symfpu.reports.family import event_record, family_record, member_record, refined_record
 from symfpu.reports.head import headed
-from symfpu.reports.normal import normal_event_record, normal_record
+from symfpu.reports.normal import (
+    normal_event_record,
+    normal_family_record,
+    normal_record,
+)
 from symfpu.reports.proofs import proof_record, sweep_record
 from symfpu.reports.solution import floquet_record, solution_record
 from symfpu.reports.tables import fifteen_digits
@@ -162,6 +170,8 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (RefinedRingTorus, refined_record),
     (QuasiPeriodic, solution_record),
     (ExistenceProof, existence_record),
+    (ResidualProof, residual_proof_record),
+    (StayProof, stay_record),
     (RingTorus, solution_record),
     (LindstedtSeries, series_record),
     (TravellingSeries, series_record),
@@ -176,6 +186,7 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (Sweep, _sweep_record),
     (NormalModes, normal_record),
     (NormalEvent, normal_event_record),
+    (NormalFamily, normal_family_record),
     (Twist, twist_record),
     (ProfileLine, _line_record),
     (ProfileDistance, _distance_record),

@@ -11,6 +11,8 @@ from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
 from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
+from symfpu.families.normal_events import NormalEvent
+from symfpu.families.normal_family import NormalFamily
 from symfpu.integrable.discriminant import Edges
 from symfpu.integrable.invariants import TodaInvariants
 from symfpu.integrable.torus import TodaTorus
@@ -19,6 +21,7 @@ from symfpu.localization.laws import ProfileFit, ProfileLine
 from symfpu.localization.profiles import ProfileDistance
 from symfpu.localization.recurrence import Recurrence
 from symfpu.localization.trials import ProfileInvariance, Trend
+from symfpu.normal.frequencies import NormalFrequencies
 from symfpu.normal.modes import NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.proofs.certificates import (
@@ -35,6 +38,8 @@ from symfpu.proofs.theorem import RuleForAllN
 from symfpu.series.sample import EnergyChanges, FrequencyChanges, SampledSeries
 from symfpu.series.series import ResiduePoint
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
+from symfpu.spectral.mapping import FrequencyMap
+from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.resummation import PadeSum
 from symfpu.tori.torus import RootCertificate
@@ -52,9 +57,12 @@ RESULTS: tuple[type[Any], ...] = (
     ForetoldIndices,
     FrequencyAnalysis,
     FrequencyChanges,
+    FrequencyMap,
     GroupGrowth,
     GrowthExponents,
     Member,
+    NormalEvent,
+    NormalFamily,
     NormalModes,
     Orbit,
     PadeSum,
@@ -68,6 +76,7 @@ RESULTS: tuple[type[Any], ...] = (
     RuleForAllN,
     SampledSeries,
     Sweep,
+    SweepRows,
     TodaInvariants,
     TodaTorus,
     Trend,
@@ -80,12 +89,15 @@ PARTS: tuple[type[Any], ...] = (
     Flat,
     LargestTerm,
     NormalDivisor,
+    NormalFrequencies,
     NormalMode,
     ParametricResonance,
     ResiduePoint,
     RuleException,
     SpectralLine,
     SweepCase,
+    SweepFailure,
+    SweepRow,
     Undecided,
     Vanishing,
     Witness,

@@ -8,15 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.bundles.bundle import Bundle, document, load_with, named_path, require_notes
+from symfpu.bundles.bundle import Bundle, load_with, named_path, require_notes
 from symfpu.bundles.bundle import save as save_solution
+from symfpu.bundles.tree import OWN_FORMAT, value_of, write_tree
 from symfpu.errors import InputError
-from symfpu.files.archive import Archive, Json, write_document
+from symfpu.files.archive import Archive, Json
 from symfpu.frames.tabled import Gridded, Tabled
-from symfpu.saved.classes import RESULTS
-from symfpu.saved.tree import OWN_FORMAT, Reader, Writer
-
-SCHEMA = 6  # files of results other than series and solutions began with it
+from symfpu.saved.classes import CLASSES, RESULTS
 
 
 def save(
@@ -56,11 +54,7 @@ def save(
         raise InputError("result", type(result).__name__, allowed, advice)
     file = named_path(path)
     require_notes(verdict, command, created)
-    writer = Writer()
-    root = writer.node(result)
-    held = {"root": root, "parts": writer.parts}
-    body = document(SCHEMA, verdict, command, created) | {"result": held}
-    write_document(file, body, writer.arrays)
+    write_tree(file, result, CLASSES, verdict=verdict, command=command, created=created)
     return file
 
 
@@ -86,7 +80,7 @@ def load(path: Path | str) -> Bundle:
 
 def _other_result(archive: Archive, body: Json) -> Any:
     """The result of a document; ValueError and the like where it is none."""
-    result = Reader(archive, body["parts"]).value(body["root"])
+    result = value_of(archive, body, CLASSES)
     if not isinstance(result, RESULTS):
         raise ValueError(f"{type(result).__name__} is no result")
     _require_consistent(result)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import psutil
 
 from symfpu.algebra.dense import predicted_bytes
 from symfpu.algebra.program_ring import predicted_bytes as program_bytes
 from symfpu.algebra.residue import PRIME_BITS
-from symfpu.chain.chain import Chain
-from symfpu.errors import TooLarge
+from symfpu.chain.chain import Chain, require_chain
+from symfpu.errors import InputError, TooLarge
+from symfpu.numbers.typed import integer, seed_modes
+from symfpu.series.arguments import digits_of
 from symfpu.series.force import stored_powers
 from symfpu.series.rings import RINGS
 from symfpu.series.tables import LOG10_2
@@ -50,6 +53,29 @@ def check_size(
     while needed(largest + 1) <= free:
         largest += 1
     raise TooLarge(order, needed(order), free, largest)
+
+
+def series_bytes(
+    chain: Chain, seeds: Sequence[int], order: int, *, digits: int | None = None
+) -> int:
+    """The bytes that `lindstedt` needs at most with frequencies given, known before it starts.
+
+    chain, seeds, order, digits : as of `lindstedt`; N is a number. Of `sweep` its argument memory.
+    A bound of the arrays, by their closed form: the program itself is not in it. Ours.
+
+    Raises InputError for arguments out of range.
+
+    >>> series_bytes(Chain(N=32, alpha=1), (1, 2, 3, 4), 8)
+    24715984
+    """
+    require_chain(chain)
+    if chain.symbolic:
+        raise InputError("chain", chain, "a chain with a number for N", "call at(N=...)")
+    count = len(seed_modes(seeds, chain.N))
+    last = integer(order, "order", 0)
+    if digits is None:
+        return _needed(chain, count, last, "float64", 0)
+    return _needed(chain, count, last, "fixedpoint", digits_of(digits))
 
 
 def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int:

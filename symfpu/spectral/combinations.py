@@ -22,33 +22,73 @@ FURTHER = 1.15  # from one reach that is tried to the next
 LONGEST_REACH = 40.0  # light ones beyond it are no lines
 
 
-def combinations_within(weights: Floats, reach: float) -> Ints:
-    """All nu that are not 0 with sum w_i |nu_i| <= reach; shape (M, s), light ones first."""
-    table = np.zeros((1, 0), dtype=np.int64)
-    sizes = np.zeros(1)
-    for weight in weights:
-        most = int(reach / weight)
-        numbers = np.arange(-most, most + 1)
-        sums = (sizes[:, None] + weight * np.abs(numbers)).ravel()
-        left = np.repeat(table, len(numbers), axis=0)
-        right = np.tile(numbers, len(table))[:, None]
-        inside = sums <= reach
-        table = np.hstack([left[inside], right[inside]])
-        sizes = sums[inside]
-    order = np.argsort(sizes, kind="stable")
-    return np.asarray(table[order][1:])
+@dataclass(frozen=True, eq=False)
+class Combinations:
+    """All nu with sum w_i |nu_i| <= reach, 0 among them, light ones first.
+
+    table : nu; shape (M, s). sizes : sum w_i |nu_i|, rising; (M,). sums : nu.omega; (M,).
+    doubts : sum |nu_i| e_i, e the errors of omega; (M,).
+    """
+
+    reach: float
+    table: Ints
+    sizes: Floats
+    sums: Floats
+    doubts: Floats
+
+    def number_within(self, reach: float, weight: float) -> int:
+        """How many there are with one more frequency of this weight; counted, not made."""
+        rest = reach - weight * np.abs(_numbers(reach / weight))
+        return int(np.searchsorted(self.sizes, rest, side="right").sum())
+
+    def extended(
+        self, reach: float, weight: float, frequency: float, error: float
+    ) -> Combinations:
+        """With one more frequency, within a reach that is no longer."""
+        numbers = _numbers(reach / weight)
+        sizes = self.sizes[:, None] + weight * np.abs(numbers)
+        rows, places = np.nonzero(sizes <= reach)
+        order = np.argsort(sizes[rows, places], kind="stable")
+        rows, places = rows[order], places[order]
+        last = numbers[places]
+        return Combinations(
+            reach,
+            np.hstack([self.table[rows], last[:, None]]),
+            sizes[rows, places],
+            self.sums[rows] + frequency * last,
+            self.doubts[rows] + error * np.abs(last),
+        )
+
+    def widest(
+        self, weight: float, most: int, frequency: float, error: float
+    ) -> Combinations:
+        """With one more frequency, within the greatest reach that has no more than that."""
+        for reach in reversed(REACHES):
+            if reach > self.reach:
+                continue
+            if self.number_within(reach, weight) <= most + 1:
+                return self.extended(reach, weight, frequency, error)
+        return self.extended(REACHES[0], weight, frequency, error)
 
 
-def widest(weights: Floats, most: int) -> Ints:
-    """The combinations within the greatest reach that has no more of them than that."""
-    reach = float(weights.min())
-    table = combinations_within(weights, reach)
-    while True:
-        reach *= FURTHER
-        more = combinations_within(weights, reach)
-        if len(more) > most or reach > LONGEST_REACH:
-            return table
-        table = more
+def _numbers(most: float) -> Ints:
+    return np.arange(-int(most), int(most) + 1, dtype=np.int16)
+
+
+def _reaches() -> list[float]:
+    found = [1.0]
+    while found[-1] * FURTHER <= LONGEST_REACH:
+        found.append(found[-1] * FURTHER)
+    return found
+
+
+REACHES = _reaches()
+
+
+def nothing(reach: float = REACHES[-1]) -> Combinations:
+    """Of no frequency: the empty sum."""
+    zero = np.zeros(1)
+    return Combinations(reach, np.zeros((1, 0), dtype=np.int16), zero, zero, zero)
 
 
 @dataclass
@@ -64,46 +104,45 @@ class Basis:
     frequencies: list[float] = field(default_factory=list)
     errors: list[float] = field(default_factory=list)
     weights: list[float] = field(default_factory=list)
-    table: Ints = field(default_factory=lambda: np.zeros((0, 0), dtype=np.int64))
+    known: Combinations = field(default_factory=nothing)
 
     def add(self, frequency: float, error: float, strength: float = 1.0) -> None:
         """One more; strength : as part of the strongest."""
         self.frequencies.append(frequency)
         self.errors.append(error)
         self.weights.append(1 - math.log10(strength))
-        self.table = widest(np.array(self.weights), MOST_COMBINATIONS)
+        self.known = self.known.widest(
+            self.weights[-1], MOST_COMBINATIONS, frequency, error
+        )
 
     def combination(self, frequency: float, error: float) -> tuple[int, ...] | None:
         """The lightest combination that meets a frequency, if that is no accident."""
         if not self.frequencies:
             return None
-        tolerances = self._tolerances(error)
-        turns = (self.table @ np.array(self.frequencies) - frequency) / self.rate
+        known = self.known
+        turns = (known.sums - frequency) / self.rate
         away = self.rate * np.abs(turns - np.rint(turns))
-        hits = np.flatnonzero(away <= tolerances)
+        away[0] = math.inf  # the empty sum is no name
+        hits = np.flatnonzero(away <= self._tolerances(error))
         if not len(hits):
             return None
-        sizes = self._sizes()
-        lightest = hits[sizes[hits] == sizes[hits[0]]]
+        lightest = hits[known.sizes[hits] == known.sizes[hits[0]]]
         best = int(lightest[np.argmin(away[lightest])])
-        if self._accidents(float(sizes[best]), tolerances) > CHANCE:
+        if self._accidents(float(known.sizes[best]), error) > CHANCE:
             return None
-        return tuple(self.table[best].tolist())
+        return tuple(self.known.table[best].tolist())
 
     def can_tell(self, error: float) -> bool:
         """Whether a frequency of this error would be known for a sum of low order."""
         if not self.frequencies:
             return True
-        return self._accidents(LOWEST_ORDER, self._tolerances(error)) <= CHANCE
-
-    def _sizes(self) -> Floats:
-        return np.asarray(np.abs(self.table) @ np.array(self.weights))
+        return self._accidents(LOWEST_ORDER, error) <= CHANCE
 
     def _tolerances(self, error: float) -> Floats:
-        own = error + np.abs(self.table) @ np.array(self.errors)
-        return np.asarray(DOUBTS * own + LEAST_ERROR)
+        return np.asarray(DOUBTS * (error + self.known.doubts) + LEAST_ERROR)
 
-    def _accidents(self, size: float, tolerances: Floats) -> float:
+    def _accidents(self, size: float, error: float) -> float:
         """Combinations up to a size expected within their tolerances of any one frequency."""
-        light = self._sizes() <= size
-        return float(2 * tolerances[light].sum() / self.rate)
+        light = int(np.searchsorted(self.known.sizes, size, side="right"))
+        each = DOUBTS * (error + self.known.doubts[1:light]) + LEAST_ERROR
+        return float(2 * each.sum() / self.rate)

@@ -27,7 +27,8 @@ def torus_near(
     Q_q = sum of c_q[nu] cos(nu.(omega t + phi)), the phases phi from the lines of the seeds
     themselves; c is A cos of the phase that a line has beside nu.phi, which on a torus that is
     symmetric in time is 0 or pi. Phases in radians, all else dimensionless. `refine` takes the
-    result; `residual` says how near it is. Ours. Raises InputError for other seeds.
+    result; `residual` says how near it is. Ours. Raises InputError for other seeds, and
+    for those that name a second frequency of another mode.
 
     >>> from symfpu import Chain, frequency_analysis, integrate, refine, torus_at_amplitudes
     >>> torus = refine(torus_at_amplitudes(Chain(N=4, alpha="0.3"), {1: "0.4"}, order=4))
@@ -39,6 +40,7 @@ def torus_near(
     chosen = _chosen(analysis, seeds)
     places = [analysis.seeds.index(q) for q in chosen]
     units = {q: _unit(analysis, place) for q, place in zip(chosen, places, strict=True)}
+    _require_own_lines(units)
     phases = {q: line.phase for q, line in units.items()}
     offsets = np.array([phases[q] for q in chosen])
     rows: dict[tuple[int, ...], NDArray[np.float64]] = {}
@@ -83,6 +85,16 @@ def _unit(analysis: FrequencyAnalysis, place: int) -> SpectralLine:
         (line for line in analysis.lines if line.harmonic == unit),
         key=lambda line: line.amplitude,
     )
+
+
+def _require_own_lines(units: dict[int, SpectralLine]) -> None:
+    """A second frequency of a mode has the name of another mode, which does not move with it."""
+    for q, line in units.items():
+        if line.mode != q:
+            given = f"{q}, a second frequency of mode {line.mode} ({line.frequency:.6g})"
+            own = tuple(seed for seed, other in units.items() if other.mode == seed)
+            allowed = "modes with a frequency of their own"
+            raise InputError("seeds", given, allowed, f"take seeds={own} or fewer of them")
 
 
 def _among(line: SpectralLine, places: list[int], s: int) -> tuple[int, ...] | None:

@@ -51,7 +51,10 @@ class Record:
         self.y, self.interval, self.n = y, interval, len(y)
         self.real = not np.iscomplexobj(y)
         self.window = hann(self.n)
-        self.times = (np.arange(self.n) - (self.n - 1) / 2) * interval
+        self.places = np.arange(self.n) - (self.n - 1) / 2
+        self.times = self.places * interval
+        self.squares = self.times**2
+        self.stretch = math.isqrt(self.n - 1) + 1
 
     @property
     def turn(self) -> float:
@@ -62,8 +65,15 @@ class Record:
         """The record from one place to before another, its times from its own middle."""
         return Record(self.y[first:last], self.interval)
 
+    def wave(self, frequency: float) -> Numbers:
+        """e^(i f t) at all times: those of the stretches times those within one."""
+        angle = frequency * self.interval
+        firsts = np.exp(1j * angle * self.places[:: self.stretch])
+        within = np.exp(1j * angle * np.arange(self.stretch))
+        return np.asarray(np.multiply.outer(firsts, within).ravel()[: self.n])
+
     def model(self, line: Exponential) -> Numbers:
-        wave: Numbers = line.coefficient * np.exp(1j * line.frequency * self.times)
+        wave = line.coefficient * self.wave(line.frequency)
         if not self.real:
             return wave
         return np.asarray(wave.real if line.frequency == 0 else 2 * wave.real)
@@ -94,10 +104,10 @@ class Record:
             return Exponential(0.0, complex(weighted.sum()))
         near = self.turn  # no step is longer
         for _ in range(STEPS):
-            waves = weighted * np.exp(-1j * frequency * self.times)
+            waves = weighted * self.wave(-frequency)
             value = waves.sum()
             slope = -1j * (self.times @ waves)
-            bend = -(self.times**2 @ waves)
+            bend = -(self.squares @ waves)
             gradient = (slope * np.conj(value)).real
             curvature = abs(slope) ** 2 + (bend * np.conj(value)).real
             if curvature >= 0:  # not at a maximum yet: uphill
@@ -107,7 +117,7 @@ class Record:
             frequency += step
             if abs(step) <= self._still(frequency):
                 break
-        value = (weighted * np.exp(-1j * frequency * self.times)).sum()
+        value = (weighted * self.wave(-frequency)).sum()
         return Exponential(frequency, complex(value))
 
     def settle(self, lines: list[Exponential], sweeps: int = SWEEPS) -> list[Exponential]:

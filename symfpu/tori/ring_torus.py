@@ -36,7 +36,7 @@ from symfpu.tori.amplitudes import (
     square_roots,
     start_of,
 )
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 
 Floats = NDArray[np.float64]
 Waves = NDArray[np.complex128]
@@ -375,6 +375,13 @@ def _waves(
     moving = modes % series.chain.N != 0
     harmonics, modes, sums = harmonics[moving], modes[moving], sums[moving]
     return harmonics, modes, sums / (2 * np.sin(np.pi * modes / series.chain.N))
+
+
+def amplitudes_by_seed(solution: QuasiPeriodic | RingTorus) -> dict[int, Any]:
+    """A_q of any solution, whatever the ends."""
+    if isinstance(solution, RingTorus):
+        return dict(solution.amplitudes)
+    return amplitudes_of(solution)
 
 
 def unfold(solution: QuasiPeriodic) -> RingTorus:

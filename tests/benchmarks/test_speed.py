@@ -69,6 +69,13 @@ def test_breather(benchmark, record):
     record("breather N = 32 to order 250", multiply_adds=series.multiply_adds)
 
 
+def test_breather_of_order_1000(benchmark, record):
+    torus = APPENDIX_F[-1]
+    arguments = (torus.chain, torus.seeds, torus.frequencies, 1000)
+    series = benchmark.pedantic(lindstedt, arguments, rounds=1, iterations=1)
+    record("breather N = 32 to order 1000", multiply_adds=series.multiply_adds)
+
+
 @pytest.mark.parametrize(
     ("name", "command"),
     [

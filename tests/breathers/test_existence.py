@@ -1,7 +1,9 @@
 """Proofs of existence: the true orbit is where they say, their bounds are those of another route, and what is no orbit has none."""
 
 import json
+import re
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 
 import flint
@@ -11,13 +13,14 @@ import pytest
 
 from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import Balance, breather_at_amplitude, periodic_orbit
-from symfpu.breathers.bond_balls import BondBalls
-from symfpu.breathers.contraction import Attempt
+from symfpu.breathers.bond_balls import SPARE_BITS, BondBalls
+from symfpu.breathers.contraction import Attempt, places_of
 from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.breathers.existence import NoExistenceProof, prove_existence
-from symfpu.breathers.existence_bounds import SPARE_BITS, linear_part, strip
+from symfpu.breathers.existence_bounds import linear_part, strip
 from symfpu.breathers.rounded_orbit import rounded_orbit
 from symfpu.chain.chain import Chain
+from symfpu.chain.potentials.from_expression import from_expression
 from symfpu.errors import InputError
 from symfpu.proofs import check_existence
 from symfpu.refinement.travelling_breather import travelling_breather
@@ -34,17 +37,31 @@ CASES = {
     "wrapped modes": (Chain(7, alpha="0.4"), 5, "0.1"),
     "both": (Chain(5, alpha="1/3", beta="-1/7"), 3, "0.2"),
     "a polynomial": (Chain(5, potential="poly:0.3,0.1,-1/5,0,1/9"), 2, "0.2"),
+    "toda": (Chain(4, potential="toda:1/2"), 1, "0.1"),
+    "morse": (Chain(3, potential="morse:1"), 1, "0.1"),
+    "lennard-jones": (Chain(3, potential="lj:12,6"), 1, "0.01"),
+    "an expression": (Chain(3, potential=from_expression("exp(r) - 1 - r")), 1, "0.1"),
+    "amplitude": (Chain(6, alpha="0.3"), 1, "0.4"),
+    "energy": (Chain(5, alpha="0.3", beta="0.2"), 1, "0.4"),
+    "energy, toda": (Chain(3, potential="toda:1/2"), 1, "0.2"),
+}
+GIVEN = {
+    "amplitude": {"amplitude": "0.4"},
+    "energy": {"energy": "0.0299"},
+    "energy, toda": {"energy": "0.02"},
 }
 
 
 @cache
 def orbit(name):
+    if "energy" in GIVEN.get(name, {}):
+        return breather_at_energy(*CASES[name][:2], GIVEN[name]["energy"])
     return breather_at_amplitude(*CASES[name])
 
 
 @cache
 def proof(name):
-    return prove_existence(orbit(name))
+    return prove_existence(orbit(name), **GIVEN.get(name, {}))
 
 
 def checked(found, folder):
@@ -52,31 +69,109 @@ def checked(found, folder):
     return check_existence.verify(folder / "proof.json")
 
 
-QUICK = ("alpha", "two bonds", "beta, even seed", "both")
-EACH = [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in CASES]
+QUICK = ("alpha", "two bonds", "beta, even seed", "both", "toda", "amplitude", "energy, toda")
+EACH = [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.long]) for name in CASES]
+OF_FREQUENCY = [case for case in EACH if case.values[0] not in GIVEN]
 
 
-@pytest.mark.parametrize("name", EACH)
+def stretches_of(solution):
+    """c_q = sqrt(2/N) Omega_q Q_q by harmonic, mpf."""
+    chain = solution.chain
+    units = [mpmath.sqrt(mpmath.mpf(2) / chain.N) * chain.linear_frequency(q) for q in chain.mode_numbers]
+    return solution.by_harmonic() * np.array(units, dtype=object)
+
+
+def rows_of(found, key, length):
+    """Rows of a certificate as a table of mpf, those of harmonics beyond the length left out."""
+    chain, body = found.chain, found.body
+    table = np.zeros((length, chain.N - 1), dtype=object)
+    places = places_of(chain, found.seed, len(body[key]) - 1)
+    values = (x for row in body[key] for x in row)
+    for n, q, x in zip(places.n, places.q, values, strict=True):
+        if n < length:
+            table[n, q - 1] = mpmath.ldexp(x, -body["bits"])
+    return table
+
+
+@pytest.mark.parametrize("name", OF_FREQUENCY)
 def test_the_true_orbit_is_where_the_theorem_says(name):
     """Forty digits are the true orbit as far as radii of doubles can see."""
     found, precise = proof(name), periodic_orbit_digits(orbit(name), 40)
     with mpmath.workdps(50):
-        N = found.chain.N
-        units = [mpmath.sqrt(mpmath.mpf(2) / N) * found.chain.linear_frequency(q) for q in range(1, N)]
-        rows = precise.by_harmonic() * np.array(units, dtype=object)
-        claimed = np.zeros(rows.shape, dtype=object)
-        of_orbit = rounded_orbit(orbit(name)).rows
-        claimed[: len(of_orbit)] = [[mpmath.ldexp(x, -found.body["bits"]) for x in row] for row in of_orbit]
-        distance = np.abs(rows - claimed).sum()
+        rows = stretches_of(precise)
+        distance = np.abs(rows - rows_of(found, "orbit", len(rows))).sum()
         assert 0 < distance < found.radius < found.unique
         assert abs(precise.amplitude - found.amplitude) < found.amplitude_radius
         assert abs(precise.energy() - found.energy) < found.energy_radius
 
 
+@pytest.mark.parametrize("name", GIVEN)
+def test_the_frequency_is_where_the_theorem_says(name):
+    """The orbits at the ends of its interval have values on the two sides of the given one."""
+    found, excess = proof(name), []
+    assert 0 < found.frequency_radius < 1e-18
+    for sign in (-1, 1):
+        omega = found.frequency + sign * Fraction(found.frequency_radius)
+        near = replace(orbit(name), frequencies=(omega,))
+        precise = periodic_orbit_digits(near, 40)
+        own = precise.amplitude if found.fixed == "amplitude" else precise.energy()
+        with mpmath.workdps(50):
+            excess.append(own - mpmath.mpf(found.value.numerator) / found.value.denominator)
+    assert excess[0] * excess[1] < 0
+
+
+@pytest.mark.parametrize("given", [{}, {"amplitude": "0.4"}, {"energy": None}])
+def test_members_of_a_segment_are_on_its_line(given):
+    """Harmonic balance at the ends and inside: within the radius of the line, outside a tenth of the middle's distance."""
+    middle = orbit("alpha")
+    kind = next(iter(given), "frequency")
+    value = {"frequency": middle.frequency, "amplitude": Fraction("0.4"), "energy": Fraction(str(middle.energy()))}[kind]
+    width = {"frequency": Fraction(1, 10**7), "amplitude": Fraction(1, 10**5), "energy": Fraction(1, 10**7)}[kind]
+    found = prove_existence(middle, **dict.fromkeys(given, value), half_width=width)
+    for s in (-1, Fraction(1, 2), 1):
+        member = {
+            "frequency": lambda x: periodic_orbit(middle.chain, 1, x, guess=middle),
+            "amplitude": lambda x: breather_at_amplitude(middle.chain, 1, x),
+            "energy": lambda x: breather_at_energy(middle.chain, 1, x),
+        }[kind](value + s * width)
+        rows = stretches_of(member)
+        centre = rows_of(found, "orbit", len(rows))
+        line = centre + mpmath.mpf(s.numerator) / s.denominator * rows_of(found, "direction", len(rows))
+        distance = np.abs(rows - line).sum()
+        assert distance < found.radius
+        assert distance < np.abs(rows - centre).sum() / 10
+        assert abs(member.amplitude - found.amplitude) < found.amplitude_radius
+        assert abs(member.energy() - found.energy) < found.energy_radius
+        assert abs(member.frequency - found.frequency) <= max(found.frequency_radius, width)
+
+
+def test_a_fold_in_omega_is_an_ordinary_point_of_its_amplitude(tmp_path):
+    """The frequency of this oscillator falls and rises again: at its least, near A = 0.633383, DF is nearly singular.
+
+    The segment about it holds the fold: its ends have higher frequencies than its middle, by proof.
+    """
+    chain, A, width = Chain(2, potential="poly:0,-1,0,3/2"), Fraction("0.633383"), Fraction(1, 200)
+    fold = breather_at_amplitude(chain, 1, A)
+    alone, given = prove_existence(fold), prove_existence(fold, amplitude=A)
+    assert alone.unique < 1e-6 < 1e-2 < given.unique
+    assert checked(prove_existence(fold, amplitude=A, half_width=width), tmp_path)
+    for end in (A - width, A + width):
+        proved = prove_existence(breather_at_amplitude(chain, 1, end), amplitude=end)
+        rise = proved.frequency - given.frequency
+        assert rise > proved.frequency_radius + given.frequency_radius
+
+
+def test_a_segment_too_long_says_how_long_one_may_be():
+    with pytest.raises(NoExistenceProof, match="of this one can be proved") as caught:
+        prove_existence(orbit("alpha"), amplitude="0.4", half_width="1e-2")
+    share = float(re.search(r"a half width of ([0-9.e-]+) of this", str(caught.value))[1])
+    assert prove_existence(orbit("alpha"), amplitude="0.4", half_width=0.9 * share * 1e-2)
+
+
 @pytest.mark.parametrize("name", EACH)
 def test_the_checker_agrees_in_every_bound(name, tmp_path):
     found = proof(name)
-    theorem, _ = checked(found, tmp_path)
+    theorem, *_ = checked(found, tmp_path)
     assert f"N = {found.chain.N} bonds" in theorem
     data = json.loads((tmp_path / "proof.json").read_text())
     claim = check_existence.read_claim(data)
@@ -84,6 +179,7 @@ def test_the_checker_agrees_in_every_bound(name, tmp_path):
     bonds = check_existence.Bonds(claim, inverse.last + inverse.slope_harmonics)
     bounds = check_existence.Bounds(claim, bonds, inverse)
     radius = check_existence.dyadic(data["unique"], "unique")
+    assert bounds.length() == 0
     ours = [found.residual, 1 + found.linear, found.curvature]
     theirs = [bounds.residual(), 1 + bounds.linear(), bounds.curvature(radius)]
     np.testing.assert_allclose(ours, list(map(float, theirs)), rtol=SAME_BOUNDS)
@@ -145,15 +241,21 @@ def orbit_cut(cosines):
 
 def test_what_the_theorem_is_not_about_is_refused():
     ring = travelling_breather(Chain(6, alpha="0.3", ends="periodic"), 1, amplitude="0.1")
-    with pytest.raises(InputError, match="fixed ends"):
+    with pytest.raises(InputError, match="half the ring with fixed ends"):
         prove_existence(ring)
     with pytest.raises(InputError, match="polynomial"):
-        prove_existence(breather_at_amplitude(Chain(4, potential="toda:1/2"), 1, "0.1"))
+        prove_existence(breather_at_amplitude(Chain(4, potential=from_expression("1 - cos(r)")), 1, "0.1"))
     torus = solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3905", "0.7663"), 2))
     with pytest.raises(InputError, match="2 angles"):
         prove_existence(torus)
     with pytest.raises(InputError, match="str"):
         prove_existence("breather")
+    with pytest.raises(InputError, match="one of the two"):
+        prove_existence(orbit("alpha"), amplitude="0.4", energy="0.1")
+    with pytest.raises(InputError, match=r"about that of the orbit, 0\.4"):
+        prove_existence(orbit("alpha"), amplitude="0.3")
+    with pytest.raises(InputError, match="from 0 up"):
+        prove_existence(orbit("alpha"), half_width="-1")
 
 
 @pytest.mark.long
@@ -167,7 +269,24 @@ def test_the_breathers_of_the_figures_exist(seed, omega, tmp_path):
 
 @pytest.mark.long
 @pytest.mark.parametrize("energy", ["0.014915", "0.75"])
-def test_breathers_of_these_energies_exist(energy, tmp_path):
-    found = prove_existence(periodic_orbit_digits(breather_at_energy(FIG9, 1, energy), 30))
+@pytest.mark.parametrize("exact", [False, True])
+def test_breathers_of_these_energies_exist(energy, exact, tmp_path):
+    orbit = of_energy(energy)
+    found = prove_existence(orbit, energy=energy if exact else None)
     assert found.radius < PROVED_RADIUS
     assert checked(found, tmp_path)
+    assert (tmp_path / "proof.json").stat().st_size < 100_000
+
+
+@cache
+def of_energy(energy):
+    return periodic_orbit_digits(breather_at_energy(FIG9, 1, energy), 30)
+
+
+@pytest.mark.long
+def test_the_amplitude_of_figure_9_given_exactly():
+    """A = 1.27153895251014, of which Fig. 9's breather has all digits printed."""
+    orbit = periodic_orbit_digits(periodic_orbit(FIG9, 1, "0.09844127049688513"), 32)
+    found = prove_existence(orbit, amplitude="1.27153895251014")
+    assert found.radius < PROVED_RADIUS
+    assert abs(found.frequency - orbit.frequency) < 1e-15

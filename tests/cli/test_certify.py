@@ -10,6 +10,7 @@ from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from tests.test_pickle import two_angles
 
 
 @pytest.fixture
@@ -49,8 +50,29 @@ def test_what_cannot_be_proved_is_one_line_and_code_1(tmp_path, capsys):
     assert len(err.splitlines()) == 1
 
 
-@pytest.mark.long
-def test_a_torus_of_two_angles_is_refused(tmp_path, capsys):
-    torus = solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3905", "0.7663"), 2))
-    assert main(["certify", str(save(tmp_path / "torus", torus))]) == 2
-    assert "2 angles" in capsys.readouterr().err
+@pytest.fixture
+def torus(tmp_path):
+    return str(save(tmp_path / "torus", two_angles()))
+
+
+def test_a_torus_stays_for_a_time_and_its_residual_is_a_theorem(torus, tmp_path, capsys):
+    certificate = str(tmp_path / "proof.json")
+    assert main(["certify", torus, "--time", "1000", "-o", certificate]) == 0
+    assert "stays within" in capsys.readouterr().out
+    assert main(["verify", certificate]) == 0
+    assert "every orbit that starts on this torus stays" in capsys.readouterr().out
+    assert main(["certify", torus, "--residual", "-o", certificate]) == 0
+    assert main(["verify", certificate, "--json"]) == 0
+    assert '"kind": "ResidualProof"' in capsys.readouterr().out
+
+
+def test_too_long_a_stay_is_one_line_and_code_1(torus, capsys):
+    assert main(["certify", torus, "--time", "1e12"]) == 1
+    assert "no proof of a stay of 1e+12: at most" in capsys.readouterr().err
+
+
+def test_options_of_a_torus_are_refused_for_a_breather(saved, torus, capsys):
+    assert main(["certify", saved, "--time", "10"]) == 2
+    assert main(["certify", saved, "--residual"]) == 2
+    assert main(["certify", torus, "--residual", "--time", "10"]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 3

@@ -231,6 +231,19 @@ def test_events_are_in_the_output(capsys):
     assert out.splitlines()[-1].startswith("  resonance of mode 7 with harmonic (5) at H = 0.09")
 
 
+def test_normal_frequencies_are_in_the_output(capsys, tmp_path):
+    options = ["-N", "4", "--alpha", "0.5", "--seeds", "2", "--from-energy", "0.4", "--to-energy", "0.6", "--normal"]
+    code, out, _ = run(capsys, "family", *options, "-o", str(tmp_path), "--json")
+    record = json.loads(out)
+    [event] = record["normal_events"]
+    assert code == 0
+    assert (event["event"], event["resonance"]["modes"], event["begins"]) == ("stability", [1], True)
+    assert [m["normal"]["stable"] for m in record["members"]][-1] is False
+    assert (tmp_path / "family-normal.png").exists()
+    _, out, _ = run(capsys, "family", *options)
+    assert out.splitlines()[-1].startswith("  stability: 2 sigma_1 = (1).omega, hyperbolic from A_2=")
+
+
 def test_ratios_go_by_the_seeds_as_they_are_written(capsys):
     options = ["-N", "6", "--beta", "0.3", "--to-energy", "0.01", "--from-energy", "0.009", "--members", "1", "--json"]
     records = [

@@ -12,12 +12,13 @@ import zipfile
 
 import pytest
 
+from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
-from tests.tolerances import COMMANDED_SECONDS, GALI_SLOPE, VOLUME_BY_SCHEME
+from tests.tolerances import COMMANDED_SECONDS, FORETOLD, GALI_SLOPE, VOLUME_BY_SCHEME
 
 PRESSED = """
 import os, pathlib, sys
@@ -176,3 +177,32 @@ def test_help_has_an_example(capsys):
     assert (code, err) == (0, "")
     assert "Example: symfpu gali" in out
     assert "--json" in out
+
+
+def test_what_the_torus_foretells_stands_beside(capsys, tmp_path):
+    """The closed form and the integrated frame of the same random vectors."""
+    file, picture = tmp_path / "breather", tmp_path / "gali.png"
+    save(file, breather_at_amplitude(Chain(4, beta=1), 2, "0.4"))
+    arguments = ["gali", str(file), "--time", "300", "--vectors", "3", "--frames", "1", "--step", "0.05", "--foretold"]
+    code, out, _ = run(capsys, *arguments, "--json")
+    record = json.loads(out)["foretold"]
+    assert code == 0
+    assert record["asymptotic_slopes"] == {"2": -1, "3": -2}
+    assert record["largest_difference"] < FORETOLD
+    code, out, _ = run(capsys, *arguments, "--plot", str(picture), "-o", str(tmp_path / "out"))
+    assert code == 0
+    assert "foretold" in out
+    assert picture.exists()
+    with (tmp_path / "out" / "gali.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    apart = [abs(float(row["log10 GALI_3"]) - float(row["foretold log10 GALI_3"])) for row in rows]
+    assert max(apart) < FORETOLD
+
+
+def test_only_tori_foretell(capsys, kept):
+    code, _, err = run(capsys, "gali", "-N", "4", "--beta", "1", "--packet", "1", "--energy", "0.1", "--time", "300", "--foretold")
+    assert (code, "leave --foretold out" in err) == (2, True)
+    rough = kept.parent / "rough.symfpu"
+    save(rough, solve_amplitudes(lindstedt(Chain(8, beta=1), (4,), ("1.44",), 1)))
+    code, _, err = run(capsys, "gali", str(rough), "--time", "300", "--foretold")
+    assert (code, "refine" in err) == (2, True)

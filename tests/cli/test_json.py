@@ -49,6 +49,8 @@ LONG = {
     "prove, all N": ["prove", "--all-N", "--model", "beta", "--seeds-number", "1", "--order", "2"],
     "orbit": ["orbit", "TORUS", "--time", "100", "--samples", "10"],
     "orbit, a state": ["orbit", *CHAIN, "--packet", "1", "--energy", "0.1", "--time", "100", "--samples", "10"],
+    "frequencies": ["frequencies", *CHAIN, "--packet", "1", "--energy", "0.1", "--time", "200", "--step", "0.1"],
+    "frequencies, a map": ["frequencies", *CHAIN, "--energies", "0.01,0.1", "--time", "200", "--step", "0.1"],
     "gali": ["gali", "TORUS", "--time", "1000", "--vectors", "3"],
     "gali, estimate": ["gali", "TORUS", "--time", "1000", "--vectors", "3", "--estimate"],
     "reproduce": ["reproduce", "fig6", "-o", "out"],

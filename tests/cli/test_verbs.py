@@ -64,9 +64,9 @@ def test_the_table_has_every_module_and_every_verb():
 
 def test_the_help_has_the_verbs_in_the_order_of_the_table(capsys):
     assert main(["--help"]) == 0
-    words = capsys.readouterr().out.split()
-    begun = [words.index(verb, words.index("Commands")) for verb in VERBS]
-    assert begun == sorted(begun)
+    _, table = capsys.readouterr().out.split("Commands")
+    rows = [line.removeprefix("│ ") for line in table.splitlines()[1:]]
+    assert [row.split()[0] for row in rows if row[:1].isalpha()] == list(VERBS)
 
 
 def test_a_verb_that_is_none_is_named_beside_those_that_are(capsys):

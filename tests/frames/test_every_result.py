@@ -20,6 +20,7 @@ WITHOUT = {
     "ExpandableTerm": "an expression",
     "NamedParts": "an expression",
     "NormalEvent": "a line of NormalFamily",
+    "NormalFrequencies": "rows of a family's data set",
     "NormalMode": "a row of NormalModes",
     "ParametricResonance": "a line of NormalModes",
     "ProfileDistance": "one number and its mode",

@@ -21,7 +21,7 @@ from symfpu.normal.self_consistent import solve_normal_frequency
 from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.saved.results import load, save
 from symfpu.tori.frequencies import torus_at_amplitudes
-from tests.tolerances import OBSERVED_ORDER
+from tests.tolerances import NORMAL_CONVERGED, NORMAL_VARIATION, OBSERVED_ORDER
 
 HYPERBOLIC = Chain(8, beta=1), (("1", "0.1"), ("5", "0.7"))
 # of the torus of 50 digits, 1074 harmonics; the issue has 1.577380 +- 0.035136 i
@@ -167,8 +167,8 @@ def test_sizes_and_digits_agree_with_doubles():
     found, doubles = small_modes(), normal_modes(small().in_doubles())
     assert (found.digits, doubles.digits) == (20, None)
     for one, other in zip(found.modes, doubles.modes, strict=True):
-        assert one.in_doubles().sigma == pytest.approx(other.sigma, rel=1e-12)
-        assert float(one.action) == pytest.approx(other.action, rel=1e-9)
+        assert one.in_doubles().sigma == pytest.approx(other.sigma, rel=NORMAL_CONVERGED)
+        assert float(one.action) == pytest.approx(other.action, rel=NORMAL_VARIATION)
         with mpmath.workdps(30):
             assert below(sum(x**2 for x in one.coefficients.flat) - 1, 20)
         assert below(one.error, 20)
@@ -195,7 +195,7 @@ def test_the_verb_writes_all_digits_as_text(tmp_path, capsys):
     record = json.loads(capsys.readouterr().out)
     assert record["digits"] == 20
     assert record["normal_frequencies"] == {str(q): str(w) for q, w in small_modes().frequencies.items()}
-    assert float(record["frequency_error"]) < 1e-20
+    assert below(mpmath.mpf(record["frequency_error"]), 20)
     assert main(["stability", file, "--modes", "2"]) == 0
     assert str(small_modes().frequencies[2]) in capsys.readouterr().out
 

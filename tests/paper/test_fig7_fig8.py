@@ -7,7 +7,7 @@ import pytest
 
 from symfpu.figures.panels import Curve
 from symfpu.files.progress import unheard
-from symfpu.paper import breather_profiles, fig7, fig8
+from symfpu.paper import breather_profiles, fig7, fig8, starts
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.starts import printed_row
 from tests.paper.cases import exponential
@@ -45,7 +45,7 @@ def test_means_that_follow_the_breather():
 @pytest.mark.parametrize(("off", "verdict"), [(0.0, HOLDS), (1e-11, HOLDS), (1e-9, FAILS)])
 def test_return_after_a_period_in_digits(monkeypatch, off, verdict):
     orbit = SimpleNamespace(Q=np.array([[0.5, 0.0], [0.5, 0.5 * off]]), P=np.zeros((2, 2)))
-    monkeypatch.setattr(fig7, "integrated_orbit", lambda *given, **options: orbit)
+    monkeypatch.setattr(starts, "integrated_orbit", lambda *given, **options: orbit)
     assert fig7.return_claim(printed_row("Fig. 7"), None).verdict == verdict
 
 

@@ -12,7 +12,8 @@ from symfpu.chain.propagation import excitation_sequence
 from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices
 from symfpu.dynamics.orbits import integrate
 from symfpu.families.family import family
-from symfpu.families.normal_family import NormalEvent, NormalFamily
+from symfpu.families.normal_events import NormalEvent
+from symfpu.families.normal_family import NormalFamily
 from symfpu.integrable.invariants import toda_gaps, toda_invariants
 from symfpu.localization.profiles import fpu_trajectory
 from symfpu.normal.resonances import ParametricResonance
@@ -22,6 +23,7 @@ from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.travelling import travelling_waves
 from symfpu.spectral.analysis import frequency_analysis
+from symfpu.spectral.mapping import frequency_map
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.ring_torus import travelling_torus
@@ -89,8 +91,8 @@ def normal_line():
     chain = Chain(N=4, alpha="0.5")
     found = tuple(normal_modes(breather_at_amplitude(chain, 2, A)) for A in ("0.5", "0.75", "1"))
     met = ParametricResonance("parametric", (1,), (1,), 0.0)
-    onset = NormalEvent("stability", met, 1, 0.5412, {2: 0.7706}, begins=True)
-    crossed = NormalEvent("resonance", met, 0, 0.2, {2: 0.6})
+    onset = NormalEvent("stability", met, 1, 0.5412, {2: 0.7706}, 0.9, begins=True)
+    crossed = NormalEvent("resonance", met, 0, 0.2, {2: 0.6}, 0.5)
     return NormalFamily(found, (0.0, 0.5, 1.0), (crossed, onset))
 
 
@@ -105,6 +107,12 @@ def lines_found():
     chain = Chain(N=5, alpha="0.3")
     start = fpu_trajectory(chain, {1: "0.3", 3: "0.2"})
     return frequency_analysis(integrate(chain, *start, 1000, step=0.25))
+
+
+@cache
+def mapped():
+    """Three energies of a short chain."""
+    return frequency_map(Chain(N=5, alpha="0.3"), ("0.001", "0.01", "0.1"), T=500, step=0.25)
 
 
 @cache

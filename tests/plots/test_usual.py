@@ -26,6 +26,7 @@ RESULTS = {
     "AlignmentIndices": (cases.indices, "dimension 2"),
     "ForetoldIndices": (cases.foretold, "slope -1, from t"),
     "FrequencyAnalysis": (cases.lines_found, "independent frequencies"),
+    "FrequencyMap": (cases.mapped, "frequencies"),
     "Floquet": (cases.stable_floquet, "stable"),
     "Family": (cases.pair, "reached"),
     "PropagationProof": (cases.proof, "refuted"),

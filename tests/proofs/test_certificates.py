@@ -130,3 +130,15 @@ def test_order_too_high_for_exact_sums_says_so():
 
     with pytest.raises(SymfpuError, match="take a lower order"):
         random_point(4096, 8, 60, random.Random(1))
+
+
+def test_the_reason_is_the_sign_where_all_folds_have_one_parity():
+    # one seed: Theorem 4 of docs/propagation.md
+    assert prove_propagation(9, (1,), 4).reason == "sign"
+    mixed = prove_propagation(8, (1, 4), 3, model="beta")
+    # 7 = 8 - 1 is excited at order 2, not at that of the rule: no sum shows it
+    assert mixed.reason == "sign and residues"
+    assert 7 not in mixed.by_sign
+    assert {2, 3, 6} <= mixed.by_sign
+    assert prove_propagation(8, (1,), 2, potential="toda:1").reason == "residues"
+    assert prove_propagation(2, (1,), 3).reason == "couplings"

@@ -11,19 +11,36 @@ from pathlib import Path
 import mpmath
 import pytest
 
+from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.existence import prove_existence
+from symfpu.breathers.packed_integers import packed
 from symfpu.chain.chain import Chain
 from symfpu.proofs import check_existence
 from symfpu.proofs.check_existence import COSINE_UNITS, Cosines, ExistenceError, verify
+from symfpu.proofs.check_existence.reading import unpacked
 from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.verify import CertificateError
 from tests.proofs.test_forgeries import sealed
 
 
+def both():
+    return breather_at_amplitude(Chain(3, alpha="0.3", beta="1/7"), 1, "0.3")
+
+
+MADE = {
+    "frequency": lambda: prove_existence(both()),
+    "amplitude": lambda: prove_existence(both(), amplitude="0.3"),
+    "energy": lambda: prove_existence(breather_at_energy(Chain(3, potential="toda:1/2"), 1, "0.02"), energy="0.02"),
+    "segment of amplitude": lambda: prove_existence(both(), amplitude="0.3", half_width="1e-5"),
+    "segment of frequency": lambda: prove_existence(both(), half_width="1e-6"),
+    "segment of energy": lambda: prove_existence(both(), energy="0.0453646", half_width="1e-6"),
+}
+
+
 @cache
-def certificate():
-    return prove_existence(breather_at_amplitude(Chain(3, alpha="0.3", beta="1/7"), 1, "0.3")).certificate()
+def certificate(name="frequency"):
+    return MADE[name]().certificate()
 
 
 def reason(data, folder):
@@ -63,13 +80,44 @@ def moved(value):
     return value + 1 if isinstance(value, int) else f"{value}1"
 
 
-def test_every_number_altered_is_refused(tmp_path):
-    data = certificate()
+def entry(i, change):
+    """A change of one number of a list that is written as text."""
+
+    def changed(text):
+        values = unpacked(text, "text")
+        values[i] = change(values[i])
+        return packed(values)
+
+    return changed
+
+
+def texts(data):
+    """Every list that is written as text, with another character at each of its places."""
+    for key in ("orbit", "direction", "inverse", "weights"):
+        rows = [(key, i) for i in range(len(data[key]))] if isinstance(data[key], list) else [(key,)]
+        for place in rows:
+            text = data[key] if len(place) == 1 else data[key][place[1]]
+            for k, character in enumerate(text):
+                other = "$" if character != "$" else "%"
+                yield place, text[:k] + other + text[k + 1 :]
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_every_number_altered_is_refused(name, tmp_path):
+    data = certificate(name)
     assert reason(data, tmp_path) is None
     places = list(numbers(data))
-    assert len(places) > 60
+    assert len(places) > 40
     for place in places:
         assert reason(altered(data, place, moved), tmp_path), place
+    others = list(texts(data))
+    assert len(others) > 100
+    for place, text in others:
+        assert reason(altered(data, place, lambda _, text=text: text), tmp_path), place
+
+
+def shifted(text):
+    return str(Fraction(text) + Fraction(1, 10**12))
 
 
 FORGERIES = {
@@ -80,20 +128,55 @@ FORGERIES = {
     "a narrower amplitude": (("amplitude", 1), lambda m: m // 3, "amplitude"),
     "another energy": (("energy", 0), lambda m: m + m // 10**12, "H may be outside"),
     "a narrower energy": (("energy", 1), lambda m: m // 4, "H may be outside"),
-    "another frequency": (("omega",), lambda w: str(Fraction(w) + Fraction(1, 10**12)), "exceeds r"),
+    "another frequency": (("omega",), shifted, "not the frequency"),
     "another coupling": (("coefficients", 0), lambda _: "300000000001/1000000000000", "exceeds r"),
-    "another coefficient": (("orbit", 1, 0), lambda c: c + c // 10**12, "exceeds r"),
+    "another coefficient": (("orbit", 1), entry(0, lambda c: c + c // 10**12), "exceeds r"),
     "one more bond": (("N",), lambda N: N + 1, "wrong"),
     "another seed": (("seed",), lambda _: 2, "wrong length|seed|block"),
     "other bits": (("bits",), lambda b: b + 1, "exceeds r|amplitude|not below"),
-    "another inverse": (("inverse", 0, 0), lambda a: 3 * a, "not below 1|exceeds r"),
-    "a weight below 1": (("weights", 0), lambda _: 1, "a weight"),
+    "another inverse": (("inverse", 0), entry(0, lambda a: 3 * a), "not below 1|exceeds r"),
+    "a weight below 1": (("weights",), entry(0, lambda _: 1), "a weight"),
     "a wider strip": (("nu",), lambda _: "2", "not below 1|exceeds r"),
     "no strip": (("nu",), lambda _: "1", "nu is not"),
     "fewer free harmonics": (("free",), lambda _: 1, "wrong number of weights|block"),
     "another kind": (("format",), lambda _: "symfpu propagation certificate", "not a certificate"),
-    "a later version": (("schema",), lambda _: 2, "supports schema"),
+    "a later version": (("schema",), lambda _: 3, "supports schema"),
 }
+
+
+OF_KINDS = {
+    "another amplitude given": ("amplitude", ("value",), lambda _: "300000000001/1000000000000", "exceeds r"),
+    "an amplitude of the other sign": ("amplitude", ("value",), lambda v: f"-{v}", "exceeds r"),
+    "a wider frequency": ("amplitude", ("frequency", 1), lambda m: m // 3, "frequency may be outside"),
+    "another frequency of the orbit": ("amplitude", ("omega",), shifted, "exceeds r"),
+    "another energy given": ("energy", ("value",), shifted, "exceeds r"),
+    "another function": ("energy", ("growths", 0, 2), shifted, "linear force"),
+    "another degree": ("energy", ("degree",), lambda _: 4, "exceeds r"),
+    "functions and a polynomial": ("energy", ("coefficients",), lambda _: ["1"], "one of the two"),
+    "an amplitude for an energy": ("energy", ("fixed",), lambda _: "amplitude", "exceeds r|not below 1"),
+    "a frequency for an amplitude": ("amplitude", ("fixed",), lambda _: "frequency", "not the frequency"),
+    "nothing fixed": ("amplitude", ("fixed",), lambda _: "phase", "nothing that can be fixed"),
+    "no weight of the frequency": ("amplitude", ("weights",), entry(0, lambda _: 1), "a weight"),
+    "another scale": ("amplitude", ("scales", 0), lambda e: e + 8, "not below 1|exceeds r"),
+    "a segment without a direction": ("amplitude", ("half_width",), lambda _: "1/1000000", "without a direction"),
+    "a direction without a segment": ("segment of amplitude", ("half_width",), lambda _: "0", "without a segment"),
+    "a longer segment": ("segment of amplitude", ("half_width",), lambda _: "1/50000", "exceeds r|not below 1"),
+    "a longer segment of frequency": ("segment of frequency", ("half_width",), lambda _: "1/500000", "exceeds r|not below"),
+    "a longer segment of energy": ("segment of energy", ("half_width",), lambda _: "1/500000", "exceeds r|not below"),
+    "another direction": ("segment of energy", ("direction", 1), entry(0, lambda c: c + c // 5), "exceeds r|not below 1"),
+    "a slower frequency": ("segment of energy", ("direction_frequency",), lambda c: c // 2, "exceeds r|not below 1"),
+    "a narrower interval of A": ("segment of energy", ("amplitude", 1), lambda m: m // 3, "amplitude of the orbit"),
+    "a narrower interval of H": ("segment of amplitude", ("energy", 1), lambda m: m // 3, "H may be outside"),
+    "a smaller radius": ("segment of amplitude", ("radius", 0), lambda m: m // 2, "exceeds r"),
+}
+
+
+@pytest.mark.parametrize("name", OF_KINDS)
+def test_forgeries_of_each_kind_are_refused(name, tmp_path):
+    kind, place, change, why = OF_KINDS[name]
+    found = reason(sealed(altered(certificate(kind), place, change)), tmp_path)
+    assert found
+    assert any(word in found for word in why.split("|")), found
 
 
 @pytest.mark.parametrize("name", FORGERIES)
@@ -106,7 +189,7 @@ def test_forgeries_with_a_digest_that_fits_are_refused(name, tmp_path):
 
 def test_choices_may_differ_but_not_the_theorem(tmp_path):
     """Another weight proves the same theorem."""
-    assert reason(sealed(altered(certificate(), ("weights", -1), lambda v: v + 1)), tmp_path) is None
+    assert reason(sealed(altered(certificate(), ("weights",), entry(-1, lambda v: v + 1))), tmp_path) is None
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", "[1, 2]", '{"format": "symfpu existence certificate"}', "\x00", "1.5"])
@@ -130,12 +213,17 @@ def test_both_kinds_of_certificates_find_their_checker(tmp_path):
         verify_certificate(path)
 
 
-def test_it_imports_the_standard_library_alone():
-    tree = ast.parse(Path(check_existence.__file__).read_text())
+FOLDER = Path(check_existence.__file__).parent
+
+
+@pytest.mark.parametrize("file", sorted(FOLDER.glob("*.py")), ids=lambda file: file.stem)
+def test_it_imports_itself_and_the_standard_library_alone(file):
+    tree = ast.parse(file.read_text())
     imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
     names = {alias.name for node in imports if isinstance(node, ast.Import) for alias in node.names}
     names |= {node.module for node in imports if isinstance(node, ast.ImportFrom)}
-    assert {name.partition(".")[0] for name in names} <= sys.stdlib_module_names
+    others = {name for name in names if not name.startswith(check_existence.__name__)}
+    assert {name.partition(".")[0] for name in others} <= sys.stdlib_module_names
 
 
 @pytest.mark.parametrize("N", [2, 7, 32])
@@ -148,11 +236,19 @@ def test_cosines_are_within_their_units(N):
                 assert abs(found.of(k) - exact) < COSINE_UNITS
 
 
+def test_integers_as_text_are_read_as_they_were_written():
+    values = [0, 1, -1, 22, 23, -23, -24, 10**40, -(10**40) + 7, *range(-3000, 3000, 7)]
+    assert unpacked(packed(values), "text") == values
+    for text in ("!o", "Q", "Q!", "é", " "):
+        with pytest.raises(ExistenceError, match="text"):
+            unpacked(text, "text")
+
+
 def test_packed_columns_multiply_exactly():
     rows = [[3, -5, 2**40], [-(2**40), 0, 7], [1, 1, -1]]
-    packed = check_existence.Packed(rows, 2**70)
+    columns = check_existence.Packed(rows, 2**70)
     for factors in ({0: 2**70, 2: -(2**70)}, {1: -1}, {}):
         expected = [sum(x * row[l] for l, x in factors.items()) for row in rows]
-        assert packed.combination(factors) == expected
+        assert columns.combination(factors) == expected
     with pytest.raises(ExistenceError, match="larger than its bound"):
-        packed.combination({0: 2**70 + 1})
+        columns.combination({0: 2**70 + 1})

@@ -2,6 +2,7 @@
 
 from itertools import combinations, product
 
+import numpy as np
 import pytest
 
 from symfpu.proofs.families import equation_text, mode_text
@@ -31,6 +32,38 @@ def test_flats_are_what_the_seed_sets_of_all_short_chains_make():
                 made.setdefault(signature(model, order, N, seeds), (N, seeds))
         found = flats(model, s, order)
         assert sorted(made.values()) == sorted((flat.N, flat.seeds) for flat in found), (model, s, order)
+
+
+def sets_of_sums(longest, inside):
+    """How many different sets {(m, w): m.q = 2wN, |m| <= 8} the points q/N of a region make, N up to the longest."""
+    every = [m for m in product(range(-8, 9), repeat=2) if 0 < sum(map(abs, m)) <= 8 and m > (0, 0)]
+    normals = np.array(every).T
+    found = set()
+    for N in range(1, longest + 1):
+        points = [q for q in product(range(N + 1), repeat=2) if inside(*q, N)]
+        sums = np.array(points, dtype=np.int64).reshape(-1, 2) @ normals
+        # every w is below 8
+        met = np.where(sums % (2 * N) == 0, sums // (2 * N), 99).astype(np.int8)
+        found |= set(map(bytes, met))
+    return len(found)
+
+
+def test_which_region_has_which_number_of_flats():
+    # of alpha, two seeds, order 3: 1057 flats hold seed sets; 1080 need the faces q_1 = 0, q_1 = q_2
+    assert len(flats("alpha", 2, 3)) == 1057
+    assert sets_of_sums(49, lambda a, b, N: 0 < a < b < N) == 1057
+    assert sets_of_sums(49, lambda a, b, N: 0 <= a <= b < N) == 1080
+
+
+@pytest.mark.long
+def test_other_regions():
+    for inside, count in (
+        (lambda a, b, N: 0 <= a < b < N, 1068),
+        (lambda a, b, N: 0 < a <= b < N, 1068),
+        (lambda a, b, N: 0 <= a < b <= N, 1087),
+        (lambda a, b, N: 0 <= a <= b <= N, 1100),
+    ):
+        assert sets_of_sums(60, inside) == count
 
 
 @pytest.mark.long

@@ -11,6 +11,7 @@ from symfpu import RuleForAllN, prove_for_all_N, prove_propagation
 from symfpu.cli.main import main
 from symfpu.errors import InputError
 from symfpu.proofs.certificates import random_point
+from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.every_length import decided_flat
 from symfpu.proofs.flats import Flat
 from symfpu.proofs.plus_terms import BOTH, MINUS, PLUS, PlusResidues, PlusTerms, sign_product, splits
@@ -45,6 +46,16 @@ def test_one_seed_is_a_theorem_by_sign_alone():
 def test_theorems_of_alpha_and_of_one_seed(model, s, order, count):
     proof = prove_for_all_N(model, s, order)
     assert (proof.verdict, proof.flats, proof.exceptional_flats) == ("proved", count, ())
+
+
+@pytest.mark.long
+def test_a_theorem_that_needs_residues(tmp_path):
+    proof = prove_for_all_N("alpha", 2, 4)
+    assert (proof.verdict, proof.reason) == ("proved", "sign and chains and residues")
+    assert proof.theorem.endswith(f"on {len(proof.gaps)} flats for generic L_q(nu) instead")
+    path = tmp_path / "c.json"
+    proof.write(path)
+    assert verify_certificate(path)[0] == proof.theorem
 
 
 @pytest.mark.long
@@ -125,15 +136,19 @@ def test_signs_multiply():
 
 def test_a_proof_goes_on_from_its_file(tmp_path):
     path = tmp_path / "flats.jsonl"
-    whole = prove_for_all_N("beta", 2, 1, file=path)
+    whole = prove_for_all_N("beta", 2, 2, file=path)
     lines = path.read_text().splitlines(keepends=True)
-    path.write_text("".join(lines[:40]) + lines[40][:9])
+    asked = len(lines) - 1
+    # flats that sums of seeds decide at once are not kept
+    assert 200 < asked < whole.flats
+    path.write_text("".join(lines[:101]) + lines[101][:9])
     heard = []
-    again = prove_for_all_N("beta", 2, 1, file=path, progress=lambda label, done: heard.append((label, done)))
+    again = prove_for_all_N("beta", 2, 2, file=path, progress=lambda label, done: heard.append((label, done)))
     assert again == whole
-    assert min(done for label, done in heard if label == "flats") > 39 / 98
+    assert min(done for label, done in heard if label == "flats") > 100 / asked
+    assert sorted(path.read_text().splitlines()) == sorted(map(str.strip, lines))
     with pytest.raises(InputError, match="header"):
-        prove_for_all_N("beta", 2, 2, file=path)
+        prove_for_all_N("beta", 2, 1, file=path)
 
 
 def test_arguments_are_checked_at_the_door():
@@ -150,7 +165,7 @@ def test_arguments_are_checked_at_the_door():
 def test_sets_of_more_seeds_are_settled_by_as_many_as_a_term_has_leaves():
     proof = prove_for_all_N("alpha", 2, 2)
     assert "every set of 2 seeds, to order 2" in proof.theorem
-    assert proof.reason == "sign and residues"
+    assert proof.reason == "sign and chains"
     assert "every set of 2 or more seeds, to order 1" in prove_for_all_N("alpha", 2, 1).theorem
 
 

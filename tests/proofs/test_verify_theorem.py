@@ -3,10 +3,12 @@
 import copy
 import hashlib
 import json
+import random
 
 import pytest
 
 from symfpu import prove_for_all_N
+from symfpu.proofs import verify_theorem
 from symfpu.proofs.verify import CertificateError
 from symfpu.proofs.verify_theorem import verify
 
@@ -35,41 +37,112 @@ def test_theorems_verify_and_say_the_same_sentence(tmp_path):
 def test_no_flat_can_be_left_out_doubled_or_invented(tmp_path):
     proof = prove_for_all_N("beta", 2, 1).certificate()
     path = tmp_path / "c.json"
-    for i in (0, 5, 40, 97):
-        assert refused(path, proof | {"flats": proof["flats"][:i] + proof["flats"][i + 1 :]})
-        assert refused(path, proof | {"flats": [*proof["flats"], proof["flats"][i]]})
-    assert refused(path, proof | {"flats": [*proof["flats"], [500, 3, 17]]})
-    assert refused(path, proof | {"flats": [*proof["flats"], [32, 4, 16]]})
+    # of which nothing is said; twice; none of the arrangement
+    assert refused(path, proof | {"flats": [*proof["flats"], [3, 1, 2]]})
+    assert refused(path, proof | {"flats": [*proof["flats"], proof["flats"][0]]})
+    assert refused(path, proof | {"flats": [*proof["flats"][:-1], [500, 3, 17]]})
+    assert refused(path, proof | {"flats": proof["flats"][:-1]})
+    first, *others = proof["flats"]
+    assert first == [8, 1, 4]
+    # other seed sets of the same flat
+    for other in ([16, 2, 8], [10, 1, 5], [12, 1, 6]):
+        assert refused(path, proof | {"flats": [other, *others]})
+
+
+def test_an_exception_cannot_be_left_out_or_moved(tmp_path):
+    proof = prove_for_all_N("beta", 2, 2).certificate()
+    path = tmp_path / "c.json"
+    for i in (0, 10, len(proof["exceptions"]) - 1):
+        assert refused(path, proof | {"exceptions": proof["exceptions"][:i] + proof["exceptions"][i + 1 :]})
+    i, mode, predicted, actual = proof["exceptions"][0]
+    assert (predicted, actual) == (1, 2)
+    for row in ([i, mode, 1, None], [i, mode, 2, 1], [i, mode, 1, 1]):
+        assert refused(path, proof | {"exceptions": [row, *proof["exceptions"][1:]]})
+
+
+def numbers(value, place=()):
+    """Where numbers, and orders that are null, stand in a certificate."""
+    if isinstance(value, dict):
+        value = {key: entry for key, entry in value.items() if key != "digest"}
+        pairs = value.items()
+    elif isinstance(value, list):
+        pairs = enumerate(value)
+    else:
+        return [place] if value is None or isinstance(value, int) else []
+    return [found for key, entry in pairs for found in numbers(entry, (*place, key))]
+
+
+def altered(data, place, by):
+    """The same with one number altered; null becomes an order."""
+    copied = copy.deepcopy(data)
+    entry = copied
+    for key in place[:-1]:
+        entry = entry[key]
+    entry[place[-1]] = by if entry[place[-1]] is None else entry[place[-1]] + by
+    return copied
+
+
+def check_every_number(data, path, changes, places=None):
+    """With each alteration the digest is made anew: what refuses is the mathematics."""
+    verify(written(path, data))
+    tried = places or numbers(data)
+    for place in tried:
+        for by in changes:
+            assert refused(path, altered(data, place, by)), (place, by)
+    return len(tried)
 
 
 def test_every_altered_number_is_refused(tmp_path):
     data = prove_for_all_N("beta", 2, 1).certificate()
     path = tmp_path / "c.json"
-    for key in ("order", "seeds_number", "schema"):
-        assert refused(path, data | {key: data[key] + 1})
+    assert check_every_number(data, path, (1, -1)) == 4 + 3 * 8 + 4 * 8
+    assert check_every_number(prove_for_all_N("alpha", 1, 3).certificate(), path, (1, -1)) == 4
     assert refused(path, data | {"model": "alpha"})
     assert refused(path, data | {"verdict": "proved"})
-    for i, row in enumerate(data["exceptions"][:3]):
-        for j in range(len(row)):
-            altered = copy.deepcopy(data)
-            altered["exceptions"][i][j] = 1 if row[j] is None else row[j] + 1
-            assert refused(path, altered), (i, j)
-    assert refused(path, data | {"exceptions": data["exceptions"][1:]})
     assert refused(path, data | {"undecided": [[0, 1]]})
     assert refused(path, data | {"extra": 1})
 
 
 @pytest.mark.long
-def test_every_altered_number_of_a_residue_is_refused(tmp_path):
-    data = prove_for_all_N("alpha", 2, 3).certificate()
-    path = tmp_path / "c.json"
-    verify(written(path, data))
-    for key in ("witnesses", "points"):
-        for j in range(len(data[key][0])):
-            altered = copy.deepcopy(data)
-            altered[key][0][j] += 1
-            assert refused(path, altered), (key, j)
-    assert refused(path, data | {"witnesses": data["witnesses"][1:]})
+@pytest.mark.parametrize(("model", "s", "order", "share"), [("alpha", 2, 4, 60), ("beta", 3, 1, 250), ("beta", 2, 2, 1)])
+def test_every_altered_number_of_longer_proofs_is_refused(tmp_path, model, s, order, share):
+    # all in the small one, of the others so many at random, and those that stand alone
+    data = prove_for_all_N(model, s, order).certificate()
+    places = numbers(data)
+    source = random.Random(18)
+    chosen = source.sample(places, len(places) // share) + [place for place in places if len(place) == 1]
+    assert check_every_number(data, tmp_path / "c.json", (source.choice((1, -1)),), chosen) > 20
+
+
+def test_residues_are_refused_when_altered(tmp_path):
+    data = prove_for_all_N("alpha", 2, 4).certificate()
+    claim = verify_theorem.read_claim(data)
+    evidence = verify_theorem.read_evidence(data, claim, len(data["flats"]))
+    i = data["witnesses"][0][0]
+    flat = tuple(data["flats"][i])
+
+    def check(found, points):
+        verify_theorem.check_flat(claim, flat, found, points)
+
+    check(evidence[i], data["points"])
+    (mode, order), (point, residue, powers) = next(iter(evidence[i].witnesses.items()))
+    for wrong in (
+        (point, residue + 1, powers),
+        (point, 0, powers),
+        (point + 1, residue, powers),
+        (point, residue, powers[::-1] if powers[0] != powers[1] else (powers[0] + 1, powers[1] - 1)),
+    ):
+        with pytest.raises((CertificateError, IndexError)):
+            check(evidence[i]._replace(witnesses=evidence[i].witnesses | {(mode, order): wrong}), data["points"])
+    for j in range(len(data["points"][point])):
+        points = copy.deepcopy(data["points"])
+        points[point][j] += 1
+        with pytest.raises(CertificateError):
+            check(evidence[i], points)
+    with pytest.raises(CertificateError, match="undecided"):
+        check(evidence[i]._replace(witnesses={}), data["points"])
+    with pytest.raises(CertificateError, match="nothing asks"):
+        check(evidence[i]._replace(witnesses=evidence[i].witnesses | {(1, 1): (point, residue, powers)}), data["points"])
 
 
 def test_what_is_no_certificate_is_refused(tmp_path):

@@ -1,5 +1,7 @@
 """From an orbit back to its torus."""
 
+from dataclasses import replace
+
 import pytest
 
 from symfpu import Chain, frequency_analysis, integrate, lindstedt, refine, solve_amplitudes, torus_near
@@ -39,3 +41,12 @@ def test_bad_arguments_are_named(found):
         torus_near(found[1], (3,))
     with pytest.raises(InputError, match="FrequencyAnalysis"):
         torus_near(found[0])
+
+
+def test_a_second_frequency_of_a_mode_is_no_seed(found):
+    """Named 3 for want of another name, it moves mode 2: a torus of seed 3 would have A_3 = 0."""
+    _, analysis = found
+    renamed = replace(analysis, seeds=tuple(3 if q == 2 else q for q in analysis.seeds))
+    with pytest.raises(InputError, match=r"3, a second frequency of mode 2 .* take seeds=\(1,\)"):
+        torus_near(renamed)
+    assert torus_near(renamed, (1,)).seeds == (1,)

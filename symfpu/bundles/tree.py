@@ -1,7 +1,8 @@
 """A result as a tree of JSON with arrays beside it, and back without executing anything.
 
 A node is null, a boolean, a whole number or text, or an object of one key that says what it is.
-Series and solutions inside keep the format that they have as files (symfpu.bundles), each once.
+Series and solutions inside keep the format that they have as files, each once. Which classes a
+tree may name, its writer and its reader are told.
 """
 
 from __future__ import annotations
@@ -9,30 +10,33 @@ from __future__ import annotations
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
+from datetime import datetime
 from fractions import Fraction
 from functools import cache
 from math import prod
+from pathlib import Path
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.bundles.bundle import SERIES, parts_from, parts_of
+from symfpu.bundles.bundle import SERIES, document, load_with, parts_from, parts_of
 from symfpu.bundles.entries import chain_entries, chain_from, number, number_entry
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
-from symfpu.files.archive import Archive, Json
+from symfpu.files.archive import Archive, Json, write_document
 from symfpu.numbers.arithmetic import ComplexWithDigits, NumberWithDigits, with_digits
 from symfpu.numbers.typed import fraction, fraction_text, integer
-from symfpu.saved.classes import CLASSES
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
 Array = NDArray[Any]
+Classes = Mapping[str, type[Any]]
 
+SCHEMA = 6  # files of results other than series and solutions began with it
 OWN_FORMAT: tuple[type[Any], ...] = (*SERIES, QuasiPeriodic, RingTorus)
 DTYPES = ("<f8", "<c16", "<i8", "|b1")
 SCALARS: dict[str, type[Any]] = {"float64": np.float64, "complex128": np.complex128}
@@ -42,7 +46,8 @@ PLAIN = (bool, int, str, type(None))
 class Writer:
     """Nodes of values; arrays gathers what is beside them, parts the series and solutions."""
 
-    def __init__(self) -> None:
+    def __init__(self, classes: Classes) -> None:
+        self._classes = classes
         self.arrays: dict[str, Array] = {}
         self.parts: list[Json] = []
         self._places: dict[int, int] = {}  # of series and solutions, by identity
@@ -54,7 +59,7 @@ class Writer:
         for kind, write in self._writers():
             if isinstance(value, kind):
                 return write(value)
-        if is_dataclass(value) and type(value).__name__ in CLASSES:
+        if is_dataclass(value) and type(value).__name__ in self._classes:
             return self._instance(value)
         allowed = "numbers, arrays, chains, series, solutions and results"
         advice = "save what it holds, or its table: to_frame()"
@@ -151,8 +156,8 @@ class PartOfArchive:
 class Reader:
     """Values of nodes; ValueError, TypeError or KeyError where they are none."""
 
-    def __init__(self, archive: Archive, parts: list[Json]) -> None:
-        self._archive, self._parts = archive, parts
+    def __init__(self, archive: Archive, parts: list[Json], classes: Classes) -> None:
+        self._archive, self._parts, self._classes = archive, parts, classes
         self._made: dict[int, Any] = {}
 
     def value(self, node: Any) -> Any:
@@ -218,9 +223,9 @@ class Reader:
         return self._made[place]
 
     def _instance(self, node: Json) -> Any:
-        if node["class"] not in CLASSES:
+        if node["class"] not in self._classes:
             raise ValueError(f"no result is of the class {node['class']!r:.40}")
-        kind = CLASSES[node["class"]]
+        kind: Any = self._classes[node["class"]]
         values = {name: self.value(item) for name, item in node["fields"].items()}
         own = {f.name: f for f in fields(kind) if f.init}
         due = {name for name, f in own.items() if f.default is MISSING}
@@ -229,7 +234,7 @@ class Reader:
             raise ValueError(
                 f"the fields {sorted(values)} are not those of {kind.__name__}"
             )
-        hints = types_of(kind.__name__)
+        hints = types_of(kind)
         for name, value in values.items():
             if not fits(value, hints[name]):
                 given = type(value).__name__
@@ -248,9 +253,9 @@ def _shape(node: Json) -> tuple[int, ...]:
 
 
 @cache
-def types_of(name: str) -> dict[str, Any]:
+def types_of(kind: type[Any]) -> dict[str, Any]:
     """The types of the fields of a class that a file may name."""
-    return get_type_hints(CLASSES[name])
+    return get_type_hints(kind)
 
 
 def fits(value: Any, hint: Any) -> bool:
@@ -289,3 +294,30 @@ def _fits_container(value: Any, origin: Any, inside: tuple[Any, ...]) -> bool:
         key, item = inside
         return all(fits(k, key) and fits(v, item) for k, v in value.items())
     return all(fits(item, inside[0]) for item in value)
+
+
+def write_tree(
+    path: Path,
+    result: Any,
+    classes: Classes,
+    *,
+    verdict: Json | None = None,
+    command: str | None = None,
+    created: datetime | None = None,
+) -> None:
+    """A result as one file, with notes that were checked."""
+    writer = Writer(classes)
+    root = writer.node(result)
+    held = {"root": root, "parts": writer.parts}
+    body = document(SCHEMA, verdict, command, created) | {"result": held}
+    write_document(path, body, writer.arrays)
+
+
+def read_tree(path: Path | str, classes: Classes) -> Any:
+    """What `write_tree` wrote. Raises BundleError and OSError as `load` does."""
+    return load_with(path, lambda archive, held: value_of(archive, held, classes)).result
+
+
+def value_of(archive: Archive, held: Json, classes: Classes) -> Any:
+    """The result of a document; ValueError and the like where it is none."""
+    return Reader(archive, held["parts"], classes).value(held["root"])

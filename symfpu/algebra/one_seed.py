@@ -1,0 +1,164 @@
+"""The compiled product of two series in one seed: convolutions of rows.
+
+The monomials of degree d in z, conj z are numbered by the power p = 0 .. d of z, and powers add. So
+a product is a convolution over p of rows of lanes. A tile of rows of the result stays in registers
+while all splits are summed: for `TILE` steps it loads two rows a step and one tile of neighbours
+in all, where the general product loads and stores two rows for each multiply-add. Importing this
+module imports numba.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from symfpu.algebra import uncompiled
+from symfpu.algebra.uncompiled import TILE
+from symfpu.compiled import JIT, compiled
+
+INT64 = ir.IntType(64)
+DOUBLE = ir.DoubleType()
+
+
+class _Rows:
+    """Rows of an array as vectors, in the code that is written."""
+
+    def __init__(self, builder: Any, base: Any, width: int) -> None:
+        self.builder, self.base, self.width = builder, base, width
+        self.vector = ir.VectorType(DOUBLE, width)
+
+    def at(self, index: Any, offset: int = 0) -> Any:
+        builder = self.builder
+        row = builder.add(index, INT64(offset))
+        first = builder.gep(self.base, [builder.mul(row, INT64(self.width))])
+        return builder.bitcast(first, self.vector.as_pointer())
+
+    def load(self, index: Any, offset: int = 0) -> Any:
+        return self.builder.load(self.at(index, offset), align=8)
+
+
+class _Tile:
+    """Sums in registers, one for each row of a tile, in the code that is written."""
+
+    def __init__(self, builder: Any, results: _Rows, o: Any, count: int) -> None:
+        untyped: Any = cgutils
+        self.builder, self.results, self.o = builder, results, o
+        self.sums = [untyped.alloca_once(builder, results.vector) for _ in range(count)]
+        for t, place in enumerate(self.sums):
+            builder.store(results.load(o, t), place, align=8)
+
+    def add_product(self, t: int, left: Any, right: Any) -> None:
+        """sums[t] += left right, fused."""
+        builder, place = self.builder, self.sums[t]
+        product = builder.fmul(left, right, flags=("contract",))
+        known = builder.load(place, align=8)
+        total = builder.fadd(known, product, flags=("contract",))
+        builder.store(total, place, align=8)
+
+    def add_steps(self, left: _Rows, i: Any, right: _Rows, j: Any, steps: int) -> None:
+        """sums[t] += left[i + u] right[j + t - u] for all t and u < steps: each row loaded once."""
+        count = len(self.sums)
+        others = {offset: right.load(j, offset) for offset in range(1 - steps, count)}
+        for u in range(steps):
+            factor = left.load(i, u)
+            for t in range(count):
+                self.add_product(t, factor, others[t - u])
+
+    def store(self) -> None:
+        for t, place in enumerate(self.sums):
+            total = self.builder.load(place, align=8)
+            self.builder.store(total, self.results.at(self.o, t), align=8)
+
+
+def _convolution(tile: int) -> Any:
+    """The intrinsic that sums a tile of so many rows."""
+
+    @intrinsic
+    def code(
+        _context: Any,
+        lanes: Any,
+        left: Any,
+        i: Any,
+        right: Any,
+        j: Any,
+        count: Any,
+        out: Any,
+        o: Any,
+    ) -> Any:
+        """out[o + t] += sum of left[i + n] right[j + t - n] over n < count, for t < tile."""
+        integer = types.intp
+        arguments = (lanes, left, integer, right, integer, integer, out, integer)
+        signature = types.void(*arguments)
+
+        def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+            def rows(position: int) -> _Rows:
+                make = context.make_array(sig.args[position])
+                return _Rows(
+                    builder, make(context, builder, args[position]).data, lanes.count
+                )
+
+            _, _, i, _, j, count, _, o = args
+            left, right = rows(1), rows(3)
+            sums = _Tile(builder, rows(6), o, tile)
+            whole = builder.mul(builder.sdiv(count, INT64(TILE)), INT64(TILE))
+            for first, end, steps in ((INT64(0), whole, TILE), (whole, count, 1)):
+                turns = cgutils.for_range_slice(builder, first, end, INT64(steps), inc=True)
+                with turns as (n, _):
+                    sums.add_steps(left, builder.add(i, n), right, builder.sub(j, n), steps)
+            sums.store()
+            return context.get_dummy_value()
+
+        return signature, generate
+
+    return code
+
+
+add_tile: Any = _convolution(TILE) if JIT else uncompiled.add_tile
+add_one_row: Any = _convolution(1) if JIT else uncompiled.add_one_row
+
+
+@compiled()
+def _add_terms(lanes, left, i, right, j, first, last, out, o):  # type: ignore[no-untyped-def]
+    """out[o] += sum of left[i + m] right[j - m] over first <= m <= last; how many they are."""
+    if first > last:
+        return 0
+    count = last + 1 - first
+    add_one_row(lanes, left, i + first, right, j - first, count, out, o)
+    return count
+
+
+@compiled()
+def convolve(lanes, left, right, out, splits, starts, tiles):  # type: ignore[no-untyped-def]
+    """out[p] += sum of left_d[m] right_e[p - m] over all splits (d, e) of a degree.
+
+    Returns the number of multiply-adds.
+
+    lanes : a tuple whose length is the row's. left, right : (rows of all degrees, lanes). out :
+    (rows of this degree, lanes). starts : (degrees,) first row of each. tiles : first rows of the
+    tiles to fill.
+    """
+    count = 0
+    for split in range(len(splits)):
+        d, e = splits[split, 0], splits[split, 1]
+        i, j = starts[d], starts[e]
+        for p in tiles:
+            # terms that all rows of the tile have
+            first, last = max(0, p + TILE - 1 - e), min(d, p)
+            whole = p + TILE <= len(out) and first <= last
+            if whole:
+                shared = last + 1 - first
+                add_tile(lanes, left, i + first, right, j + p - first, shared, out, p)
+                count += TILE * shared
+            for t in range(p, min(p + TILE, len(out))):
+                begin, end = max(0, t - e), min(d, t)
+                if whole:
+                    count += _add_terms(
+                        lanes, left, i, right, j + t, begin, first - 1, out, t
+                    )
+                    begin = last + 1
+                count += _add_terms(lanes, left, i, right, j + t, begin, end, out, t)
+    return count * len(lanes)

@@ -1,0 +1,234 @@
+"""What a computed torus leaves of the equations of motion, at all angles: a proof."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath
+
+from symfpu.certified.growth import rounded_up
+from symfpu.certified.rounded_torus import RoundedTorus, residual_of, rounded_torus
+from symfpu.certified.series import Series
+from symfpu.chain.chain import Chain
+from symfpu.files.writing import write_text
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+FORMAT = "symfpu torus certificate"
+SCHEMA = 1
+SLACK = Fraction(1025, 1024)
+SHOWN_BITS = 53
+
+Body = dict[str, Any]
+
+
+def certificate_of(body: Body) -> Body:
+    """With a digest of everything else."""
+    text = json.dumps(body, sort_keys=True, separators=(",", ":"))
+    return body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
+
+
+def write_certificate(body: Body, path: Path | str) -> None:
+    """As JSON, whole or not at all; raises InputError if the file cannot be written."""
+    text = json.dumps(certificate_of(body), separators=(",", ":"))
+    write_text(Path(path), text + "\n")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ResidualProof(Tabled):
+    """A theorem: what a torus leaves of the equations of motion, at all angles.
+
+    chain, seeds, frequencies : the model and the angles; frequencies exact.
+    bound : above |x_j'' - force on x_j| of every particle j at all angles of the torus, mpf: the
+        largest of `particles`, shape (N-1,), each the sum of the sizes of all coefficients.
+    relative : above bound over the largest of the particles' accelerations, mpf.
+    harmonics : of the torus, one of each pair +-nu. digits : of the torus that was given; the
+        theorem is about its coefficients rounded some 20 bits below the last digit.
+    body : the certificate without its digest. Dimensionless. Ours: docs/tori-proofs.md.
+
+    >>> from symfpu import Chain, prove_residual, refine_at_amplitudes, torus_at_amplitudes
+    >>> amplitudes = {1: "0.2", 2: "0.1"}
+    >>> guess = torus_at_amplitudes(Chain(N=4, alpha="0.3"), amplitudes, order=4)
+    >>> prove_residual(refine_at_amplitudes(guess, amplitudes, digits=30))
+    ResidualProof(N=4, alpha=0.3, omega_1=0.76..., omega_2=1.41..., 30 digits: residual below
+    ... of every particle at all angles, ... of the largest acceleration)
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...]
+    bound: Any
+    particles: tuple[Any, ...] = field(repr=False)
+    relative: Any
+    harmonics: int
+    digits: int
+    body: Body = field(repr=False)
+
+    def __repr__(self) -> str:
+        size, part = mpmath.nstr(self.bound, 3), mpmath.nstr(self.relative, 3)
+        found = f"residual below {size} of every particle at all angles"
+        which = torus_text(self.chain, self.seeds, self.frequencies)
+        return (
+            f"ResidualProof({which}, {self.digits} digits: {found}, "
+            f"{part} of the largest acceleration)"
+        )
+
+    @property
+    def omega(self) -> dict[int, Fraction]:
+        """The frequencies by seed, exact."""
+        return dict(zip(self.seeds, self.frequencies, strict=True))
+
+    def certificate(self) -> Body:
+        """What `symfpu verify` needs to check the theorem again: integers and strings."""
+        return certificate_of(self.body)
+
+    def write(self, path: Path | str) -> None:
+        """Write the certificate to a path as JSON, whole or not at all.
+
+        Raises InputError if the file cannot be written.
+        """
+        write_certificate(self.body, path)
+
+    def _table(self) -> Table:
+        """One row for each particle."""
+        bounds = [float(x) for x in self.particles]
+        known = attributes(self, self.chain, seeds=self.seeds, frequencies=self.frequencies)
+        return Table({"particle": list(range(1, self.chain.N)), "bound": bounds}, known)
+
+
+def torus_text(
+    chain: Chain, seeds: tuple[int, ...], frequencies: tuple[Fraction, ...]
+) -> str:
+    """The chain and the frequencies in words."""
+    name = repr(chain).removeprefix("Chain(").removesuffix(")")
+    pairs = zip(seeds, frequencies, strict=True)
+    return ", ".join([name, *(f"omega_{q}={float(w):.10g}" for q, w in pairs)])
+
+
+def prove_residual(torus: QuasiPeriodic) -> ResidualProof:
+    """A proof of how well a torus solves the equations of motion, at all angles at once.
+
+    torus : of two or more angles, fixed ends and a polynomial potential, from `refine` and its
+        sisters in doubles or with `digits`; also a series. Dimensionless.
+
+    The residual of a trigonometric polynomial is one; the sum of the sizes of its coefficients,
+    in integers with exact products, is above it at every angle (docs/tori-proofs.md; ours).
+    Raises InputError for what is not such a torus.
+
+    >>> from symfpu import Chain, prove_residual, refine_at_amplitudes, torus_at_amplitudes
+    >>> amplitudes = {1: "0.2", 2: "0.1"}
+    >>> guess = torus_at_amplitudes(Chain(N=3, beta=1), amplitudes, order=4)
+    >>> prove_residual(refine_at_amplitudes(guess, amplitudes, digits=40)).bound < 1e-38
+    True
+    """
+    rounded = rounded_torus(torus)
+    return residual_proof(rounded, [series.norm for series in residual_of(rounded)])
+
+
+def residual_proof(torus: RoundedTorus, found: list[Fraction]) -> ResidualProof:
+    """The result of the norms of a residual."""
+    bounds = [rounded_up(x * SLACK) for x in found]
+    bound = max(bounds)
+    return ResidualProof(
+        chain=torus.chain,
+        seeds=torus.seeds,
+        frequencies=torus.omega,
+        bound=shown(bound),
+        particles=tuple(shown(x) for x in bounds),
+        relative=shown(bound) / root_mean_square(torus) * (1 + mpmath.mpf(2) ** -40),
+        harmonics=harmonics_of(torus),
+        digits=torus.digits,
+        body=residual_body(torus, bound),
+    )
+
+
+def shown(x: Fraction) -> Any:
+    """mpf of SHOWN_BITS bits, not below."""
+    with mpmath.workprec(SHOWN_BITS):
+        return mpmath.fdiv(x.numerator, x.denominator, rounding="u") if x else mpmath.mpf(0)
+
+
+def root_mean_square(torus: RoundedTorus) -> Any:
+    """The largest root mean square of a particle's acceleration: no maximum is less."""
+    most = Fraction(0)
+    for x in torus.particles:
+        turned = x.turned(torus.omega, Fraction(0), power=2).values
+        most = max(most, Fraction(int((turned * turned).sum()), 1 << (2 * x.places)))
+    with mpmath.workprec(SHOWN_BITS):
+        square = mpmath.fdiv(most.numerator, most.denominator, rounding="d")
+        return mpmath.sqrt(square, rounding="d") * (1 - mpmath.mpf(2) ** -40)
+
+
+def harmonics_of(torus: RoundedTorus) -> int:
+    """How many the rounded torus has, one of each pair."""
+    return len(cosine_rows(torus.particles))
+
+
+def cosine_rows(particles: tuple[Series, ...]) -> list[list[int]]:
+    """[nu, x_1 .., x_(N//2)] of half of the harmonics of even functions."""
+    return [row for row in rows_of(particles) if first_sign(row, particles) >= 0]
+
+
+def first_sign(row: list[int], particles: tuple[Series, ...]) -> int:
+    """The sign of the first number of nu that is not 0; 0 for nu = 0."""
+    s = particles[0].values.ndim
+    first = next((n for n in row[:s] if n), 0)
+    return (first > 0) - (first < 0)
+
+
+def rows_of(particles: tuple[Series, ...]) -> list[list[int]]:
+    """[nu, x_1 .., x_(N//2)] of every harmonic; the other particles follow by reflection."""
+    count = (len(particles) + 1) // 2
+    rows: dict[tuple[int, ...], list[int]] = {}
+    for j, series in enumerate(particles[:count]):
+        for place, value in nonzero(series):
+            rows.setdefault(place, [0] * count)[j] = value
+    return [[*nu, *rows[nu]] for nu in sorted(rows)]
+
+
+def nonzero(series: Series) -> list[tuple[tuple[int, ...], int]]:
+    """Harmonics and values."""
+    highest = series.highest
+    found = []
+    for at in zip(*(series.values != 0).nonzero(), strict=True):
+        nu = tuple(int(n) - m for n, m in zip(at, highest, strict=True))
+        found.append((nu, int(series.values[at])))
+    return found
+
+
+def residual_body(torus: RoundedTorus, bound: Fraction) -> Body:
+    """The certificate of a residual without its digest; what concerns a stay is empty."""
+    potential = torus.chain.potential
+    assert potential.degree is not None
+    coefficients = [potential.coefficient(k) for k in range(3, potential.degree + 1)]
+    return {
+        "format": FORMAT,
+        "schema": SCHEMA,
+        "N": torus.chain.N,
+        "coefficients": [str(c) for c in coefficients],
+        "seeds": list(torus.seeds),
+        "omega": [str(w) for w in torus.omega],
+        "bits": torus.bits,
+        "torus": cosine_rows(torus.particles),
+        "residual": dyadic_pair(bound),
+        "frame_bits": 0,
+        "rate_bits": 0,
+        "directions": [],
+        "weights": [],
+        "stay": [],
+    }
+
+
+def dyadic_pair(x: Fraction) -> list[int]:
+    """[m, e] of m 2^-e, e an integer of any sign."""
+    if x.denominator == 1:
+        return [x.numerator, 0]
+    places = x.denominator.bit_length() - 1
+    return [x.numerator, places]

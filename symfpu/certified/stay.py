@@ -1,0 +1,291 @@
+"""How long an orbit stays near a computed torus: a proof.
+
+In the frame of tangents, of directions of the actions and of normal directions an orbit is
+K(theta) + Z(theta) v with |v|' <= g(|v|) (docs/tori-proofs.md). No small divisors: the frame is
+there, and what it leaves is bounded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath
+
+from symfpu.certified.frame import FRAME_BITS, RATE_BITS, Direction, directions_of
+from symfpu.certified.growth import Growth, rounded_up
+from symfpu.certified.norms import Norms, norms, weights_of
+from symfpu.certified.residual import (
+    SLACK,
+    Body,
+    certificate_of,
+    cosine_rows,
+    dyadic_pair,
+    residual_proof,
+    rows_of,
+    shown,
+    torus_text,
+    write_certificate,
+)
+from symfpu.certified.rounded_torus import RoundedTorus, residual_of, rounded_torus
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError, SymfpuError
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
+from symfpu.numbers.typed import Number, decimal, exact
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+TIME = 10**9  # the paper's longest orbits
+LAST = Fraction(511, 512)  # of the longest time
+
+
+class NoStayProof(SymfpuError):
+    """The bounds do not prove that orbits stay near the torus for so long.
+
+    Raised by `prove_stay`. time : asked for. longest : what can be proved. residual, frame,
+    curvature : the terms of the growth of a distance, doubles, dimensionless. Ours.
+    """
+
+    def __init__(
+        self, time: float, longest: float, residual: float, frame: float, curvature: float
+    ) -> None:
+        self.time, self.longest = time, longest
+        self.residual, self.frame, self.curvature = residual, frame, curvature
+        advice = "more digits help: refine(torus, digits=30)"
+        if frame**2 > residual * curvature:
+            advice = f"the frame, known in doubles, allows some {1 / frame:.1g}"
+        super().__init__(
+            f"no proof of a stay of {time:.3g}: at most {longest:.3g}; "
+            f"residual {residual:.2g}, frame {frame:.2g}, curvature {curvature:.2g}; {advice}"
+        )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class StayProof(Tabled):
+    """A theorem: every orbit that starts on the computed torus stays near it for so long.
+
+    chain, seeds, frequencies : the model and the angles; frequencies exact.
+    time : exact. distance : for times up to that the stretch of every bond, and momentum : every
+        particle's velocity, differ by at most this from those of a point of the torus, mpf.
+    drift : whose angles differ by at most this from phi + omega t, mpf by seed, radians.
+    residual, frame, curvature : |v|' <= residual + frame |v| + curvature |v|^2 + ..., doubles;
+        room : of the inverse of the frame, 1 where it is exact.
+    longest : the longest time that these bounds allow. sigma : normal frequencies of the frame.
+    bound : of the residual of the equations of motion, as of ResidualProof, mpf.
+    growth : the bounds, exact. reach : stretches at |v| = 1. harmonics, digits : of the torus.
+    body : the certificate without its digest. Dimensionless. Ours: docs/tori-proofs.md.
+
+    >>> from symfpu import Chain, prove_stay, refine_at_amplitudes, torus_at_amplitudes
+    >>> amplitudes = {1: "0.2", 2: "0.1"}
+    >>> guess = torus_at_amplitudes(Chain(N=3, alpha="0.3"), amplitudes, order=4)
+    >>> prove_stay(refine_at_amplitudes(guess, amplitudes, digits=30))
+    StayProof(N=3, alpha=0.3, omega_1=0.99..., omega_2=1.72..., 30 digits: an orbit that starts
+    on the torus stays within ... of it for t <= 1000000000, its angles within ... of phi +
+    omega t; at most t <= ...)
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...]
+    time: Fraction
+    distance: Any
+    momentum: Any
+    drift: dict[int, Any]
+    bound: Any
+    residual: float
+    frame: float
+    curvature: float
+    room: float
+    longest: float
+    sigma: dict[int, float]
+    growth: Growth = field(repr=False)
+    reach: Fraction = field(repr=False)
+    harmonics: int
+    digits: int
+    body: Body = field(repr=False)
+
+    def __repr__(self) -> str:
+        which = torus_text(self.chain, self.seeds, self.frequencies)
+        return f"StayProof({which}, {self.digits} digits: {self.text}; {self.most})"
+
+    @property
+    def omega(self) -> dict[int, Fraction]:
+        """The frequencies by seed, exact."""
+        return dict(zip(self.seeds, self.frequencies, strict=True))
+
+    @property
+    def text(self) -> str:
+        """The theorem in words."""
+        size, apart = (
+            mpmath.nstr(self.distance, 3),
+            mpmath.nstr(max(self.drift.values()), 3),
+        )
+        return (
+            f"an orbit that starts on the torus stays within {size} of it for "
+            f"t <= {decimal(self.time)}, its angles within {apart} of phi + omega t"
+        )
+
+    @property
+    def most(self) -> str:
+        """The longest time in words."""
+        return f"at most t <= {self.longest:.3g}"
+
+    def distance_at(self, time: Number) -> Any:
+        """The distance that is proved for another time, mpf; not of the certificate.
+
+        time : an exact number. Raises InputError for no time, and NoStayProof for one too long.
+        """
+        d = distance_of(self.growth, time_of(time))
+        return shown(d * self.reach)
+
+    def certificate(self) -> Body:
+        """What `symfpu verify` needs to check the theorem again: integers and strings."""
+        return certificate_of(self.body)
+
+    def write(self, path: Path | str) -> None:
+        """Write the certificate to a path as JSON, whole or not at all.
+
+        Raises InputError if the file cannot be written.
+        """
+        write_certificate(self.body, path)
+
+    def _table(self) -> Table:
+        """Distances at powers of 10 of the time, up to the longest."""
+        times, power = [], 1
+        while power <= self.longest * float(LAST):
+            times.append(float(power))
+            power *= 10
+        distances = [float(self.distance_at(Fraction(t))) for t in times]
+        known = attributes(self, self.chain, seeds=self.seeds, frequencies=self.frequencies)
+        return Table({"time": times, "distance": distances}, known)
+
+
+def prove_stay(
+    torus: QuasiPeriodic, *, time: Number = TIME, progress: Progress | None = None
+) -> StayProof:
+    """A proof of how near to a computed torus an orbit stays that starts on it, and for how long.
+
+    torus : of two or more angles, elliptic, fixed ends and a polynomial potential, from `refine`
+        and its sisters, in doubles or with `digits`. Dimensionless.
+    time : how long, an exact number; default 1e9. progress : called as (label, fraction).
+
+    The distance grows by the residual of the torus, by what its frame (twist, normal modes, in
+    doubles) leaves of the linearised equations, and by the curvature of the force; all three
+    are bounded in integers at all angles, and the scalar inequality is solved from above
+    (docs/tori-proofs.md; ours). No frequency needs to be Diophantine, and no true torus to exist.
+    Raises InputError for what is not such a torus, NoTwist and NoNormalModes where it has no
+    frame, NoStayProof with the longest time.
+
+    >>> from symfpu import Chain, prove_stay, refine_at_amplitudes, torus_at_amplitudes
+    >>> amplitudes = {1: "0.2", 2: "0.1"}
+    >>> guess = torus_at_amplitudes(Chain(N=4, alpha="0.3"), amplitudes, order=4)
+    >>> proof = prove_stay(refine_at_amplitudes(guess, amplitudes, digits=30))
+    >>> proof.distance < 1e-19
+    True
+    """
+    tell = progress or unheard
+    long = time_of(time)
+    rounded = rounded_torus(torus)
+    directions = directions_of(torus, tell)
+    tell("norms", NO_FRACTION)
+    return stay_proof(rounded, directions, long)
+
+
+def stay_proof(
+    torus: RoundedTorus, directions: Sequence[Direction], time: Fraction
+) -> StayProof:
+    """The result of a torus and its directions. Raises NoStayProof."""
+    left = [series.norm for series in residual_of(torus)]
+    residual = residual_proof(torus, left)
+    found = norms(torus, directions, left)
+    weights = weights_of(found)
+    growth = found.growth(weights)
+    d = distance_of(growth, time)
+    reach, speed = max(found.reach(weights)), max(found.speed(weights))
+    drift = drift_of(found, weights, growth, d, time)
+    sizes = [d, *(rounded_up(SLACK * d * x) for x in (reach, speed))]
+    return StayProof(
+        chain=torus.chain,
+        seeds=torus.seeds,
+        frequencies=torus.omega,
+        time=time,
+        distance=shown(sizes[1]),
+        momentum=shown(sizes[2]),
+        drift=dict(zip(torus.seeds, map(shown, drift), strict=True)),
+        bound=residual.bound,
+        residual=float(growth.terms[0]),
+        frame=float(growth.terms[1]),
+        curvature=float(growth.terms[2]),
+        room=float(growth.room),
+        longest=float(growth.time(growth.longest())),
+        sigma={p.mode: float(p.rate) for p in directions if not p.twist},
+        growth=growth,
+        reach=reach,
+        harmonics=residual.harmonics,
+        digits=torus.digits,
+        body=residual.body | stay_body(directions, weights, time, sizes, drift),
+    )
+
+
+def time_of(time: Number) -> Fraction:
+    """A positive time, exact."""
+    long = exact(time, "time")
+    if long <= 0:
+        raise InputError("time", time, "a positive number", "take 1e9")
+    return long
+
+
+def distance_of(growth: Growth, time: Fraction) -> Fraction:
+    """A weighted distance that is not reached before a time. Raises NoStayProof."""
+    longest = Fraction(0) if growth.room <= 0 else growth.time(growth.longest())
+    found = growth.distance(time) if time <= longest * LAST else None
+    if found is None:
+        raise NoStayProof(float(time), float(longest), *map(float, growth.terms[:3]))
+    return found
+
+
+def drift_of(
+    found: Norms,
+    weights: Sequence[Fraction],
+    growth: Growth,
+    d: Fraction,
+    time: Fraction,
+) -> list[Fraction]:
+    """How far the angles are from phi + omega t at most."""
+    rates = zip(found.drift(weights), weights[: found.s], strict=True)
+    rate = growth.rate(d)
+    room = SLACK * time
+    return [rounded_up(room * (turned * d + tangent * rate)) for turned, tangent in rates]
+
+
+def stay_body(
+    directions: Sequence[Direction],
+    weights: Sequence[Fraction],
+    time: Fraction,
+    sizes: Sequence[Fraction],
+    drift: Sequence[Fraction],
+) -> Body:
+    """What the certificate of a stay has beyond that of a residual.
+
+    sizes : the weighted distance, that of stretches, that of momenta.
+    """
+    stay = [str(time), *map(dyadic_pair, sizes), [dyadic_pair(x) for x in drift]]
+    return {
+        "frame_bits": FRAME_BITS,
+        "rate_bits": RATE_BITS,
+        "directions": [direction_rows(d) for d in directions],
+        "weights": [int(w) for w in weights],
+        "stay": stay,
+    }
+
+
+def direction_rows(d: Direction) -> list[Any]:
+    """[mode, rate, twist, rows], integers in units of 2^-RATE_BITS and 2^-FRAME_BITS."""
+    unit = 2**RATE_BITS
+    rows = cosine_rows(d.particles) if d.twist else rows_of(d.particles)
+    return [d.mode, int(d.rate * unit), [int(x * unit) for x in d.twist], rows]

@@ -1,0 +1,144 @@
+"""Normal modes of the members of a family as files, and what they do between members as JSON."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from symfpu.bundles.tree import read_tree, write_tree
+from symfpu.errors import InputError
+from symfpu.families.normal_events import NormalEvent
+from symfpu.files.archive import BundleError
+from symfpu.files.writing import write_text
+from symfpu.normal.frequencies import NormalFrequencies, frequencies_again
+from symfpu.normal.modes import NormalDivisor, NormalMode, NormalModes
+from symfpu.normal.resonances import ParametricResonance
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+Json = dict[str, Any]
+RECORD = "line.json"
+KINDS = (NormalModes, NormalMode, NormalDivisor, ParametricResonance)
+CLASSES: dict[str, type[Any]] = {kind.__name__: kind for kind in KINDS}
+
+
+def normal_file(folder: Path, index: int) -> Path:
+    """That of the normal modes of a member."""
+    return folder / f"normal-{index:04d}.symfpu"
+
+
+def write_modes(folder: Path, index: int, found: NormalModes) -> None:
+    """The normal modes of a member, with their torus and eigenfunctions."""
+    write_tree(normal_file(folder, index), found, CLASSES)
+
+
+def read_modes(folder: Path, index: int) -> NormalModes:
+    """The same again; InputError where they are not there, BundleError where damaged."""
+    file = normal_file(folder, index)
+    try:
+        found = read_tree(file, CLASSES)
+    except FileNotFoundError as error:
+        allowed = "the normal modes that its record counts"
+        advice = f"restore {file.name}, or choose another folder"
+        raise InputError("folder", str(folder), allowed, advice) from error
+    if not isinstance(found, NormalModes):
+        raise BundleError(file, "holds no normal modes", "choose another folder")
+    return found
+
+
+def forget_modes(folder: Path, index: int | None) -> None:
+    """Leave only those of one member: the next are continued from them."""
+    for file in folder.glob(normal_file(folder, 0).name.replace("0000", "*")):
+        if index is None or file != normal_file(folder, index):
+            file.unlink(missing_ok=True)
+
+
+def normal_entry(found: NormalFrequencies | None) -> Json | None:
+    """Normal frequencies of a member for its record, to the last digit."""
+    if found is None:
+        return None
+    sigma = {q: complex(w) for q, w in found.frequencies.items()}
+    return {
+        "sigma": {str(q): [repr(w.real), repr(w.imag)] for q, w in sigma.items()},
+        "signatures": {str(q): n for q, n in found.signatures.items()},
+        "residual": repr(found.residual),
+        "missing": {str(q): why for q, why in found.missing.items()},
+    }
+
+
+def normal_from(entry: Json | None, torus: QuasiPeriodic) -> NormalFrequencies | None:
+    """The same again; KeyError, TypeError or ValueError for what is none."""
+    if entry is None:
+        return None
+    pairs = {int(q): (float(a), float(b)) for q, (a, b) in entry["sigma"].items()}
+    return frequencies_again(
+        torus,
+        {q: complex(a, b) if b else a for q, (a, b) in pairs.items()},
+        signatures={int(q): int(n) for q, n in entry["signatures"].items()},
+        residual=float(entry["residual"]),
+        missing={int(q): str(why) for q, why in entry["missing"].items()},
+    )
+
+
+def event_entry(event: NormalEvent) -> Json:
+    """An event for a record."""
+    return asdict(event)
+
+
+def event_from(entry: Json) -> NormalEvent:
+    """The same again; KeyError, TypeError or ValueError for what is none."""
+    met = entry["resonance"]
+    harmonic, modes = tuple(met["harmonic"]), tuple(met["modes"])
+    resonance = ParametricResonance(met["kind"], modes, harmonic, met["distance"])
+    amplitudes = {int(q): a for q, a in entry["amplitudes"].items()}
+    return NormalEvent(**entry | {"resonance": resonance, "amplitudes": amplitudes})
+
+
+class KeptLine:
+    """Members and events of a line so far, in memory and after every member in a folder.
+
+    plan : what two runs of one line have in common. folder : None for memory alone.
+    """
+
+    def __init__(self, plan: Json, folder: Path | None) -> None:
+        self._plan, self.folder = plan, folder
+        self.members: list[NormalModes] = []
+        self.events: list[NormalEvent] = []
+        if folder is not None:
+            self._read(folder)
+
+    def _read(self, folder: Path) -> None:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            allowed, advice = "a folder that can be written", f"another ({error.strerror})"
+            raise InputError("folder", str(folder), allowed, advice) from error
+        if not (folder / RECORD).exists():
+            return
+        try:
+            record = json.loads((folder / RECORD).read_text())
+            plan, count = record["plan"], int(record["members"])
+            self.events = [event_from(entry) for entry in record["events"]]
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            advice = f"{RECORD} is damaged; choose another folder"
+            raise InputError("folder", str(folder), "a line of tori", advice) from error
+        if different := [key for key in self._plan if plan.get(key) != self._plan[key]]:
+            allowed = f"the same line of tori (its {different[0]} differs)"
+            raise InputError("folder", str(folder), allowed, "choose another folder")
+        self.members = [read_modes(folder, n) for n in range(count)]
+
+    def add(self, found: NormalModes, events: list[NormalEvent]) -> None:
+        """The member first, then the record that counts it: a run may be stopped at any time."""
+        if self.folder is not None:
+            write_modes(self.folder, len(self.members), found)
+        self.members.append(found)
+        self.events += events
+        if self.folder is not None:
+            events_so_far = [event_entry(event) for event in self.events]
+            record = {
+                "plan": self._plan,
+                "members": len(self.members),
+                "events": events_so_far,
+            }
+            write_text(self.folder / RECORD, json.dumps(record, indent=1) + "\n")

@@ -1,0 +1,91 @@
+"""What has been proved, in one sentence."""
+
+from fractions import Fraction
+from typing import Any
+
+from symfpu.proofs.check_existence.claim import AMPLITUDE, ENERGY, FREQUENCY, Claim, Force
+from symfpu.proofs.check_existence.fixed_point import up
+from symfpu.proofs.check_existence.reading import Json, stated
+
+SIGNS = {FREQUENCY: "frequency", AMPLITUDE: "amplitude A", ENERGY: "energy H"}
+
+
+def theorem_text(claim: Claim, data: Json, radius: Fraction, unique: Fraction) -> str:
+    """What has been proved, in one sentence."""
+    start = f"theorem: the chain of N = {claim.N} bonds with fixed ends and {law(claim.force)} has"
+    where = "of the certificate" if not claim.half_width else "of a line in the certificate"
+    only = (
+        "it is the only one"
+        if not claim.bordered
+        else "it and its frequency are the only ones"
+    )
+    return (
+        f"{start} {orbits(claim)}, even in time, whose bond stretches "
+        f"differ from those {where} by at most {scientific(radius)} at all times "
+        f"and in the strip |Im omega t| <= log({claim.nu}); with the symmetry of seed {claim.seed} "
+        f"{only} within {scientific(unique)} in the weighted norm; "
+        f"{', '.join(stated_intervals(claim, data))}"
+    )
+
+
+def orbits(claim: Claim) -> str:
+    """One orbit, or a segment of a family."""
+    name, value = SIGNS[claim.fixed], shown(claim.value)
+    if not claim.half_width:
+        return f"a periodic orbit of {name} = {value}"
+    ends = [shown(claim.value + x) for x in (-claim.half_width, claim.half_width)]
+    return f"for every {name} from {ends[0]} to {ends[1]}, on one analytic curve, a periodic orbit"
+
+
+def law(force: Force) -> str:
+    """V, or V' by its functions."""
+    if not force.growths:
+        terms = (f"({c}) r^{k + 1}/{k + 1}" for k, c in force.couplings.items())
+        return f"V = r^2/2 + {' + '.join(terms)}"
+    parts = []
+    for weight, slope, rate in force.growths:
+        plain = f"exp({rate} r)" if not slope else f"(1 + {slope} r)^({rate / slope})"
+        parts.append(f"({weight}) ({plain} - 1)")
+    return f"V' = {' + '.join(parts)}"
+
+
+def stated_intervals(claim: Claim, data: Json) -> list[str]:
+    """Of A, H and omega, without what is given."""
+    found = []
+    if claim.bordered and claim.fixed != FREQUENCY:
+        found.append(f"omega = {decimal_interval(data['frequency'])}")
+    if claim.fixed != AMPLITUDE:
+        found.append(f"A = {decimal_interval(data['amplitude'])}")
+    if claim.fixed != ENERGY:
+        found.append(f"H = {decimal_interval(data['energy'])}")
+    return found
+
+
+def shown(x: Fraction) -> str:
+    """A fraction, or its first digits where it is long."""
+    return str(x) if len(str(x)) <= 40 else f"{scientific(x, 20)} (exactly {x})"
+
+
+def decimal_interval(entry: Any) -> str:
+    """Middle +- radius, the radius rounded up and enough digits of the middle."""
+    low, high = stated(entry, "interval")
+    middle, half = (low + high) / 2, (high - low) / 2
+    digits = max(1, len(str(int(abs(middle) / half))) + 1) if half else 40
+    return f"{scientific(middle, digits)} +- {scientific(half + abs(middle) / 10**digits)}"
+
+
+def scientific(x: Fraction, digits: int = 3) -> str:
+    """A number in decimals, rounded away from zero."""
+    if not x:
+        return "0"
+    exponent = len(str(abs(x.numerator))) - len(str(x.denominator))
+    if abs(x) < Fraction(10) ** exponent:
+        exponent -= 1
+    mantissa = up(abs(x) / Fraction(10) ** (exponent - digits + 1))
+    text = str(mantissa)
+    if len(text) > digits:
+        exponent += 1
+        text = text[:digits]
+    sign = "-" if x < 0 else ""
+    point = f"{text[0]}.{text[1:]}" if digits > 1 else text
+    return f"{sign}{point}e{exponent}" if exponent else f"{sign}{point}"

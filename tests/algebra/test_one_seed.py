@@ -1,0 +1,65 @@
+"""The product of series in one seed, which sums tiles of rows, against the general product and against sums of integers."""
+
+import numpy as np
+import pytest
+
+from symfpu.algebra import kernels, one_seed, uncompiled
+from symfpu.algebra.grading import Grading
+from symfpu.chain.chain import Chain
+from symfpu.compiled import compiled
+from symfpu.series.lindstedt import lindstedt
+from tests.tolerances import HIGH_ORDER
+
+
+def integers(rows, width, seed):
+    """Small whole numbers: their sums of products have no rounding, in any order."""
+    return np.random.default_rng(seed).integers(-99, 100, (rows, width)).astype(float)
+
+
+@pytest.mark.parametrize("width", [4, 8, 16])
+@pytest.mark.parametrize("top", [2, 3, 4, 5, 9, 22, 61])
+def test_it_is_the_general_product(top, width):
+    grading = Grading(seeds=1, degree=top)
+    left, right = (integers(int(grading.first_row[-1]), width, seed) for seed in (1, 2))
+    splits = np.array([(d, top - d) for d in range(1, top)])
+    lanes = (0.0,) * width
+    ours, general = np.zeros((2, top + 1, width))
+    first = int(grading.canonical(top)[0])
+    tiles = np.arange(first, top + 1, uncompiled.TILE)
+    count = one_seed.convolve(lanes, left, right, ours, splits, grading.first_row, tiles)
+    blocks, none = grading.wanted_blocks(top), np.zeros(0, dtype=bool)
+    start = int(grading.first_row[top])
+    same = kernels.multiply(lanes, left, right, general, top, start, splits, False, none, blocks, grading.tables, None)
+    assert np.array_equal(ours[first:], general[first:])
+    assert general[first:].any()
+    assert count == same > 0
+
+
+def test_a_tile_is_its_definition():
+    left, right = integers(20, 8, 3), integers(20, 8, 4)
+    expected, ours, interpreted = np.ones((3, 9, 8))
+    for t in range(uncompiled.TILE):
+        for n in range(7):
+            expected[2 + t] += left[1 + n] * right[9 + t - n]
+    one_tile(left, right, ours)
+    uncompiled.add_tile((0.0,) * 8, left, 1, right, 9, 7, interpreted, 2)
+    assert np.array_equal(ours, expected)
+    assert np.array_equal(interpreted, expected)
+
+
+@compiled(keep=False)
+def one_tile(left, right, out):
+    one_seed.add_tile((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), left, 1, right, 9, 7, out, 2)
+
+
+@pytest.mark.parametrize("model", [{"alpha": "0.33"}, {"beta": "1"}, {"alpha": "0.2", "beta": "0.7"}, {"potential": "toda:1/2"}], ids=str)
+def test_high_orders_agree_with_fixed_point_numbers(model):
+    """A frequency next to a resonance: small harmonics are amplified, and keep their own last digits."""
+    chain, omega = Chain(N=32, **model), "0.0990"
+    doubles = lindstedt(chain, (1,), (omega,), 60)
+    digits = lindstedt(chain, (1,), (omega,), 60, digits=20)
+    for k in range(61):
+        units = float(digits.unit / doubles.unit) ** (digits.degree(k) - 1)
+        expected = digits.coordinates[k].floats(-digits.bits) * units
+        difference = np.abs(doubles.coordinates[k] - expected)
+        assert difference.max() <= HIGH_ORDER * np.abs(expected).max()

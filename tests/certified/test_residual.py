@@ -1,0 +1,137 @@
+"""Residuals of tori: the bound is above the residual at every angle, and not far above it."""
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+
+import mpmath
+import numpy as np
+import pytest
+
+from symfpu.breathers.balance import breather_at_amplitude
+from symfpu.certified.residual import prove_residual
+from symfpu.certified.rounded_torus import polynomial_of, rounded_torus
+from symfpu.certified.series import Series, product
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from symfpu.refinement.tori import refine, refine_at_amplitudes
+from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.tori.quasiperiodic import FourierTorus
+
+AMPLITUDES = {1: "0.2", 2: "0.1"}
+LAWS = {"alpha": {"alpha": "0.3"}, "beta": {"beta": "1/2"}, "both": {"alpha": "1/3", "beta": "0.2"}}
+NEAR = 3  # times the largest residual on a grid: the bound is no more
+
+
+@cache
+def torus(law="alpha", N=3):
+    guess = torus_at_amplitudes(Chain(N, **LAWS[law]), AMPLITUDES, order=4)
+    return refine_at_amplitudes(guess, AMPLITUDES)
+
+
+def on_a_grid(torus, points=24):
+    """Largest |x'' - force| of every particle at the angles of a grid, in 30 digits."""
+    rounded = rounded_torus(torus)
+    chain = torus.chain
+    angles = [mpmath.mpf(2) * k / points for k in range(points)]
+    worst = [mpmath.mpf(0)] * (chain.N - 1)
+    for a in angles:
+        for b in angles:
+            x, moved = [0] * (chain.N + 1), [0] * (chain.N - 1)
+            for j, series in enumerate(rounded.particles):
+                for nu, c in entries(series):
+                    value = c * mpmath.cospi(nu[0] * a + nu[1] * b)
+                    x[j + 1] += value
+                    moved[j] -= rate(torus, nu) ** 2 * value
+            r = [x[j + 1] - x[j] for j in range(chain.N)]
+            for j in range(chain.N - 1):
+                force = slope(rounded, r[j + 1]) - slope(rounded, r[j])
+                worst[j] = max(worst[j], abs(moved[j] - force))
+    return worst
+
+
+def entries(series):
+    highest = series.highest
+    for at in zip(*series.values.nonzero(), strict=True):
+        nu = [int(n) - m for n, m in zip(at, highest, strict=True)]
+        yield nu, mpmath.ldexp(int(series.values[at]), -series.places)
+
+
+def rate(torus, nu):
+    total = sum(n * w for n, w in zip(nu, torus.frequencies, strict=True))
+    return mpmath.mpf(total.numerator) / total.denominator
+
+
+def slope(rounded, r):
+    terms = rounded.couplings.items()
+    return r + sum(mpmath.mpf(c.numerator) / c.denominator * r**k for k, c in terms)
+
+
+@pytest.mark.parametrize("law", ["alpha", pytest.param("beta", marks=pytest.mark.long), pytest.param("both", marks=pytest.mark.long)])
+def test_the_bound_is_above_the_residual_on_a_grid_and_near_it(law):
+    with mpmath.workdps(30):
+        found = prove_residual(torus(law))
+        on_grid = on_a_grid(torus(law), 8)
+        for bound, value in zip(found.particles, on_grid, strict=True):
+            assert value <= bound
+        assert found.bound <= NEAR * max(on_grid)
+
+
+def test_a_torus_with_one_coefficient_off_has_that_much_more_of_it():
+    """(nu.omega)^2 - Omega^2 times the change, here of a harmonic where that is about 1."""
+    exact = torus()
+    moved = exact.cosines.copy()
+    row = exact.harmonics.tolist().index([2, 0])
+    moved[row, 1] += 1e-6
+    off = FourierTorus(exact.chain, exact.seeds, exact.frequencies, exact.harmonics, moved, exact.phases)
+    found = prove_residual(off).bound
+    assert 1e-7 < found < 1e-5
+    assert prove_residual(exact).bound < 1e-12
+
+
+def test_digits_of_the_torus_are_those_of_the_bound():
+    found = [prove_residual(refine(torus(), digits=digits)) for digits in (20, 40)]
+    assert found[0].bound < 1e-20
+    assert found[1].bound < 1e-40
+    assert found[1].digits == 40
+
+
+def test_products_are_exact_and_errors_are_of_what_was_rounded():
+    rng = np.random.default_rng(3)
+    one, other = (np.array([[int(x) for x in row] for row in rng.integers(-99, 99, (5, 3))], dtype=object) for _ in range(2))
+    full = product(one, other)
+    for at in np.ndindex(full.shape):
+        pairs = [(i, tuple(np.subtract(at, i))) for i in np.ndindex(one.shape)]
+        terms = [one[i] * other[j] for i, j in pairs if all(0 <= k < n for k, n in zip(j, other.shape, strict=True))]
+        assert full[at] == sum(terms)
+    a, b = Series(one, 10), Series(other, 10)
+    off = np.abs(np.array(full / 2**20 - padded(((a * b).values / 2**10), full.shape), dtype=float)).sum()
+    assert off <= (a * b).error / 2**10
+
+
+def padded(values, shape):
+    room = np.zeros(shape)
+    room[tuple(slice((m - n) // 2, (m + n) // 2) for m, n in zip(shape, values.shape, strict=True))] = values
+    return room
+
+
+def test_powers_of_any_degree_are_within_their_error():
+    r = Series(np.array([3, 100, 3], dtype=object), 10)
+    found = polynomial_of(r, {2: Fraction(1, 3), 5: Fraction(-2, 7)})
+    value = (100 + 6) / mpmath.mpf(2**10)
+    exact = value**2 / 3 - 2 * value**5 / 7
+    assert abs(sum(int(x) for x in found.values) / mpmath.mpf(2**10) - exact) <= mpmath.mpf(found.error) / 2**10
+
+
+def test_what_it_is_not_about_is_refused_by_name():
+    with pytest.raises(InputError, match="prove_existence"):
+        prove_residual(breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.1"))
+    guess = torus_at_amplitudes(Chain(3, potential="toda:1/2"), AMPLITUDES, order=4)
+    with pytest.raises(InputError, match="poly"):
+        prove_residual(guess)
+    with pytest.raises(InputError):
+        prove_residual("torus")
+    swapped = torus()
+    wrong = replace(swapped.in_doubles(), cosines=swapped.in_doubles().cosines[:, ::-1])
+    with pytest.raises(InputError, match="reflection"):
+        prove_residual(wrong)

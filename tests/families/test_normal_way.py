@@ -1,0 +1,173 @@
+"""Families that carry normal frequencies: the same as of each torus alone, events on the family's own curve."""
+
+import json
+from functools import cache
+
+import numpy as np
+import pytest
+
+from symfpu.breathers.balance import breather_at_amplitude
+from symfpu.breathers.floquet import floquet
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError, RunInterrupted
+from symfpu.families.family import family, member_at_energy
+from symfpu.families.normal_events import NormalEvent, located
+from symfpu.families.normal_family import normal_family
+from symfpu.files.archive import BundleError
+from symfpu.normal.search import normal_modes
+from symfpu.reports.family import family_table
+from tests.tolerances import BESIDE_AN_ONSET, NORMAL_CONVERGED, ONSET
+
+UNSTABLE = Chain(4, alpha="0.5")
+ARGUMENTS = (UNSTABLE, (2,), "1")
+OPTIONS = {"from_energy": "0.3", "normal": True}
+
+
+@cache
+def breathers():
+    return family(*ARGUMENTS, **OPTIONS)
+
+
+def test_members_carry_the_normal_frequencies_of_their_tori():
+    """Sought anew on each torus, from its closed shift."""
+    for m in breathers().members:
+        alone = normal_modes(m.torus)
+        assert m.normal.frequencies == pytest.approx(alone.frequencies, abs=NORMAL_CONVERGED)
+        assert m.normal.signatures == {mode.mode: mode.signature for mode in alone.modes}
+        assert m.normal.stable == floquet(m.torus).stable
+        assert m.normal.missing == {}
+    assert "stable" in repr(breathers().members[0])
+
+
+def test_the_event_of_a_family_is_that_of_the_line():
+    """Breathers of one seed are one curve, by energies here and by amplitudes there."""
+    [event] = breathers().normal_events
+    line = normal_family(breather_at_amplitude(UNSTABLE, 2, "0.5"), {2: "1"}, members=2, modes=[1])
+    [expected] = line.events
+    assert event.resonance.condition == expected.resonance.condition == "2 sigma_1 = (1).omega"
+    assert event.begins
+    assert event.amplitudes[2] == pytest.approx(expected.amplitudes[2], abs=ONSET)
+    assert event.energy == pytest.approx(expected.energy, abs=ONSET)
+    stable = [m.normal.stable for m in breathers().members]
+    assert stable[event.after]
+    assert not stable[event.after + 1]
+
+
+@pytest.mark.long
+def test_the_event_of_a_family_of_tori_is_that_of_the_line():
+    """Of two seeds, with the ratio of amplitudes that the family keeps."""
+    ratio = {1: "0.2", 5: "0.8"}
+    found = family(Chain(8, beta=1), (1, 5), "0.3", from_energy="0.19", amplitude_ratio=ratio, normal=True)
+    [event] = found.normal_events
+    end = {q: repr(a) for q, a in found.members[-1].amplitudes.items()}
+    [expected] = normal_family(found.members[0].torus, end, members=2, modes=[4, 6]).events
+    assert (event.resonance.modes, event.resonance.harmonic) == ((4, 6), (0, 2))
+    assert event.amplitudes == pytest.approx(expected.amplitudes, abs=ONSET)
+
+
+@pytest.mark.long
+def test_events_are_found_beyond_a_fold():
+    """N = 8, beta = 1, seed 1: A_1 turns at H = 0.7176 and one pair more is unstable where it falls."""
+    found = family(Chain(8, beta=1), (1,), "1.1", from_energy="0.1", normal=True, resonance_length=0)
+    [fold] = [e for e in found.events if e.what == "A_1"]
+    [event] = [e for e in found.normal_events if e.resonance.modes == (6,)]
+    assert event.energy > fold.energy
+    falling = [found.members[k].amplitudes[1] for k in (event.after, event.after + 1)]
+    assert falling[0] > event.amplitudes[1] > falling[1]
+    unstable = []
+    for side in (-1, 1):
+        torus = member_at_energy(found, repr(event.energy * (1 + side * BESIDE_AN_ONSET)), harmonic=False)
+        unstable.append(sum(floquet(torus).instabilities.values()))
+    assert unstable[1] == unstable[0] + 1
+
+
+@pytest.mark.long
+def test_a_narrow_tongue_has_both_ends():
+    """2 sigma_3 = 4 omega of N = 4, alpha = 1, beta = 1/2, between two members."""
+    chain = Chain(4, alpha=1, beta="1/2")
+    found = family(chain, (1,), "1.5", from_energy="1", normal=True)
+    begins, ends = found.normal_events
+    assert (begins.begins, ends.begins) == (True, False)
+    for event in (begins, ends):
+        for side in (-1, 1):
+            A = event.amplitudes[1] + side * 10 * BESIDE_AN_ONSET
+            inside = begins.amplitudes[1] < A < ends.amplitudes[1]
+            assert floquet(breather_at_amplitude(chain, 1, repr(A))).stable != inside
+
+
+def test_a_zero_of_what_is_too_small_to_interpolate_is_halved():
+    found, error = located(lambda x: 1e-6 * (0.3 - x), 0.0, 1.0, (0.3e-6, -0.7e-6), 1e-3)
+    assert abs(found - 0.3) <= error < 1e-3
+
+
+def stop_at(member):
+    def stop(label, done):
+        if label.startswith(f"member {member}: normal"):
+            raise KeyboardInterrupt
+
+    return stop
+
+
+def test_an_interrupted_family_goes_on_with_its_eigenfunctions(tmp_path):
+    with pytest.raises(RunInterrupted):
+        family(*ARGUMENTS, **OPTIONS, folder=tmp_path, progress=stop_at(4))
+    assert [file.name for file in tmp_path.glob("normal-*")] == ["normal-0002.symfpu"]
+    found = family(*ARGUMENTS, **OPTIONS, folder=tmp_path)
+    assert found.normal_events == breathers().normal_events
+    for m, expected in zip(found.members, breathers().members, strict=True):
+        assert (m.normal.frequencies, m.normal.residual) == (expected.normal.frequencies, expected.normal.residual)
+        assert m.normal.resonances == expected.normal.resonances
+    with pytest.raises(InputError, match="its normal differs"):
+        family(*ARGUMENTS, from_energy="0.3", folder=tmp_path)
+    for file in tmp_path.glob("normal-*"):
+        file.write_bytes(b"PK\x03\x04")
+    with pytest.raises(BundleError, match="is damaged"):
+        family(*ARGUMENTS, **OPTIONS, folder=tmp_path)
+
+
+def test_tables_and_records_have_the_frequencies():
+    found = breathers()
+    head, *rows = family_table(found)
+    column = head.index("sigma_1")
+    assert [float(row[column]) for row in rows] == pytest.approx([complex(m.normal.frequencies[1]).real for m in found.members])
+    frame = found.to_xarray()
+    assert frame.sigma.sel(mode=3).values == pytest.approx([complex(m.normal.frequencies[3]).real for m in found.members])
+    assert np.isnan(frame.sigma.sel(mode=2).values).all()
+    record = json.loads(json.dumps(found.record(), allow_nan=False))
+    assert record["normal_events"][0]["resonance"]["modes"] == [1]
+    assert record["members"][-1]["normal"]["stable"] is False
+
+
+def test_series_and_bad_lengths_have_no_normal_frequencies():
+    with pytest.raises(InputError, match=r"^normal"):
+        family(UNSTABLE, (1,), "0.1", normal=True, method="appendix-a", order=3)
+    with pytest.raises(InputError, match=r"^resonance_length"):
+        family(UNSTABLE, (1,), "0.1", normal=True, resonance_length=-1)
+
+
+LINE = {"members": 3, "modes": [1]}
+
+
+def test_an_interrupted_line_goes_on(tmp_path):
+    def stop(label, done):
+        if label.startswith("torus 3"):
+            raise KeyboardInterrupt
+
+    breather = breather_at_amplitude(UNSTABLE, 2, "0.5")
+    with pytest.raises(RunInterrupted, match="after 2 tori"):
+        normal_family(breather, {2: "1"}, **LINE, folder=tmp_path, progress=stop)
+    found = normal_family(breather, {2: "1"}, **LINE, folder=tmp_path)
+    expected = normal_family(breather, {2: "1"}, **LINE)
+    assert found.events == expected.events
+    assert isinstance(found.events[0], NormalEvent)
+    assert [m.frequencies for m in found.members] == [m.frequencies for m in expected.members]
+    again = normal_family(breather, {2: "1"}, **LINE, folder=tmp_path)
+    assert again.events == expected.events
+    with pytest.raises(InputError, match="its amplitudes differs"):
+        normal_family(breather, {2: "0.9"}, **LINE, folder=tmp_path)
+    (tmp_path / "normal-0001.symfpu").unlink()
+    with pytest.raises(InputError, match=r"restore normal-0001\.symfpu"):
+        normal_family(breather, {2: "1"}, **LINE, folder=tmp_path)
+    (tmp_path / "line.json").write_text("{")
+    with pytest.raises(InputError, match="is damaged"):
+        normal_family(breather, {2: "1"}, **LINE, folder=tmp_path)

@@ -1,0 +1,153 @@
+"""The checker of certificates of tori: what is altered is refused, and it shares no code with the prover."""
+
+import ast
+import copy
+import hashlib
+import json
+import random
+import re
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from symfpu.certified.residual import prove_residual
+from symfpu.certified.stay import prove_stay
+from symfpu.proofs import check_torus
+from symfpu.proofs.check_torus import Packing, Series, TorusError, product, verify
+from tests.test_pickle import two_angles
+
+
+@cache
+def stay():
+    return prove_stay(two_angles(), time=1000).certificate()
+
+
+@cache
+def residual():
+    return prove_residual(two_angles()).certificate()
+
+
+def sealed(data):
+    """With a digest made to fit."""
+    contents = {key: data[key] for key in data if key != "digest"}
+    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
+    return contents | {"digest": hashlib.sha256(text.encode()).hexdigest()}
+
+
+def checked(data, folder):
+    path = folder / "certificate.json"
+    path.write_text(json.dumps(data, separators=(",", ":")))
+    return verify(path)
+
+
+def refused(data, folder, reason=""):
+    with pytest.raises(TorusError, match=reason or None):
+        checked(data, folder)
+
+
+def test_both_kinds_are_theorems(tmp_path):
+    assert len(checked(residual(), tmp_path)) == 1
+    lines = checked(stay(), tmp_path)
+    assert "every orbit that starts on this torus stays, for 1.00e3 units of time" in lines[1]
+
+
+@pytest.mark.parametrize("make", [residual, stay])
+def test_no_altered_number_passes(make, tmp_path):
+    """Every number of the file, one digit changed: the digest binds all of them."""
+    text = json.dumps(make(), separators=(",", ":"))
+    path = tmp_path / "certificate.json"
+    numbers = list(re.finditer(r"[0-9]+", text))
+    for found in random.Random(5).sample(numbers, 150):
+        digit = str((int(text[found.start()]) + 1) % 10)
+        path.write_text(text[: found.start()] + digit + text[found.start() + 1 :])
+        with pytest.raises((TorusError, *check_torus.READING_ERRORS)):
+            check_torus.read_certificate(path)
+
+
+CLAIMS = {
+    "a smaller residual": lambda d: d["residual"].__setitem__(0, d["residual"][0] // 2),
+    "a longer time": lambda d: d["stay"].__setitem__(0, "100000"),
+    "a smaller weighted distance": lambda d: d["stay"].__setitem__(1, halved(d["stay"][1])),
+    "a smaller distance": lambda d: d["stay"].__setitem__(2, halved(d["stay"][2])),
+    "a smaller momentum": lambda d: d["stay"].__setitem__(3, halved(d["stay"][3])),
+    "a smaller drift": lambda d: d["stay"][4].__setitem__(1, halved(d["stay"][4][1])),
+    "a larger weighted distance": lambda d: d["stay"].__setitem__(1, [d["stay"][1][0] * 2, d["stay"][1][1]]),
+    "another coupling": lambda d: d["coefficients"].__setitem__(0, "31/100"),
+    "another frequency": lambda d: d["omega"].__setitem__(0, str(Fraction(d["omega"][0]) + Fraction(1, 10**9))),
+    "another N": lambda d: d.__setitem__("N", 4),
+    "other seeds": lambda d: d.__setitem__("seeds", [2, 1]),
+    "a coefficient of the torus": lambda d: d["torus"][3].__setitem__(2, d["torus"][3][2] + 2**40),
+    "a harmonic of the torus": lambda d: d["torus"].pop(5),
+    "fewer bits": lambda d: d.__setitem__("bits", d["bits"] - 1),
+    "another twist": lambda d: d["directions"][0][2].__setitem__(0, d["directions"][0][2][0] * 2),
+    "no twist": lambda d: d["directions"][0].__setitem__(2, []),
+    "one direction twice": lambda d: d["directions"].__setitem__(1, copy.deepcopy(d["directions"][0])),
+    "no weight": lambda d: d["weights"].pop(),
+    "a weight of zero": lambda d: d["weights"].__setitem__(0, 0),
+    "no directions": lambda d: d.__setitem__("directions", []),
+    "fewer bits of the frame": lambda d: d.__setitem__("frame_bits", 50),
+    "an action that turns": lambda d: d["directions"][0].__setitem__(1, 5),
+    "a harmonic twice": lambda d: d["torus"].append(d["torus"][0]),
+    "a negative time": lambda d: d["stay"].__setitem__(0, "-1"),
+    "a boolean": lambda d: d["weights"].__setitem__(0, True),
+    "another schema": lambda d: d.__setitem__("schema", 2),
+    "a key more": lambda d: d.__setitem__("more", 1),
+}
+
+
+def halved(pair):
+    return [pair[0] // 2, pair[1]]
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_an_altered_claim_with_a_digest_that_fits_is_refused(name, tmp_path):
+    data = copy.deepcopy(stay())
+    CLAIMS[name](data)
+    refused(sealed(data), tmp_path)
+
+
+def test_a_frame_without_a_claim_is_refused(tmp_path):
+    data = copy.deepcopy(residual())
+    data["weights"] = [1]
+    refused(sealed(data), tmp_path, "without a claim")
+
+
+@pytest.mark.long
+def test_what_passes_with_a_digest_that_fits_claims_no_more(tmp_path):
+    """Choices of the frame may move in their last places; then the theorem follows still."""
+    rng, passed = random.Random(7), 0
+    for _ in range(60):
+        data = copy.deepcopy(stay())
+        row = rng.choice(rng.choice(data["directions"])[3])
+        row[-1] += rng.choice([1, -1])
+        try:
+            lines = checked(sealed(data), tmp_path)
+        except TorusError:
+            continue
+        passed += 1
+        assert lines[:2] == checked(stay(), tmp_path)[:2]
+    assert passed
+
+
+def test_packed_products_are_those_of_the_definition():
+    rng = random.Random(2)
+    one, other = ({(rng.randint(-3, 3), rng.randint(-2, 2)): rng.randint(-999, 999) for _ in range(9)} for _ in range(2))
+    direct = {}
+    for a, x in one.items():
+        for b, y in other.items():
+            nu = (a[0] + b[0], a[1] + b[1])
+            direct[nu] = direct.get(nu, 0) + x * y
+    packing = Packing([Series(one, 0), Series(other, 0)], 1)
+    found = packing.unpacked(packing.packed(Series(one, 0)) * packing.packed(Series(other, 0)))
+    assert found == {nu: x for nu, x in direct.items() if x}
+    assert product(Series(one, 0), Series({}, 0)).values == {}
+
+
+def test_it_imports_the_standard_library_alone():
+    tree = ast.parse(Path(check_torus.__file__).read_text())
+    names = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
+    names |= {str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert names <= {"hashlib", "json", "math", "re", "collections.abc", "fractions", "itertools", "pathlib", "typing"}
+    assert not [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, float)]
