@@ -654,6 +654,15 @@ SAME_BOUNDS = 0.02
 # Asked of the breathers of the figures: far beyond doubles, within the 30 digits that their orbits have.
 PROVED_RADIUS = 1e-25
 
+# Of the frequency at a given amplitude or energy of an orbit of doubles: 22 digits of it are kept, so its ball is far below theirs.
+PROVED_FREQUENCY = 1e-18
+
+# Radius of uniqueness at a fold in omega, with the frequency given and with the amplitude: it is squeezed by the second orbit, or not.
+SQUEEZED, FREE = 1e-6, 1e-2
+
+# A frequency that proof and harmonic balance have of the same digits of A.
+SAME_FREQUENCY = 1e-15
+
 # A matrix made of bond sums against one made of samples in time, both of some hundred rounded products.
 SAME_DERIVATIVE = 1e-12
 
@@ -680,3 +689,6 @@ MAP_FREQUENCY = 1e-10
 
 # The shift of mode 1 beside its lowest order, relative: the next order at alpha = 0.3, N = 8, H = 4e-6 is 2e-3 of it.
 MAP_SHIFT = 1e-2
+
+# Two normal frequencies that are one at rest and differ on a torus: those of the tests by 2e-6 and more.
+SPLIT = 1e-6

@@ -46,6 +46,16 @@ def available_cores() -> int:
     )
 
 
+def threads_of_a_computation() -> int:
+    """The available cores, or fewer where the environment says so, as in a worker of a pool.
+
+    OMP_NUM_THREADS, which schedulers set and other libraries heed too; a list counts by its first.
+    """
+    first = os.environ.get("OMP_NUM_THREADS", "").split(",")[0].strip()
+    cores = available_cores()
+    return min(cores, int(first)) if first.isdecimal() and int(first) else cores
+
+
 def predicted_bytes(N: int, seeds: int, top: int, *, powers: int) -> int:
     """Upper bound of the memory of a series up to degree `top`, temporaries included.
 
@@ -90,7 +100,7 @@ class DenseRing(ABC, Generic[Bonds]):
         self.space, self.grading = space, space.grading
         self.exponent = 0
         self.multiply_adds = 0
-        self._workers = workers or available_cores()
+        self._workers = workers or threads_of_a_computation()
         self._pool = ThreadPoolExecutor(self._workers)
         self._points = points or space.half
         self._convolves = len(space.seeds) == 1 and self.modulus is None

@@ -23,7 +23,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.algebra.dense import Floats, available_cores
+from symfpu.algebra.dense import Floats, threads_of_a_computation
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.residue import ResidueRing, largest_modulus
 from symfpu.algebra.selection import CosineModes
@@ -113,7 +113,7 @@ class FixedPointRing:
         largest = largest_modulus(len(space.seeds), space.grading.degree)
         self.basis = ResidueBasis(2 * precision.bits + precision.headroom, largest)
         self._images = [_Image(space, p) for p in self.basis.primes]
-        self._pool = ThreadPoolExecutor(available_cores())
+        self._pool = ThreadPoolExecutor(threads_of_a_computation())
         self._points = self._images[0]._slices * self._images[0]._lanes
         self._to_bonds = self._cosines(np.ones(space.half))
         self._back: dict[Fraction, Floats] = {}

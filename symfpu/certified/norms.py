@@ -125,7 +125,7 @@ class Norms:
 def taylor(couplings: dict[int, Fraction], r: Fraction, power: int) -> Fraction:
     """sum_k |c_k| binomial(k, power) r^(k - power)."""
     pairs = ((k, c) for k, c in couplings.items() if k >= power)
-    return sum((c * math.comb(k, power) * r ** (k - power) for k, c in pairs), Fraction(0))
+    return Fraction(sum(c * math.comb(k, power) * r ** (k - power) for k, c in pairs))
 
 
 def largest(row: Sequence[Fraction], weights: Sequence[Fraction]) -> Fraction:
@@ -166,7 +166,7 @@ def norms(torus: RoundedTorus, directions: Sequence[Direction], residual: Row) -
 
 
 def _image(x: Row, y: Row, column: Column) -> Fraction:
-    return dot(x, norms_of(column.x)) + dot(y, norms_of(column.y))
+    return Fraction(dot(x, norms_of(column.x)) + dot(y, norms_of(column.y)))
 
 
 def _twist(directions: Sequence[Direction], s: int) -> Iterator[list[Fraction]]:

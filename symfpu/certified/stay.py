@@ -84,7 +84,7 @@ class StayProof(Tabled):
     >>> amplitudes = {1: "0.2", 2: "0.1"}
     >>> guess = torus_at_amplitudes(Chain(N=3, alpha="0.3"), amplitudes, order=4)
     >>> prove_stay(refine_at_amplitudes(guess, amplitudes, digits=30))
-    StayProof(N=3, alpha=0.3, omega_1=0.99..., omega_2=1.72..., 30 digits: an orbit that starts
+    StayProof(N=3, alpha=0.3, omega_1=0.99..., omega_2=1.73..., 30 digits: an orbit that starts
     on the torus stays within ... of it for t <= 1000000000, its angles within ... of phi +
     omega t; at most t <= ...)
     """

@@ -54,7 +54,7 @@ def _least(shifts: Any) -> float:
     if not sizes.size:
         return SMALLEST_SHIFT
     low = float(np.quantile(sizes, LOW_QUANTILE))
-    return max(SMALLEST_SHIFT, 10.0 ** np.floor(np.log10(low)))
+    return max(SMALLEST_SHIFT, float(10.0 ** np.floor(np.log10(low))))
 
 
 def _say_counts(axes: Axes, found: FrequencyMap) -> None:

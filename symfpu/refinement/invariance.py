@@ -10,7 +10,6 @@ one kind run in one precision, doubles or the machine's long doubles.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import lru_cache
@@ -20,6 +19,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.algebra.dense import threads_of_a_computation
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.numbers.arithmetic import Arithmetic, mpf
@@ -218,7 +218,7 @@ def shifted(harmonics: Ints, kappa: Ints) -> tuple[Ints, Ints]:
     return rows, place[rows]
 
 
-WORKERS = os.cpu_count() or 1
+WORKERS = threads_of_a_computation()
 FIRST_TRIED, TRIALS = (
     500,
     60,

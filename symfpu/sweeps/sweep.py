@@ -103,6 +103,8 @@ def sweep(
     """
     shared = dict(fixed or {})
     head = head_of(_name(function), _values(shared))
+    if executor is None:
+        _require_file(function)
     calls = _calls(function, cases, shared)
     limit = _limit(memory, within)
     told = progress or unheard
@@ -262,6 +264,15 @@ def _name(function: Callable[..., Any]) -> str:
         advice = "write it at the top of a file; arguments that stay go into fixed="
         raise InputError("function", function, allowed, advice)
     return f"{module}.{name}"
+
+
+def _require_file(function: Callable[..., Any]) -> None:
+    """InputError for a function typed at a prompt or in a notebook: new processes lack it."""
+    typed = not hasattr(sys.modules["__main__"], "__file__")
+    if typed and function.__module__ == "__main__":
+        allowed = "a function in a file, from which worker processes import it"
+        advice = "write it to a file and import it, or pass executor="
+        raise InputError("function", function.__qualname__, allowed, advice)
 
 
 def _values(arguments: Case) -> Json:

@@ -27,7 +27,7 @@ from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.verdict import assess
-from tests.tolerances import PROVED_RADIUS, SAME_BOUNDS, SAME_DERIVATIVE
+from tests.tolerances import FREE, PROVED_FREQUENCY, PROVED_RADIUS, SAME_BOUNDS, SAME_DERIVATIVE, SAME_FREQUENCY, SQUEEZED
 
 FIG9 = Chain(N=32, alpha="0.33")
 CASES = {
@@ -109,7 +109,7 @@ def test_the_true_orbit_is_where_the_theorem_says(name):
 def test_the_frequency_is_where_the_theorem_says(name):
     """The orbits at the ends of its interval have values on the two sides of the given one."""
     found, excess = proof(name), []
-    assert 0 < found.frequency_radius < 1e-18
+    assert 0 < found.frequency_radius < PROVED_FREQUENCY
     for sign in (-1, 1):
         omega = found.frequency + sign * Fraction(found.frequency_radius)
         near = replace(orbit(name), frequencies=(omega,))
@@ -153,7 +153,7 @@ def test_a_fold_in_omega_is_an_ordinary_point_of_its_amplitude(tmp_path):
     chain, A, width = Chain(2, potential="poly:0,-1,0,3/2"), Fraction("0.633383"), Fraction(1, 200)
     fold = breather_at_amplitude(chain, 1, A)
     alone, given = prove_existence(fold), prove_existence(fold, amplitude=A)
-    assert alone.unique < 1e-6 < 1e-2 < given.unique
+    assert alone.unique < SQUEEZED < FREE < given.unique
     assert checked(prove_existence(fold, amplitude=A, half_width=width), tmp_path)
     for end in (A - width, A + width):
         proved = prove_existence(breather_at_amplitude(chain, 1, end), amplitude=end)
@@ -289,4 +289,4 @@ def test_the_amplitude_of_figure_9_given_exactly():
     orbit = periodic_orbit_digits(periodic_orbit(FIG9, 1, "0.09844127049688513"), 32)
     found = prove_existence(orbit, amplitude="1.27153895251014")
     assert found.radius < PROVED_RADIUS
-    assert abs(found.frequency - orbit.frequency) < 1e-15
+    assert abs(found.frequency - orbit.frequency) < SAME_FREQUENCY

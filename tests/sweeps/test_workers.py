@@ -13,6 +13,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from symfpu.algebra.dense import available_cores, threads_of_a_computation
 from symfpu.sweeps.rows_file import read_rows
 from symfpu.sweeps.sweep import sweep
 from symfpu.sweeps.workers import ProcessWorkers
@@ -43,6 +44,17 @@ def test_a_worker_that_is_killed_while_it_waits_costs_nothing():
         assert pool.submit(os.getpid).result() != pid
 
 
+def test_a_worker_computes_on_one_thread_unless_the_environment_says_otherwise(monkeypatch):
+    for given, expected in ((None, 1), ("2", min(2, available_cores())), ("1,4", 1), ("none", available_cores())):
+        monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+        if given is not None:
+            monkeypatch.setenv("OMP_NUM_THREADS", given)
+        assert threads_of_a_computation() == (expected if given else available_cores())
+        with ProcessWorkers(1) as pool:
+            assert pool.submit(threads_of_a_computation).result() == expected
+        assert os.environ.get("OMP_NUM_THREADS") == given
+
+
 def test_tasks_at_work_are_ended_where_they_are_cancelled():
     pool = ProcessWorkers(1)
     pid = pool.submit(os.getpid).result()
@@ -71,6 +83,12 @@ def test_a_script_without_its_guard_is_told(tmp_path):
     _, error = done.communicate(timeout=60)
     assert done.returncode == 1
     assert "start the sweep under `if __name__ == '__main__':`" in error.decode()
+
+
+def test_a_function_that_was_typed_is_refused_before_processes_start():
+    lines = "from symfpu.sweeps.sweep import sweep\ndef typed(n): return n\nsweep(typed, [{'n': 1}])"
+    _, error = run(["-c", lines]).communicate(timeout=60)
+    assert b"a function in a file, from which worker processes import it" in error
 
 
 def test_a_worker_at_work_ends_with_its_driver(tmp_path):
