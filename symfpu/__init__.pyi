@@ -137,6 +137,7 @@ from symfpu.spectral.analysis import FrequencyAnalysis as FrequencyAnalysis
 from symfpu.spectral.analysis import SpectralLine as SpectralLine
 from symfpu.spectral.analysis import frequency_analysis as frequency_analysis
 from symfpu.spectral.mapping import FrequencyMap as FrequencyMap
+from symfpu.spectral.mapping import MapIncomplete as MapIncomplete
 from symfpu.spectral.mapping import frequency_map as frequency_map
 from symfpu.spectral.near import torus_near as torus_near
 
@@ -246,7 +247,7 @@ from symfpu.refinement.tori import NoTorus as NoTorus
 from symfpu.integrable.discriminant import NoDiscriminant as NoDiscriminant
 from symfpu.integrable.quadrature import BandsTooNarrow as BandsTooNarrow
 from symfpu.integrable.search import NoTodaTorus as NoTodaTorus
-from symfpu.sweeps.rows_file import FileFull as FileFull
+from symfpu.files.kept_lines import FileFull as FileFull
 from symfpu.sweeps.sweep import CaseTooLarge as CaseTooLarge
 from symfpu.sweeps.sweep import SweepStopped as SweepStopped
 from symfpu.sweeps.workers import WorkerDied as WorkerDied

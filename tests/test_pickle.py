@@ -55,6 +55,7 @@ from symfpu.families.continuation import Event
 from symfpu.families.family import NotInFamily, family, member_at_energy
 from symfpu.files.archive import BundleError
 from symfpu.files.checkpoint import Refused
+from symfpu.files.kept_lines import FileFull
 from symfpu.integrable.discriminant import NoDiscriminant
 from symfpu.integrable.invariants import toda_invariants
 from symfpu.integrable.quadrature import BandsTooNarrow
@@ -80,8 +81,8 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.series.sample import sample_series
 from symfpu.series.travelling import travelling_waves
 from symfpu.spectral.analysis import frequency_analysis
+from symfpu.spectral.mapping import MapIncomplete
 from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
-from symfpu.sweeps.rows_file import FileFull
 from symfpu.sweeps.sweep import CaseTooLarge, SweepStopped
 from symfpu.sweeps.workers import WorkerDied, WorkersDoNotStart
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
@@ -413,6 +414,7 @@ ERRORS = {
     NoBreatherAtEnergy: lambda: NoBreatherAtEnergy(3, 0.5, False, orbit(), no_periodic_orbit()),
     ShootingFailed: lambda: ShootingFailed(1, "a reason", np.array([0.1, 0.0]), (0.2, 0.1)),
     SweepIncomplete: lambda: SweepIncomplete(sweep(), {(5, (1,)): SweepFailure("TooLarge", "order = 9", {"needed": 10**12})}),
+    MapIncomplete: lambda: MapIncomplete(cases.mapped(), {"10": SweepFailure("EscapedOrbit", "bond 2", {"energy": 10.0})}),
     SweepStopped: lambda: SweepStopped(swept_rows(), 3, "a reason"),
     CaseTooLarge: lambda: CaseTooLarge(10**12, 10**9),
     FileFull: lambda: FileFull("rows.jsonl", 3, "No space left on device"),

@@ -25,6 +25,11 @@ from symfpu.files.progress import Progress, unheard
 Ints = NDArray[np.int64]
 Row = tuple[int, ...]  # m_1, ..., m_s, c of m.x = c
 MOST_SEEDS = 3  # of which the flats can be enumerated
+MOST_LEAVES = {
+    1: 201,
+    2: 13,
+    3: 5,
+}  # by number of seeds, of terms whose theorems can be checked
 LONGEST = 400  # bonds among which representatives are sought
 CANDIDATES = 1 << 20  # points looked at together
 DIGIT = 1 << 12  # above every denominator of a point
@@ -42,6 +47,16 @@ class Flat:
 def degree_of(model: str, order: int) -> int:
     """The number of leaves of a term of this order: k + 1 (alpha), 2k + 1 (beta)."""
     return order + 1 if model == "alpha" else 2 * order + 1
+
+
+def last_order(model: str, s: int) -> int:
+    """The last order up to which a theorem of s seeds can be checked.
+
+    >>> [(last_order("alpha", s), last_order("beta", s)) for s in (1, 2, 3)]
+    [(200, 100), (12, 6), (4, 2)]
+    """
+    more = MOST_LEAVES[s] - degree_of(model, 0)
+    return more if model == "alpha" else more // 2
 
 
 def hyperplanes(model: str, s: int, order: int) -> list[Row]:

@@ -8,7 +8,7 @@ import multiprocessing
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -22,10 +22,10 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.typed import integer, seed_modes
-from symfpu.proofs.decided_file import decided_file
+from symfpu.proofs.decided_file import DecidedFile
 from symfpu.proofs.every_length import DecidedFlat, decided_flat
 from symfpu.proofs.families import equation_text, mode_text
-from symfpu.proofs.flats import MOST_SEEDS, Arrangement, Flat, degree_of, flats
+from symfpu.proofs.flats import MOST_SEEDS, Arrangement, Flat, degree_of, flats, last_order
 from symfpu.proofs.seed_sums import without_odd_sums
 
 FORMAT, SCHEMA = "symfpu rule for all N certificate", 2
@@ -273,8 +273,9 @@ def prove_for_all_N(
 ) -> RuleForAllN:
     """Prove or refute the Proposition (Eqs. app, dk) for every N and all sets of s seeds.
 
-    model : 'alpha' or 'beta'. seeds_number : s, 1 to 3. order : the last k, from 1 up. All are
-        dimensionless.
+    model : 'alpha' or 'beta'. seeds_number : s, 1 to 3. All are dimensionless.
+    order : the last k, 1 up to the last whose certificate can be checked: in alpha 200, 12 and 4
+        for s = 1, 2 and 3, in beta 100, 6 and 2.
     executor : any concurrent.futures.Executor; default a pool of processes where flats are many,
         which a script must start under `if __name__ == "__main__":`.
     file : JSON lines, one for each decided flat; an existing file of the same theorem is
@@ -282,8 +283,9 @@ def prove_for_all_N(
     progress : called as (label, fraction done).
 
     With s = k + 1 seeds (alpha) or 2k + 1 (beta) order k is settled for all larger sets, too.
-    Raises InputError for arguments out of range and for a file of another theorem. What a flat
-    is, why a representative decides it, and what it proves: docs/propagation.md (ours).
+    Raises InputError, before anything is computed, for arguments out of range and for a file of
+    another theorem; FileFull where a flat finds no room. What a flat is, why a representative
+    decides it, and what it proves: docs/propagation.md (ours).
 
     >>> proof = prove_for_all_N("beta", 2, 1)
     >>> print(proof.exceptional_flats[0])
@@ -299,24 +301,34 @@ def prove_for_all_N(
         allowed = f"1 to {MOST_SEEDS}"
         advice = "flats of more seeds are not enumerated; prove_propagation decides one set"
         raise InputError("seeds_number", s, allowed, advice)
-    kept = decided_file(file, {"model": model, "seeds_number": s, "order": last})
-    known = {found.flat: found for found in kept.read()}
+    _require_checkable(model, s, last)
     told = progress or unheard
-    all_flats = flats(model, s, last, told)
-    asked = _with_odd_sums(model, last, all_flats)
-    todo = [flat for flat in asked if flat not in known]
     with ExitStack() as stack:
+        kept = stack.enter_context(DecidedFile(file, model, s, last))
+        all_flats = flats(model, s, last, told)
+        asked = _with_odd_sums(model, last, all_flats)
+        todo = [flat for flat in asked if flat not in kept.decided]
         pool = executor
         if pool is None and len(todo) > FEW:
             context = multiprocessing.get_context("spawn")
             pool = stack.enter_context(ProcessPoolExecutor(mp_context=context))
         for batch in _decided(pool, model, last, todo):
-            kept.append(map(asdict, batch))
-            known |= {found.flat: found for found in batch}
-            told("flats", len(known) / len(asked))
-    found = {flat: known[flat] for flat in asked}
+            kept.append(batch)
+            told("flats", len(kept.decided) / len(asked))
+    found = {flat: kept.decided[flat] for flat in asked}
     decided = tuple(found.get(flat) or DecidedFlat(flat) for flat in all_flats)
     return RuleForAllN(model, s, last, _verdict(decided), decided)
+
+
+def _require_checkable(model: str, s: int, order: int) -> None:
+    """InputError for an order whose certificate the checker would not take."""
+    most = last_order(model, s)
+    if order > most:
+        seeds = f"{s} seed" + "s" * (s > 1)
+        allowed = f"1 to {most} for {seeds} in {model}, whose certificates can be checked"
+        advice = f"no checker takes terms of {degree_of(model, order)} leaves of {seeds}; "
+        advice += "prove_propagation decides one seed set"
+        raise InputError("order", order, allowed, advice)
 
 
 def _with_odd_sums(model: str, order: int, all_flats: Sequence[Flat]) -> list[Flat]:

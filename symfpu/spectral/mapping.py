@@ -1,9 +1,12 @@
-"""How the frequencies of an orbit change with its energy: a frequency map."""
+"""How the frequencies of an orbit change with its energy: a frequency map.
+
+One use of `symfpu.sweeps`: each energy is a case, and each case a row of a file.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,27 +14,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.algebra.dense import available_cores
 from symfpu.chain.chain import Chain, require_fixed_ends
-from symfpu.dynamics.orbits import integrate
-from symfpu.dynamics.starts import packet_state
-from symfpu.errors import InputError
-from symfpu.files.lines_file import LinesFile
+from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress, unheard
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.table import joined
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
-from symfpu.numbers.typed import Number, decimal, exact, integer, seed_modes
-from symfpu.spectral.analysis import FrequencyAnalysis, frequency_analysis
+from symfpu.numbers.typed import Number, decimal, double, exact, integer, seed_modes
+from symfpu.spectral.one_energy import Row, kept_row, orbit_frequencies, require_analysable
+from symfpu.sweeps.rows import SweepFailure, SweepRows
+from symfpu.sweeps.sweep import sweep
+from symfpu.sweeps.this_process import ThisProcess
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Row = dict[str, Any]
-
-HEADER, SCHEMA = "symfpu frequency map", 1
-HALVES = 2  # windows of the drift
-KEYS = ("energy", "modes", "frequencies", "errors", "strengths", "drifts")
+WORTH_PROCESSES = 2e6  # steps times bonds, of all energies: a second to ten of one core
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +104,30 @@ class FrequencyMap(Shown, Gridded):
         )
 
 
+class MapIncomplete(SymfpuError):
+    """Some energies of a map have no frequencies: raised by `frequency_map` at its end.
+
+    All other energies are then done.
+
+    done : the map of all other energies, None if there is none. failures : what went wrong by
+    energy, as text: kind of error, message, numbers. Ours.
+    """
+
+    def __init__(
+        self, done: FrequencyMap | None, failures: Mapping[str, SweepFailure]
+    ) -> None:
+        self.done = done
+        self.failures = dict(failures)
+        energy, failure = next(iter(self.failures.items()))
+        many = "energy has" if len(self.failures) == 1 else "energies have"
+        none = f"{len(self.failures)} {many} no frequencies, the first H = {energy}"
+        count = 0 if done is None else len(done.energies)
+        kept = "kept in the attribute done, and in the file if there is one"
+        others = f"energies that have some: {count}, {kept}"
+        advice = "leave out those that have none, or call again to try them once more"
+        super().__init__(f"{none} ({failure}); {others}: {advice}")
+
+
 def frequency_map(
     chain: Chain,
     energies: Sequence[Number],
@@ -124,13 +148,17 @@ def frequency_map(
         paper's section 6.4 the first one.
     T, step, scheme : of each orbit. lines : at most, of each mode, as `frequency_analysis`.
     level : of the strongest f A, above which an independent frequency counts, between 0 and 1.
-    file : JSON lines, one for each energy as it comes; an existing file of the same map is
-        continued, its last line dropped if it was cut.
+    file : JSON lines, one for each energy as it comes, as of `sweep`: an existing file of the same
+        map is continued, its last line dropped if it was cut; failures in it are computed again.
     progress : called as (label, fraction done).
+
+    Energies whose orbits take more than seconds are shared out to processes, one a core, which a
+    script must start under `if __name__ == "__main__":`.
 
     Everything is dimensionless. Lines nearer to each other than 4 turns over T/2 blur the drift:
     2 omega_1 - omega_2, about (pi/N)^3/4, is the nearest. Ours. Raises InputError, also for a
-    file of another map, and what `integrate` raises where an orbit has left its well.
+    file of another map, and UnstableStep; MapIncomplete, after all other energies, if one failed
+    (an orbit that has left its well, a process that died); FileFull and SweepStopped as `sweep`.
 
     >>> from symfpu import Chain
     >>> frequency_map(Chain(N=4, alpha="0.3"), ("0.001", "0.01"), T=500, step=0.1).counts
@@ -141,20 +169,76 @@ def frequency_map(
     if not 0 < level < 1:
         raise InputError("level", level, "a number between 0 and 1", "take 1e-3")
     asked = _energies(energies)
+    orbits = _orbits(chain, T, step, scheme, lines)
+    told = _Told(progress or unheard, len(asked))
+    swept = sweep(
+        orbit_frequencies,
+        [{"energy": name} for name in asked],
+        fixed={"chain": chain, "seeds": modes} | orbits,
+        executor=_executor(chain.N * orbits["T"] / orbits["step"], told),
+        file=file,
+        retry=True,
+        progress=told.energies,
+    )
+    rows = _rows(swept, file)
+    failures = {row.case["energy"]: row.failure for row in swept.rows if row.failure}
+    if not rows:
+        raise MapIncomplete(None, failures)
+    found = np.array([asked[name] for name in rows])
+    done = _map(chain, orbits["T"], modes, level, found, list(rows.values()))
+    if failures:
+        raise MapIncomplete(done, failures)
+    return done
+
+
+def _orbits(
+    chain: Chain, T: Number, step: Number, scheme: str, lines: int
+) -> dict[str, Any]:
+    """How each orbit is followed; InputError and UnstableStep for what no energy would pass."""
+    length, each = double(T, "T"), double(step, "step")
     most = integer(lines, "lines", 1)
-    how = {"T": float(T), "step": float(step), "scheme": scheme, "lines": most}
-    header = {"format": HEADER, "schema": SCHEMA, **chain.typed, "seeds": modes, **how}
-    log = LinesFile(file, header, _kept_row, "a frequency map")
-    rows = {row["energy"]: row for row in log.read()}
-    tell = progress or unheard
-    for i, (name, energy) in enumerate(asked.items()):
-        if name not in rows:
-            heard = _part(tell, f"H = {energy:.4g}", i, len(asked))
-            rows[name] = _row(name, _analysis(chain, modes, name, how, heard))
-            log.append([rows[name]])
-        tell("energies", (i + 1) / len(asked))
-    chosen = [rows[name] for name in asked]
-    return _map(chain, float(T), modes, level, np.array(list(asked.values())), chosen)
+    require_analysable(chain, length, each, scheme)
+    return {"T": length, "step": each, "scheme": scheme, "lines": most}
+
+
+class _Told:
+    """The progress of a map, and of the one energy that is at work in this process."""
+
+    def __init__(self, tell: Progress, count: int) -> None:
+        self.tell, self.count = tell, count
+        self.done = 0.0
+
+    def energies(self, _: str, fraction: float) -> None:
+        """So much of all energies is done."""
+        self.done = fraction
+        self.tell("energies", fraction)
+
+    def one(self, label: str, fraction: float) -> None:
+        """So much of one energy: a part of the whole."""
+        if not math.isnan(fraction):
+            self.tell(label, self.done + fraction / self.count)
+
+
+def _executor(work: float, told: _Told) -> ThisProcess | None:
+    """None for processes: where several energies take longer than it takes to start them.
+
+    work : of one energy, steps times bonds.
+    """
+    alone = told.count == 1 or available_cores() == 1
+    if alone or work * told.count < WORTH_PROCESSES:
+        return ThisProcess(progress=told.one)
+    told.energies("", 0.0)
+    return None
+
+
+def _rows(swept: SweepRows, file: Path | str | None) -> dict[str, Row]:
+    """By energy, of those that have one; InputError for a file in which other things stand."""
+    done = [row for row in swept.rows if row.failure is None]
+    try:
+        return {row.case["energy"]: kept_row(row.result) for row in done}
+    except (KeyError, TypeError) as error:
+        advice = "it is damaged: remove it or name another"
+        raise InputError("file", str(file), "rows of a map", advice) from error
 
 
 def _energies(energies: Sequence[Number]) -> dict[str, float]:
@@ -166,56 +250,6 @@ def _energies(energies: Sequence[Number]) -> dict[str, float]:
     if not found or min(found) <= 0:
         raise InputError("energies", tuple(energies), "energies H > 0", advice)
     return {decimal(energy): float(energy) for energy in sorted(found)}
-
-
-def _part(tell: Progress, label: str, i: int, count: int) -> Progress:
-    """The progress of one energy as part of the whole."""
-
-    def heard(_: str, fraction: float) -> None:
-        if not math.isnan(fraction):
-            tell(label, (i + fraction) / count)
-
-    return heard
-
-
-def _analysis(
-    chain: Chain, modes: Sequence[int], energy: str, how: Row, progress: Progress
-) -> FrequencyAnalysis:
-    state = packet_state(chain, modes, energy)
-    orbit = integrate(
-        chain, *state, how["T"], step=how["step"], scheme=how["scheme"], samples=1
-    )
-    return frequency_analysis(orbit, lines=how["lines"], windows=HALVES, progress=progress)
-
-
-def _row(energy: str, found: FrequencyAnalysis) -> Row:
-    """What is kept of an analysis: a line of the file."""
-    return {
-        "energy": energy,
-        "modes": _modes(found),
-        "frequencies": found.frequencies.tolist(),
-        "errors": found.errors.tolist(),
-        "strengths": found.strengths.tolist(),
-        "drifts": [None if math.isnan(x) else x for x in _mode_drifts(found)],
-    }
-
-
-def _modes(found: FrequencyAnalysis) -> list[int]:
-    """The mode of the strongest line of each independent frequency."""
-    modes = []
-    for place in range(len(found.seeds)):
-        unit = tuple(int(i == place) for i in range(len(found.seeds)))
-        own = [line for line in found.lines if line.harmonic == unit]
-        modes.append(max(own, key=lambda line: line.amplitude).mode)
-    return modes
-
-
-def _mode_drifts(found: FrequencyAnalysis) -> list[float]:
-    """Relative change of the strongest line of each mode between halves; nan without a line."""
-    first, second = found.window_frequencies
-    with np.errstate(invalid="ignore", divide="ignore"):
-        changes = np.abs(second - first) / np.abs(first)
-    return [float(x) for x in changes]
 
 
 def _map(
@@ -258,10 +292,3 @@ def _drift(row: Row, level: float) -> float:
     pairs = zip(row["modes"], row["strengths"], strict=True)
     shown = {q for q, strength in pairs if strength > level}
     return max((row["drifts"][q - 1] or 0.0 for q in shown), default=0.0)
-
-
-def _kept_row(record: Row) -> Row:
-    """A line of the file, if it is one."""
-    for name in KEYS:
-        record[name]
-    return record

@@ -21,6 +21,16 @@ FEWEST = 256  # samples
 NO_BOUNDS = np.array([[-np.inf, np.inf]])  # the orbit has been here: it stays within them
 
 
+def require_samples(T: float, step: float) -> int:
+    """How many samples there are of an orbit of this length; InputError for too few."""
+    interval = step * steps_between_looks(step)
+    count = int(T / interval * (1 + 1e-12)) + 1
+    if count < FEWEST:
+        least = f"at least {FEWEST * abs(interval):.6g}"
+        raise InputError("orbit", f"T = {T:.6g}", least, "integrate a longer one")
+    return count
+
+
 class Samples:
     """The mode coordinates of an orbit at equal times from 0, by the orbit's scheme and step.
 
@@ -33,10 +43,7 @@ class Samples:
         self.stride = steps_between_looks(orbit.step)
         self.interval = orbit.step * self.stride
         self.T = float(orbit.times[-1])
-        self.count = int(self.T / self.interval * (1 + 1e-12)) + 1
-        if self.count < FEWEST:
-            least = f"at least {FEWEST * abs(self.interval):.6g}"
-            raise InputError("orbit", f"T = {self.T:.6g}", least, "integrate a longer one")
+        self.count = require_samples(self.T, orbit.step)
 
     def blocks(self, progress: Progress) -> Iterator[Numbers]:
         """Arrays (n, N-1), one after the other; after the first each begins after the last."""

@@ -1,46 +1,26 @@
-"""The file of a sweep: a head of one line, then one line for each row, as they come.
-
-A line that a dead process left unfinished is cut off; one process at a time writes.
-"""
+"""The file of a sweep: a head of one line, then one line for each row, as they come."""
 
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import IO, Any
 
 from symfpu import __version__
-from symfpu.errors import InputError, SymfpuError
-from symfpu.files.writing import output_file, write_bytes
+from symfpu.errors import InputError
+from symfpu.files.kept_lines import (
+    KeptLines,
+    damaged,
+    entries_of,
+    head_in,
+    require_same,
+)
 from symfpu.sweeps.rows import Json, SweepFailure, SweepRow
 
-try:
-    import fcntl
-except ImportError:  # no locks of this kind: the user sees to it that one process writes
-    fcntl = None  # type: ignore[assignment]
-
 FORMAT, SCHEMA = "symfpu sweep", 1
-NAMED = "name another file, or remove this one"
-
-
-class FileFull(SymfpuError):
-    """A row that could not be written. Raised by `sweep`.
-
-    path : of the file; rows : that are in it, whole; reason : of the system. Ours.
-    """
-
-    def __init__(self, path: str, rows: int, reason: str) -> None:
-        self.path = path
-        self.rows = rows
-        self.reason = reason
-        advice = "make room there; the same call goes on from them"
-        super().__init__(
-            f"{path} takes no more rows ({reason}); {rows} are in it: {advice}"
-        )
+RUN = "sweep"
 
 
 def head_of(function: str, fixed: Mapping[str, Any]) -> Json:
@@ -54,7 +34,7 @@ def key_of(case: Json) -> str:
     return json.dumps(case, sort_keys=True)
 
 
-class RowsFile:
+class RowsFile(KeptLines):
     """The rows of one sweep, on disk where a path is given.
 
     Used as `with RowsFile(path, head) as kept`: `kept.rows` by the key of their case, at first
@@ -63,96 +43,33 @@ class RowsFile:
     retry : whether rows of failures are forgotten.
     """
 
+    run = RUN
+
     def __init__(self, path: Path | str | None, head: Json, *, retry: bool = False) -> None:
-        advice = "choose another"
-        self.path = None if path is None else output_file(Path(path), "file", advice)
-        self.head = head
+        super().__init__(path, head)
         self.rows: dict[str, SweepRow] = {}
         self._retry = retry
-        self._stream: IO[bytes] | None = None
-
-    def __enter__(self) -> RowsFile:
-        if self.path is None:
-            return self
-        self._stream = _opened(self.path)
-        try:
-            self._begin(self.path, self._stream)
-        except BaseException:
-            self._stream.close()
-            raise
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._stream is not None:
-            with suppress(OSError):
-                os.fsync(self._stream.fileno())
-            self._stream.close()
 
     def _begin(self, path: Path, stream: IO[bytes]) -> None:
-        """Read what is there, cut an unfinished line off, and write the head of a new file."""
-        stream.seek(0)
-        content = stream.read()
-        first = _line(self.head)
-        if not first.startswith(content):
-            self.rows = _rows(path, content, self.head)
-        whole = content.rfind(b"\n") + 1
-        if whole < len(content):
-            stream.truncate(whole)
-        if not whole:
-            self._write(first)
+        super()._begin(path, stream)
         if self._retry:
-            self._forget_failures(path)
+            self._forget_failures()
 
-    def _forget_failures(self, path: Path) -> None:
-        """Leave only rows with results: another file in its place, whole or not at all."""
-        good = {key: row for key, row in self.rows.items() if row.failure is None}
-        if len(good) == len(self.rows):
-            return
-        self.rows = good
-        lines = [_line(self.head), *(_line(_entry(row)) for row in good.values())]
-        write_bytes(path, b"".join(lines))
-        before, self._stream = self._stream, _opened(path)
-        if before is not None:
-            before.close()
+    def take(self, entries: list[Json]) -> None:
+        """The rows by the key of their case."""
+        self.rows = _rows(entries)
 
     def append(self, row: SweepRow) -> None:
         """Add a row, whole or not at all; FileFull where it finds no room."""
-        if self._stream is not None:
-            self._write(_line(_entry(row)))
+        self.add([_entry(row)])
         self.rows[key_of(row.case)] = row
 
-    def _write(self, line: bytes) -> None:
-        stream = self._stream
-        assert stream is not None
-        before = os.fstat(stream.fileno()).st_size
-        try:
-            written = 0
-            while written < len(line):
-                written += stream.write(line[written:])
-        except OSError as error:
-            with suppress(OSError):
-                stream.truncate(before)
-            reason = error.strerror or type(error).__name__
-            raise FileFull(str(self.path), len(self.rows), reason) from error
-
-
-def _opened(path: Path) -> IO[bytes]:
-    """A file to read and to add to, locked; InputError where there is none."""
-    try:
-        stream = path.open("a+b", buffering=0)
-    except OSError as error:
-        allowed = "a file that can be read and written"
-        advice = f"name another ({error.strerror})"
-        raise InputError("file", str(path), allowed, advice) from error
-    try:
-        if fcntl is not None:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError as error:
-        stream.close()
-        allowed = "a file that no other process writes"
-        advice = "wait for the other sweep, or name another file"
-        raise InputError("file", str(path), allowed, advice) from error
-    return stream
+    def _forget_failures(self) -> None:
+        """Leave only rows with results."""
+        good = {key: row for key, row in self.rows.items() if row.failure is None}
+        if len(good) < len(self.rows):
+            self.replace(map(_entry, good.values()))
+            self.rows = good
 
 
 def read_rows(path: Path) -> tuple[Json, list[SweepRow]]:
@@ -162,20 +79,23 @@ def read_rows(path: Path) -> tuple[Json, list[SweepRow]]:
     except OSError as error:
         advice = f"name another ({error.strerror})"
         raise InputError("file", str(path), "a file that can be read", advice) from error
-    first = content.partition(b"\n")[0]
-    try:
-        head = json.loads(first)
-    except ValueError:
-        head = None
+    head = head_in(content)
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         raise InputError("file", str(path), "the file of a sweep", "name another")
-    return head, list(
-        _rows(path, content, head_of(head["function"], head["fixed"])).values()
-    )
+    require_same(path, content, head_of(head["function"], head["fixed"]), RUN)
+    try:
+        return head, list(_rows(entries_of(content)).values())
+    except (ValueError, KeyError, TypeError) as error:
+        raise damaged(path, RUN) from error
 
 
-def _line(entry: Json) -> bytes:
-    return json.dumps(entry).encode() + b"\n"
+def _rows(entries: Iterable[Json]) -> dict[str, SweepRow]:
+    """The rows by the key of their case; ValueError for a case that is there twice."""
+    rows = list(map(_row, entries))
+    by_key = {key_of(row.case): row for row in rows}
+    if len(by_key) < len(rows):
+        raise ValueError("a row for each case, once")
+    return by_key
 
 
 def _entry(row: SweepRow) -> Json:
@@ -185,44 +105,10 @@ def _entry(row: SweepRow) -> Json:
     return {"case": row.case, "failure": asdict(row.failure)}
 
 
-def _rows(path: Path, content: bytes, head: Json) -> dict[str, SweepRow]:
-    """The rows of the whole lines after the head, which must be this one."""
-    first, *lines = content.split(b"\n")[:-1] or [content]
-    _require_same(path, first, head)
-    try:
-        rows = [_row(json.loads(line)) for line in lines]
-    except (ValueError, KeyError, TypeError) as error:
-        advice = "it is damaged: remove it or name another"
-        raise InputError("file", str(path), "rows of a sweep", advice) from error
-    by_key = {key_of(row.case): row for row in rows}
-    if len(by_key) < len(rows):
-        advice = "it is damaged: remove it or name another"
-        raise InputError("file", str(path), "a row for each case, once", advice)
-    return by_key
-
-
 def _row(entry: Json) -> SweepRow:
     if "failure" in entry:
         return SweepRow(dict(entry["case"]), None, SweepFailure(**entry["failure"]))
     return SweepRow(dict(entry["case"]), entry["result"])
-
-
-def _require_same(path: Path, first: bytes, head: Json) -> None:
-    try:
-        found = json.loads(first)
-    except ValueError:
-        found = None
-    if found == head:
-        return
-    allowed = "a new file, or that of this sweep"
-    if not isinstance(found, dict) or "format" not in found:
-        raise InputError("file", str(path), allowed, NAMED)
-    if found["format"] != FORMAT:
-        said = f"its format is {found['format']!r} and not {FORMAT!r}"
-        raise InputError("file", str(path), allowed, f"{said}: {NAMED}")
-    differ = [name for name in head if found.get(name) != head[name]]
-    others = [f"{name} {found.get(name)!r} and not {head[name]!r}" for name in differ]
-    raise InputError("file", str(path), allowed, f"it has {', '.join(others)}: {NAMED}")
 
 
 def in_order(rows: Mapping[str, SweepRow], keys: Iterable[str]) -> tuple[SweepRow, ...]:

@@ -23,8 +23,8 @@ def finished(
     """Every call with its future, as they end.
 
     Calls go out in their order, and wait while those on their way need so much that the next would
-    exceed `within` bytes; none may need more alone. Those on their way are cancelled if the caller
-    stops.
+    exceed `within` bytes; none may need more alone. Those that have ended go before others are
+    sent out. Those on their way are cancelled if the caller stops.
     """
     ended: SimpleQueue[Future[Any]] = SimpleQueue()
     waiting = deque(calls)
@@ -32,7 +32,7 @@ def finished(
     free = within
     try:
         while waiting or running:
-            while waiting and waiting[0].needed <= free:
+            while waiting and waiting[0].needed <= free and ended.empty():
                 call = waiting.popleft()
                 free -= call.needed
                 future = _submitted(executor, function, call)

@@ -12,10 +12,12 @@ from symfpu.cli.main import main
 from symfpu.errors import InputError
 from symfpu.proofs.certificates import random_point
 from symfpu.proofs.checkers import verify_certificate
+from symfpu.proofs.decided_file import DecidedFile
 from symfpu.proofs.every_length import decided_flat
-from symfpu.proofs.flats import Flat
+from symfpu.proofs.flats import Flat, last_order
 from symfpu.proofs.plus_terms import BOTH, MINUS, PLUS, PlusResidues, PlusTerms, sign_product, splits
-from symfpu.proofs.verify import MODELS, Budget, Case, Point, Recursion
+from symfpu.proofs.verify import MODELS, Budget, Case, CertificateError, Point, Recursion
+from symfpu.proofs.verify_theorem import read_claim
 
 
 def test_exceptions_are_those_of_the_recursion_at_other_lengths():
@@ -147,8 +149,15 @@ def test_a_proof_goes_on_from_its_file(tmp_path):
     assert again == whole
     assert min(done for label, done in heard if label == "flats") > 100 / asked
     assert sorted(path.read_text().splitlines()) == sorted(map(str.strip, lines))
-    with pytest.raises(InputError, match="header"):
+    with pytest.raises(InputError, match=r"order 2 and not 1.*another file"):
         prove_for_all_N("beta", 2, 1, file=path)
+
+
+def test_one_proof_at_a_time_writes_its_file(tmp_path):
+    path = tmp_path / "flats.jsonl"
+    with DecidedFile(path, "beta", 2, 1), pytest.raises(InputError, match="the other proof"):
+        prove_for_all_N("beta", 2, 1, file=path)
+    assert prove_for_all_N("beta", 2, 1, file=path).flats == 98
 
 
 def test_arguments_are_checked_at_the_door():
@@ -160,6 +169,21 @@ def test_arguments_are_checked_at_the_door():
     ):
         with pytest.raises(InputError, match=named):
             prove_for_all_N(*arguments)
+
+
+@pytest.mark.parametrize("s", [1, 2, 3])
+@pytest.mark.parametrize("model", ["alpha", "beta"])
+def test_orders_beyond_the_checker_are_refused_before_anything_is_computed(model, s, tmp_path):
+    """The last order is the checker's own: it takes a claim of it, and not of the next."""
+    path, heard = tmp_path / "flats.jsonl", []
+    order = last_order(model, s)
+    claim = {"model": model, "seeds_number": s}
+    assert read_claim(claim | {"order": order}).order == order
+    with pytest.raises(CertificateError, match="beyond this checker"):
+        read_claim(claim | {"order": order + 1})
+    with pytest.raises(InputError, match=f"order = {order + 1}: allowed is 1 to {order} for {s} seed.*can be checked"):
+        prove_for_all_N(model, s, order + 1, file=path, progress=lambda *told: heard.append(told))
+    assert (heard, path.exists()) == ([], False)
 
 
 def test_sets_of_more_seeds_are_settled_by_as_many_as_a_term_has_leaves():

@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_energy, frequency_map, frequency_shift
+from symfpu import Chain, MapIncomplete, breather_at_energy, frequency_map, frequency_shift, read_sweep
 from symfpu.errors import InputError
+from symfpu.spectral import mapping
 from tests.tolerances import MAP_FREQUENCY, MAP_SHIFT
 
 CHAIN = Chain(N=4, beta=1)
@@ -43,7 +44,8 @@ def test_a_map_goes_on_from_its_file(tmp_path):
     path, heard = tmp_path / "map.jsonl", []
     whole = frequency_map(CHAIN, ("0.01", "0.1"), file=path, **SHORT)
     header, first, second = path.read_text().splitlines()
-    changed = json.loads(first) | {"frequencies": [0.5, *json.loads(first)["frequencies"][1:]]}
+    changed = json.loads(first)
+    changed["result"]["frequencies"][0] = 0.5
     path.write_text("\n".join([header, json.dumps(changed), second[:40]]))
     again = frequency_map(CHAIN, ("0.1", "0.01"), file=path, progress=lambda label, done: heard.append((label, done)), **SHORT)
     assert again.frequencies[0, 0] == 0.5, "taken from the file"
@@ -53,9 +55,49 @@ def test_a_map_goes_on_from_its_file(tmp_path):
     assert len(path.read_text().splitlines()) == 3
     with pytest.raises(InputError, match="another file"):
         frequency_map(CHAIN, ("0.1",), file=path, T=600, step=0.1)
-    path.write_text(header + '\n{"energy": "0.01"}\n')
-    with pytest.raises(InputError, match="damaged"):
-        frequency_map(CHAIN, ("0.1",), file=path, **SHORT)
+    for line in ('{"energy": "0.1"}', '{"case": {"energy": "0.1"}, "result": {"modes": [1]}}', '{"case": {"energy": "0.1"}, "result": 1}'):
+        path.write_text(f"{header}\n{line}\n")
+        with pytest.raises(InputError, match="damaged"):
+            frequency_map(CHAIN, ("0.1",), file=path, **SHORT)
+
+
+def test_energies_are_shared_out_to_processes(tmp_path, monkeypatch):
+    energies, heard = ("0.01", "0.1"), []
+    here = frequency_map(CHAIN, energies, **SHORT)
+    monkeypatch.setattr(mapping, "WORTH_PROCESSES", 0)
+    monkeypatch.setattr(mapping, "available_cores", lambda: 2)
+    path = tmp_path / "map.jsonl"
+    there = frequency_map(CHAIN, energies, file=path, progress=lambda *told: heard.append(told), **SHORT)
+    for name in ("frequencies", "errors", "strengths", "counts", "drifts"):
+        assert np.array_equal(getattr(there, name), getattr(here, name), equal_nan=True)
+    assert heard == [("energies", 0.0), ("energies", 0.5), ("energies", 1.0)]
+    assert sorted(row.case["energy"] for row in read_sweep(path).rows) == ["0.01", "0.1"]
+
+
+def test_an_energy_that_fails_costs_no_other(tmp_path):
+    """Energy 1000 is above the barrier of the cubic potential."""
+    path, chain = tmp_path / "map.jsonl", Chain(N=4, alpha="0.3")
+    with pytest.raises(MapIncomplete, match=r"the first H = 1000 \(EscapedOrbit: .*energies that have some: 2") as caught:
+        frequency_map(chain, ("1000", "0.01", "0.1"), file=path, **SHORT)
+    assert caught.value.failures["1000"].numbers["energy"] == pytest.approx(1000)
+    assert caught.value.done.energies.tolist() == [0.01, 0.1]
+    whole = frequency_map(chain, ("0.01", "0.1"), file=path, **SHORT)
+    assert np.array_equal(whole.frequencies, caught.value.done.frequencies, equal_nan=True)
+    with pytest.raises(MapIncomplete, match="energies that have some: 0") as caught:
+        frequency_map(chain, ("1000",), file=path, **SHORT)
+    assert caught.value.done is None
+
+
+def test_a_map_that_is_stopped_keeps_what_is_done(tmp_path):
+    path = tmp_path / "map.jsonl"
+
+    def stop(label, done):
+        if label == "H = 0.1":
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        frequency_map(CHAIN, ("0.01", "0.1"), file=path, progress=stop, **SHORT)
+    assert [row.case["energy"] for row in read_sweep(path).rows] == ["0.01"]
 
 
 @pytest.mark.parametrize(
@@ -68,6 +110,9 @@ def test_a_map_goes_on_from_its_file(tmp_path):
         (("0.1",), {"lines": 0}, "lines"),
         (("0.1",), {"seeds": (4,)}, "seeds"),
         (("0.1",), {"T": 1}, "at least"),
+        (("0.1",), {"T": -500}, "T = -500"),
+        (("0.1",), {"step": 0}, "step = 0"),
+        (("0.1",), {"scheme": "euler"}, "scheme = 'euler'"),
     ],
 )
 def test_what_is_no_map_is_refused(energies, options, words):

@@ -38,6 +38,11 @@ def square_in_little_memory(n, numbers):
     return n * n + held[0]
 
 
+def rows_so_far(n, file=None):
+    """How many rows a file has when a case is at work."""
+    return len(Path(file).read_text().splitlines()) - 1
+
+
 def mark_and_sleep(file):
     Path(file).write_text(str(os.getpid()))
     time.sleep(60)

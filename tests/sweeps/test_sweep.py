@@ -12,10 +12,12 @@ import pytest
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.errors import InputError
+from symfpu.files.kept_lines import FileFull
 from symfpu.proofs.certificates import prove_propagation
-from symfpu.sweeps.rows_file import FileFull, RowsFile, head_of
+from symfpu.sweeps.rows_file import RowsFile, head_of
 from symfpu.sweeps.sweep import SweepStopped, read_sweep, sweep
-from tests.sweeps.functions import coupling_of, deadly_square, lists, slow_square, square, strange
+from symfpu.sweeps.this_process import ThisProcess
+from tests.sweeps.functions import coupling_of, deadly_square, lists, rows_so_far, slow_square, square, strange
 
 TEN = [{"n": n} for n in range(10)]
 
@@ -189,6 +191,13 @@ def test_a_damaged_file_is_refused(tmp_path, threads, line):
     file.write_text(json.dumps(head_of("tests.sweeps.functions.square", {})) + f"\n{line}\n")
     with pytest.raises(InputError, match="damaged"):
         sweep(square, TEN, executor=threads, file=file)
+
+
+def test_without_processes_a_row_is_kept_before_the_next_case_begins(tmp_path):
+    file = tmp_path / "rows.jsonl"
+    swept = sweep(rows_so_far, TEN[:3], executor=ThisProcess(file=str(file)), file=file)
+    assert [row.result for row in swept.rows] == [0, 1, 2]
+    assert [row.failure.kind for row in sweep(square, [{"n": -1}], executor=ThisProcess()).rows] == ["InputError"]
 
 
 def test_one_process_at_a_time_writes(tmp_path, threads):
