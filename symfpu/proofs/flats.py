@@ -25,11 +25,8 @@ from symfpu.files.progress import Progress, unheard
 Ints = NDArray[np.int64]
 Row = tuple[int, ...]  # m_1, ..., m_s, c of m.x = c
 MOST_SEEDS = 3  # of which the flats can be enumerated
-MOST_LEAVES = {
-    1: 201,
-    2: 13,
-    3: 5,
-}  # by number of seeds, of terms whose theorems can be checked
+# by number of seeds: terms of so many leaves are those of theorems that can be checked
+MOST_LEAVES = {1: 201, 2: 13, 3: 5}
 LONGEST = 400  # bonds among which representatives are sought
 CANDIDATES = 1 << 20  # points looked at together
 DIGIT = 1 << 12  # above every denominator of a point

@@ -40,6 +40,16 @@ def test_a_map_is_printed_drawn_saved_and_goes_on(capsys, tmp_path):
     assert (code, record["kind"], record["about"]["packet"]) == (0, "FrequencyMap", "1")
 
 
+def test_a_map_with_an_energy_that_fails_says_which_and_keeps_the_others(capsys, tmp_path):
+    """Energy 1000 is above the barrier of the cubic potential."""
+    rows, chain = tmp_path / "map.jsonl", ("-N", "4", "--alpha", "0.3", "--time", "500", "--step", "0.1")
+    code, out, err = run(capsys, *chain, "--energies", "0.01,1000", "--file", str(rows))
+    assert (code, out) == (1, "")
+    assert "the first H = 1000 (EscapedOrbit: " in err
+    code, out, _ = run(capsys, *chain, "--energies", "0.01", "--file", str(rows))
+    assert (code, out[:12]) == (0, "FrequencyMap")
+
+
 def test_the_torus_near_an_orbit_is_written_for_newton(capsys, tmp_path):
     near, refined = str(tmp_path / "near.symfpu"), str(tmp_path / "refined.symfpu")
     words = ("-N", "4", "--alpha", "0.3", "--packet", "1", "--energy", "0.01", "--time", "5e3", "--step", "0.1")
