@@ -131,6 +131,16 @@ class ExistenceProof(Tabled):
         return f"ExistenceProof({case}: {found}, {only}; {', '.join(self.intervals)})"
 
     @property
+    def theorem(self) -> str:
+        """What is proved, in one sentence."""
+        joined = "for" if self.half_width else "with"
+        return (
+            f"{self.chain!r} has a periodic orbit of seed {self.seed} {joined} {self.condition} "
+            f"within {self.radius:.2g} of the computed one, and no other of its symmetry within "
+            f"{self.unique:.2g}"
+        )
+
+    @property
     def condition(self) -> str:
         """What the orbit has exactly, in words."""
         sign = {FREQUENCY: "omega", AMPLITUDE: "A", ENERGY: "H"}[self.fixed]

@@ -73,13 +73,22 @@ class ResidualProof(Tabled):
     body: Body = field(repr=False)
 
     def __repr__(self) -> str:
-        size, part = mpmath.nstr(self.bound, 3), mpmath.nstr(self.relative, 3)
-        found = f"residual below {size} of every particle at all angles"
+        part = mpmath.nstr(self.relative, 3)
         which = torus_text(self.chain, self.seeds, self.frequencies)
         return (
-            f"ResidualProof({which}, {self.digits} digits: {found}, "
+            f"ResidualProof({which}, {self.digits} digits: {self._text}, "
             f"{part} of the largest acceleration)"
         )
+
+    @property
+    def _text(self) -> str:
+        size = mpmath.nstr(self.bound, 3)
+        return f"residual below {size} of every particle at all angles"
+
+    @property
+    def theorem(self) -> str:
+        """What is proved, in one sentence."""
+        return f"{torus_text(self.chain, self.seeds, self.frequencies)}: {self._text}"
 
     @property
     def omega(self) -> dict[int, Fraction]:

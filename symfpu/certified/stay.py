@@ -120,7 +120,7 @@ class StayProof(Tabled):
 
     @property
     def text(self) -> str:
-        """The theorem in words."""
+        """The theorem without its torus."""
         size, apart = (
             mpmath.nstr(self.distance, 3),
             mpmath.nstr(max(self.drift.values()), 3),
@@ -129,6 +129,12 @@ class StayProof(Tabled):
             f"an orbit that starts on the torus stays within {size} of it for "
             f"t <= {decimal(self.time)}, its angles within {apart} of phi + omega t"
         )
+
+    @property
+    def theorem(self) -> str:
+        """What is proved, in one sentence."""
+        which = torus_text(self.chain, self.seeds, self.frequencies)
+        return f"{which}: {self.text}"
 
     @property
     def most(self) -> str:
