@@ -7,6 +7,7 @@ obey g_(k+1) = g_k (rate - slope k)/(k+1): below those of a geometric series fro
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -25,6 +26,11 @@ def ball(value: Fraction | int) -> Any:
     return flint.arb(flint.fmpq(value.numerator, value.denominator))
 
 
+def power(r: Any, k: int) -> Any:
+    """r^k by multiplication: `**` of a ball about 0 itself is no number."""
+    return math.prod([r] * k, start=flint.arb(1))
+
+
 @dataclass(frozen=True)
 class ForceSeries:
     """phi by power of r, and the functions whose powers beyond `degree` are left out."""
@@ -35,8 +41,8 @@ class ForceSeries:
 
     def potential(self, r: Any) -> Any:
         """The integral of phi from 0 to a ball, without what is left out."""
-        terms = (ball(c) * r ** (k + 1) / (k + 1) for k, c in self.powers.items())
-        return r**2 / 2 + sum(terms, flint.arb(0))
+        terms = (ball(c) * power(r, k + 1) / (k + 1) for k, c in self.powers.items())
+        return power(r, 2) / 2 + sum(terms, flint.arb(0))
 
     def slope_bound(self, x: Any) -> Any:
         """Above |phi'(r)|_nu where |r|_nu is at most x."""
