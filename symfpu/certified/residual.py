@@ -19,6 +19,7 @@ from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.one_sided import above
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 FORMAT = "symfpu torus certificate"
@@ -72,7 +73,7 @@ class ResidualProof(Tabled):
     body: Body = field(repr=False)
 
     def __repr__(self) -> str:
-        size, part = mpmath.nstr(self.bound, 3), mpmath.nstr(self.relative, 3)
+        size, part = above(self.bound, 3), above(self.relative, 3)
         found = f"residual below {size} of every particle at all angles"
         which = torus_text(self.chain, self.seeds, self.frequencies)
         return (
