@@ -284,6 +284,7 @@ NEWTON: dict[str, Door] = {
     "floquet": lambda c: symfpu.floquet(c.periodic),
     "foretold_indices": lambda c: symfpu.foretold_indices(c.breather, 1e4, vectors=2),
     "prove_existence": lambda c: symfpu.prove_existence(c.periodic),
+    "prove_stability": lambda c: symfpu.prove_stability(c.periodic),
     "prove_residual": lambda c: symfpu.prove_residual(c.solution),
     "prove_stay": lambda c: symfpu.prove_stay(c.refined, time=1),
     "normal_family": lambda c: symfpu.normal_family(
@@ -442,6 +443,9 @@ VERBS: dict[str, Door] = {
     "symfpu show": lambda c: c.verb("show", c.file),
     "symfpu solve": lambda c: c.file,
     "symfpu certify": lambda c: c.verb("certify", c.refined_file),
+    "symfpu certify --stability": lambda c: c.verb(
+        "certify", c.refined_file, "--stability"
+    ),
     "symfpu stability": lambda c: c.verb("stability", c.periodic_file),
     "symfpu sweep": lambda c: c.verb(
         "sweep", "--order", 1, "--longest", 3, "--largest", 1, *c.rule_words

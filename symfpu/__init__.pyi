@@ -85,6 +85,8 @@ from symfpu.breathers.floquet import Floquet as Floquet
 from symfpu.breathers.floquet import floquet as floquet
 from symfpu.breathers.shooting import ShotOrbit as ShotOrbit
 from symfpu.breathers.shooting import shoot as shoot
+from symfpu.breathers.stability_proof import StabilityProof as StabilityProof
+from symfpu.breathers.stability_proof import prove_stability as prove_stability
 
 # actions, twist and Birkhoff's normal form
 from symfpu.action_angle.actions import actions as actions
@@ -221,6 +223,7 @@ from symfpu.notebook import init_printing as init_printing
 from symfpu.action_angle.newton_twist import NoTwist as NoTwist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy as NoBreatherAtEnergy
 from symfpu.breathers.balance import NoPeriodicOrbit as NoPeriodicOrbit
+from symfpu.breathers.enclosures import NoStabilityProof as NoStabilityProof
 from symfpu.breathers.existence import NoExistenceProof as NoExistenceProof
 from symfpu.certified.stay import NoStayProof as NoStayProof
 from symfpu.breathers.shooting import ShootingFailed as ShootingFailed

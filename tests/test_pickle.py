@@ -23,9 +23,11 @@ from symfpu.action_angle.twist import twist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy
 from symfpu.breathers.balance import Balance, NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
+from symfpu.breathers.enclosures import NoStabilityProof
 from symfpu.breathers.existence import NoExistenceProof, prove_existence
 from symfpu.breathers.floquet import floquet
 from symfpu.breathers.shooting import ShootingFailed, shoot
+from symfpu.breathers.stability_proof import prove_stability
 from symfpu.bundles.bundle import load, save
 from symfpu.certified.residual import prove_residual
 from symfpu.certified.stay import NoStayProof, prove_stay
@@ -226,6 +228,7 @@ RESULTS = {
     "Chain": (lambda _: Chain(8, alpha="1/3", beta="0.1"), lambda x: (x.frequencies(), x.small_parameter())),
     "Event": (lambda _: Event("fold", "omega_1", 3, 0.1, 0.2), lambda x: x.kind),
     "ExistenceProof": (lambda _: prove_existence(orbit()), lambda x: x.certificate()),
+    "StabilityProof": (lambda _: prove_stability(orbit()), lambda x: x.certificate()),
     "ResidualProof": (lambda _: prove_residual(two_angles()), lambda x: x.certificate()),
     "StayProof": (lambda _: prove_stay(two_angles(), time=1000), lambda x: (x.certificate(), x.distance_at(10))),
     "Family": (lambda _: breathers(), lambda x: member_at_energy(x, "0.012", harmonic=False).amplitudes),
@@ -401,6 +404,7 @@ ERRORS = {
     NoFurtherMember: lambda: NoFurtherMember("no root", (1,), (0.4,), "a reason"),
     NoTorus: lambda: NoTorus("a reason", refined(), 0.1),
     NoNormalModes: lambda: NoNormalModes(3, 1.1, stability().resonances[0]),
+    NoStabilityProof: lambda: NoStabilityProof(0.1 + 0j, "Y", 1e-3, 1e-5, "more digits may help"),
     NoStayProof: lambda: NoStayProof(1e9, 1e5, 1e-14, 1e-12, 3.0),
     NoExistenceProof: lambda: NoExistenceProof("Y", 1e-3, 1e-5, "more digits may help"),
     NoTorusAtEnergy: no_torus_at_energy,

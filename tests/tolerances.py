@@ -650,6 +650,12 @@ NEXT_IN_LENGTH = 0.02
 GROWTH_OF_ORBIT = 1e-7
 # Prover and checker bound the same three numbers: one in doubles and balls, the other in 60 binary places, both upwards.
 SAME_BOUNDS = 0.02
+# What a multiplier of an integrated tangent map may be off: its map is good to 1e-12, a pair near 1 or -1 to some hundred times that.
+MULTIPLIER_OF_PROOF = 1e-9
+# Of a proof of stability with 38 binary places: bounds of the rounding of doubles are a part of its Y, up to a half.
+ROUNDING_OF_RESIDUAL = 2.0
+# The checker's inverse of a block has 32 binary places: five entries of a product with one of size 10 or so.
+INVERSE_OF_BLOCK = 2.0**-24
 
 # Asked of the breathers of the figures: far beyond doubles, within the 30 digits that their orbits have.
 PROVED_RADIUS = 1e-25
@@ -692,3 +698,19 @@ MAP_SHIFT = 1e-2
 
 # Two normal frequencies that are one at rest and differ on a torus: those of the tests by 2e-6 and more.
 SPLIT = 1e-6
+
+# What a torus in doubles leaves of the equations, by Newton's method: some 1e-16 a harmonic, over some hundred.
+TORUS_RESIDUAL = 1e-12
+
+# What a frame of eigenfunctions in doubles leaves of the linearised equations: 6e-15 to 9e-13 were met.
+FRAME_RESIDUAL = 1e-11
+
+# What sigma wrong by 1e-6 leaves of them, less a factor of 20 for the part of it that its direction has.
+FRAME_SEEN = 1e-7
+
+# Distances that a torus with some residual is sure to keep: a torus off by 1e-10 over 16 units of time, one in doubles over half
+# of the longest time, and one of 30 digits, 1e-33 times 1e9 times what couples.
+COARSE_STAY, DOUBLES_STAY, DIGITS_STAY = 1e-7, 1e-3, 1e-18
+
+# The first step of a KAM iteration for N = 3, as a part of what it may be: 0.07 in doubles, 8e-20 with 30 digits.
+KAM_DOUBLES, KAM_DIGITS = 1e-3, 1e-15

@@ -35,8 +35,8 @@ class NormalDirection:
 
 def exact_direction(mode: NormalMode) -> NormalDirection:
     """A normal mode, elliptic."""
-    sigma = complex(mode.sigma).real
-    return NormalDirection(sigma, mode.harmonics, mode.rates, mode.coefficients.real)
+    sigma, p = float(mode.sigma.real), mode.in_doubles().coefficients.real
+    return NormalDirection(sigma, mode.harmonics, mode.rates, p)
 
 
 def direction_at_rest(q: int, sigma: float, n: int, s: int) -> NormalDirection:

@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 
 SLOPES_LEFT = 1e-13  # norm of the slopes that the matrix leaves out
 SWEEPS = 40
+LAST_UNITS = 1000  # of the last place: a correction below them was the last one
 FREQUENCY_BITS = 8  # of omega beyond those of the orbit
 LONGER = 1.5  # times the harmonics of the orbit, of those that corrections may add
 
@@ -77,6 +78,8 @@ def fixed_orbit(orbit: RoundedOrbit, fixed: Fixed) -> RoundedOrbit:
         if not size < least / 2:
             break
         least, orbit = size, larger
+        if size < LAST_UNITS * 2.0**-orbit.bits:
+            break
         balls = BondBalls(orbit, strip(orbit))
     return orbit
 

@@ -132,12 +132,22 @@ class ExistenceProof(Tabled):
         return f"ExistenceProof({case}: {found}, {only}; {', '.join(self.intervals)})"
 
     @property
+    def theorem(self) -> str:
+        """What is proved, in one sentence."""
+        joined = "for" if self.half_width else "with"
+        return (
+            f"{self.chain!r} has a periodic orbit of seed {self.seed} {joined} {self.condition} "
+            f"within {above(self.radius, 2)} of the computed one, and no other of its symmetry "
+            f"within {below(self.unique, 2)}"
+        )
+
+    @property
     def condition(self) -> str:
         """What the orbit has exactly, in words."""
         sign = {FREQUENCY: "omega", AMPLITUDE: "A", ENERGY: "H"}[self.fixed]
         if not self.half_width:
             return f"{sign}={decimal(self.value)}"
-        return f"every {sign} within {float(self.half_width):.3g} of {decimal(self.value)}"
+        return f"every {sign} within {below(self.half_width, 3)} of {decimal(self.value)}"
 
     @property
     def intervals(self) -> tuple[str, ...]:

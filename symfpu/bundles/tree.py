@@ -28,7 +28,7 @@ from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
 from symfpu.files.archive import Archive, Json, write_document
-from symfpu.numbers.arithmetic import NumberWithDigits, with_digits
+from symfpu.numbers.arithmetic import ComplexWithDigits, NumberWithDigits, with_digits
 from symfpu.numbers.typed import fraction, fraction_text, integer
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -75,6 +75,8 @@ class Writer:
             (Fraction, lambda x: {"fraction": fraction_text(x)}),
             (NumberWithDigits, lambda x: {"mpf": number_entry(x), "digits": x.digits}),
             (mpmath.mpf, lambda x: {"mpf": number_entry(x)}),
+            (ComplexWithDigits, lambda z: {**self._parts_of(z), "digits": z.digits}),
+            (mpmath.mpc, self._parts_of),
             (tuple, lambda items: {"tuple": [self.node(item) for item in items]}),
             (list, lambda items: {"list": [self.node(item) for item in items]}),
             (Mapping, self._mapping),
@@ -82,6 +84,9 @@ class Writer:
             (Chain, lambda chain: {"chain": chain_entries(chain), "ends": chain.ends}),
             (Scheme, self._scheme),
         )
+
+    def _parts_of(self, value: Any) -> Json:
+        return {"mpc": [number_entry(value.real), number_entry(value.imag)]}
 
     def _mapping(self, value: Mapping[Any, Any]) -> Json:
         pairs = [[self.node(key), self.node(item)] for key, item in value.items()]
@@ -172,6 +177,7 @@ class Reader:
             "scalar": self._scalar,
             "fraction": lambda node: fraction(node["fraction"]),
             "mpf": self._many_digits,
+            "mpc": self._many_digits,
             "tuple": lambda node: tuple(map(self.value, node["tuple"])),
             "list": lambda node: list(map(self.value, node["list"])),
             "dict": lambda node: {self.value(k): self.value(v) for k, v in node["dict"]},
@@ -191,7 +197,7 @@ class Reader:
         return kind(real)
 
     def _many_digits(self, node: Json) -> Any:
-        value = number(node["mpf"])
+        value = number(node["mpf"]) if "mpf" in node else _complex(*node["mpc"])
         if "digits" not in node:
             return value
         return with_digits(value, integer(node["digits"], "digits", 1))
@@ -234,6 +240,12 @@ class Reader:
                 given = type(value).__name__
                 raise TypeError(f"{kind.__name__}.{name} is of the type {given}")
         return kind(**values)
+
+
+def _complex(real: Any, imaginary: Any) -> Any:
+    """The mpc of two entries, to the last bit."""
+    parts = tuple(number(part)._mpf_ for part in (real, imaginary))
+    return mpmath.mp.make_mpc(parts)
 
 
 def _shape(node: Json) -> tuple[int, ...]:

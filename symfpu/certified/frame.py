@@ -9,7 +9,7 @@ linearised equations is bounded elsewhere, so that nothing here needs a proof.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -30,6 +30,7 @@ from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 FRAME_BITS = 60  # of the coefficients of the frame
 RATE_BITS = 70  # of sigma and of the twist
 HEIGHT = 1e-17  # of coefficients of the torus whose harmonics an eigenfunction has
+SMALLEST = 1e-18  # of coefficients of the torus over its largest
 POLISHED = 2  # times that it is solved for again
 FINE = 3e-16  # accuracy of those solutions
 
@@ -53,7 +54,7 @@ def directions_of(solution: QuasiPeriodic, tell: Progress) -> tuple[Direction, .
 
     Raises NoTwist, NoNormalModes, InputError.
     """
-    torus = solution.in_doubles()
+    torus = without_rounding(solution.in_doubles())
     found = normal_modes(torus, progress=tell)
     if not found.stable:
         allowed = "an elliptic torus: all normal frequencies real"
@@ -62,6 +63,13 @@ def directions_of(solution: QuasiPeriodic, tell: Progress) -> tuple[Direction, .
     polish = Polish(torus)
     normal = [polish(mode) for mode in found.modes]
     return (*_of_actions(torus), *normal)
+
+
+def without_rounding(torus: FourierTorus) -> FourierTorus:
+    """Without harmonics that doubles cannot tell from none, of which many digits have many."""
+    sizes = np.abs(torus.cosines.astype(float)).max(axis=1)
+    kept = sizes > SMALLEST * sizes.max()
+    return replace(torus, harmonics=torus.harmonics[kept], cosines=torus.cosines[kept])
 
 
 def _of_actions(torus: FourierTorus) -> list[Direction]:

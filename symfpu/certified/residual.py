@@ -15,6 +15,7 @@ from symfpu.certified.growth import rounded_up
 from symfpu.certified.rounded_torus import RoundedTorus, residual_of, rounded_torus
 from symfpu.certified.series import Series
 from symfpu.chain.chain import Chain
+from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
@@ -73,13 +74,22 @@ class ResidualProof(Tabled):
     body: Body = field(repr=False)
 
     def __repr__(self) -> str:
-        size, part = above(self.bound, 3), above(self.relative, 3)
-        found = f"residual below {size} of every particle at all angles"
+        part = above(self.relative, 3)
         which = torus_text(self.chain, self.seeds, self.frequencies)
         return (
-            f"ResidualProof({which}, {self.digits} digits: {found}, "
+            f"ResidualProof({which}, {self.digits} digits: {self._text}, "
             f"{part} of the largest acceleration)"
         )
+
+    @property
+    def _text(self) -> str:
+        size = above(self.bound, 3)
+        return f"residual below {size} of every particle at all angles"
+
+    @property
+    def theorem(self) -> str:
+        """What is proved, in one sentence."""
+        return f"{torus_text(self.chain, self.seeds, self.frequencies)}: {self._text}"
 
     @property
     def omega(self) -> dict[int, Fraction]:
@@ -113,11 +123,14 @@ def torus_text(
     return ", ".join([name, *(f"omega_{q}={float(w):.10g}" for q, w in pairs)])
 
 
-def prove_residual(torus: QuasiPeriodic) -> ResidualProof:
+def prove_residual(
+    torus: QuasiPeriodic, *, progress: Progress | None = None
+) -> ResidualProof:
     """A proof of how well a torus solves the equations of motion, at all angles at once.
 
     torus : of two or more angles, fixed ends and a polynomial potential, from `refine` and its
         sisters in doubles or with `digits`; also a series. Dimensionless.
+    progress : called as (label, fraction), once a bond.
 
     The residual of a trigonometric polynomial is one; the sum of the sizes of its coefficients,
     in integers with exact products, is above it at every angle (docs/tori-proofs.md; ours).
@@ -130,7 +143,8 @@ def prove_residual(torus: QuasiPeriodic) -> ResidualProof:
     True
     """
     rounded = rounded_torus(torus)
-    return residual_proof(rounded, [series.norm for series in residual_of(rounded)])
+    found = residual_of(rounded, progress or unheard)
+    return residual_proof(rounded, [series.norm for series in found])
 
 
 def residual_proof(torus: RoundedTorus, found: list[Fraction]) -> ResidualProof:

@@ -24,6 +24,7 @@ import numpy as np
 from symfpu.certified.series import Integers, Series, trimmed
 from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError
+from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.refinement.equation import Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
@@ -87,11 +88,14 @@ def polynomial_of(r: Series, terms: dict[int, Fraction]) -> Series:
     return total
 
 
-def residual_of(torus: RoundedTorus) -> list[Series]:
+def residual_of(torus: RoundedTorus, tell: Progress = unheard) -> list[Series]:
     """x_j'' - force of every particle, j = 1 .. N-1; shape of the harmonics of the force."""
     places = torus.bits + GUARD_BITS
     terms = {1: Fraction(1), **torus.couplings}
-    tensions = [polynomial_of(r, terms) for r in torus.stretches(places)]
+    tensions = []
+    for j, r in enumerate(torus.stretches(places)):
+        tell(f"residual, bond {j}", j / torus.chain.N)
+        tensions.append(polynomial_of(r, terms))
     still = Fraction(0)
     moved = [
         series.rounded(places).turned(torus.omega, still, power=2)

@@ -119,12 +119,18 @@ class StayProof(Tabled):
 
     @property
     def text(self) -> str:
-        """The theorem in words."""
+        """The theorem without its torus."""
         size, apart = above(self.distance, 3), above(max(self.drift.values()), 3)
         return (
             f"an orbit that starts on the torus stays within {size} of it for "
             f"t <= {decimal(self.time)}, its angles within {apart} of phi + omega t"
         )
+
+    @property
+    def theorem(self) -> str:
+        """What is proved, in one sentence."""
+        which = torus_text(self.chain, self.seeds, self.frequencies)
+        return f"{which}: {self.text}"
 
     @property
     def most(self) -> str:
@@ -188,16 +194,16 @@ def prove_stay(
     long = time_of(time)
     rounded = rounded_torus(torus)
     directions = directions_of(torus, tell)
-    tell("norms", NO_FRACTION)
-    return stay_proof(rounded, directions, long)
+    return stay_proof(rounded, directions, long, tell)
 
 
 def stay_proof(
-    torus: RoundedTorus, directions: Sequence[Direction], time: Fraction
+    torus: RoundedTorus, directions: Sequence[Direction], time: Fraction, tell: Progress
 ) -> StayProof:
     """The result of a torus and its directions. Raises NoStayProof."""
-    left = [series.norm for series in residual_of(torus)]
+    left = [series.norm for series in residual_of(torus, tell)]
     residual = residual_proof(torus, left)
+    tell("norms of the frame", NO_FRACTION)
     found = norms(torus, directions, left)
     weights = weights_of(found)
     growth = found.growth(weights)

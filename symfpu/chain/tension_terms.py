@@ -18,6 +18,7 @@ from symfpu.chain.potentials.potential import Growth
 from symfpu.errors import InputError
 
 MOST_POWERS = 2000
+WIDER = 1.25  # times the reach: where the rest of the derivative is taken from
 UPWARDS = 1 + 1e-9  # more than doubles lose
 
 
@@ -49,6 +50,20 @@ def terms(chain: Chain, bits: int, reach: Any) -> Terms:
         highest, rest = _highest_power(potential.growths(), bits, reach)
     found = {k: potential.coefficient(k + 1) for k in range(2, highest + 1)}
     return Terms({k: coupling for k, coupling in found.items() if coupling}, rest)
+
+
+def stiffness_terms(chain: Chain, bits: int, reach: Any) -> Terms:
+    """V''(r) - 1 likewise: k c_(k+1) by power k - 1.
+
+    The rest is below that of the tension at stretches WIDER times as large, over its distance to
+    the reach: n r^(n-1) (w - r) <= w^n for w > r.
+    """
+    wide = WIDER * reach
+    distance = wide - reach
+    spare = max(0, math.ceil(-math.log2(distance)))
+    tension = terms(chain, bits + spare, wide)
+    slopes = {k - 1: k * coupling for k, coupling in tension.couplings.items()}
+    return Terms(slopes, tension.rest / distance)
 
 
 def _highest_power(growths: Sequence[Growth], bits: int, reach: Any) -> tuple[int, Any]:

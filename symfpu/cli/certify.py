@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.breathers.existence import ExistenceProof, prove_existence
+from symfpu.breathers.stability_proof import StabilityProof, prove_stability
 from symfpu.bundles.bundle import load
 from symfpu.certified.residual import ResidualProof, prove_residual
 from symfpu.certified.stay import TIME, StayProof, prove_stay
@@ -34,6 +35,7 @@ from symfpu.reports.certified import (
     stay_text,
 )
 from symfpu.reports.existence import existence_record, existence_text
+from symfpu.reports.stability_proof import stability_record, stability_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 AmplitudeOption = Annotated[
@@ -50,6 +52,12 @@ HalfWidthOption = Annotated[
         help="Of a breather: one for each value that is no further away.", metavar="W"
     ),
 ]
+StabilityOption = Annotated[
+    bool,
+    typer.Option(
+        "--stability", help="Of a breather: also that it is linearly stable, or unstable."
+    ),
+]
 TimeOption = Annotated[
     str | None, typer.Option(help="Of a torus: for how long.  Default: 1e9.", metavar="T")
 ]
@@ -57,24 +65,22 @@ ResidualOption = Annotated[
     bool, typer.Option("--residual", help="Of a torus: its residual alone.")
 ]
 
-Proof = ExistenceProof | ResidualProof | StayProof
+Proof = ExistenceProof | StabilityProof | ResidualProof | StayProof
 REPORTS: dict[type, tuple[Callable[[Any], dict[str, Any]], Callable[[Any], str]]] = {
     ExistenceProof: (existence_record, existence_text),
+    StabilityProof: (stability_record, stability_text),
     ResidualProof: (residual_proof_record, residual_proof_text),
     StayProof: (stay_record, stay_text),
 }
 
 
-@app.command(
-    epilog="Examples: symfpu certify breather.symfpu -o proof.json; "
-    "symfpu certify breather.symfpu --amplitude 0.4 --half-width 1e-5; "
-    "symfpu certify torus.symfpu --time 1e6"
-)
+@app.command(epilog="Example: symfpu certify breather.symfpu --stability -o proof.json")
 def certify(
     file: FileArgument,
     amplitude: AmplitudeOption = None,
     energy: EnergyOption = None,
     half_width: HalfWidthOption = None,
+    stability: StabilityOption = False,
     time: TimeOption = None,
     residual: ResidualOption = False,
     output: CertificateOption = None,
@@ -82,7 +88,8 @@ def certify(
 ) -> None:
     """Prove that a periodic orbit exists near a breather, or how long orbits stay near a torus.
 
-    Of a breather: existence, at exactly its frequency or at the amplitude or energy given. Of a
+    Of a breather: existence, at exactly its frequency or at the amplitude or energy given, and
+    its stability at its frequency. Of a
     torus of two or more angles: its residual at all angles, and how near to it an orbit stays that
     starts on it. Exit code 1 where the bounds do not prove it.
     """
@@ -96,9 +103,12 @@ def certify(
         advance("proof", NO_FRACTION)
         if len(solution.seeds) == 1:
             _refuse(of_torus, "a breather")
-            proof = _existence(solution, of_breather)
+            proof = _of_breather(solution, of_breather, stability, advance)
         else:
-            _refuse(of_breather, "a torus of two or more angles")
+            _refuse(
+                of_breather | {"stability": stability or None},
+                "a torus of two or more angles",
+            )
             proof = _torus_proof(solution, time, residual, advance)
         if target is not None:
             proof.write(target)
@@ -118,6 +128,15 @@ def _existence(orbit: QuasiPeriodic, options: Mapping[str, Any]) -> Proof:
     )
 
 
+def _of_breather(
+    orbit: QuasiPeriodic, options: Mapping[str, Any], stability: bool, progress: Progress
+) -> Proof:
+    if not stability:
+        return _existence(orbit, options)
+    _refuse(options, "--stability, which is at the breather's frequency")
+    return prove_stability(orbit, progress=progress)
+
+
 def _torus_proof(
     torus: QuasiPeriodic, time: str | None, residual: bool, progress: Progress
 ) -> Proof:
@@ -125,7 +144,7 @@ def _torus_proof(
         return prove_stay(torus, time=TIME if time is None else time, progress=progress)
     if time is not None:
         raise InputError("time", time, "none with --residual", "leave one out")
-    return prove_residual(torus)
+    return prove_residual(torus, progress=progress)
 
 
 def _show(proof: Proof, target: Path | None, as_json: bool) -> None:

@@ -207,7 +207,7 @@ def verify(
     """Check a certificate by another route.
 
     Python's integers, nothing of the prover: of the rule in mode space, with the tensors B and C;
-    of theorems for every N the flats are found again.
+    of theorems for every N the flats are found again; of orbits and exponents every bound.
     """
     path = path_named("certificate", file)
     try:

@@ -66,7 +66,7 @@ class NormalFamily(Shown, Gridded):
     @property
     def verdict(self) -> str:
         """In words."""
-        unstable = sum(not found.stable for found in self.members)
+        unstable = sum(found.stable is False for found in self.members)
         return f"{unstable} of them unstable" if unstable else "stable"
 
     @property

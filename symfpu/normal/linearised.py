@@ -188,11 +188,15 @@ class LinearisedFlow(Linearised):
         return p
 
     def allowed(self, q: int) -> Mask:
+        return self.allowed_at(q, self.harmonics)
+
+    def allowed_at(self, q: int, harmonics: Ints) -> Mask:
+        """Where the selection rules let it have other harmonics (M, s); shape (M, N-1)."""
         modes = np.arange(1, self.chain.N)
-        parity = (self.harmonics @ np.array(self.seeds) + q) % 2
+        parity = (harmonics @ np.array(self.seeds) + q) % 2
         mask = parity[:, None] == modes % 2
         if self.chain.potential.even:
-            even = self.harmonics.sum(axis=1) % 2 == 0
+            even = harmonics.sum(axis=1) % 2 == 0
             mask &= even[:, None]
         return np.asarray(mask)
 

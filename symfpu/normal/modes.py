@@ -8,10 +8,11 @@ from Omega_q at rest: the largest coefficient of p is that of mode q without any
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+import mpmath
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -21,11 +22,13 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.notebook import Shown
+from symfpu.numbers.arithmetic import MULTIPRECISION, text, with_digits
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
 ELLIPTIC, HYPERBOLIC = "elliptic", "hyperbolic"
+SIGMA_DIGITS, GROWTH_DIGITS = 13, 10  # that are shown of doubles
 
 
 class NoNormalModes(SymfpuError):
@@ -33,19 +36,25 @@ class NoNormalModes(SymfpuError):
 
     Raised by `normal_modes`. mode : q of the frequency that was sought; guess : of it, from the
     closed second-order shift; nearest : the resonance nearest to it, a ParametricResonance, or None
-    where no low one lets it couple. Ours.
+    where no low one lets it couple. reason : why digits fail where doubles do not; empty where
+    these do. Ours.
     """
 
     def __init__(
-        self, mode: int, guess: float, nearest: ParametricResonance | None
+        self,
+        mode: int,
+        guess: float,
+        nearest: ParametricResonance | None,
+        reason: str = "",
     ) -> None:
-        self.mode, self.guess, self.nearest = mode, guess, nearest
+        self.mode, self.guess, self.nearest, self.reason = mode, guess, nearest, reason
+        place = f"mode {mode} (guess {guess:.10g})"
         known = f"nearest resonance {nearest!r}" if nearest else "no resonance is near"
-        super().__init__(
-            f"no normal frequency continues mode {mode} (guess {guess:.10g}): "
-            f"{known}; "
-            f"take a torus of another amplitude, or leave the mode out by modes="
-        )
+        advice = "take a torus of another amplitude, or leave the mode out by modes="
+        problem = f"no normal frequency continues {place}"
+        if reason:
+            problem, advice = f"{place}: {reason}", "take normal_modes(torus.in_doubles())"
+        super().__init__(f"{problem}: {known}; {advice}")
 
 
 @dataclass(frozen=True)
@@ -70,12 +79,17 @@ class NormalMode:
 
     mode : q that it continues. sigma : a float, or complex with a positive imaginary part: then
         conj(sigma) belongs to another, the growing one. Dimensionless.
-    harmonics : nu, of both signs, shape (F, s). rates : nu.omega, shape (F,).
+    harmonics : nu, of both signs, shape (F, s). rates : nu.omega, shape (F,), doubles.
     coefficients : p_q[nu], shape (F, N-1), of norm 1, real for real sigma.
     action : sum (sigma + nu.omega) |p|^2; its sign is Krein's. residual : of the linearised
         equations at all harmonics, over Omega_q^2.
-    divisors : the smallest. deflated : how many near-resonant vectors were treated together.
-    products : with the linearised force. Ours.
+    divisors : the smallest, doubles. deflated : how many near-resonant vectors were treated
+        together. products : with the linearised force.
+    digits : of sigma, coefficients and action that are mpf or mpc; None for doubles.
+    error : with digits, of sigma, relative, and of a coefficient: an estimate, what one more step
+        of Newton's method would change, at harmonics that were left out too, and what the error of
+        the torus makes of sigma. No proof.
+    rounding : of sigma, about: much where two directions nearly collide. Ours.
 
     >>> from symfpu import Chain, breather_at_amplitude, normal_modes
     >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
@@ -84,28 +98,35 @@ class NormalMode:
     """
 
     mode: int
-    sigma: float | complex
+    sigma: Any
     harmonics: Ints = field(repr=False)
     rates: Floats = field(repr=False)
     coefficients: NDArray[Any] = field(repr=False)
-    action: float
-    residual: float
+    action: Any
+    residual: Any
     divisors: tuple[NormalDivisor, ...] = field(repr=False)
     deflated: int
     products: int = field(repr=False)
+    digits: int | None = None
+    error: Any = None
+    rounding: float = field(default=0.0, repr=False)
 
     def __repr__(self) -> str:
         kind = f"{self.kind}, signature {self.signature:+d}"
         if self.kind == HYPERBOLIC:
-            kind = f"{self.kind}, growth {self.growth:.10g}"
-        return f"NormalMode(sigma_{self.mode}={self.text}, {kind}, residual {self.residual:.1g})"
+            kind = f"{self.kind}, growth {text(self.growth, GROWTH_DIGITS)}"
+        quality = f"residual {text(self.residual, 1)}"
+        if self.digits is not None:
+            quality += f", error about {text(self.error, 1)}"
+        return f"NormalMode(sigma_{self.mode}={self.text}, {kind}, {quality})"
 
     @property
     def text(self) -> str:
-        """sigma in 13 digits, with its conjugate where there is one."""
-        value = complex(self.sigma)
-        unreal = f" +- {abs(value.imag):.10g}i" if self.growth else ""
-        return f"{value.real:.13g}{unreal}"
+        """sigma in 13 digits, or in all of more, with its conjugate where there is one."""
+        unreal = ""
+        if self.growth:
+            unreal = f" +- {text(self.growth, self.digits or GROWTH_DIGITS)}i"
+        return f"{text(self.sigma.real, self.digits or SIGMA_DIGITS)}{unreal}"
 
     @property
     def kind(self) -> str:
@@ -113,14 +134,32 @@ class NormalMode:
         return HYPERBOLIC if self.growth else ELLIPTIC
 
     @property
-    def growth(self) -> float:
+    def growth(self) -> Any:
         """The rate at which a perturbation grows, |Im sigma|; exactly 0 if elliptic."""
-        return abs(complex(self.sigma).imag)
+        if self.digits is None:
+            return abs(self.sigma.imag)
+        with MULTIPRECISION.context(self.digits):
+            return with_digits(abs(self.sigma.imag), self.digits)
 
     @property
     def signature(self) -> int:
         """Krein's: the sign of the action, of what turns with positive sigma; 0 if hyperbolic."""
-        return 0 if self.growth else int(np.sign(self.action))
+        return 0 if self.growth else int(np.sign(float(self.action)))
+
+    def in_doubles(self) -> NormalMode:
+        """The same without digits: sigma, p and sizes rounded to doubles."""
+        if self.digits is None:
+            return self
+        kind = complex if self.growth else float
+        return replace(
+            self,
+            sigma=kind(self.sigma),
+            coefficients=self.coefficients.astype(kind),
+            action=float(self.action),
+            residual=float(self.residual),
+            digits=None,
+            error=None,
+        )
 
     def rate(self, row: int) -> float:
         """sigma + nu.omega of a harmonic, its real part; row : its place among the harmonics."""
@@ -129,7 +168,7 @@ class NormalMode:
     def variation(self, theta: ArrayLike) -> NDArray[np.complex128]:
         """p at angles (T, s) or (s,), radians, phases included: complex, (T, N-1) or (N-1,)."""
         angles = np.asarray(theta, dtype=float) @ self.harmonics.T
-        return np.asarray(np.exp(1j * angles) @ self.coefficients)
+        return np.asarray(np.exp(1j * angles) @ self.in_doubles().coefficients)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +177,8 @@ class NormalModes(Shown, Gridded):
 
     torus : the torus. modes : NormalMode of each direction, by growing q. guesses : by q, of the
         closed second-order shift.
-    resonances : the nearest, by distance. All is dimensionless.
+    resonances : the nearest, by distance. undecided : modes so near to a collision with another
+        that rounding hides whether they are stable. All is dimensionless.
 
     >>> from symfpu import Chain, breather_at_amplitude, normal_modes
     >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
@@ -155,6 +195,7 @@ class NormalModes(Shown, Gridded):
     modes: tuple[NormalMode, ...]
     guesses: dict[int, float] = field(repr=False)
     resonances: tuple[ParametricResonance, ...] = field(repr=False)
+    undecided: tuple[int, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
         torus = self.torus
@@ -162,35 +203,62 @@ class NormalModes(Shown, Gridded):
         pairs = zip(torus.seeds, torus.frequencies, strict=True)
         omega = "".join(f", omega_{q}={float(w):.10g}" for q, w in pairs)
         sigma = "".join(f", sigma_{mode.mode}={mode.text}" for mode in self.modes)
-        return f"NormalModes({chain}{omega}, {self.verdict}{sigma}, residual {self.residual:.1g})"
+        residual = f"residual {text(self.residual, 1)}"
+        return f"NormalModes({chain}{omega}, {self.verdict}{sigma}, {residual})"
 
     @property
-    def frequencies(self) -> dict[int, complex]:
-        """sigma by mode: floats, or complex numbers with positive imaginary parts."""
+    def digits(self) -> int | None:
+        """Of sigma and eigenfunctions; None for doubles."""
+        return next((mode.digits for mode in self.modes), None)
+
+    @property
+    def frequencies(self) -> dict[int, Any]:
+        """sigma by mode: floats, or complex numbers with positive imaginary parts; or mpf, mpc."""
         return {mode.mode: mode.sigma for mode in self.modes}
 
     @property
-    def residual(self) -> float:
+    def residual(self) -> Any:
         """The largest of all modes; 0 where there is none."""
         return max((mode.residual for mode in self.modes), default=0.0)
 
     @property
-    def growth(self) -> float:
+    def error(self) -> Any:
+        """The largest of all modes with digits; None of doubles."""
+        if self.digits is None:
+            return None
+        return max(mode.error for mode in self.modes)
+
+    @property
+    def growth(self) -> Any:
         """The largest rate of growth; exactly 0 if all modes are elliptic."""
         return max((mode.growth for mode in self.modes), default=0.0)
 
     @property
-    def stable(self) -> bool:
-        """Whether all modes are elliptic."""
-        return self.growth == 0
+    def stable(self) -> bool | None:
+        """Whether all modes are elliptic; None where rounding hides it."""
+        if self._unstable:
+            return False
+        return None if self.undecided else True
+
+    @property
+    def _unstable(self) -> list[NormalMode]:
+        """Those that are hyperbolic beyond doubt."""
+        return [
+            mode for mode in self.modes if mode.growth and mode.mode not in self.undecided
+        ]
 
     @property
     def verdict(self) -> str:
         """In words."""
         if self.stable:
             return "stable"
-        unstable = ", ".join(str(mode.mode) for mode in self.modes if mode.growth)
-        return f"unstable: modes {unstable}, growth {self.growth:.7g}"
+        unstable = ", ".join(str(mode.mode) for mode in self._unstable)
+        if unstable:
+            return f"unstable: modes {unstable}, growth {float(self.growth):.7g}"
+        hidden = ", ".join(map(str, self.undecided))
+        level = max(self.mode(q).rounding for q in self.undecided)
+        nearness = f"nearer to a collision than {level:.1g}"
+        return f"undecided: modes {hidden}, {nearness}; refine the torus with digits"
 
     @cached_property
     def _by_mode(self) -> dict[int, NormalMode]:
@@ -202,9 +270,15 @@ class NormalModes(Shown, Gridded):
             raise InputError("q", q, f"one of {list(self._by_mode)}", "see modes")
         return self._by_mode[q]
 
-    def multipliers(self) -> dict[int, complex]:
+    def multipliers(self) -> dict[int, Any]:
         """exp(2 pi i sigma/omega) of a breather: Floquet's, by mode. Raises InputError."""
-        omega = float(self.torus.frequency)
+        exact = self.torus.frequency
+        if self.digits is not None:
+            with MULTIPRECISION.context(self.digits):
+                turn = 2 / MULTIPRECISION.number(exact)
+                found = {q: mpmath.expjpi(turn * s) for q, s in self.frequencies.items()}
+                return with_digits(found, self.digits)
+        omega = float(exact)
         return {
             q: complex(np.exp(2j * np.pi * s / omega)) for q, s in self.frequencies.items()
         }
@@ -227,7 +301,10 @@ class NormalModes(Shown, Gridded):
                 [self.guesses[mode.mode] for mode in self.modes],
                 "Omega_q with the closed second-order shift",
             ),
-            "residual": ([mode.residual for mode in self.modes], "of L p, over Omega_q^2"),
+            "residual": (
+                [float(mode.residual) for mode in self.modes],
+                "of L p, over Omega_q^2",
+            ),
             "deflated": (
                 [mode.deflated for mode in self.modes],
                 "vectors treated together",
@@ -245,6 +322,7 @@ class NormalModes(Shown, Gridded):
                 seeds=torus.seeds,
                 frequencies=torus.frequencies,
                 stable=self.stable,
+                digits=self.digits,
             ),
             rows=rows,
         )

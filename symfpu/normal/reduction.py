@@ -32,7 +32,9 @@ ROUGH, FINE = 1e-4, 1e-11  # accuracies of Krylov solutions, over Omega_q^2
 ITERATIONS = 9
 STEP = 1e-14  # relative change of sigma that ends the iteration
 NEARLY = 1e-4  # change from which on Krylov solutions are fine
-REAL = 1e-9  # imaginary parts up to this, over |sigma|, are rounding
+REAL = 1e-11  # imaginary parts up to this, over |sigma|, are rounding
+ROUNDING = 1e-13  # of L, and what a torus in doubles makes of it, over Omega_q^2
+LARGEST_ROUNDING = 1e-5  # of sigma, relative: with more it is not known
 LARGEST_STEP = 0.2  # of sigma, relative, that a step may take
 SURE = 0.5  # share of the main coefficient in the eigenfunction that tells the mode
 # of the coupling: the first step of a continuation, and the least
@@ -46,7 +48,7 @@ class Reduced:
 
     coefficients : p (F, C), of norm 1. share : |p_q[0]| of the mode that it is named after.
     residual : of L p, at all harmonics of the lattice, over Omega_q^2. action : sum of
-    (sigma + nu.omega) |p|^2. deflated : r. products : with L.
+    (sigma + nu.omega) |p|^2. deflated : r. products : with L. rounding : of sigma, about.
     """
 
     mode: int
@@ -57,23 +59,32 @@ class Reduced:
     action: float
     deflated: int
     products: int
+    rounding: float
 
 
 class Block:
     """L among the unknowns with the smallest divisors, the main one first of all.
 
-    mask : of all unknowns, shape (F, N-1). inside : places of the block's among them.
+    mask : of all unknowns, shape (F, N-1). inside : places of the block's among them. sizes : how
+    many they are, at least and at most.
     """
 
-    def __init__(self, flow: Linearised, q: int, sigma: float) -> None:
+    def __init__(
+        self,
+        flow: Linearised,
+        q: int,
+        sigma: float,
+        sizes: tuple[int, int] = (SMALLEST_BLOCK, LARGEST_BLOCK),
+    ) -> None:
         self.flow, self.q, self.mask = flow, q, flow.allowed(q)
         linear = np.maximum(flow.linear.astype(float), TINY)
         self.size = flow.frequency(q) ** 2
         diagonal = flow.divisors(sigma) + flow.means
         weights = np.where(self.mask, np.abs(diagonal) / linear**2, np.inf)
         weights[0, flow.column(q)] = 0
+        least, largest = sizes
         near = int((weights < NEARNESS * np.abs(flow.slopes).max()).sum())
-        count = min(max(near, SMALLEST_BLOCK), LARGEST_BLOCK, int(self.mask.sum()))
+        count = min(max(near, least), largest, int(self.mask.sum()))
         chosen = np.sort(np.argpartition(weights, count - 1, axis=None)[:count])
         self.rows, self.columns = np.unravel_index(chosen, self.mask.shape)
         self.inside = (np.cumsum(self.mask, axis=None) - 1)[chosen]
@@ -313,8 +324,13 @@ def _iterated(system: Bordered, guess: complex, like: Values) -> Reduced | None:
         if not np.isfinite(change) or abs(change) > LARGEST_STEP * size:
             return None
         sigma = _tidied(sigma + complex(change))
-        if fine and abs(change) < STEP * size:
-            return _result(system, sigma, X @ v, images @ v)
+        vector = X @ v
+        rounding = _rounding(system, vector, slope)
+        if fine and abs(change) < max(STEP * size, rounding):
+            if rounding > LARGEST_ROUNDING * size:
+                return None
+            image = images @ v + change * slope * vector
+            return _result(system, sigma, vector, image, rounding)
         accuracy = FINE if abs(change) < NEARLY * size else ROUGH
     return None
 
@@ -343,17 +359,31 @@ def _nearest(steps: Values, shares: Floats, *, first: bool) -> int:
     return int(np.argmin(np.where(candidates, np.abs(steps), np.inf)))
 
 
+def _rounding(system: Bordered, vector: Values, slope: Values) -> float:
+    """What rounding of L makes of sigma: its part in p^T L p over p^T L' p.
+
+    That vanishes where two directions collide.
+    """
+    weights = vector**2 / np.linalg.norm(vector) ** 2
+    by_sigma = float(abs(slope @ weights))
+    return max(ROUNDING * system.block.size / max(by_sigma, TINY), REAL)
+
+
 def _tidied(sigma: complex) -> complex:
     """As a float where the imaginary part is rounding."""
     sigma = complex(sigma)
     return sigma if abs(sigma.imag) > REAL * abs(sigma) else float(sigma.real)
 
 
-def _result(system: Bordered, sigma: complex, vector: Values, image: Values) -> Reduced:
+def _result(
+    system: Bordered, sigma: complex, vector: Values, image: Values, rounding: float
+) -> Reduced:
     size = float(np.linalg.norm(vector))
     p = system.table(vector / size)
     main = p[0, system.flow.column(system.block.q)]
     p = p / _phase(main)
+    if complex(sigma).imag < 0:
+        sigma, p = complex(sigma).conjugate(), p.conj()
     inside = float(np.linalg.norm(image)) / size
     outside = system.flow.left_out(p)
     weights = np.abs(vector / size) ** 2
@@ -367,6 +397,7 @@ def _result(system: Bordered, sigma: complex, vector: Values, image: Values) -> 
         action=action,
         deflated=system.W.shape[1],
         products=system.products,
+        rounding=rounding,
     )
 
 

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import Any
 
+import mpmath
 import numpy as np
 
+from symfpu.breathers.digits import PreciseOrbit
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.chain.frequency_shift import shift_coefficients
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
+from symfpu.normal.collisions import undecided_modes
+from symfpu.normal.digits import PreciseModes
 from symfpu.normal.linearised import (
     Linearised,
     LinearisedFlow,
@@ -26,13 +32,16 @@ from symfpu.normal.linearised_waves import LinearisedWaves, wave_rows
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.reduction import Reduced, continued, followed, reduced
 from symfpu.normal.resonances import OWN, ParametricResonance, resonances_of
+from symfpu.numbers.arithmetic import DOUBLES, arithmetic_of
 from symfpu.numbers.typed import integer
+from symfpu.refinement.digits import Failure, PreciseTorus
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 from symfpu.tori.ring_torus import RingTorus
 
 Solution = QuasiPeriodic | RingTorus
+PRECISE = (PreciseTorus, PreciseOrbit)  # solutions whose digits are those of the equations
 REFINED = 1e-9  # residual of a torus, relative, above which it is refused
 # coefficients of the torus above these parts of its largest, and what their harmonics may leave
 HEIGHTS, TOLERANCE = (1e-8, 1e-11, 1e-14, 1e-17), 1e-10
@@ -56,7 +65,9 @@ def normal_modes(
 
     solution : of any potential and of any number of angles, refined: its residual is at most
         1e-9. With fixed ends, or of a ring: travelling waves, or what `unfold` gave.
-        Dimensionless; one of many digits is rounded to doubles.
+        Dimensionless. Of one that was refined to many digits (PreciseTorus, PreciseOrbit)
+        frequencies and eigenfunctions have as many, by sweeps in fixed point; any other is rounded
+        to doubles, as `solution.in_doubles()` is.
     modes : which of the N-1-s modes, of a ring signed; default all.
     resonance_length : largest sum |nu_i| of the resonances listed.
     progress : called as (label, fraction), once a mode.
@@ -84,7 +95,32 @@ def normal_modes(
     for number, q in enumerate(chosen):
         tell(f"normal mode {q}", number / len(chosen))
         found[q] = search.required(q, found)
+    if isinstance(solution, PRECISE):
+        found = _in_digits(solution, found, length, tell)
     return search.result(solution, found)
+
+
+def _in_digits(
+    torus: QuasiPeriodic,
+    found: Mapping[int, NormalMode],
+    length: int,
+    tell: Progress,
+) -> dict[int, NormalMode]:
+    """Modes in doubles with the digits of the torus; NoNormalModes where that fails."""
+    precise: dict[int, NormalMode] = {}
+    search: PreciseModes | None = None
+    for number, (q, mode) in enumerate(found.items()):
+        tell(f"normal mode {q}, {torus.digits} digits", number / len(found))
+        try:
+            search = search or PreciseModes(torus)
+            precise[q] = search.refined(mode, tell)
+        except Failure as failure:
+            real = complex(mode.sigma).real
+            nearest = _resonances(torus, {q: real}, length)
+            reason = f"no {torus.digits} digits of its frequency: {failure}"
+            none = NoNormalModes(q, real, nearest[0] if nearest else None, reason)
+            raise none from None
+    return precise
 
 
 def followed_modes(
@@ -99,7 +135,7 @@ def followed_modes(
     before : of the torus nearby; None, or without a mode, where there is none: then the mode is
         sought as by `normal_modes`, and so it is where the two tori are too far apart.
 
-    Returns what was found, and by mode why one was not.
+    Returns what was found, and by mode why one was not; in doubles.
     """
     torus = _checked(solution)
     chosen = checked_modes(torus, modes)
@@ -185,7 +221,8 @@ class _Search:
         self._known = {nu: row for nu, row in known.items() if np.abs(row).max() > least}
         self._torus, self._length = torus, length
         self._guesses = second_order(torus)
-        self._before = {mode.mode: mode for mode in before.modes} if before else {}
+        earlier = before.modes if before else ()
+        self._before = {mode.mode: mode.in_doubles() for mode in earlier}
         self._earlier = second_order(before.torus) if before else {}
         self._travels = isinstance(torus, RingTorus) and not is_standing(torus)
         bonds = len(next(iter(known.values()))) + 1
@@ -194,12 +231,13 @@ class _Search:
 
     def result(self, solution: Solution, found: dict[int, NormalMode]) -> NormalModes:
         """The modes that were found, with the resonances of all of them."""
-        real = {q: complex(mode.sigma).real for q, mode in found.items()}
+        real = {q: mode.sigma.real for q, mode in found.items()}
         return NormalModes(
             torus=solution,
             modes=tuple(found.values()),
             guesses={q: self._guesses[q] for q in found},
-            resonances=tuple(_resonances(self._torus, real, self._length)),
+            resonances=tuple(_resonances(solution, real, self._length)),
+            undecided=undecided_modes(solution, tuple(found.values())),
         )
 
     def required(self, q: int, others: dict[int, NormalMode]) -> NormalMode:
@@ -346,6 +384,7 @@ def _mode_of(flow: Linearised, found: Reduced) -> NormalMode:
         divisors=_smallest_divisors(flow, found),
         deflated=found.deflated,
         products=found.products,
+        rounding=found.rounding,
     )
 
 
@@ -367,14 +406,33 @@ def _smallest_divisors(flow: Linearised, found: Reduced) -> tuple[NormalDivisor,
 
 
 def _resonances(
-    torus: Solution, sigma: Mapping[int, float], length: int
+    torus: Solution, sigma: Mapping[int, Any], length: int
 ) -> list[ParametricResonance]:
+    """Those of real parts in doubles or in digits; a distance has all its digits."""
     omega = tuple(float(w) for w in torus.frequencies)
-    if not isinstance(torus, RingTorus) or not is_standing(torus):
-        return resonances_of(torus.chain, torus.seeds, omega, sigma, length)
-    found = []
-    for sine in (True, False):
-        part = {q: w for q, w in sigma.items() if is_sine(torus.chain, q) == sine}
-        fixed = folded(torus).chain
-        found += resonances_of(fixed, torus.seeds, omega, part, length)
+    doubles = {q: float(w) for q, w in sigma.items()}
+    if isinstance(torus, RingTorus) and is_standing(torus):
+        found = []
+        for sine in (True, False):
+            part = {q: w for q, w in doubles.items() if is_sine(torus.chain, q) == sine}
+            fixed = folded(torus).chain
+            found += resonances_of(fixed, torus.seeds, omega, part, length)
+    else:
+        found = resonances_of(torus.chain, torus.seeds, omega, doubles, length)
+        if (
+            isinstance(torus, PRECISE)
+            and arithmetic_of(list(sigma.values())) is not DOUBLES
+        ):
+            found = _in_all_digits(torus, found, sigma)
     return sorted(found, key=lambda r: abs(r.distance))
+
+
+def _in_all_digits(
+    torus: QuasiPeriodic, found: list[ParametricResonance], sigma: Mapping[int, Any]
+) -> list[ParametricResonance]:
+    """Resonances with the distances of frequencies in digits."""
+    with torus.numbers.context(torus.digits):
+        exact = [torus.numbers.number(w) for w in torus.frequencies]
+        distances = [r.left_of(sigma) - mpmath.fdot(r.harmonic, exact) for r in found]
+    pairs = zip(found, distances, strict=True)
+    return [replace(r, distance=float(distance)) for r, distance in pairs]

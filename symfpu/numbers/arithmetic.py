@@ -149,6 +149,43 @@ class NumberWithDigits(mpmath.mpf):  # type: ignore[misc]
         return _restored, (libmp.to_pickable(self._mpf_), self.digits)
 
 
+class ComplexWithDigits(mpmath.mpc):  # type: ignore[misc]
+    """An mpc whose parts print all digits they were asked for, as a NumberWithDigits does."""
+
+    __slots__ = ("digits",)
+
+    @property
+    def real(self) -> Any:
+        return _number_with_digits(self._mpc_[0], self.digits)
+
+    @property
+    def imag(self) -> Any:
+        return _number_with_digits(self._mpc_[1], self.digits)
+
+    def __str__(self) -> str:
+        return f"({self.real} + {self.imag}j)"
+
+    def __repr__(self) -> str:
+        return f"mpc(real='{self.real}', imag='{self.imag}')"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        parts = tuple(libmp.to_pickable(x) for x in self._mpc_)
+        return _restored_complex, (parts, self.digits)
+
+
+def _restored_complex(parts: Any, digits: int) -> ComplexWithDigits:
+    numbers = tuple(libmp.from_pickable(x) for x in parts)
+    return _complex_with_digits(numbers, digits)
+
+
+def _complex_with_digits(parts: Any, digits: int) -> ComplexWithDigits:
+    """The mpc of these parts, unrounded."""
+    number: ComplexWithDigits = object.__new__(ComplexWithDigits)
+    number._mpc_ = parts
+    number.digits = digits
+    return number
+
+
 def _restored(number: Any, digits: int) -> NumberWithDigits:
     return _number_with_digits(libmp.from_pickable(number), digits)
 
@@ -162,7 +199,7 @@ def _number_with_digits(parts: Any, digits: int) -> NumberWithDigits:
 
 
 def with_digits(values: Value, digits: int | None) -> Value:
-    """Results as users see them: every mpf in them prints so many digits.
+    """Results as users see them: every mpf and mpc in them prints so many digits.
 
     In a number, array, tuple or mapping.
 
@@ -174,6 +211,8 @@ def with_digits(values: Value, digits: int | None) -> Value:
 def _dressed(values: Any, digits: int) -> Any:
     if isinstance(values, mpmath.mpf):
         return _number_with_digits(values._mpf_, digits)
+    if isinstance(values, mpmath.mpc):
+        return _complex_with_digits(values._mpc_, digits)
     if isinstance(values, np.ndarray) and values.dtype == object:
         entries = np.frompyfunc(lambda x: _dressed(x, digits), 1, 1)
         return np.asarray(entries(values), dtype=object)

@@ -35,7 +35,7 @@ def rational(x: Any) -> Fraction:
     if not isinstance(x, mpmath.mpf):
         return Fraction(x)
     sign, mantissa, exponent, _ = x._mpf_
-    return Fraction(-mantissa if sign else mantissa) * Fraction(2) ** exponent
+    return Fraction(-mantissa if sign else mantissa) * Fraction(2) ** int(exponent)
 
 
 def _rounded(x: Any, digits: int, side: Callable[[Fraction], int]) -> str:

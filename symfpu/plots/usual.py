@@ -261,7 +261,7 @@ def _line_rows(found: FrequencyAnalysis) -> Rows:
 
 def _map_rows(found: FrequencyMap) -> Rows:
     yield "chain", _model(found.chain)
-    yield "seeds", _listed(found.seeds)
+    yield "packet", _listed(found.packet)
     yield "to t", f"{found.T:.10g}"
     by_energy = zip(found.energies, found.counts, found.drifts, strict=True)
     for energy, count, drift in by_energy:

@@ -1,6 +1,6 @@
 """Which checker reads which kind of certificate: one line a kind.
 
-The checkers share no code with the provers, and none with each other.
+The checkers share no code with the provers; that of stability asks that of existence.
 """
 
 from __future__ import annotations
@@ -10,7 +10,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from symfpu.proofs import check_existence, check_torus, verify, verify_theorem
+from symfpu.proofs import (
+    check_existence,
+    check_stability,
+    check_torus,
+    verify,
+    verify_theorem,
+)
 from symfpu.proofs.verify import CertificateError
 
 Json = dict[str, Any]
@@ -33,6 +39,9 @@ CHECKERS: dict[str, Checker] = {
     ),
     check_torus.FORMAT: Checker(
         check_torus.read_certificate, check_torus.check_certificate
+    ),
+    check_stability.FORMAT: Checker(
+        check_stability.read_certificate, check_stability.check_certificate
     ),
     verify_theorem.FORMAT: Checker(
         verify_theorem.read_theorem, verify_theorem.check_theorem
@@ -57,7 +66,11 @@ def verified_certificate(path: str | Path) -> tuple[Json, list[str]]:
         return certificate, checker.check(certificate)
     except CertificateError:
         raise
-    except (check_existence.ExistenceError, check_torus.TorusError) as error:
+    except (
+        check_existence.ExistenceError,
+        check_stability.StabilityError,
+        check_torus.TorusError,
+    ) as error:
         raise CertificateError(str(error)) from error
     except verify.READING_ERRORS as error:
         raise CertificateError(f"no readable certificate: {error!r:.200}") from None

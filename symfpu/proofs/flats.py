@@ -304,16 +304,17 @@ def representatives(
 ) -> list[Flat]:
     """The seed set of smallest N in each flat of dimension two and more."""
     s, found = arrangement.s, dict[bytes, Flat]()
+    width = len(arrangement.rows)
     for N in range(s + 1, LONGEST):
         if len(found) == len(wide):
             return list(found.values())
         seeds = np.array(list(combinations(range(1, N), s)), dtype=np.int64)
-        packed = np.packbits(arrangement.through(N, seeds), axis=1)
-        # NumPy compares rows as strings of bytes
-        strings = np.ascontiguousarray(packed).view(f"V{packed.shape[1]}")[:, 0]
-        for row, key in enumerate(map(bytes, strings)):
-            if key in wide and key not in found:
-                found[key] = Flat(N, tuple(map(int, seeds[row])), wide[key])
+        for block in np.array_split(seeds, 1 + seeds.size * width // CANDIDATES):
+            packed = np.packbits(arrangement.through(N, block), axis=1)
+            for row, holds in zip(block.tolist(), packed, strict=True):
+                key = holds.tobytes()
+                if key in wide and key not in found:
+                    found[key] = Flat(N, tuple(row), wide[key])
         told("seed sets in general position", len(found) / len(wide))
     raise SymfpuError(
         f"no seed sets for {len(wide) - len(found)} flats below N = {LONGEST}"

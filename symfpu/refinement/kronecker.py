@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
-from symfpu.chain.tension_terms import terms
+from symfpu.chain.tension_terms import Terms, terms
 from symfpu.refinement.equation import Ints
 
 Integers = NDArray[np.object_]
@@ -109,9 +109,13 @@ class KroneckerForce:
     def __init__(self, chain: Chain, box: Box, bits: int, reach: Any) -> None:
         self.chain, self.box, self.bits = chain, box, bits
         _, self._scale = math.frexp(float(reach))  # stretches in units of 2^scale
-        self.terms = terms(chain, bits, reach)
+        self.terms = self._terms(reach)
         self.highest = max(self.terms.couplings, default=1)
         self._set_bonds()
+
+    def _terms(self, reach: Any) -> Terms:
+        """Of what is summed: V'(r) - r."""
+        return terms(self.chain, self.bits, reach)
 
     def _set_bonds(self) -> None:
         """Stretches of half of the bonds by a unit of each mode, and the way back from all."""
@@ -164,7 +168,7 @@ class KroneckerForce:
         tension = np.zeros((len(wanted), stretches.shape[1]), dtype=object)
         errors = np.zeros(stretches.shape[1], dtype=object)
         for j, r in enumerate(stretches.T):
-            found = self._tension(rows, r)
+            found = self._sum_of_powers(rows, r)
             tension[:, j], errors[j] = found.values[to], found.error
         still = to == 0
         tension[still] = tension[still] // 2
@@ -172,8 +176,8 @@ class KroneckerForce:
         off = (abs(self._back).T @ errors) >> self.bits
         return self._times(tension, back), off + len(wanted)
 
-    def _tension(self, rows: Ints, r: Integers) -> Series:
-        """V'(r) - r of one bond by its Taylor series, powers in blocks, blocks by Horner's rule.
+    def _sum_of_powers(self, rows: Ints, r: Integers) -> Series:
+        """The terms of one bond, V'(r) - r, by powers in blocks, blocks by Horner's rule.
 
         About twice the root of the degree as many products (Paterson and Stockmeyer).
         """

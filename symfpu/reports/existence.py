@@ -22,6 +22,7 @@ def existence_record(proof: ExistenceProof) -> dict[str, Any]:
         "frequencies": {str(proof.seed): decimal(proof.frequency)},
         "frequency_radius": fifteen_digits(proof.frequency_radius),
         "proved": True,
+        "theorem": proof.theorem,
         "fixed": proof.fixed,
         "value": decimal(proof.value),
         "half_width": decimal(proof.half_width),

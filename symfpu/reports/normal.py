@@ -13,7 +13,7 @@ from symfpu.normal.modes import NoNormalModes, NormalMode, NormalModes
 from symfpu.normal.phantom import NormalFrequencySeries
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.reports.solution import frequencies_record
-from symfpu.reports.tables import fifteen_digits
+from symfpu.reports.tables import fifteen_digits, number_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 
@@ -30,12 +30,24 @@ def normal_record(found: NormalModes) -> dict[str, Any]:
         "frequencies": frequencies_record(torus),
         "verdict": found.verdict,
         "stable": found.stable,
-        "growth": fifteen_digits(found.growth),
-        "normal_frequencies": {str(q): _number(w) for q, w in found.frequencies.items()},
+        "undecided": list(found.undecided),
+        "growth": fifteen_digits(float(found.growth)),
+        "normal_frequencies": {
+            str(q): _number(w, found.digits) for q, w in found.frequencies.items()
+        },
         "signatures": {str(mode.mode): mode.signature for mode in found.modes},
         "resonances": [_resonance(one) for one in found.resonances[:SHOWN_RESONANCES]],
-        "residual": fifteen_digits(found.residual),
+        "residual": fifteen_digits(float(found.residual)),
+        "digits": found.digits,
+        **_error(found),
     }
+
+
+def _error(found: NormalModes) -> dict[str, str]:
+    """What is known of frequencies with digits."""
+    if found.digits is None:
+        return {}
+    return {"frequency_error": number_text(found.error, 3)}
 
 
 def normal_frequencies_record(found: NormalFrequencies) -> dict[str, Any]:
@@ -168,11 +180,11 @@ def normal_event_record(event: NormalEvent) -> dict[str, Any]:
     }
 
 
-def _number(sigma: complex) -> str | list[str]:
-    value = complex(sigma)
-    if not value.imag:
-        return repr(value.real)
-    return [repr(value.real), repr(value.imag)]
+def _number(sigma: Any, digits: int | None = None) -> str | list[str]:
+    real = number_text(sigma.real, digits)
+    if not sigma.imag:
+        return real
+    return [real, number_text(sigma.imag, digits)]
 
 
 def _resonance(one: ParametricResonance) -> dict[str, Any]:
@@ -194,7 +206,7 @@ def normal_text(found: NormalModes) -> str:
     lines.append("  mode  normal frequency                   shift        kind, residual")
     for mode in found.modes:
         shift = complex(mode.sigma).real - linear[mode.mode]
-        kind = f"{mode.kind}, {mode.residual:.0e}"
+        kind = f"{mode.kind}, {float(mode.residual):.0e}"
         lines.append(f"  {mode.mode:4d}  {mode.text:33}  {shift:+.4e}  {kind}")
     if found.resonances:
         lines.append("nearest resonances:")

@@ -5,9 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.breathers.existence import ExistenceProof
+from symfpu.breathers.stability_proof import StabilityProof
 from symfpu.certified.residual import ResidualProof
 from symfpu.certified.stay import StayProof
-from symfpu.proofs import certificates, check_existence, check_torus, theorem
+from symfpu.proofs import (
+    certificates,
+    check_existence,
+    check_stability,
+    check_torus,
+    theorem,
+)
 from symfpu.proofs.certificates import SINGLE, PropagationProof, RuleException
 from symfpu.proofs.sweeps import Sweep, SweepCase
 from symfpu.proofs.theorem import RuleForAllN
@@ -18,6 +25,7 @@ CERTIFIED = {
     certificates.FORMAT: PropagationProof.__name__,
     theorem.FORMAT: RuleForAllN.__name__,
     check_existence.FORMAT: ExistenceProof.__name__,
+    check_stability.FORMAT: StabilityProof.__name__,
     check_torus.FORMAT: ResidualProof.__name__,
 }
 EVIDENCE = ("excited", "vanishing", "points", "coefficients", "digest")

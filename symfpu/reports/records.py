@@ -13,6 +13,7 @@ import numpy as np
 from symfpu.action_angle.twist import Twist
 from symfpu.breathers.existence import ExistenceProof
 from symfpu.breathers.floquet import Floquet
+from symfpu.breathers.stability_proof import StabilityProof
 from symfpu.bundles.bundle import Bundle
 from symfpu.certified.residual import ResidualProof
 from symfpu.certified.stay import StayProof
@@ -48,6 +49,7 @@ from symfpu.reports.normal import (
 )
 from symfpu.reports.proofs import proof_record, sweep_record
 from symfpu.reports.solution import floquet_record, solution_record
+from symfpu.reports.stability_proof import stability_record
 from symfpu.reports.tables import fifteen_digits
 from symfpu.reports.torus import series_record, torus_record
 from symfpu.series.series import LindstedtSeries
@@ -170,6 +172,7 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (RefinedRingTorus, refined_record),
     (QuasiPeriodic, solution_record),
     (ExistenceProof, existence_record),
+    (StabilityProof, stability_record),
     (ResidualProof, residual_proof_record),
     (StayProof, stay_record),
     (RingTorus, solution_record),

@@ -38,7 +38,7 @@ KEYS = ("energy", "modes", "frequencies", "errors", "strengths", "drifts")
 class FrequencyMap(Shown, Gridded):
     """Frequencies of orbits of one kind by their energy. Made by `frequency_map`; ours.
 
-    chain : the model. T : the length of each orbit; dimensionless, as all here. seeds : the modes
+    chain : the model. T : the length of each orbit; dimensionless, as all here. packet : the modes
         that move at t = 0.
     level : of the strongest line, above which an independent frequency counts.
     energies : H, rising; shape (E,).
@@ -51,13 +51,13 @@ class FrequencyMap(Shown, Gridded):
 
     >>> from symfpu import Chain, frequency_map
     >>> frequency_map(Chain(N=4, beta=1), ("0.01", "0.1"), T=500, step=0.1)
-    FrequencyMap(N=4, beta=1, seeds=1, T=500, 2 energies 0.01 .. 0.1, 2 .. 2 frequencies above
+    FrequencyMap(N=4, beta=1, packet 1, T=500, 2 energies 0.01 .. 0.1, 2 .. 2 frequencies above
     0.001, drift ... .. ...)
     """
 
     chain: Chain
     T: float
-    seeds: tuple[int, ...]
+    packet: tuple[int, ...]
     level: float
     energies: Floats
     frequencies: Floats = field(repr=False)
@@ -69,7 +69,7 @@ class FrequencyMap(Shown, Gridded):
     def __repr__(self) -> str:
         chain = repr(self.chain)[6:-1]
         E, n, d = self.energies, self.counts, self.drifts
-        start = f"seeds={joined(self.seeds)}, T={self.T:.10g}"
+        start = f"packet {joined(self.packet)}, T={self.T:.10g}"
         energies = f"{len(E)} energies {E[0]:.6g} .. {E[-1]:.6g}"
         counts = f"{n.min()} .. {n.max()} frequencies above {self.level:g}"
         drift = f"drift {d.min():.2g} .. {d.max():.2g}"
@@ -98,7 +98,7 @@ class FrequencyMap(Shown, Gridded):
                 "drift": Variable(("energy",), self.drifts, "between halves, relative"),
             },
             attributes=attributes(
-                self, self.chain, T=self.T, seeds=self.seeds, level=self.level
+                self, self.chain, T=self.T, packet=self.packet, level=self.level
             ),
             rows=("energy", "mode"),
         )

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 from symfpu.errors import InputError, SymfpuError
 
-STARTS = 3  # times that a process may die before it is ready
+STARTS = 20  # times that a process may be killed before it is ready, or has begun a task
 READY, BEGUN = b"ready", b"begun"  # what a worker says before its answers
 # each worker is one of as many as there are cores: its libraries shall not start more threads
 THREADS = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
@@ -165,6 +165,8 @@ class Worker:
             if _says(pipe, READY):
                 return pipe
             code = self._ended()
+            if code is None or code >= 0:  # of its own: another would end as well
+                break
         raise WorkersDoNotStart(f"exit code {code}")
 
     def _start(self) -> Connection:

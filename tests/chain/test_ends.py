@@ -44,6 +44,7 @@ RESULTS = {
     "ResidualProof",
     "RingTorus",
     "ShotOrbit",
+    "StabilityProof",
     "StayProof",
     "TravellingSeries",
     "Twist",

@@ -38,6 +38,50 @@ def test_json_has_the_radii_and_the_bounds(saved, capsys):
     assert 0 < found["bounds"]["Z1"] < 1
 
 
+def test_stability_is_a_certificate_that_verify_accepts(tmp_path, capsys):
+    saved = str(save(tmp_path / "breather", breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.2")))
+    certificate = str(tmp_path / "proof.json")
+    assert main(["certify", saved, "--stability", "-o", certificate]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith("linearly stable, proved")
+    assert lines[-1] == f"certificate: {certificate}"
+    assert main(["verify", certificate]) == 0
+    checked = capsys.readouterr().out.splitlines()
+    assert checked[0].startswith("theorem: the periodic orbit of the next line is linearly stable")
+    assert checked[-1] == "the certificate is valid"
+
+
+def test_json_says_stable_or_unstable(tmp_path, capsys):
+    for chain, seed, amplitude, stable in ((Chain(4, alpha="0.3"), 1, "0.2", True), (Chain(6, beta=1), 4, "0.6", False)):
+        saved = str(save(tmp_path / f"{stable}", breather_at_amplitude(chain, seed, amplitude)))
+        assert main(["certify", saved, "--stability", "--json"]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert found["stable"] is stable
+        assert ("linearly stable" in found["theorem"]) is stable
+        assert all(0 < least < most for least, most in found["gaps"])
+        assert bool(found["gaps"]) is stable
+        assert (found["growth"][0] > 0) is not stable
+
+
+def test_an_amplitude_and_a_segment_are_given_in_words(saved, tmp_path, capsys):
+    certificate = str(tmp_path / "proof.json")
+    assert main(["certify", saved, "--amplitude", "0.3", "-o", certificate]) == 0
+    assert "seed 1, A=0.3: proved" in capsys.readouterr().out
+    assert main(["certify", saved, "--amplitude", "0.3", "--half-width", "1e-4", "-o", certificate, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["fixed"], found["value"], found["half_width"]) == ("amplitude", "0.3", "0.0001")
+    assert found["frequency_radius"] > 0
+    assert main(["verify", certificate]) == 0
+    assert "for every amplitude A from 2999/10000 to 3001/10000" in capsys.readouterr().out
+
+
+def test_a_segment_too_long_is_one_line_and_code_1(saved, capsys):
+    assert main(["certify", saved, "--half-width", "0.5"]) == 1
+    assert "a shorter segment can" in capsys.readouterr().err
+    assert main(["certify", saved, "--amplitude", "0.2"]) == 2
+    assert "breather_at_amplitude" in capsys.readouterr().err
+
+
 @pytest.mark.long
 def test_what_cannot_be_proved_is_one_line_and_code_1(tmp_path, capsys):
     """A root of a truncated series that is no orbit."""

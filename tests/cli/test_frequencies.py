@@ -37,7 +37,7 @@ def test_a_map_is_printed_drawn_saved_and_goes_on(capsys, tmp_path):
     kept = load(saved).result
     first = [float(x) for x in record["columns"]["frequency"][::3]]
     assert first == pytest.approx(kept.frequencies[:, 0], rel=MAP_FREQUENCY)
-    assert (code, record["kind"], record["seeds"]) == (0, "FrequencyMap", [1])
+    assert (code, record["kind"], record["about"]["packet"]) == (0, "FrequencyMap", "1")
 
 
 def test_the_torus_near_an_orbit_is_written_for_newton(capsys, tmp_path):

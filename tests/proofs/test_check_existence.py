@@ -3,6 +3,7 @@
 import ast
 import copy
 import json
+import math
 import re
 import sys
 from fractions import Fraction
@@ -15,12 +16,15 @@ import pytest
 from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.existence import prove_existence
+from symfpu.breathers.force_series import ball, of_growth
 from symfpu.breathers.packed_integers import packed
 from symfpu.chain.chain import Chain
+from symfpu.chain.potentials.potential import Growth as ProverGrowth
 from symfpu.proofs import check_existence
 from symfpu.proofs.check_existence import COSINE_UNITS, Cosines, ExistenceError, verify
-from symfpu.proofs.check_existence.claim import read_claim
+from symfpu.proofs.check_existence.claim import Growth, read_claim, rest_of_growth
 from symfpu.proofs.check_existence.reading import unpacked
+from symfpu.proofs.check_existence.theorem import check_contraction
 from symfpu.proofs.check_existence.wording import decimal_interval, theorem_text
 from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.verify import CertificateError
@@ -231,6 +235,56 @@ def test_the_printed_radius_of_uniqueness_is_not_above_the_one_checked(unique):
     text = theorem_text(read_claim(certificate()), certificate(), Fraction(1, 2**60), unique)
     within = Fraction(re.search(r"only one within (\S+) in", text).group(1))
     assert unique * Fraction(99, 100) < within <= unique
+
+
+def bounds_of(name):
+    """Of a certificate, with its claim."""
+    data = json.loads(json.dumps(certificate(name)))
+    claim = check_existence.read_claim(data)
+    inverse = check_existence.read_inverse(data, claim)
+    bonds = check_existence.Bonds(claim, inverse.last + inverse.slope_harmonics)
+    return claim, check_existence.Bounds(claim, bonds, inverse)
+
+
+def test_the_length_of_a_segment_counts_in_its_contraction():
+    """The largest R of its middle is too large for its ends."""
+    _, bounds = bounds_of("segment of amplitude")
+    assert check_contraction(bounds, Fraction(0), bounds.linear(), Fraction(1, 10**9), Fraction(1, 10**6)) is None
+    low, high = Fraction(0), Fraction(1)
+    while high - low > bounds.length() / 8:
+        middle = (low + high) / 2
+        below = bounds.linear() + bounds.curvature(middle) * middle < 1
+        low, high = (middle, high) if below else (low, middle)
+    assert 0 < bounds.length() < low
+    with pytest.raises(ExistenceError, match="not below 1"):
+        check_contraction(bounds, Fraction(0), bounds.linear(), Fraction(1, 10**9), low)
+
+
+def test_the_energy_depends_on_far_harmonics_no_more_than_its_bound():
+    claim, bounds = bounds_of("energy")
+    condition, bonds = bounds.condition, bounds.bonds
+    for first in (1, 4, 9):
+        bound = condition.farthest(first, bonds)
+        assert bound > 0
+        for n in range(first, 16):
+            for q in claim.allowed(n):
+                size = max(map(abs, condition.by(n, q, claim, bonds)))
+                assert Fraction(size, bounds.unit) / claim.nu**n <= bound + Fraction(4, bounds.unit)
+
+
+@pytest.mark.parametrize("numbers", [(1, 0, 1), ("1/6", 1, -7), ("-1/6", 1, -13), (2, "-1/2", "1/3")])
+@pytest.mark.parametrize("derivative", [0, 1, 2])
+def test_what_a_function_has_beyond_a_degree_is_bounded(numbers, derivative):
+    """Against two hundred of its coefficients by their product formula; the prover has the same bound in balls."""
+    weight, slope, rate = map(Fraction, numbers)
+    x, degree, coefficient, total = Fraction(1, 20), 7, weight, Fraction(0)
+    for k in range(200):
+        if k > degree:
+            total += abs(coefficient) * math.perm(k, derivative) * x ** (k - derivative)
+        coefficient *= (rate - slope * k) / (k + 1)
+    bound = rest_of_growth(Growth(weight, slope, rate), degree + 1, x, derivative)
+    assert 0 < total <= bound <= 2 * total
+    assert of_growth(ProverGrowth(weight, slope, rate), degree + 1, ball(x), derivative).overlaps(ball(bound))
 
 
 def test_choices_may_differ_but_not_the_theorem(tmp_path):

@@ -32,6 +32,7 @@ WITHOUT = {
     "NormalFrequencySeries": "a series, made anew",
     "NormalMode": "part of NormalModes",
     "ParametricResonance": "part of NormalModes",
+    "StabilityProof": "its certificate is its file",
     "ResidualProof": "its certificate is its file",
     "StayProof": "its certificate is its file",
     "SpectralLine": "part of FrequencyAnalysis",

@@ -57,8 +57,8 @@ def test_the_widest_has_no_more_than_asked_for(most):
 def test_sums_and_doubts_are_those_of_the_table():
     known = basis().known
     errors = np.full(len(OMEGA), EXACT_LINE)
-    assert np.allclose(known.sums, known.table @ np.array(OMEGA), rtol=0, atol=1e-12)
-    assert np.allclose(known.doubts, np.abs(known.table) @ errors, rtol=1e-12, atol=0)
+    assert np.allclose(known.sums, known.table @ np.array(OMEGA), rtol=0, atol=EXACT_LINE)
+    assert np.allclose(known.doubts, np.abs(known.table) @ errors, rtol=EXACT_LINE, atol=0)
     assert (np.diff(known.sizes) >= 0).all()
 
 

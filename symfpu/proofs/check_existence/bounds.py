@@ -185,11 +185,10 @@ class Bounds:
         bonds, claim = self.bonds, self.claim
         divisors = Divisors(claim, bonds.cosines, bonds.places)
         factor = claim.unit * of_frequency / (1 << 2 * claim.bits)
-        longest = max(
-            len(bond.values) for bond in series
-        )  # products are cut where they are small
+        # series may end before the orbit does, as products are cut where they are small
+        longest = max(claim.harmonics + 1, *(len(bond.values) for bond in series))
         total = 0
-        for n in range(max(longest, claim.harmonics + 1)):
+        for n in range(longest):
             forces = [f.values[n] if n < len(f.values) else 0 for f in series]
             size = sum(map(abs, forces)) * COSINE_UNITS * 2 // claim.N
             off = (size >> bonds.places) + 4

@@ -9,7 +9,7 @@ from symfpu.proofs.check_existence.claim import AMPLITUDE, ENERGY, FREQUENCY, Cl
 from symfpu.proofs.check_existence.fixed_point import up
 from symfpu.proofs.check_existence.reading import Json, stated
 
-SIGNS = {FREQUENCY: "frequency", AMPLITUDE: "amplitude A", ENERGY: "energy H"}
+SIGNS = {FREQUENCY: "frequency omega", AMPLITUDE: "amplitude A", ENERGY: "energy H"}
 
 
 def theorem_text(claim: Claim, data: Json, radius: Fraction, unique: Fraction) -> str:

@@ -1,0 +1,364 @@
+"""Stability that is proved: every Floquet exponent of a proved breather enclosed by a theorem.
+
+One Newton-Kantorovich problem for each exponent in Fourier space, no integrator in the proof:
+docs/stability-proofs.md.
+"""
+
+from __future__ import annotations
+
+import cmath
+import hashlib
+import json
+import math
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from symfpu.breathers.border import FREQUENCY
+from symfpu.breathers.enclosures import (
+    ADVICE,
+    Enclosed,
+    NoStabilityProof,
+    check_count,
+    enclosed_all,
+)
+from symfpu.breathers.existence import ExistenceProof, prove_existence
+from symfpu.breathers.exponent_bounds import RoundedZero, Slopes
+from symfpu.breathers.exponents import guesses
+from symfpu.breathers.rounded_orbit import RoundedOrbit
+from symfpu.breathers.sectors import Sector, sectors_of
+from symfpu.errors import InputError
+from symfpu.files.progress import Progress, unheard
+from symfpu.files.writing import write_text
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Table
+from symfpu.frames.tabled import Tabled
+from symfpu.numbers.typed import decimal
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+
+FORMAT = "symfpu stability certificate"
+SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class ProvedExponent:
+    """sigma of a Floquet solution exp(i sigma t) x (periodic), in a proved interval or disc.
+
+    sector : its number. sigma : the middle, complex off the circle, with Im sigma < 0 for the
+    growing solution. radius : above its error, in |Re| + |Im|. mode, harmonic : sigma + harmonic
+    omega is, up to sign, near the linear frequency of this mode. harmonics, folds : sigma counts
+    modulo folds omega. circle : whether the multiplier lies on the unit circle. linear : Z.
+    block : size of the dense part. Made by `prove_stability`.
+    """
+
+    sector: int
+    sigma: complex
+    radius: float
+    mode: int
+    harmonic: int
+    folds: int
+    circle: bool
+    linear: float
+    block: int
+
+    @property
+    def growth(self) -> tuple[float, float]:
+        """Ends of an interval that holds the rate of growth; (0, 0) on the circle."""
+        if self.circle:
+            return 0.0, 0.0
+        rate = abs(self.sigma.imag)
+        return rate - self.radius, rate + self.radius
+
+    def multiplier(self, omega: float) -> complex:
+        """exp(2 pi i sigma / omega) at the middle."""
+        return cmath.exp(2j * math.pi * self.sigma / omega)
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Distance in units of omega between neighbours of a sector, sigma in 0 .. h omega/2.
+
+    least, most : it is between them. sector : number. between : the two, as text.
+    """
+
+    least: float
+    most: float
+    sector: int
+    between: tuple[str, str]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class StabilityProof(Tabled):
+    """A theorem: a breather is linearly stable, or unstable.
+
+    existence : the theorem on the orbit. stable : which of the two. exponents : those enclosed,
+        all of them up to sign if stable, else those that grow. gaps : of a stable orbit, ascending;
+        an empty tuple for an unstable one. theorem : in one sentence. body : the certificate
+        without its digest. Dimensionless. Ours: docs/stability-proofs.md.
+
+    >>> from symfpu import Chain, periodic_orbit, prove_stability
+    >>> prove_stability(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"))
+    StabilityProof(N=8, alpha=0.3, seed 1, omega=0.3905: linearly stable, 6 exponents within ...,
+    smallest gap 0.0110... omega)
+    """
+
+    existence: ExistenceProof
+    stable: bool
+    exponents: tuple[ProvedExponent, ...]
+    gaps: tuple[Gap, ...]
+    body: dict[str, Any] = field(repr=False)
+
+    def __repr__(self) -> str:
+        proof = self.existence
+        chain = repr(proof.chain).removeprefix("Chain(").removesuffix(")")
+        case = f"{chain}, seed {proof.seed}, omega={decimal(proof.frequency)}"
+        return f"StabilityProof({case}: {self._found()})"
+
+    def _found(self) -> str:
+        widest = max((e.radius for e in self.exponents), default=0.0)
+        if not self.stable:
+            least, most = self.growth
+            return f"linearly unstable, growth rate in {least:.9g} .. {most:.9g}"
+        count = f"{len(self.exponents)} exponents within {widest:.1g}"
+        gap = f", smallest gap {self.gaps[0].least:.6g} omega" if self.gaps else ""
+        return f"linearly stable, {count}{gap}"
+
+    @property
+    def growth(self) -> tuple[float, float]:
+        """Ends of an interval that holds the largest enclosed rate of growth; (0, 0) if stable."""
+        return max((e.growth for e in self.exponents), default=(0.0, 0.0))
+
+    @property
+    def theorem(self) -> str:
+        """What is proved, in one sentence."""
+        proof = self.existence
+        chain = repr(proof.chain)
+        orbit = f"the periodic orbit of {chain} with frequency {decimal(proof.frequency)}"
+        where = f"within {proof.radius:.2g} of the computed one"
+        if not self.stable:
+            least, most = self.growth
+            return (
+                f"{orbit} {where} is linearly unstable: a solution of the linearised equations "
+                f"grows with a rate between {least:.10g} and {most:.10g}"
+            )
+        gap = f", {self.gaps[0].least:.3g} omega or more apart" if self.gaps else ""
+        return (
+            f"{orbit} {where} is linearly stable: all multipliers lie on the unit circle, 1 is "
+            f"double and all others are simple within their symmetry sector{gap}"
+        )
+
+    def certificate(self) -> dict[str, Any]:
+        """What `symfpu verify` needs to check the theorem again: integers and strings."""
+        text = json.dumps(self.body, sort_keys=True, separators=(",", ":"))
+        return self.body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
+
+    def write(self, path: Path | str) -> None:
+        """Write the certificate to a path as JSON, whole or not at all.
+
+        Raises InputError if the file cannot be written.
+        """
+        text = json.dumps(self.certificate(), separators=(",", ":"))
+        write_text(Path(path), text + "\n")
+
+    def _table(self) -> Table:
+        """One row for each exponent."""
+        rows, proof = self.exponents, self.existence
+        frequency = proof.frequency
+        known = attributes(
+            self,
+            proof.chain,
+            seeds=(proof.seed,),
+            frequencies=(frequency,),
+            stable=self.stable,
+        )
+        columns: dict[str, list[Any]] = {
+            "mode": [e.mode for e in rows],
+            "harmonic": [e.harmonic for e in rows],
+            "sigma": [e.sigma.real for e in rows],
+            "growth": [abs(e.sigma.imag) for e in rows],
+            "radius": [e.radius for e in rows],
+            "circle": [e.circle for e in rows],
+            "sector": [e.sector for e in rows],
+        }
+        return Table(columns, known)
+
+
+def prove_stability(
+    solution: ExistenceProof | QuasiPeriodic, *, progress: Progress | None = None
+) -> StabilityProof:
+    """A proof that a breather is linearly stable, or unstable, or an error that says why not.
+
+    solution : a breather as `prove_existence` takes it, or its proof, which then is not made again.
+    progress : called as (label, fraction done).
+
+    Every Floquet exponent is enclosed by a contraction in Fourier space around the proved orbit,
+    whose own radius enters; all of them, distinct and on the circle, make the orbit stable, one
+    that grows makes it unstable (docs/stability-proofs.md; ours). Dimensionless.
+    Raises InputError and NoExistenceProof as `prove_existence` does; NoStabilityProof with the
+    exponent and the bound that failed: that proves nothing.
+
+    >>> from symfpu import Chain, breather_at_amplitude
+    >>> prove_stability(breather_at_amplitude(Chain(N=6, beta=1), 4, "0.6"))
+    StabilityProof(N=6, beta=1, seed 4, omega=1.9005...: linearly unstable, growth rate in
+    0.02488... .. 0.02488...)
+    """
+    proof = solution if isinstance(solution, ExistenceProof) else prove_existence(solution)
+    require_exact_frequency(proof)
+    orbit = orbit_of(proof)
+    sectors = sectors_of(orbit.chain, orbit.seed)
+    found = [guesses(orbit, sector) for sector in sectors]
+    growing = [guess for one in found for guess in one if not guess.circle]
+    tried = growing or [guess for one in found for guess in one]
+    if not growing:
+        check_count(sectors, found)
+    slopes, enclosed = enclosed_all(orbit, proof.body["radius"], tried, progress or unheard)
+    rows = [proved_exponent(one, sectors, orbit.omega) for one in enclosed]
+    gaps = () if growing else tuple(gaps_of(orbit.omega, sectors, enclosed))
+    body = certificate_body(proof, slopes, sectors, enclosed, stable=not growing)
+    return StabilityProof(
+        existence=proof,
+        stable=not growing,
+        exponents=tuple(rows),
+        gaps=gaps,
+        body=body,
+    )
+
+
+def require_exact_frequency(proof: ExistenceProof) -> None:
+    """The theorem is about one orbit of an exact frequency, of a polynomial potential."""
+    if proof.fixed != FREQUENCY or proof.half_width:
+        advice = "prove existence without amplitude=, energy= and half_width="
+        raise InputError("solution", proof, "an orbit of an exact frequency", advice)
+    if proof.chain.potential.degree is None:
+        allowed = "a polynomial potential with exact coefficients"
+        raise InputError("chain", proof.chain, allowed, "take poly: with its first ones")
+
+
+def orbit_of(proof: ExistenceProof) -> RoundedOrbit:
+    """The integers that a proof of existence is about."""
+    chain, seed, even = proof.chain, proof.seed, proof.chain.potential.even
+    rows = []
+    for n, values in enumerate(proof.body["orbit"]):
+        row = [0] * (chain.N - 1)
+        if not (even and n % 2 == 0):
+            row[(0 if n * seed % 2 else 1) :: 2] = values
+        rows.append(tuple(row))
+    bits, digits = proof.body["bits"], proof.digits
+    return RoundedOrbit(chain, seed, proof.frequency, bits, tuple(rows), digits)
+
+
+def proved_exponent(
+    one: Enclosed, sectors: tuple[Sector, ...], omega: Fraction
+) -> ProvedExponent:
+    """The enclosure in doubles."""
+    zero = one.zero
+    guess, (n, q) = zero.guess, zero.kappa
+    shift = guess.base * guess.sector.folds * omega / 2
+    real, imaginary = (Fraction(x, 2**zero.bits) for x in zero.sigma)
+    middle = complex(float(shift + real), float(imaginary))
+    rounding = 4 * math.ulp(abs(middle))
+    return ProvedExponent(
+        sector=sectors.index(guess.sector),
+        sigma=middle,
+        radius=float(one.sigma_radius) + rounding,
+        mode=q,
+        harmonic=n,
+        folds=guess.sector.folds,
+        circle=guess.circle,
+        linear=one.bounds.linear,
+        block=len(one.choice.block),
+    )
+
+
+def gaps_of(
+    omega: Fraction, sectors: tuple[Sector, ...], enclosed: list[Enclosed]
+) -> list[Gap]:
+    """Between neighbours of every sector, its ends among them; an error where they overlap."""
+    result = []
+    for number, sector in enumerate(sectors):
+        points = [(Fraction(0), Fraction(0), "0")]
+        for one in enclosed:
+            if one.zero.guess.sector == sector:
+                sigma = Fraction(one.zero.sigma[0], 2**one.zero.bits)
+                n, q = one.zero.kappa
+                label = f"mode {q}, harmonic {n}"
+                points.append((sigma / omega, one.sigma_radius / omega, label))
+        points.append((Fraction(sector.folds, 2), Fraction(0), f"{sector.folds}/2 omega"))
+        points.sort()
+        pairs = pairwise(points)
+        result += [gap_between(a, b, number) for a, b in pairs]
+    return sorted(result, key=lambda gap: gap.least)
+
+
+Point = tuple[Fraction, Fraction, str]
+
+
+def gap_between(a: Point, b: Point, sector: int) -> Gap:
+    """From one enclosure to the next."""
+    apart, width = b[0] - a[0], a[1] + b[1]
+    if apart <= width:
+        raise NoStabilityProof(
+            complex(a[0]),
+            "gap",
+            float(apart),
+            float(width),
+            f"{a[2]} meets {b[2]}; {ADVICE}",
+        )
+    least = math.nextafter(float(apart - width), 0)
+    return Gap(least, math.nextafter(float(apart + width), math.inf), sector, (a[2], b[2]))
+
+
+def certificate_body(
+    proof: ExistenceProof,
+    slopes: Slopes,
+    sectors: tuple[Sector, ...],
+    enclosed: list[Enclosed],
+    *,
+    stable: bool,
+) -> dict[str, Any]:
+    """The certificate without its digest."""
+    return {
+        "format": FORMAT,
+        "schema": SCHEMA,
+        "existence": proof.certificate(),
+        "claim": "stable" if stable else "unstable",
+        "slope_harmonics": slopes.K,
+        "free": slopes.free(sectors[0]),
+        "exponents": [exponent_body(one, slopes, sectors) for one in enclosed],
+    }
+
+
+def exponent_body(
+    one: Enclosed, slopes: Slopes, sectors: tuple[Sector, ...]
+) -> dict[str, Any]:
+    """Of one exponent; complex numbers as two lists."""
+    zero = one.zero
+    sector, parts = zero.guess.sector, 1 if zero.guess.circle else 2
+    n, q = sector.places(slopes.free(sector))
+    block = [[int(n[i]), int(q[i])] for i in one.choice.block]
+    return {
+        "sector": sectors.index(sector),
+        "base": zero.guess.base,
+        "bits": zero.bits,
+        "sigma": list(zero.sigma[:parts]),
+        "kappa": list(zero.kappa),
+        "vector": [vector_rows(zero, part) for part in range(parts)],
+        "block": block,
+        "weights": one.choice.letters,
+        "radius": list(one.radius),
+    }
+
+
+def vector_rows(zero: RoundedZero, part: int) -> list[list[int]]:
+    """[n, i, v, v, ..] of every harmonic: from the i-th allowed mode on, no zeros at the ends."""
+    rows = []
+    for n, row in zip(
+        range(-zero.harmonics, zero.harmonics + 1), zero.rows[part].tolist(), strict=True
+    ):
+        values = [row[q - 1] for q in zero.guess.sector.allowed(n)]
+        used = [i for i, v in enumerate(values) if v]
+        if used:
+            rows.append([n, used[0], *values[used[0] : used[-1] + 1]])
+    return rows

@@ -1,0 +1,69 @@
+"""Proofs of stability, for JSON and for the terminal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from symfpu.breathers.stability_proof import ProvedExponent, StabilityProof
+from symfpu.numbers.typed import decimal
+from symfpu.reports.tables import fifteen_digits
+
+MOST_GAPS = 5
+
+
+def stability_record(proof: StabilityProof) -> dict[str, Any]:
+    """Keys of the command line."""
+    orbit = proof.existence
+    return {
+        "kind": type(proof).__name__,
+        **orbit.chain.typed,
+        "seeds": [orbit.seed],
+        "frequencies": {str(orbit.seed): decimal(orbit.frequency)},
+        "proved": True,
+        "stable": proof.stable,
+        "theorem": proof.theorem,
+        "radius": fifteen_digits(orbit.radius),
+        "gaps": [[fifteen_digits(g.least), fifteen_digits(g.most)] for g in proof.gaps],
+        "growth": [fifteen_digits(x) for x in proof.growth],
+        "exponents": [_exponent(one) for one in proof.exponents],
+    }
+
+
+def _exponent(one: ProvedExponent) -> dict[str, Any]:
+    sigma = fifteen_digits(one.sigma.real)
+    return {
+        "mode": one.mode,
+        "harmonic": one.harmonic,
+        "sector": one.sector,
+        "sigma": sigma if one.circle else [sigma, fifteen_digits(one.sigma.imag)],
+        "radius": fifteen_digits(one.radius),
+        "growth": [fifteen_digits(x) for x in one.growth],
+    }
+
+
+def stability_text(proof: StabilityProof) -> str:
+    """The theorem, the smallest gaps or the growth, and the bounds."""
+    orbit = proof.existence
+    chain = repr(orbit.chain).removeprefix("Chain(").removesuffix(")")
+    word = "linearly stable" if proof.stable else "linearly unstable"
+    first = (
+        f"{chain}, seed {orbit.seed}, omega = {decimal(orbit.frequency)}: {word}, proved"
+    )
+    lines = [first, f"  {proof.theorem}"]
+    for gap in proof.gaps[:MOST_GAPS]:
+        left, right = gap.between
+        lines.append(f"  gap {gap.least:.6g} .. {gap.most:.6g} omega: {left}; {right}")
+    for one in proof.exponents:
+        if not one.circle:
+            least, most = one.growth
+            lines.append(
+                f"  sigma = {one.sigma:.10g} within {one.radius:.2g}: "
+                f"grows with a rate of {least:.8g} .. {most:.8g}"
+            )
+    count, largest = (
+        len(proof.exponents),
+        max((e.block for e in proof.exponents), default=0),
+    )
+    linear = max((e.linear for e in proof.exponents), default=0.0)
+    lines.append(f"  {count} exponents; Z up to {linear:.3g}, blocks up to {largest}")
+    return "\n".join(lines)

@@ -1,0 +1,155 @@
+"""Certificates of stability: every number altered is refused, and with digests made to fit whatever the theorem would not give."""
+
+import ast
+import copy
+import json
+import random
+import sys
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from symfpu.breathers.balance import breather_at_amplitude
+from symfpu.breathers.stability_proof import prove_stability
+from symfpu.chain.chain import Chain
+from symfpu.proofs import check_stability
+from symfpu.proofs.check_stability import ONE, PLACES, StabilityError, inverse_of, verify
+from symfpu.proofs.checkers import verify_certificate
+from symfpu.proofs.verify import CertificateError
+from tests.proofs.test_check_existence import altered, moved, numbers
+from tests.proofs.test_forgeries import sealed
+from tests.tolerances import INVERSE_OF_BLOCK
+
+CASES = {
+    "stable": (Chain(4, alpha="0.3"), 1, "0.2"),
+    "unstable": (Chain(6, beta=1), 4, "0.6"),
+}
+
+
+@cache
+def certificate(name):
+    return prove_stability(breather_at_amplitude(*CASES[name])).certificate()
+
+
+def reason(data, folder):
+    """Why a certificate is refused; None where it is not."""
+    path = folder / "c.json"
+    path.write_text(json.dumps(data))
+    try:
+        verify(path)
+    except StabilityError as error:
+        return str(error)
+    return None
+
+
+def sealed_inside(data):
+    """With the digest of the proof of existence made to fit, too."""
+    return sealed(data | {"existence": sealed(data["existence"])})
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_number_altered_is_refused(name, tmp_path):
+    data = certificate(name)
+    assert reason(data, tmp_path) is None
+    places = list(numbers(data))
+    assert len(places) > 100
+    for place in places:
+        assert reason(altered(data, place, moved), tmp_path), place
+
+
+FIRST = ("exponents", 0)
+NO_ORBIT = "no orbit is proved|no readable"
+FORGERIES = {
+    "another sigma": ("stable", (*FIRST, "sigma", 0), lambda x: x + x // 10**4, "exceeds r"),
+    "a smaller radius": ("stable", (*FIRST, "radius", 0), lambda m: m // 3, "exceeds r"),
+    "a radius without a contraction": ("stable", (*FIRST, "radius", 1), lambda e: e - 36, "not below 1|exceeds r|may be"),
+    "another coefficient": ("stable", (*FIRST, "vector", 0, 0, -1), lambda v: v + 2**30, "exceeds r|not 1 at kappa"),
+    "other bits": ("stable", (*FIRST, "bits"), lambda b: b + 1, "kappa"),
+    "another kappa": ("stable", (*FIRST, "kappa"), lambda k: [k[0], k[1] - 2], "kappa"),
+    "an exponent shifted": ("stable", (*FIRST, "base"), lambda _: 1, "exceeds r|may be the same|not below 1"),
+    "a wrong sector": ("stable", (*FIRST, "sector"), lambda _: 1, "sector is not"),
+    "an exponent twice": ("stable", ("exponents",), lambda x: [x[0], x[0]], "may be the same"),
+    "an exponent missing": ("stable", ("exponents",), lambda x: x[:1], "needs 2 exponents"),
+    "one too many": ("stable", ("exponents",), lambda x: [*x, x[0]], "needs 2 exponents"),
+    "stable said to be unstable": ("stable", ("claim",), lambda _: "unstable", "may be real"),
+    "unstable said to be stable": ("unstable", ("claim",), lambda _: "stable", "needs"),
+    "no exponent of an unstable orbit": ("unstable", ("exponents",), lambda _: [], "no exponent is given"),
+    "another rate": ("unstable", (*FIRST, "sigma", 1), lambda x: x + x // 10**3, "exceeds r"),
+    "a real one": ("unstable", (*FIRST, "sigma", 1), lambda _: 0, "imaginary part"),
+    "fewer harmonics": ("stable", ("free",), lambda _: 2, "wrong number of weights|too low"),
+    "a weight too many": ("stable", (*FIRST, "weights"), lambda w: w + "0", "number of weights"),
+    "a weight of nothing": ("stable", (*FIRST, "weights"), lambda w: " " + w[1:], "no readable"),
+    "no block": ("stable", (*FIRST, "block"), lambda _: [], "kappa is not in the block"),
+    "another orbit": (
+        "stable",
+        ("existence", "orbit", 1),
+        lambda t: t[:9] + ("#" if t[9] == "!" else "!") + t[10:],
+        NO_ORBIT,
+    ),
+    "another frequency": ("stable", ("existence", "omega"), lambda w: w.replace("7", "8", 1), NO_ORBIT),
+    "another coupling": ("stable", ("existence", "coefficients", 0), lambda _: "31/100", NO_ORBIT),
+    "another kind": ("stable", ("format",), lambda _: "symfpu existence certificate", "not a certificate"),
+    "a later version": ("stable", ("schema",), lambda _: 2, "supports schema"),
+}
+
+
+@pytest.mark.parametrize("forgery", FORGERIES)
+def test_forgeries_with_digests_that_fit_are_refused(forgery, tmp_path):
+    name, place, change, why = FORGERIES[forgery]
+    found = reason(sealed_inside(altered(certificate(name), place, change)), tmp_path)
+    assert found
+    assert any(word in found for word in why.split("|")), found
+
+
+def test_choices_may_differ_but_not_the_theorem(tmp_path):
+    """Another weight far from the orbit proves the same theorem."""
+    data = certificate("stable")
+    weights = data["exponents"][0]["weights"]
+    assert weights[-1] in "01"
+    other = altered(data, (*FIRST, "weights"), lambda w: w[:-1] + "2")
+    assert reason(sealed(other), tmp_path) is None
+
+
+def test_a_key_twice_is_refused(tmp_path):
+    path = tmp_path / "c.json"
+    path.write_text(json.dumps(certificate("stable")).replace('"base": 0', '"base": 0, "base": 0', 1))
+    with pytest.raises(StabilityError, match="twice"):
+        verify(path)
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[]", "1.5", "\x00", '{"format": "symfpu stability certificate"}'])
+def test_what_is_no_certificate_is_refused(text, tmp_path):
+    path = tmp_path / "c.json"
+    path.write_text(text)
+    with pytest.raises(StabilityError):
+        verify(path)
+    with pytest.raises(CertificateError):
+        verify_certificate(path)
+
+
+def test_a_certificate_finds_its_checker(tmp_path):
+    path = tmp_path / "c.json"
+    path.write_text(json.dumps(certificate("unstable")))
+    assert verify_certificate(path) == verify(path)
+    path.write_text(json.dumps(altered(certificate("unstable"), (*FIRST, "radius", 0), moved)))
+    with pytest.raises(CertificateError, match="digest"):
+        verify_certificate(path)
+
+
+def test_it_imports_the_standard_library_and_the_other_checker_alone():
+    tree = ast.parse(Path(check_stability.__file__).read_text())
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+    names = {alias.name for node in imports if isinstance(node, ast.Import) for alias in node.names}
+    names |= {node.module for node in imports if isinstance(node, ast.ImportFrom)}
+    assert {name.partition(".")[0] for name in names} <= sys.stdlib_module_names | {"symfpu"}
+    own = [node for node in imports if isinstance(node, ast.ImportFrom) and node.module.startswith("symfpu")]
+    assert [alias.name for node in own for alias in node.names] == ["check_existence"]
+
+
+def test_the_inverse_of_a_block_is_one():
+    rng = random.Random(3)
+    matrix = [[rng.randrange(-ONE, ONE) for _ in range(5)] for _ in range(5)]
+    inverse = np.array(inverse_of(copy.deepcopy(matrix)), dtype=float) / 2.0**check_stability.INVERSE_BITS
+    np.testing.assert_allclose(inverse @ (np.array(matrix, dtype=float) / 2.0**PLACES), np.eye(5), atol=INVERSE_OF_BLOCK)
