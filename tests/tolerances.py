@@ -698,3 +698,19 @@ MAP_SHIFT = 1e-2
 
 # Two normal frequencies that are one at rest and differ on a torus: those of the tests by 2e-6 and more.
 SPLIT = 1e-6
+
+# What a torus in doubles leaves of the equations, by Newton's method: some 1e-16 a harmonic, over some hundred.
+TORUS_RESIDUAL = 1e-12
+
+# What a frame of eigenfunctions in doubles leaves of the linearised equations: 6e-15 to 9e-13 were met.
+FRAME_RESIDUAL = 1e-11
+
+# What sigma wrong by 1e-6 leaves of them, less a factor of 20 for the part of it that its direction has.
+FRAME_SEEN = 1e-7
+
+# Distances that a torus with some residual is sure to keep: a torus off by 1e-10 over 16 units of time, one in doubles over half
+# of the longest time, and one of 30 digits, 1e-33 times 1e9 times what couples.
+COARSE_STAY, DOUBLES_STAY, DIGITS_STAY = 1e-7, 1e-3, 1e-18
+
+# The first step of a KAM iteration for N = 3, as a part of what it may be: 0.07 in doubles, 8e-20 with 30 digits.
+KAM_DOUBLES, KAM_DIGITS = 1e-3, 1e-15

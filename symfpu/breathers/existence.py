@@ -39,6 +39,7 @@ from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.one_sided import above, below, rational
 from symfpu.numbers.typed import Number, decimal, exact
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
@@ -125,10 +126,20 @@ class ExistenceProof(Tabled):
 
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        found = f"a periodic orbit within {self.radius:.2g} of the computed one"
-        only = f"the only one within {self.unique:.2g}"
+        found = f"a periodic orbit within {above(self.radius, 2)} of the computed one"
+        only = f"the only one within {below(self.unique, 2)}"
         case = f"{chain}, seed {self.seed}, {self.condition}"
         return f"ExistenceProof({case}: {found}, {only}; {', '.join(self.intervals)})"
+
+    @property
+    def theorem(self) -> str:
+        """What is proved, in one sentence."""
+        joined = "for" if self.half_width else "with"
+        return (
+            f"{self.chain!r} has a periodic orbit of seed {self.seed} {joined} {self.condition} "
+            f"within {above(self.radius, 2)} of the computed one, and no other of its symmetry "
+            f"within {below(self.unique, 2)}"
+        )
 
     @property
     def condition(self) -> str:
@@ -136,7 +147,7 @@ class ExistenceProof(Tabled):
         sign = {FREQUENCY: "omega", AMPLITUDE: "A", ENERGY: "H"}[self.fixed]
         if not self.half_width:
             return f"{sign}={decimal(self.value)}"
-        return f"every {sign} within {float(self.half_width):.3g} of {decimal(self.value)}"
+        return f"every {sign} within {below(self.half_width, 3)} of {decimal(self.value)}"
 
     @property
     def intervals(self) -> tuple[str, ...]:
@@ -187,11 +198,13 @@ class ExistenceProof(Tabled):
 
 
 def interval_text(middle: Any, radius: float) -> str:
-    """A number with the digits that its radius leaves, and the radius."""
+    """A number with the digits that its radius leaves, and the radius with what they are off by."""
     size = abs(float(middle)) or 1.0
     digits = max(2, math.ceil(math.log10(size / radius)) + 1) if radius else 17
     with mpmath.workdps(digits + 5):
-        return f"{mpmath.nstr(middle, digits)} +- {radius:.1g}"
+        text = mpmath.nstr(middle, digits)
+    off = abs(rational(middle) - Fraction(text))
+    return f"{text} +- {above(rational(radius) + off, 1)}"
 
 
 def prove_existence(

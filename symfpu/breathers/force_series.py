@@ -20,6 +20,14 @@ from symfpu.chain.potentials.potential import Growth
 HIGHEST_DEGREE = 160  # of the polynomial that stands for a series
 
 
+def power(x: Any, k: int) -> Any:
+    """x^k by products, k from 1 up: arb's own of a ball about zero is no number."""
+    result = x
+    for _ in range(k - 1):
+        result = result * x
+    return result
+
+
 def ball(value: Fraction | int) -> Any:
     """A ball that holds an exact number."""
     return flint.arb(flint.fmpq(value.numerator, value.denominator))
@@ -35,8 +43,8 @@ class ForceSeries:
 
     def potential(self, r: Any) -> Any:
         """The integral of phi from 0 to a ball, without what is left out."""
-        terms = (ball(c) * r ** (k + 1) / (k + 1) for k, c in self.powers.items())
-        return r**2 / 2 + sum(terms, flint.arb(0))
+        terms = (ball(c) * power(r, k + 1) / (k + 1) for k, c in self.powers.items())
+        return r * r / 2 + sum(terms, flint.arb(0))
 
     def slope_bound(self, x: Any) -> Any:
         """Above |phi'(r)|_nu where |r|_nu is at most x."""

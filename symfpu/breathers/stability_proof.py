@@ -191,7 +191,7 @@ def prove_stability(
     """A proof that a breather is linearly stable, or unstable, or an error that says why not.
 
     solution : a breather as `prove_existence` takes it, or its proof, which then is not made again.
-    progress : called with a text and the fraction that is done.
+    progress : called as (label, fraction done).
 
     Every Floquet exponent is enclosed by a contraction in Fourier space around the proved orbit,
     whose own radius enters; all of them, distinct and on the circle, make the orbit stable, one

@@ -20,6 +20,7 @@ from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.one_sided import above
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 FORMAT = "symfpu torus certificate"
@@ -73,13 +74,22 @@ class ResidualProof(Tabled):
     body: Body = field(repr=False)
 
     def __repr__(self) -> str:
-        size, part = mpmath.nstr(self.bound, 3), mpmath.nstr(self.relative, 3)
-        found = f"residual below {size} of every particle at all angles"
+        part = above(self.relative, 3)
         which = torus_text(self.chain, self.seeds, self.frequencies)
         return (
-            f"ResidualProof({which}, {self.digits} digits: {found}, "
+            f"ResidualProof({which}, {self.digits} digits: {self._text}, "
             f"{part} of the largest acceleration)"
         )
+
+    @property
+    def _text(self) -> str:
+        size = above(self.bound, 3)
+        return f"residual below {size} of every particle at all angles"
+
+    @property
+    def theorem(self) -> str:
+        """What is proved, in one sentence."""
+        return f"{torus_text(self.chain, self.seeds, self.frequencies)}: {self._text}"
 
     @property
     def omega(self) -> dict[int, Fraction]:

@@ -74,11 +74,7 @@ REPORTS: dict[type, tuple[Callable[[Any], dict[str, Any]], Callable[[Any], str]]
 }
 
 
-@app.command(
-    epilog="Examples: symfpu certify breather.symfpu -o proof.json; "
-    "symfpu certify breather.symfpu --amplitude 0.4 --half-width 1e-5; "
-    "symfpu certify torus.symfpu --time 1e6"
-)
+@app.command(epilog="Example: symfpu certify breather.symfpu --stability -o proof.json")
 def certify(
     file: FileArgument,
     amplitude: AmplitudeOption = None,

@@ -49,6 +49,7 @@ def _head(proof: ResidualProof | StayProof) -> dict[str, Any]:
         "seeds": list(proof.seeds),
         "frequencies": {str(q): decimal(w) for q, w in pairs},
         "proved": True,
+        "theorem": proof.theorem,
         "harmonics": proof.harmonics,
         "digits": proof.digits,
     }

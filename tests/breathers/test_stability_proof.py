@@ -25,6 +25,7 @@ STABLE = {
     "alpha, wrapped modes": (Chain(7, alpha="0.4"), 5, "0.1"),
     "two bonds": (Chain(2, beta=1), 1, "0.3"),
     "beta, even seed": (Chain(6, beta="0.5"), 2, "0.2"),
+    "beta, a bond at rest": (Chain(5, beta="0.5"), 1, "0.3"),
     "beta, odd seed": (Chain(4, beta="0.5"), 3, "0.2"),
     "both, three bonds": (Chain(3, alpha="0.3", beta="1/7"), 1, "0.3"),
     "a polynomial": (Chain(5, potential="poly:0.3,0.1,-1/5,0,1/9"), 2, "0.2"),

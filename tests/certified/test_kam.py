@@ -11,6 +11,7 @@ from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from tests.test_pickle import two_angles
+from tests.tolerances import KAM_DIGITS, KAM_DOUBLES
 
 NOBLE = (61, -209, 179)  # (19 phi + 7) / (11 phi + 4), phi the golden mean
 FIRST = Fraction("0.9999")
@@ -31,7 +32,7 @@ def test_thirty_digits_leave_a_first_step_fifteen_orders_of_room():
     torus = refine(solve_amplitudes(lindstedt(Chain(3, alpha="0.3"), (1, 2), frequencies(), 6)))
     doubles = kam_sizes(torus, NOBLE).product
     found = kam_sizes(refine(torus, digits=30), NOBLE)
-    assert found.product < 1e-15 < 1e-3 < doubles
+    assert found.product < KAM_DIGITS < KAM_DOUBLES < doubles
     assert found.resonance > 10**20
 
 
