@@ -1,1 +1,3 @@
-"""Theorems about computed solutions: breathers that exist, their stability, residuals of tori, how long orbits stay near them."""
+"""Theorems about computed solutions: breathers that exist and their stability, residuals of tori,
+how long orbits stay near them.
+"""

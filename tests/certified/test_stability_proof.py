@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu.breathers import enclosures, exponents
 from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
 from symfpu.breathers.floquet import floquet
+from symfpu.certified import enclosures, exponents
 from symfpu.certified.enclosures import NoStabilityProof, check_count, enclosed_exponent, slopes_of
 from symfpu.certified.existence import prove_existence
 from symfpu.certified.sectors import sectors_of
