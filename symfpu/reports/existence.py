@@ -6,7 +6,7 @@ from typing import Any
 
 import mpmath
 
-from symfpu.breathers.existence import ExistenceProof
+from symfpu.certified.existence import ExistenceProof
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import fifteen_digits

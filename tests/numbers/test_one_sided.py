@@ -6,7 +6,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from symfpu.breathers.existence import interval_text
+from symfpu.certified.existence import interval_text
 from symfpu.numbers.one_sided import above, below, rational
 
 NUMBERS = [1.21e-30, 0.0428, 1.0, 9.99e-5, 99999.0, 123456.7, 5e-324, Fraction(1, 3), mpmath.mpf(2) ** -5000]

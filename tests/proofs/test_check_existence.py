@@ -15,9 +15,9 @@ import pytest
 
 from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.breathers.existence import prove_existence
-from symfpu.breathers.force_series import ball, of_growth
-from symfpu.breathers.packed_integers import packed
+from symfpu.certified.existence import prove_existence
+from symfpu.certified.force_series import ball, of_growth
+from symfpu.certified.packed_integers import packed
 from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.potential import Growth as ProverGrowth
 from symfpu.proofs import check_existence

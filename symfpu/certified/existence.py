@@ -17,11 +17,11 @@ from typing import Any
 import flint
 import mpmath
 
-from symfpu.breathers.bond_balls import SPARE_BITS, Rows
-from symfpu.breathers.border import AMPLITUDE, ENERGY, FREQUENCY, Fixed
-from symfpu.breathers.bordered_newton import fixed_orbit
-from symfpu.breathers.contraction import INVERSE_BITS, WEIGHT_BITS
-from symfpu.breathers.existence_bounds import (
+from symfpu.certified.bond_balls import SPARE_BITS, Rows
+from symfpu.certified.border import AMPLITUDE, ENERGY, FREQUENCY, Fixed
+from symfpu.certified.bordered_newton import fixed_orbit
+from symfpu.certified.contraction import INVERSE_BITS, WEIGHT_BITS
+from symfpu.certified.existence_bounds import (
     ProofBounds,
     Radii,
     double_above,
@@ -29,10 +29,10 @@ from symfpu.breathers.existence_bounds import (
     proof_bounds,
     radii,
 )
-from symfpu.breathers.force_series import ForceSeries, ball
-from symfpu.breathers.packed_integers import packed
-from symfpu.breathers.rounded_orbit import RoundedOrbit, rounded_orbit
-from symfpu.breathers.segment import Line, direction
+from symfpu.certified.force_series import ForceSeries, ball
+from symfpu.certified.packed_integers import packed
+from symfpu.certified.rounded_orbit import RoundedOrbit, rounded_orbit
+from symfpu.certified.segment import Line, direction
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.writing import write_text

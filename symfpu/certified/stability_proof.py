@@ -16,19 +16,19 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from symfpu.breathers.border import FREQUENCY
-from symfpu.breathers.enclosures import (
+from symfpu.certified.border import FREQUENCY
+from symfpu.certified.enclosures import (
     ADVICE,
     Enclosed,
     NoStabilityProof,
     check_count,
     enclosed_all,
 )
-from symfpu.breathers.existence import ExistenceProof, prove_existence
-from symfpu.breathers.exponent_bounds import RoundedZero, Slopes
-from symfpu.breathers.exponents import guesses
-from symfpu.breathers.rounded_orbit import RoundedOrbit
-from symfpu.breathers.sectors import Sector, sectors_of
+from symfpu.certified.existence import ExistenceProof, prove_existence
+from symfpu.certified.exponent_bounds import RoundedZero, Slopes
+from symfpu.certified.exponents import guesses
+from symfpu.certified.rounded_orbit import RoundedOrbit
+from symfpu.certified.sectors import Sector, sectors_of
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text

@@ -13,12 +13,12 @@ import pytest
 
 from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import Balance, breather_at_amplitude, periodic_orbit
-from symfpu.breathers.bond_balls import SPARE_BITS, BondBalls
-from symfpu.breathers.contraction import Attempt, places_of
 from symfpu.breathers.digits import periodic_orbit_digits
-from symfpu.breathers.existence import NoExistenceProof, prove_existence
-from symfpu.breathers.existence_bounds import linear_part, strip
-from symfpu.breathers.rounded_orbit import rounded_orbit
+from symfpu.certified.bond_balls import SPARE_BITS, BondBalls
+from symfpu.certified.contraction import Attempt, places_of
+from symfpu.certified.existence import NoExistenceProof, prove_existence
+from symfpu.certified.existence_bounds import linear_part, strip
+from symfpu.certified.rounded_orbit import rounded_orbit
 from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.from_expression import from_expression
 from symfpu.errors import InputError
