@@ -12,12 +12,14 @@ from symfpu import (
     birkhoff_form,
     breather_at_amplitude,
     refine,
+    refine_at_amplitudes,
     toda_torus,
     torus_at_amplitudes,
     travelling_torus,
     travelling_waves,
     twist,
 )
+from symfpu.refinement.newton import SMALLEST_BLOCK
 from tests.action_angle.test_actions import SEEDS, refined_toda
 from tests.tolerances import NEWTON_TWIST, ROUNDING, SLOPE, TWIST_DIFFERENCE
 
@@ -93,6 +95,17 @@ def test_determinants_of_two_angles():
     assert found.isoenergetic_determinant == pytest.approx(bordered, rel=ROUNDING)
     assert found.determinant == pytest.approx(np.prod(found.eigenvalues), rel=ROUNDING)
     assert found.signature == (1, 1, 0)
+
+
+def test_an_even_potential_with_more_harmonics_than_a_block_has():
+    """Many digits keep odd harmonics alone; the slopes V''(r) - 1 have even ones alone."""
+    amplitudes = {1: "0.1", 2: "0.1"}
+    guess = torus_at_amplitudes(Chain(4, beta="0.5"), amplitudes, 4)
+    torus = refine_at_amplitudes(guess, amplitudes, digits=30)
+    assert np.count_nonzero(torus.cosines) > SMALLEST_BLOCK
+    assert (torus.harmonics.sum(axis=1) % 2 == 1).all()
+    expected = twist(refine_at_amplitudes(guess, amplitudes))
+    assert twist(torus).matrix.astype(float) == pytest.approx(expected.matrix, rel=NEWTON_TWIST)
 
 
 def test_what_is_not_refined_is_refused():
