@@ -79,14 +79,14 @@ from symfpu.breathers.balance import breather_at_amplitude as breather_at_amplit
 from symfpu.breathers.balance import periodic_orbit as periodic_orbit
 from symfpu.breathers.digits import PreciseOrbit as PreciseOrbit
 from symfpu.breathers.digits import periodic_orbit_digits as periodic_orbit_digits
-from symfpu.breathers.existence import ExistenceProof as ExistenceProof
-from symfpu.breathers.existence import prove_existence as prove_existence
+from symfpu.certified.existence import ExistenceProof as ExistenceProof
+from symfpu.certified.existence import prove_existence as prove_existence
 from symfpu.breathers.floquet import Floquet as Floquet
 from symfpu.breathers.floquet import floquet as floquet
 from symfpu.breathers.shooting import ShotOrbit as ShotOrbit
 from symfpu.breathers.shooting import shoot as shoot
-from symfpu.breathers.stability_proof import StabilityProof as StabilityProof
-from symfpu.breathers.stability_proof import prove_stability as prove_stability
+from symfpu.certified.stability_proof import StabilityProof as StabilityProof
+from symfpu.certified.stability_proof import prove_stability as prove_stability
 
 # actions, twist and Birkhoff's normal form
 from symfpu.action_angle.actions import actions as actions
@@ -223,8 +223,8 @@ from symfpu.notebook import init_printing as init_printing
 from symfpu.action_angle.newton_twist import NoTwist as NoTwist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy as NoBreatherAtEnergy
 from symfpu.breathers.balance import NoPeriodicOrbit as NoPeriodicOrbit
-from symfpu.breathers.enclosures import NoStabilityProof as NoStabilityProof
-from symfpu.breathers.existence import NoExistenceProof as NoExistenceProof
+from symfpu.certified.enclosures import NoStabilityProof as NoStabilityProof
+from symfpu.certified.existence import NoExistenceProof as NoExistenceProof
 from symfpu.certified.stay import NoStayProof as NoStayProof
 from symfpu.breathers.shooting import ShootingFailed as ShootingFailed
 from symfpu.dynamics.frame_run import OrbitLost as OrbitLost

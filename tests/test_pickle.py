@@ -23,13 +23,13 @@ from symfpu.action_angle.twist import twist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy
 from symfpu.breathers.balance import Balance, NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
-from symfpu.breathers.enclosures import NoStabilityProof
-from symfpu.breathers.existence import NoExistenceProof, prove_existence
 from symfpu.breathers.floquet import floquet
 from symfpu.breathers.shooting import ShootingFailed, shoot
-from symfpu.breathers.stability_proof import prove_stability
 from symfpu.bundles.bundle import load, save
+from symfpu.certified.enclosures import NoStabilityProof
+from symfpu.certified.existence import NoExistenceProof, prove_existence
 from symfpu.certified.residual import prove_residual
+from symfpu.certified.stability_proof import prove_stability
 from symfpu.certified.stay import NoStayProof, prove_stay
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence

@@ -1,1 +1,3 @@
-"""Theorems about computed tori: how well they solve the equations of motion, and for how long."""
+"""Theorems about computed solutions: breathers that exist and their stability, residuals of tori,
+how long orbits stay near them.
+"""

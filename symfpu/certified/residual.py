@@ -20,6 +20,7 @@ from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.one_sided import above
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 FORMAT = "symfpu torus certificate"
@@ -73,7 +74,7 @@ class ResidualProof(Tabled):
     body: Body = field(repr=False)
 
     def __repr__(self) -> str:
-        part = mpmath.nstr(self.relative, 3)
+        part = above(self.relative, 3)
         which = torus_text(self.chain, self.seeds, self.frequencies)
         return (
             f"ResidualProof({which}, {self.digits} digits: {self._text}, "
@@ -82,7 +83,7 @@ class ResidualProof(Tabled):
 
     @property
     def _text(self) -> str:
-        size = mpmath.nstr(self.bound, 3)
+        size = above(self.bound, 3)
         return f"residual below {size} of every particle at all angles"
 
     @property

@@ -13,8 +13,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-import mpmath
-
 from symfpu.certified.frame import FRAME_BITS, RATE_BITS, Direction, directions_of
 from symfpu.certified.growth import Growth, rounded_up
 from symfpu.certified.norms import Norms, norms, weights_of
@@ -37,6 +35,7 @@ from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.typed import Number, decimal, exact
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
@@ -121,10 +120,7 @@ class StayProof(Tabled):
     @property
     def text(self) -> str:
         """The theorem without its torus."""
-        size, apart = (
-            mpmath.nstr(self.distance, 3),
-            mpmath.nstr(max(self.drift.values()), 3),
-        )
+        size, apart = above(self.distance, 3), above(max(self.drift.values()), 3)
         return (
             f"an orbit that starts on the torus stays within {size} of it for "
             f"t <= {decimal(self.time)}, its angles within {apart} of phi + omega t"
@@ -139,7 +135,7 @@ class StayProof(Tabled):
     @property
     def most(self) -> str:
         """The longest time in words."""
-        return f"at most t <= {self.longest:.3g}"
+        return f"at most t <= {below(self.longest, 3)}"
 
     def distance_at(self, time: Number) -> Any:
         """The distance that is proved for another time, mpf; not of the certificate.

@@ -8,10 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.breathers.existence import ExistenceProof, prove_existence
-from symfpu.breathers.stability_proof import StabilityProof, prove_stability
 from symfpu.bundles.bundle import load
+from symfpu.certified.existence import ExistenceProof, prove_existence
 from symfpu.certified.residual import ResidualProof, prove_residual
+from symfpu.certified.stability_proof import StabilityProof, prove_stability
 from symfpu.certified.stay import TIME, StayProof, prove_stay
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import solution_of
@@ -74,11 +74,7 @@ REPORTS: dict[type, tuple[Callable[[Any], dict[str, Any]], Callable[[Any], str]]
 }
 
 
-@app.command(
-    epilog="Examples: symfpu certify breather.symfpu -o proof.json; "
-    "symfpu certify breather.symfpu --amplitude 0.4 --half-width 1e-5; "
-    "symfpu certify torus.symfpu --time 1e6"
-)
+@app.command(epilog="Example: symfpu certify breather.symfpu --stability -o proof.json")
 def certify(
     file: FileArgument,
     amplitude: AmplitudeOption = None,

@@ -16,7 +16,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
@@ -773,10 +773,10 @@ def check_stay(data: Json, claim: Claim, residual: Row) -> list[str]:
     check_distance(bounds, stay)
     check_momentum(bounds, stay)
     check_drift(bounds, growth, stay)
-    drift = scientific(max(stay.drift))
+    drift, long = scientific(max(stay.drift)), scientific(stay.time, rounded=math.floor)
     terms = ", ".join(scientific(term) for term in growth.terms[:3])
     return [
-        f"theorem: every orbit that starts on this torus stays, for {scientific(stay.time)} units "
+        f"theorem: every orbit that starts on this torus stays, for {long} units "
         f"of time, within {scientific(stay.distance)} of it in all stretches and "
         f"{scientific(stay.momentum)} in all velocities, and the angles of the points it stays "
         f"near are within {drift} of phi + omega t",
@@ -814,14 +814,16 @@ def residual_text(claim: Claim, data: Json, stated: Fraction) -> str:
     )
 
 
-def scientific(x: Fraction, digits: int = 3) -> str:
-    """A number in decimals, rounded away from zero."""
+def scientific(
+    x: Fraction, digits: int = 3, rounded: Callable[[Fraction], int] = up
+) -> str:
+    """A number in decimals, its size rounded up, or another way."""
     if not x:
         return "0"
     size, sign = abs(x), "-" if x < 0 else ""
     exponent = len(str(size.numerator)) - len(str(size.denominator))
     if size < Fraction(10) ** exponent:
         exponent -= 1
-    text = str(up(size / Fraction(10) ** (exponent - digits + 1)))
+    text = str(rounded(size / Fraction(10) ** (exponent - digits + 1)))
     exponent += len(text) - digits
     return f"{sign}{text[0]}.{text[1:digits]}e{exponent}"

@@ -234,7 +234,9 @@ def theorem_text(proof: RuleForAllN) -> str:
     """The theorem of a proof in one sentence."""
     s = proof.seeds_number
     sets = f"every set of {s} seed" + "s" * (s > 1)
+    where = "on"
     if s >= degree_of(proof.model, proof.order):
+        where = f"where {s} of the seeds are on one of"
         sets = f"every set of {s} or more seeds"
     start = f"{proof.model} chains: for every N and {sets}, to order {proof.order},"
     if proof.verdict == "undecided":
@@ -242,7 +244,7 @@ def theorem_text(proof: RuleForAllN) -> str:
     exceptional = len([found for found in proof.decided if found.exceptions])
     rule = "the propagation rule holds"
     if exceptional:
-        rule += f" except on {exceptional} of {proof.flats} flats"
+        rule += f" except {where} {exceptional} of {proof.flats} flats"
     if not proof.gaps:
         return f"{start} {rule}, for generic frequencies"
     rest = f"on {len(proof.gaps)} flats for generic L_q(nu) instead"

@@ -687,13 +687,15 @@ def sentence(claim: Theorem, verdict: str, exceptional: int, count: int, gaps: i
     """The theorem."""
     plural = "s" * (claim.s > 1)
     sets = f"every set of {claim.s} seed{plural}"
+    where = "on"
     if claim.s >= claim.degree(claim.order):
+        where = f"where {claim.s} of the seeds are on one of"
         sets = f"every set of {claim.s} or more seeds"
     start = f"{claim.model} chains: for every N and {sets}, to order {claim.order},"
     if verdict == "undecided":
         return f"{start} the propagation rule is not decided"
     rule = "the propagation rule holds"
     if exceptional:
-        rule += f" except on {exceptional} of {count} flats"
+        rule += f" except {where} {exceptional} of {count} flats"
     rule += ", for generic frequencies"
     return f"{start} {rule}" + f"; on {gaps} flats for generic L_q(nu) instead" * (gaps > 0)

@@ -6,7 +6,8 @@ from typing import Any
 
 import mpmath
 
-from symfpu.breathers.existence import ExistenceProof
+from symfpu.certified.existence import ExistenceProof
+from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import fifteen_digits
 
@@ -51,8 +52,8 @@ def existence_text(proof: ExistenceProof) -> str:
     return "\n".join(
         [
             f"{chain}, seed {proof.seed}, {proof.condition}: proved",
-            f"  a periodic orbit {given} exists within {proof.radius:.2g} "
-            f"of the computed one, the only one within {proof.unique:.2g},",
+            f"  a periodic orbit {given} exists within {above(proof.radius, 2)} "
+            f"of the computed one, the only one within {below(proof.unique, 2)},",
             f"  analytic for |Im omega t| < log {proof.nu}",
             *(f"  {interval}" for interval in proof.intervals),
             f"  Y = {proof.residual:.2g}, Z0 + Z1 = {proof.linear:.3g}, "

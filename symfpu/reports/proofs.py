@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from symfpu.breathers.existence import ExistenceProof
-from symfpu.breathers.stability_proof import StabilityProof
+from symfpu.certified.existence import ExistenceProof
 from symfpu.certified.residual import ResidualProof
+from symfpu.certified.stability_proof import StabilityProof
 from symfpu.certified.stay import StayProof
 from symfpu.proofs import (
     certificates,

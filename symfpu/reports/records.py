@@ -11,11 +11,11 @@ import mpmath
 import numpy as np
 
 from symfpu.action_angle.twist import Twist
-from symfpu.breathers.existence import ExistenceProof
 from symfpu.breathers.floquet import Floquet
-from symfpu.breathers.stability_proof import StabilityProof
 from symfpu.bundles.bundle import Bundle
+from symfpu.certified.existence import ExistenceProof
 from symfpu.certified.residual import ResidualProof
+from symfpu.certified.stability_proof import StabilityProof
 from symfpu.certified.stay import StayProof
 from symfpu.chain.length import label_entry
 from symfpu.dynamics.alignment import AlignmentIndices

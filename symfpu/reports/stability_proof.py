@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symfpu.breathers.stability_proof import ProvedExponent, StabilityProof
+from symfpu.certified.stability_proof import ProvedExponent, StabilityProof
 from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import fifteen_digits
 

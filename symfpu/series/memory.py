@@ -11,7 +11,7 @@ from symfpu.algebra.dense import predicted_bytes
 from symfpu.algebra.program_ring import predicted_bytes as program_bytes
 from symfpu.algebra.residue import PRIME_BITS
 from symfpu.chain.chain import Chain, require_chain
-from symfpu.errors import InputError, TooLarge
+from symfpu.errors import TooLarge
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.series.arguments import digits_of
 from symfpu.series.force import stored_powers
@@ -69,9 +69,7 @@ def series_bytes(
     24715984
     """
     require_chain(chain)
-    if chain.symbolic:
-        raise InputError("chain", chain, "a chain with a number for N", "call at(N=...)")
-    count = len(seed_modes(seeds, chain.N))
+    count = len(seed_modes(seeds, int(chain.N)))
     last = integer(order, "order", 0)
     if digits is None:
         return _needed(chain, count, last, "float64", 0)

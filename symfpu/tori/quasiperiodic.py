@@ -422,8 +422,11 @@ class QuasiPeriodic(Shown, Gridded, Parts):
 
 
 def require_solution(solution: object, argument: str) -> None:
-    """InputError for what is no solution."""
+    """InputError for what is no solution; for a wave on a ring one that names the ring."""
     if not isinstance(solution, QuasiPeriodic):
+        chain = getattr(solution, "chain", None)
+        if isinstance(chain, Chain):
+            require_fixed_ends(chain)
         advice = "pass what solve_amplitudes, refine or periodic_orbit gave"
         raise InputError(
             argument, type(solution).__name__, "a solution: a torus or a breather", advice

@@ -25,7 +25,7 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.verdict import assess
 
-NAMES = ("doubles", "40 digits", "other frequencies")
+NAMES = ("doubles", "40 digits", "rounded amplitudes", "other frequencies")
 FILES = [f"convergence-{panel}" for panel in "abcde"]
 
 
@@ -96,11 +96,11 @@ def test_data_files_hold_what_the_pictures_show(cancellation, breather, tmp_path
     assert list(tables) == FILES
     assert tables["convergence-a"][0] == ["k", *NAMES]
     assert [[int(k), *map(float, values)] for k, *values in tables["convergence-a"][1:]] == [
-        [k, *(3 * 10.0**-k * scale for scale in (1, 2, 3))] for k in range(2, 31, 2)
+        [k, *(3 * 10.0**-k * scale for scale in (1, 2, 3, 4))] for k in range(2, 31, 2)
     ]
     assert tables["convergence-b"][0] == ["k", *NAMES]
     assert [[int(k), *map(float, values)] for k, *values in tables["convergence-b"][1:]] == [
-        [k, *(0.5**k * scale for scale in (1, 2, 3))] for k in range(31)
+        [k, *(0.5**k * scale for scale in (1, 2, 3, 4))] for k in range(31)
     ]
     assert tables["convergence-c"] == [["order", "truncated", "resummed"], ["12", str(0.5**12), "1e-05"], ["30", str(0.5**30), "2e-07"]]
     assert tables["convergence-e"] == [["omega", "A", "A at the end of the series"], ["0.391", "0.75", "0.875"], ["0.393", "1.125", "1.25"]]

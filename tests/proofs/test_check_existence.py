@@ -4,6 +4,7 @@ import ast
 import copy
 import json
 import math
+import re
 import sys
 from fractions import Fraction
 from functools import cache
@@ -14,16 +15,17 @@ import pytest
 
 from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.breathers.existence import prove_existence
-from symfpu.breathers.force_series import ball, of_growth
-from symfpu.breathers.packed_integers import packed
+from symfpu.certified.existence import prove_existence
+from symfpu.certified.force_series import ball, of_growth
+from symfpu.certified.packed_integers import packed
 from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.potential import Growth as ProverGrowth
 from symfpu.proofs import check_existence
 from symfpu.proofs.check_existence import COSINE_UNITS, Cosines, ExistenceError, verify
-from symfpu.proofs.check_existence.claim import Growth, rest_of_growth
+from symfpu.proofs.check_existence.claim import Growth, read_claim, rest_of_growth
 from symfpu.proofs.check_existence.reading import unpacked
 from symfpu.proofs.check_existence.theorem import check_contraction
+from symfpu.proofs.check_existence.wording import decimal_interval, theorem_text
 from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.verify import CertificateError
 from tests.proofs.test_forgeries import sealed
@@ -190,6 +192,49 @@ def test_forgeries_with_a_digest_that_fits_are_refused(name, tmp_path):
     found = reason(sealed(altered(certificate(), place, change)), tmp_path)
     assert found
     assert any(word in found for word in why.split("|")), found
+
+
+NO_ORBIT = {
+    "format": "symfpu existence certificate", "schema": 2, "N": 2, "coefficients": ["0"] * 5 + ["1"], "growths": [],
+    "degree": 7, "seed": 1, "fixed": "frequency", "value": "9/10", "half_width": "0", "omega": "9/10", "nu": "17/16",
+    "bits": 80, "orbit": ["", packed([2**50])], "scales": [], "direction": [], "direction_frequency": 0,
+    "slope_harmonics": 1, "free": 2, "block": [[1, 1]], "inverse_bits": 20, "inverse": [packed([1762313])],
+    "weight_bits": 0, "weights": packed([1]), "radius": [1, 60], "unique": [1, 40], "amplitude": [2**70 * 7 // 10, 2**64, 100],
+    "energy": [2**59, 2**55, 120], "frequency": [],
+}  # fmt: skip
+
+
+def test_where_the_force_rounds_to_nothing_the_linear_part_counts(tmp_path):
+    """V = r^2/2 + r^8/8, c_1[1] = 2^-30: r^7 is below the last place, and no orbit has omega = 0.9 beside sqrt(2)."""
+    assert "exceeds r" in reason(sealed(NO_ORBIT), tmp_path)
+
+
+def test_a_harmonic_that_the_orbit_lacks_is_seen_where_products_are_cut(tmp_path):
+    """An orbit of A = 1e-20 with 4 2^-bits added at harmonic 9, ten times the radius."""
+    small = prove_existence(breather_at_amplitude(Chain(3, alpha="0.3"), 1, "1e-20"), amplitude="1e-20")
+    data = copy.deepcopy(small.certificate())
+    assert reason(data, tmp_path) is None
+    assert small.radius < 2.0 ** -data["bits"]
+    while len(data["orbit"]) < 10:
+        data["orbit"].append(packed([0]))
+    data["orbit"][9] = packed([4])
+    assert "exceeds r" in reason(sealed(data), tmp_path)
+
+
+@pytest.mark.parametrize("half", [0, 1, 11, 99, 110, 1050, 5000])
+@pytest.mark.parametrize("middle", [1051, -1051, 9999, 1234567, 3])
+def test_printed_intervals_hold_those_that_were_checked(middle, half):
+    middle_text, half_text = decimal_interval([middle, half, 10]).split(" +- ")
+    printed, width = Fraction(middle_text), Fraction(half_text)
+    assert printed - width <= Fraction(middle - half, 1024)
+    assert Fraction(middle + half, 1024) <= printed + width
+
+
+@pytest.mark.parametrize("unique", [Fraction(10001, 10**8), Fraction(9999, 7), Fraction(1, 2)])
+def test_the_printed_radius_of_uniqueness_is_not_above_the_one_checked(unique):
+    text = theorem_text(read_claim(certificate()), certificate(), Fraction(1, 2**60), unique)
+    within = Fraction(re.search(r"only one within (\S+) in", text).group(1))
+    assert unique * Fraction(99, 100) < within <= unique
 
 
 def bounds_of(name):

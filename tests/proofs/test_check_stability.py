@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.breathers.stability_proof import prove_stability
+from symfpu.certified.stability_proof import prove_stability
 from symfpu.chain.chain import Chain
 from symfpu.proofs import check_stability
 from symfpu.proofs.check_stability import ONE, PLACES, StabilityError, inverse_of, verify

@@ -122,6 +122,13 @@ def test_an_altered_claim_with_a_digest_that_fits_is_refused(name, tmp_path):
     refused(sealed(data), tmp_path, REASONS.get(name, ""))
 
 
+def test_the_printed_time_is_not_above_the_one_checked(tmp_path):
+    data = copy.deepcopy(stay())
+    data["stay"][0] = "9999/10"
+    lines = checked(sealed(data), tmp_path)
+    assert "stays, for 9.99e2 units of time" in lines[1]
+
+
 def test_a_frame_without_a_claim_is_refused(tmp_path):
     data = copy.deepcopy(residual())
     data["weights"] = [1]

@@ -34,6 +34,16 @@ def test_theorems_verify_and_say_the_same_sentence(tmp_path):
         assert verify(path)[0] == proof.theorem
 
 
+def test_of_larger_sets_the_exceptions_are_those_of_their_parts():
+    """Theorem 5: flats are of three seeds, and a larger set is exceptional where three of its seeds are."""
+    proof = prove_for_all_N("beta", 3, 1)
+    assert (
+        "3 or more seeds, to order 1, the propagation rule holds except where 3 of the seeds are on one of 708 of 10180 flats"
+        in proof.theorem
+    )
+    assert verify_theorem.sentence(verify_theorem.Theorem("beta", 3, 1), "refuted", 708, 10180, 0) == proof.theorem
+
+
 def test_no_flat_can_be_left_out_doubled_or_invented(tmp_path):
     proof = prove_for_all_N("beta", 2, 1).certificate()
     path = tmp_path / "c.json"

@@ -222,6 +222,8 @@ PUBLIC = {
     "shoot": lambda: symfpu.shoot(SYMBOLIC, 1, "0.4"),
     "slope_by_energy": lambda: symfpu.slope_by_energy(SYMBOLIC, 2, [0.1, 0.2, 0.3], np.ones((3, 3))),
     "small_parameter": lambda: SYMBOLIC.small_parameter(),
+    "frequency_map": lambda: symfpu.frequency_map(SYMBOLIC, (0.1, 0.2)),
+    "series_bytes": lambda: symfpu.series_bytes(SYMBOLIC, (1,), 2),
     "stretches": lambda: SYMBOLIC.stretches(ONES),
     "twist_at_rest": lambda: symfpu.twist_at_rest(SYMBOLIC, (1,)),
     "packet_state": lambda: symfpu.packet_state(SYMBOLIC, (1,), 0.1),

@@ -185,7 +185,8 @@ class Bounds:
         bonds, claim = self.bonds, self.claim
         divisors = Divisors(claim, bonds.cosines, bonds.places)
         factor = claim.unit * of_frequency / (1 << 2 * claim.bits)
-        longest = max(len(bond.values) for bond in series)
+        # series may end before the orbit does, as products are cut where they are small
+        longest = max(claim.harmonics + 1, *(len(bond.values) for bond in series))
         total = 0
         for n in range(longest):
             forces = [f.values[n] if n < len(f.values) else 0 for f in series]

@@ -1,6 +1,8 @@
 """What has been proved, in one sentence."""
 
+from collections.abc import Callable
 from fractions import Fraction
+from math import floor
 from typing import Any
 
 from symfpu.proofs.check_existence.claim import AMPLITUDE, ENERGY, FREQUENCY, Claim, Force
@@ -23,7 +25,7 @@ def theorem_text(claim: Claim, data: Json, radius: Fraction, unique: Fraction) -
         f"{start} {orbits(claim)}, even in time, whose bond stretches "
         f"differ from those {where} by at most {scientific(radius)} at all times "
         f"and in the strip |Im omega t| <= log({claim.nu}); with the symmetry of seed {claim.seed} "
-        f"{only} within {scientific(unique)} in the weighted norm; "
+        f"{only} within {scientific(unique, rounded=floor)} in the weighted norm; "
         f"{', '.join(stated_intervals(claim, data))}"
     )
 
@@ -67,21 +69,24 @@ def shown(x: Fraction) -> str:
 
 
 def decimal_interval(entry: Any) -> str:
-    """Middle +- radius, the radius rounded up and enough digits of the middle."""
+    """Enough digits of the middle +- the radius, rounded up with what those digits are off by."""
     low, high = stated(entry, "interval")
     middle, half = (low + high) / 2, (high - low) / 2
     digits = max(1, len(str(int(abs(middle) / half))) + 1) if half else 40
-    return f"{scientific(middle, digits)} +- {scientific(half + abs(middle) / 10**digits)}"
+    text = scientific(middle, digits)
+    return f"{text} +- {scientific(half + abs(middle - Fraction(text)))}"
 
 
-def scientific(x: Fraction, digits: int = 3) -> str:
-    """A number in decimals, rounded away from zero."""
+def scientific(
+    x: Fraction, digits: int = 3, rounded: Callable[[Fraction], int] = up
+) -> str:
+    """A number in decimals, its size rounded up, or another way."""
     if not x:
         return "0"
     exponent = len(str(abs(x.numerator))) - len(str(x.denominator))
     if abs(x) < Fraction(10) ** exponent:
         exponent -= 1
-    mantissa = up(abs(x) / Fraction(10) ** (exponent - digits + 1))
+    mantissa = rounded(abs(x) / Fraction(10) ** (exponent - digits + 1))
     text = str(mantissa)
     if len(text) > digits:
         exponent += 1

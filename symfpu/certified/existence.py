@@ -17,11 +17,11 @@ from typing import Any
 import flint
 import mpmath
 
-from symfpu.breathers.bond_balls import SPARE_BITS, Rows
-from symfpu.breathers.border import AMPLITUDE, ENERGY, FREQUENCY, Fixed
-from symfpu.breathers.bordered_newton import fixed_orbit
-from symfpu.breathers.contraction import INVERSE_BITS, WEIGHT_BITS
-from symfpu.breathers.existence_bounds import (
+from symfpu.certified.bond_balls import SPARE_BITS, Rows
+from symfpu.certified.border import AMPLITUDE, ENERGY, FREQUENCY, Fixed
+from symfpu.certified.bordered_newton import fixed_orbit
+from symfpu.certified.contraction import INVERSE_BITS, WEIGHT_BITS
+from symfpu.certified.existence_bounds import (
     ProofBounds,
     Radii,
     double_above,
@@ -29,16 +29,17 @@ from symfpu.breathers.existence_bounds import (
     proof_bounds,
     radii,
 )
-from symfpu.breathers.force_series import ForceSeries, ball
-from symfpu.breathers.packed_integers import packed
-from symfpu.breathers.rounded_orbit import RoundedOrbit, rounded_orbit
-from symfpu.breathers.segment import Line, direction
+from symfpu.certified.force_series import ForceSeries, ball
+from symfpu.certified.packed_integers import packed
+from symfpu.certified.rounded_orbit import RoundedOrbit, rounded_orbit
+from symfpu.certified.segment import Line, direction
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.one_sided import above, below, rational
 from symfpu.numbers.typed import Number, decimal, exact
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
@@ -125,8 +126,8 @@ class ExistenceProof(Tabled):
 
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        found = f"a periodic orbit within {self.radius:.2g} of the computed one"
-        only = f"the only one within {self.unique:.2g}"
+        found = f"a periodic orbit within {above(self.radius, 2)} of the computed one"
+        only = f"the only one within {below(self.unique, 2)}"
         case = f"{chain}, seed {self.seed}, {self.condition}"
         return f"ExistenceProof({case}: {found}, {only}; {', '.join(self.intervals)})"
 
@@ -136,8 +137,8 @@ class ExistenceProof(Tabled):
         joined = "for" if self.half_width else "with"
         return (
             f"{self.chain!r} has a periodic orbit of seed {self.seed} {joined} {self.condition} "
-            f"within {self.radius:.2g} of the computed one, and no other of its symmetry within "
-            f"{self.unique:.2g}"
+            f"within {above(self.radius, 2)} of the computed one, and no other of its symmetry "
+            f"within {below(self.unique, 2)}"
         )
 
     @property
@@ -146,7 +147,7 @@ class ExistenceProof(Tabled):
         sign = {FREQUENCY: "omega", AMPLITUDE: "A", ENERGY: "H"}[self.fixed]
         if not self.half_width:
             return f"{sign}={decimal(self.value)}"
-        return f"every {sign} within {float(self.half_width):.3g} of {decimal(self.value)}"
+        return f"every {sign} within {below(self.half_width, 3)} of {decimal(self.value)}"
 
     @property
     def intervals(self) -> tuple[str, ...]:
@@ -197,11 +198,13 @@ class ExistenceProof(Tabled):
 
 
 def interval_text(middle: Any, radius: float) -> str:
-    """A number with the digits that its radius leaves, and the radius."""
+    """A number with the digits that its radius leaves, and the radius with what they are off by."""
     size = abs(float(middle)) or 1.0
     digits = max(2, math.ceil(math.log10(size / radius)) + 1) if radius else 17
     with mpmath.workdps(digits + 5):
-        return f"{mpmath.nstr(middle, digits)} +- {radius:.1g}"
+        text = mpmath.nstr(middle, digits)
+    off = abs(rational(middle) - Fraction(text))
+    return f"{text} +- {above(rational(radius) + off, 1)}"
 
 
 def prove_existence(

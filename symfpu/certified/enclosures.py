@@ -13,9 +13,9 @@ from fractions import Fraction
 import flint
 import numpy as np
 
-from symfpu.breathers.bond_balls import SPARE_BITS, BondBalls
-from symfpu.breathers.existence_bounds import double_above, linear_part, strip
-from symfpu.breathers.exponent_bounds import (
+from symfpu.certified.bond_balls import SPARE_BITS, BondBalls
+from symfpu.certified.existence_bounds import double_above, linear_part, strip
+from symfpu.certified.exponent_bounds import (
     WEIGHTS,
     Attempt,
     Choice,
@@ -24,10 +24,10 @@ from symfpu.breathers.exponent_bounds import (
     Slopes,
     rounded_zero,
 )
-from symfpu.breathers.exponents import FourierSystem, FourierZero, Guess
-from symfpu.breathers.force_series import ball
-from symfpu.breathers.rounded_orbit import RoundedOrbit
-from symfpu.breathers.sectors import Sector
+from symfpu.certified.exponents import FourierSystem, FourierZero, Guess
+from symfpu.certified.force_series import ball
+from symfpu.certified.rounded_orbit import RoundedOrbit
+from symfpu.certified.sectors import Sector
 from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress
 

@@ -15,11 +15,11 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from symfpu.breathers.bond_balls import BondBalls
-from symfpu.breathers.border import Border, Fixed, border_of
-from symfpu.breathers.contraction import Attempt, LinearPart, first_free
-from symfpu.breathers.existence_bounds import linear_part, strip
-from symfpu.breathers.rounded_orbit import RoundedOrbit
+from symfpu.certified.bond_balls import BondBalls
+from symfpu.certified.border import Border, Fixed, border_of
+from symfpu.certified.contraction import Attempt, LinearPart, first_free
+from symfpu.certified.existence_bounds import linear_part, strip
+from symfpu.certified.rounded_orbit import RoundedOrbit
 
 Floats = NDArray[np.float64]
 

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.rounded_orbit import RoundedOrbit
-from symfpu.breathers.sectors import Sector
+from symfpu.certified.rounded_orbit import RoundedOrbit
+from symfpu.certified.sectors import Sector
 from symfpu.chain import bonds
 from symfpu.dynamics.tangent import tangent_map_along
 

@@ -20,8 +20,8 @@ from typing import Any
 
 import flint
 
-from symfpu.breathers.bond_balls import BondBalls
-from symfpu.breathers.force_series import ball
+from symfpu.certified.bond_balls import BondBalls
+from symfpu.certified.force_series import ball
 
 FREQUENCY, AMPLITUDE, ENERGY = "frequency", "amplitude", "energy"
 

@@ -14,11 +14,11 @@ from typing import Any
 import flint
 import numpy as np
 
-from symfpu.breathers.bond_balls import BondBalls, Series, product
-from symfpu.breathers.border import Border, power_of_two
-from symfpu.breathers.bordered_newton import as_integers, bordered_matrix
-from symfpu.breathers.contraction import WEIGHT_BITS, Contraction
-from symfpu.breathers.existence_bounds import norm_of_image
+from symfpu.certified.bond_balls import BondBalls, Series, product
+from symfpu.certified.border import Border, power_of_two
+from symfpu.certified.bordered_newton import as_integers, bordered_matrix
+from symfpu.certified.contraction import WEIGHT_BITS, Contraction
+from symfpu.certified.existence_bounds import norm_of_image
 
 
 @dataclass(frozen=True, eq=False)

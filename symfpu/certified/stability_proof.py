@@ -16,19 +16,19 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from symfpu.breathers.border import FREQUENCY
-from symfpu.breathers.enclosures import (
+from symfpu.certified.border import FREQUENCY
+from symfpu.certified.enclosures import (
     ADVICE,
     Enclosed,
     NoStabilityProof,
     check_count,
     enclosed_all,
 )
-from symfpu.breathers.existence import ExistenceProof, prove_existence
-from symfpu.breathers.exponent_bounds import RoundedZero, Slopes
-from symfpu.breathers.exponents import guesses
-from symfpu.breathers.rounded_orbit import RoundedOrbit
-from symfpu.breathers.sectors import Sector, sectors_of
+from symfpu.certified.existence import ExistenceProof, prove_existence
+from symfpu.certified.exponent_bounds import RoundedZero, Slopes
+from symfpu.certified.exponents import guesses
+from symfpu.certified.rounded_orbit import RoundedOrbit
+from symfpu.certified.sectors import Sector, sectors_of
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
@@ -191,7 +191,7 @@ def prove_stability(
     """A proof that a breather is linearly stable, or unstable, or an error that says why not.
 
     solution : a breather as `prove_existence` takes it, or its proof, which then is not made again.
-    progress : called with a text and the fraction that is done.
+    progress : called as (label, fraction done).
 
     Every Floquet exponent is enclosed by a contraction in Fourier space around the proved orbit,
     whose own radius enters; all of them, distinct and on the circle, make the orbit stable, one

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.exponents import FourierZero, Guess, Values, coupled
-from symfpu.breathers.sectors import Ints, Sector
+from symfpu.certified.exponents import FourierZero, Guess, Values, coupled
+from symfpu.certified.sectors import Ints, Sector
 
 Floats = NDArray[np.float64]
 

@@ -15,17 +15,17 @@ import flint
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.bond_balls import BondBalls
-from symfpu.breathers.border import Border, Fixed, border_of
-from symfpu.breathers.contraction import (
+from symfpu.certified.bond_balls import BondBalls
+from symfpu.certified.border import Border, Fixed, border_of
+from symfpu.certified.contraction import (
     ROUNDOFF,
     BorderLine,
     Contraction,
     LinearPart,
     contraction,
 )
-from symfpu.breathers.force_series import ball
-from symfpu.breathers.rounded_orbit import RoundedOrbit
+from symfpu.certified.force_series import ball
+from symfpu.certified.rounded_orbit import RoundedOrbit
 
 Floats = NDArray[np.float64]
 

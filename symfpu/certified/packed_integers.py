@@ -16,7 +16,7 @@ def packed(values: Iterable[int]) -> str:
     """The integers one after another.
 
     >>> packed([0, -1, 3, 1000])
-    '!#(lR'
+    '!#(gM'
     """
     return "".join(map(packed_integer, values))
 

@@ -14,9 +14,9 @@ from typing import Any
 
 import flint
 
-from symfpu.breathers.force_series import ball as ball
-from symfpu.breathers.force_series import force_series
-from symfpu.breathers.rounded_orbit import RoundedOrbit
+from symfpu.certified.force_series import ball as ball
+from symfpu.certified.force_series import force_series
+from symfpu.certified.rounded_orbit import RoundedOrbit
 
 SPARE_BITS = 64  # beyond those of the orbit
 

@@ -6,13 +6,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu.breathers import enclosures, exponents
 from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
-from symfpu.breathers.enclosures import NoStabilityProof, check_count, enclosed_exponent, slopes_of
-from symfpu.breathers.existence import prove_existence
 from symfpu.breathers.floquet import floquet
-from symfpu.breathers.sectors import sectors_of
-from symfpu.breathers.stability_proof import gaps_of, orbit_of, prove_stability
+from symfpu.certified import enclosures, exponents
+from symfpu.certified.enclosures import NoStabilityProof, check_count, enclosed_exponent, slopes_of
+from symfpu.certified.existence import prove_existence
+from symfpu.certified.sectors import sectors_of
+from symfpu.certified.stability_proof import gaps_of, orbit_of, prove_stability
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.progress import unheard
@@ -37,7 +37,7 @@ UNSTABLE = {
     "period doubling": (Chain(4, alpha="0.5", beta=1), 2, "2"),
 }
 FIG = Chain(32, alpha="0.33")
-# frequencies of Figs. 9, 8 and 7, as in tests/breathers/test_existence.py
+# frequencies of Figs. 9, 8 and 7, as in tests/certified/test_existence.py
 FIGURES = {"fig 9": (1, "0.09844127049688513"), "fig 8": (25, "1.8830741847088537"), "fig 7": (1, "0.09814109959448596")}
 
 

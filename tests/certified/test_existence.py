@@ -13,12 +13,12 @@ import pytest
 
 from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import Balance, breather_at_amplitude, periodic_orbit
-from symfpu.breathers.bond_balls import SPARE_BITS, BondBalls
-from symfpu.breathers.contraction import Attempt, places_of
 from symfpu.breathers.digits import periodic_orbit_digits
-from symfpu.breathers.existence import NoExistenceProof, prove_existence
-from symfpu.breathers.existence_bounds import linear_part, strip
-from symfpu.breathers.rounded_orbit import rounded_orbit
+from symfpu.certified.bond_balls import SPARE_BITS, BondBalls
+from symfpu.certified.contraction import Attempt, places_of
+from symfpu.certified.existence import NoExistenceProof, prove_existence
+from symfpu.certified.existence_bounds import linear_part, strip
+from symfpu.certified.rounded_orbit import rounded_orbit
 from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.from_expression import from_expression
 from symfpu.errors import InputError
@@ -34,6 +34,7 @@ CASES = {
     "alpha": (Chain(8, alpha="0.3"), 1, "0.4"),
     "two bonds": (Chain(2, beta=1), 1, "0.3"),
     "beta, even seed": (Chain(6, beta="0.5"), 2, "-0.2"),
+    "a bond at rest": (Chain(3, beta="0.3"), 1, "0.2"),
     "wrapped modes": (Chain(7, alpha="0.4"), 5, "0.1"),
     "both": (Chain(5, alpha="1/3", beta="-1/7"), 3, "0.2"),
     "a polynomial": (Chain(5, potential="poly:0.3,0.1,-1/5,0,1/9"), 2, "0.2"),
@@ -69,7 +70,7 @@ def checked(found, folder):
     return check_existence.verify(folder / "proof.json")
 
 
-QUICK = ("alpha", "two bonds", "beta, even seed", "both", "toda", "amplitude", "energy, toda")
+QUICK = ("alpha", "two bonds", "beta, even seed", "a bond at rest", "both", "toda", "amplitude", "energy, toda")
 EACH = [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.long]) for name in CASES]
 OF_FREQUENCY = [case for case in EACH if case.values[0] not in GIVEN]
 
