@@ -613,6 +613,9 @@ NEWTON_TWIST = 1e-11
 # Central differences of frequencies with step 1e-8 in actions of some 1e-3, at 30 digits; the actions are those of doubles.
 TWIST_DIFFERENCE = 1e-9
 
+# Lambda dI against domega of two tori of 40 digits whose amplitude differs by 2e-12 of itself: the square of that, times 1e4.
+PRECISE_TWIST = 1e-20
+
 # Ends of a definite range are enclosed to 1e-10 by an exact signature on both sides, from a guess rounded to 12 decimals.
 RANGE_END = 1.01e-10
 # A normal frequency is exact to the square of the eigenfunction's residual, 1e-20; what is left is the rounding of divisors

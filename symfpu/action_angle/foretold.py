@@ -348,7 +348,10 @@ def _given(torus: QuasiPeriodic, normal: object) -> list[NormalDirection]:
     due = torus.chain.N - 1 - len(torus.seeds)
     if not same or len(normal.modes) != due:
         allowed = f"all {due} normal modes of this solution"
-        raise InputError("normal", repr(normal), allowed, "pass normal_modes(solution)")
+        advice = "pass normal_modes(solution)"
+        if normal.missing:
+            advice = "take a torus of another amplitude, where none is missing"
+        raise InputError("normal", repr(normal), allowed, advice)
     if not normal.stable:
         advice = "along it volumes shrink exponentially: alignment_indices follows them"
         raise InputError("normal", normal.verdict, "a torus with elliptic modes", advice)

@@ -15,6 +15,7 @@ import numpy as np
 
 from symfpu.action_angle.actions import half_weighted
 from symfpu.errors import SymfpuError
+from symfpu.numbers.arithmetic import Numbers
 from symfpu.refinement.conditions import Amplitude, seed_amplitudes
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.harmonics import unit_harmonics
@@ -88,7 +89,8 @@ class _Changes(NamedTuple):
 
 
 def _changes(torus: QuasiPeriodic) -> _Changes:
-    equation, cosines = _equation(torus)
+    equation, table = equation_of(torus)
+    cosines = table.astype(np.longdouble)
     shifts = shifts_of(torus)
     amplitudes = seed_amplitudes(equation, cosines)
     conditions = [Amplitude(i, a) for i, a in enumerate(amplitudes)]
@@ -109,8 +111,11 @@ def _changes(torus: QuasiPeriodic) -> _Changes:
     return _Changes(equation, known, by_cosine, by_shift, np.array(by_action))
 
 
-def _equation(torus: QuasiPeriodic) -> tuple[InvarianceEquation, Floats]:
-    """The equation on the harmonics of a torus, the seeds' own among them, and its cosines."""
+def equation_of(torus: QuasiPeriodic) -> tuple[InvarianceEquation, Numbers]:
+    """The equation on the harmonics of a torus, the seeds' own among them, and its cosines.
+
+    Cosines (H, N-1) as the torus has them, 0 where the symmetry forbids one.
+    """
     signs = [_sign(nu) for nu in torus.harmonics.tolist()]
     harmonics = torus.harmonics * np.array(signs)[:, None]
     rows = {
@@ -123,7 +128,7 @@ def _equation(torus: QuasiPeriodic) -> tuple[InvarianceEquation, Floats]:
     equation = InvarianceEquation(
         torus.chain, torus.seeds, np.array(listed, dtype=np.int64)
     )
-    cosines = np.array([rows[nu] for nu in listed], dtype=np.longdouble)
+    cosines = np.array([rows[nu] for nu in listed])
     return equation, np.where(equation.mask, cosines, 0)
 
 

@@ -17,12 +17,14 @@ import numpy as np
 from symfpu.action_angle.actions import actions
 from symfpu.action_angle.at_rest import in_words
 from symfpu.action_angle.newton_twist import NoTwist, changes_by_newton
+from symfpu.action_angle.precise_twist import changes_in_digits
 from symfpu.action_angle.series_twist import changes_of_series, solved
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
+from symfpu.normal.search import PRECISE
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text, with_digits
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
@@ -165,7 +167,8 @@ def twist(solution: QuasiPeriodic) -> Twist:
     """Lambda = d omega / d I of a torus or breather, its signature and determinants.
 
     solution : a torus of a series, whose truncated sums are differentiated exactly, to all its
-        digits; or any refined solution (`refine`, breathers), by Newton's matrix in doubles.
+        digits; or any refined solution (`refine`, breathers), by Newton's matrix: in doubles, of
+        one that was refined to many digits (PreciseTorus, PreciseOrbit) with as many.
         Dimensionless.
 
     Nothing is a difference of two tori. Lambda of an exact torus is symmetric; that of a truncated
@@ -181,7 +184,7 @@ def twist(solution: QuasiPeriodic) -> Twist:
         advice = "actions(solution) takes it; the twist needs fixed ends"
         raise InputError("solution", "a RingTorus", "a torus of fixed ends", advice)
     by_angle = actions(solution)
-    places = solution.digits if isinstance(solution, QTorus) else None
+    places = solution.digits if isinstance(solution, (QTorus, *PRECISE)) else None
     matrix, method = _lambda(solution)
     frequencies = _rounded(list(solution.frequencies), places)
     return Twist(
@@ -211,13 +214,20 @@ def _lambda(solution: QuasiPeriodic) -> tuple[Numbers, str]:
         by_amplitude, method = changes_of_series(solution), "series"
     else:
         _require_refined(solution)
-        by_amplitude, method = changes_by_newton(solution.in_doubles()), "Newton"
+        by_amplitude, method = _by_newton(solution), "Newton"
     frequencies, of_actions = by_amplitude
     with solution.numbers.context(solution.digits):
         try:
             return solved(of_actions.T, frequencies.T).T, method
         except np.linalg.LinAlgError as failure:
             raise NoTwist("the actions do not change with the amplitudes") from failure
+
+
+def _by_newton(solution: QuasiPeriodic) -> tuple[Numbers, Numbers]:
+    """In digits where the solution has those of the equations, in doubles else."""
+    if isinstance(solution, PRECISE):
+        return changes_in_digits(solution)
+    return changes_by_newton(solution.in_doubles())
 
 
 def _require_refined(solution: QuasiPeriodic) -> None:

@@ -40,6 +40,7 @@ GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or 
 REACH = 0.3
 ONE_ANGLE = "a solution of one angle"
 ONE_SEED = "take a solution of one seed, or None"
+NEARER = "start from a guess nearer to the orbit, such as an orbit of smaller amplitude"
 SMALLEST_PART = 1 / 64  # of the way from rest, in one step
 
 
@@ -52,7 +53,9 @@ class NoPeriodicOrbit(SymfpuError):
         Ours.
     """
 
-    def __init__(self, balance: Balance, reason: str, z: Floats) -> None:
+    def __init__(
+        self, balance: Balance, reason: str, z: Floats, advice: str = NEARER
+    ) -> None:
         self.seed = balance.seed
         self.iterate = balance.cosines(z)
         self.frequency = balance.frequency(z)
@@ -62,8 +65,7 @@ class NoPeriodicOrbit(SymfpuError):
             f"no periodic orbit of seed {self.seed}: {reason}; "
             f"the best iterate, omega = {self.frequency:.12g} and A = {amplitude:.6g} "
             f"with {balance.harmonics} harmonics, "
-            f"leaves {self.residual:.2g} of the largest acceleration; "
-            f"start from a guess nearer to the orbit, such as an orbit of smaller amplitude"
+            f"leaves {self.residual:.2g} of the largest acceleration; {advice}"
         )
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.balance import (
+    NEARER,
     Balance,
     NoPeriodicOrbit,
     PeriodicOrbit,
@@ -57,6 +58,8 @@ STALL_SWEEPS = 4  # sweeps without a smaller residual that end the search
 ROUNDING_BITS = 24
 CHECK_BITS = 64  # more than those of the orbit, in the check of its residual
 DOUBLE_BITS = 1000  # of an integer that goes into a double
+# dlnomega/dlnA below which a frequency in doubles does not tell the amplitude
+FLAT = 1e-7
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -112,7 +115,7 @@ def periodic_orbit_digits(
         A near the orbit. Neither: the frequency of the orbit.
 
     Newton-like sweeps on harmonic balance, Eq. eqmo; ours. Raises InputError, and NoPeriodicOrbit
-    if the sweeps gain no digits.
+    if the sweeps gain no digits, as where omega does not change with the amplitude: give that.
 
     >>> from symfpu.chain.chain import Chain
     >>> orbit = periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
@@ -226,7 +229,29 @@ class Sweeps:
                 break
         digits = (self.size.bit_length() - least) * math.log10(2)
         reason = f"the sweeps in fixed point stop at a residual of 1e-{digits:.0f}"
-        raise NoPeriodicOrbit(self.balance, reason, self.z)
+        raise NoPeriodicOrbit(self.balance, reason, self.z, self._advice())
+
+    def _advice(self) -> str:
+        """What to do where the sweeps gain nothing."""
+        if self.by_amplitude:
+            return NEARER
+        slope = self._slope()
+        if not abs(slope) < FLAT:
+            return NEARER
+        flat = f"omega hardly changes with A here, dln(omega)/dln(A) = {slope:.1g}"
+        A = float(self.z[self.balance.first])
+        return f"{flat}, and does not tell it: hold the amplitude, amplitude={A:.15g}"
+
+    def _slope(self) -> float:
+        """dln(omega)/dln(A) along the family at the orbit in doubles; nan at a fold in A."""
+        first, z = self.balance.first, self.z
+        _, jacobian = self.balance.system(z)
+        others = np.delete(np.arange(len(z)), first)
+        try:
+            changes = np.linalg.solve(jacobian[:, others], -jacobian[:, first])
+        except np.linalg.LinAlgError:
+            return math.nan
+        return float(changes[-1] * z[first]) / (2 * float(self.orbit.frequency) ** 2)
 
     def _correct(self, values: Integers, bits: int) -> None:
         from scipy.linalg import lu_solve

@@ -22,7 +22,7 @@ from symfpu.files.progress import Progress
 from symfpu.normal.linearised import LinearisedFlow, coefficients_by_harmonic
 from symfpu.normal.modes import NormalMode
 from symfpu.normal.reduction import Block, Bordered
-from symfpu.normal.search import normal_modes
+from symfpu.normal.search import checked_modes, normal_modes
 from symfpu.refinement.equation import Floats
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
@@ -55,7 +55,7 @@ def directions_of(solution: QuasiPeriodic, tell: Progress) -> tuple[Direction, .
     Raises NoTwist, NoNormalModes, InputError.
     """
     torus = without_rounding(solution.in_doubles())
-    found = normal_modes(torus, progress=tell)
+    found = normal_modes(torus, modes=checked_modes(torus, None), progress=tell)
     if not found.stable:
         allowed = "an elliptic torus: all normal frequencies real"
         advice = "take another amplitude; beside it orbits leave at the rate of growth"

@@ -56,7 +56,7 @@ from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
-from symfpu.normal.search import normal_modes
+from symfpu.normal.search import checked_modes, normal_modes
 from symfpu.plots.indices import foretold as draw_foretold
 from symfpu.reports.tables import fifteen_digits
 from symfpu.tori.quasiperiodic import QuasiPeriodic
@@ -201,7 +201,8 @@ def _forecast(start: Start) -> _Forecast:
         allowed = "only for a FILE with a torus of fixed ends"
         raise InputError("foretold", True, allowed, "leave --foretold out")
     with progress_bar("normal modes") as advance:
-        normal = normal_modes(torus, progress=advance)
+        every = checked_modes(torus, None)
+        normal = normal_modes(torus, modes=every, progress=advance)
         return _Forecast(torus, flow_of(torus, normal))
 
 

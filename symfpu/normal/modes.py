@@ -179,6 +179,7 @@ class NormalModes(Shown, Gridded):
         closed second-order shift.
     resonances : the nearest, by distance. undecided : modes so near to a collision with another
         that rounding hides whether they are stable. All is dimensionless.
+    missing : by mode, why one could not be told from others.
 
     >>> from symfpu import Chain, breather_at_amplitude, normal_modes
     >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
@@ -196,6 +197,7 @@ class NormalModes(Shown, Gridded):
     guesses: dict[int, float] = field(repr=False)
     resonances: tuple[ParametricResonance, ...] = field(repr=False)
     undecided: tuple[int, ...] = field(default=(), repr=False)
+    missing: dict[int, str] = field(default_factory=dict, repr=False)
 
     def __repr__(self) -> str:
         torus = self.torus
@@ -203,8 +205,9 @@ class NormalModes(Shown, Gridded):
         pairs = zip(torus.seeds, torus.frequencies, strict=True)
         omega = "".join(f", omega_{q}={float(w):.10g}" for q, w in pairs)
         sigma = "".join(f", sigma_{mode.mode}={mode.text}" for mode in self.modes)
+        none = "".join(f", no sigma_{q}" for q in self.missing)
         residual = f"residual {text(self.residual, 1)}"
-        return f"NormalModes({chain}{omega}, {self.verdict}{sigma}, {residual})"
+        return f"NormalModes({chain}{omega}, {self.verdict}{sigma}{none}, {residual})"
 
     @property
     def digits(self) -> int | None:
@@ -235,10 +238,10 @@ class NormalModes(Shown, Gridded):
 
     @property
     def stable(self) -> bool | None:
-        """Whether all modes are elliptic; None where rounding hides it."""
+        """Whether all modes are elliptic; None where rounding hides it, or one is missing."""
         if self._unstable:
             return False
-        return None if self.undecided else True
+        return None if self.undecided or self.missing else True
 
     @property
     def _unstable(self) -> list[NormalMode]:
@@ -255,6 +258,9 @@ class NormalModes(Shown, Gridded):
         unstable = ", ".join(str(mode.mode) for mode in self._unstable)
         if unstable:
             return f"unstable: modes {unstable}, growth {float(self.growth):.7g}"
+        if not self.undecided:
+            none = ", ".join(map(str, self.missing))
+            return f"undecided: no normal frequency of modes {none}"
         hidden = ", ".join(map(str, self.undecided))
         level = max(self.mode(q).rounding for q in self.undecided)
         nearness = f"nearer to a collision than {level:.1g}"
@@ -267,7 +273,8 @@ class NormalModes(Shown, Gridded):
     def mode(self, q: int) -> NormalMode:
         """The normal mode that continues q. Raises InputError for a seed, or one left out."""
         if q not in self._by_mode:
-            raise InputError("q", q, f"one of {list(self._by_mode)}", "see modes")
+            advice = "see missing" if q in self.missing else "see modes"
+            raise InputError("q", q, f"one of {list(self._by_mode)}", advice)
         return self._by_mode[q]
 
     def multipliers(self) -> dict[int, Any]:

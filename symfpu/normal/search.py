@@ -68,7 +68,7 @@ def normal_modes(
         Dimensionless. Of one that was refined to many digits (PreciseTorus, PreciseOrbit)
         frequencies and eigenfunctions have as many, by sweeps in fixed point; any other is rounded
         to doubles, as `solution.in_doubles()` is.
-    modes : which of the N-1-s modes, of a ring signed; default all.
+    modes : which of the N-1-s modes, of a ring signed; default all that can be told from others.
     resonance_length : largest sum |nu_i| of the resonances listed.
     progress : called as (label, fraction), once a mode.
 
@@ -78,8 +78,11 @@ def normal_modes(
     breather, exp(2 pi i sigma/omega) are the Floquet multipliers. About travelling waves the
     solution goes as exp(i sigma t - 2 pi i q j/N); about standing ones q > 0 is a sine and -q, or
     N/2, a cosine, a pair of one frequency at rest. Uniform motion, which nothing couples to, is
-    left out. Ours: the paper has none. Raises InputError, and NoNormalModes where a resonance does
-    not let a mode be told from others.
+    left out. Ours: the paper has none.
+
+    Where a resonance does not let a mode be told from others the result has the rest, and says why
+    in `missing`. Raises InputError, and NoNormalModes for such a mode that `modes` names, or if
+    there is no other.
 
     >>> from symfpu import Chain, refine_at_amplitudes, torus_at_amplitudes
     >>> amplitudes = {1: "0.2", 2: "0.1"}
@@ -91,13 +94,25 @@ def normal_modes(
     chosen = checked_modes(torus, modes)
     length = integer(resonance_length, "resonance_length", 1)
     search, tell = _Search(torus, length), progress or unheard
-    found: dict[int, NormalMode] = {}
-    for number, q in enumerate(chosen):
-        tell(f"normal mode {q}", number / len(chosen))
-        found[q] = search.required(q, found)
+    found, missing = search.each(chosen, tell)
+    named = modes is not None
+    _require(found, missing, named=named)
     if isinstance(solution, PRECISE):
-        found = _in_digits(solution, found, length, tell)
-    return search.result(solution, found)
+        found, others = _in_digits(solution, found, length, tell)
+        missing |= others
+        _require(found, missing, named=named)
+    return search.result(solution, found, missing)
+
+
+Found = tuple[dict[int, NormalMode], dict[int, NoNormalModes]]  # and why others were not
+
+
+def _require(
+    found: Mapping[int, NormalMode], missing: Mapping[int, NoNormalModes], *, named: bool
+) -> None:
+    """NoNormalModes where modes that were named are missing, or all are."""
+    if missing and (named or not found):
+        raise next(iter(missing.values()))
 
 
 def _in_digits(
@@ -105,9 +120,10 @@ def _in_digits(
     found: Mapping[int, NormalMode],
     length: int,
     tell: Progress,
-) -> dict[int, NormalMode]:
-    """Modes in doubles with the digits of the torus; NoNormalModes where that fails."""
+) -> Found:
+    """Modes in doubles with the digits of the torus."""
     precise: dict[int, NormalMode] = {}
+    missing: dict[int, NoNormalModes] = {}
     search: PreciseModes | None = None
     for number, (q, mode) in enumerate(found.items()):
         tell(f"normal mode {q}, {torus.digits} digits", number / len(found))
@@ -118,9 +134,8 @@ def _in_digits(
             real = complex(mode.sigma).real
             nearest = _resonances(torus, {q: real}, length)
             reason = f"no {torus.digits} digits of its frequency: {failure}"
-            none = NoNormalModes(q, real, nearest[0] if nearest else None, reason)
-            raise none from None
-    return precise
+            missing[q] = NoNormalModes(q, real, nearest[0] if nearest else None, reason)
+    return precise, missing
 
 
 def followed_modes(
@@ -139,16 +154,9 @@ def followed_modes(
     """
     torus = _checked(solution)
     chosen = checked_modes(torus, modes)
-    search, tell = _Search(torus, LENGTH, before), progress or unheard
-    found: dict[int, NormalMode] = {}
-    missing: dict[int, NoNormalModes] = {}
-    for number, q in enumerate(chosen):
-        tell(f"normal mode {q}", number / len(chosen))
-        try:
-            found[q] = search.required(q, found)
-        except NoNormalModes as none:
-            missing[q] = none
-    return search.result(solution, found), missing
+    search = _Search(torus, LENGTH, before)
+    found, missing = search.each(chosen, progress or unheard)
+    return search.result(solution, found, missing), missing
 
 
 def _checked(solution: object) -> Solution:
@@ -229,7 +237,24 @@ class _Search:
         self._functions = 1 if self._travels else (bonds + 1) // 2
         self._flows: list[Linearised] = []
 
-    def result(self, solution: Solution, found: dict[int, NormalMode]) -> NormalModes:
+    def each(self, modes: tuple[int, ...], tell: Progress) -> Found:
+        """Those that continue the chosen modes."""
+        found: dict[int, NormalMode] = {}
+        missing: dict[int, NoNormalModes] = {}
+        for number, q in enumerate(modes):
+            tell(f"normal mode {q}", number / len(modes))
+            try:
+                found[q] = self._required(q, found)
+            except NoNormalModes as none:
+                missing[q] = none
+        return found, missing
+
+    def result(
+        self,
+        solution: Solution,
+        found: dict[int, NormalMode],
+        missing: Mapping[int, NoNormalModes],
+    ) -> NormalModes:
         """The modes that were found, with the resonances of all of them."""
         real = {q: mode.sigma.real for q, mode in found.items()}
         return NormalModes(
@@ -238,9 +263,10 @@ class _Search:
             guesses={q: self._guesses[q] for q in found},
             resonances=tuple(_resonances(solution, real, self._length)),
             undecided=undecided_modes(solution, tuple(found.values())),
+            missing={q: str(none) for q, none in missing.items()},
         )
 
-    def required(self, q: int, others: dict[int, NormalMode]) -> NormalMode:
+    def _required(self, q: int, others: dict[int, NormalMode]) -> NormalMode:
         """The one that continues q; NoNormalModes where there is none."""
         guess = self._guesses[q]
         found = self.mode(q, guess, others)

@@ -148,6 +148,13 @@ def dilated(harmonics: Ints, factor: float) -> Ints:
     return np.asarray(rows)
 
 
+def without_opposites(harmonics: Ints) -> Ints:
+    """Those whose first number that is not 0 is positive, and 0, of harmonics of both signs."""
+    first = np.argmax(harmonics != 0, axis=1)
+    lead = harmonics[np.arange(len(harmonics)), first]
+    return np.asarray(harmonics[lead >= 0])
+
+
 @lru_cache(maxsize=8)
 def _known_lattice(content: bytes, s: int) -> tuple[int, tuple[int, ...]]:
     from scipy import fft
@@ -186,12 +193,15 @@ def generated_lattice(harmonics: Ints) -> tuple[int, Ints]:
 
 
 def largest_slopes(grid: Lattice, spectrum: Floats, entries: int) -> Ints:
-    """The harmonics of the slopes that a sparse derivative holds.
+    """The harmonics of the slopes that a sparse derivative holds, one of each pair.
 
     spectrum : of the slopes, (bonds, points). entries : that one harmonic makes.
+
+    They are among all harmonics as large as the chosen ones: where V is even the slopes have even
+    harmonics alone, and the torus odd ones.
     """
     heights = np.abs(spectrum).max(axis=0)
-    nu = grid.harmonics
+    nu = without_opposites(dilated(grid.harmonics, 1))
     height = heights[grid.entries(nu)]
     most = min(MOST_SLOPES, max(1, MOST_ENTRIES // entries))
     order = np.argsort(-height, kind="stable")

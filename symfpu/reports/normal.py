@@ -31,6 +31,7 @@ def normal_record(found: NormalModes) -> dict[str, Any]:
         "verdict": found.verdict,
         "stable": found.stable,
         "undecided": list(found.undecided),
+        "missing": {str(q): why for q, why in found.missing.items()},
         "growth": fifteen_digits(float(found.growth)),
         "normal_frequencies": {
             str(q): _number(w, found.digits) for q, w in found.frequencies.items()
@@ -208,6 +209,7 @@ def normal_text(found: NormalModes) -> str:
         shift = complex(mode.sigma).real - linear[mode.mode]
         kind = f"{mode.kind}, {float(mode.residual):.0e}"
         lines.append(f"  {mode.mode:4d}  {mode.text:33}  {shift:+.4e}  {kind}")
+    lines += [f"  {q:4d}  {why}" for q, why in found.missing.items()]
     if found.resonances:
         lines.append("nearest resonances:")
     lines += [f"  {one!r}" for one in found.resonances[:SHOWN_RESONANCES]]

@@ -11,15 +11,20 @@ from symfpu import (
     actions,
     birkhoff_form,
     breather_at_amplitude,
+    periodic_orbit_digits,
     refine,
+    refine_at_amplitudes,
     toda_torus,
     torus_at_amplitudes,
     travelling_torus,
     travelling_waves,
     twist,
 )
+from symfpu.action_angle import precise_twist
+from symfpu.action_angle.newton_twist import NoTwist
+from symfpu.refinement.newton import SMALLEST_BLOCK
 from tests.action_angle.test_actions import SEEDS, refined_toda
-from tests.tolerances import NEWTON_TWIST, ROUNDING, SLOPE, TWIST_DIFFERENCE
+from tests.tolerances import NEWTON_TWIST, PRECISE_TWIST, ROUNDING, SLOPE, TWIST_DIFFERENCE
 
 CASES = {"alpha": {"alpha": "0.3"}, "beta": {"beta": "-0.3"}, "both": {"alpha": "0.3", "beta": "0.2"}}
 
@@ -93,6 +98,61 @@ def test_determinants_of_two_angles():
     assert found.isoenergetic_determinant == pytest.approx(bordered, rel=ROUNDING)
     assert found.determinant == pytest.approx(np.prod(found.eigenvalues), rel=ROUNDING)
     assert found.signature == (1, 1, 0)
+
+
+def moved(amplitudes, seed, part):
+    with mpmath.workdps(40):
+        return {**amplitudes, seed: mpmath.nstr(mpmath.mpf(amplitudes[seed]) * (1 + mpmath.mpf(part)), 30)}
+
+
+def missed(found, ends):
+    """|domega - Lambda dI| of two tori over the largest domega."""
+    with mpmath.workdps(60):
+        exact = [[mpmath.mpf(w.numerator) / w.denominator for w in torus.frequencies] for torus in ends]
+        turned = np.array(exact[0]) - np.array(exact[1])
+        further = np.array(list(actions(ends[0]).values())) - np.array(list(actions(ends[1]).values()))
+        return float(abs(turned - found.matrix @ further).max() / abs(turned).max())
+
+
+@pytest.mark.parametrize(("law", "seed"), [("alpha", 1), ("beta", 2)])
+def test_digits_of_a_torus(law, seed):
+    """Symmetric to them, and what two tori nearby have."""
+    chain, amplitudes = Chain(4, **CASES[law]), {1: "0.1", 2: "0.1"}
+    guess = torus_at_amplitudes(chain, amplitudes, 4)
+    found = twist(refine_at_amplitudes(guess, amplitudes, digits=30))
+    assert (found.digits, found.method, found.matrix[0, 1].digits) == (30, "Newton", 30)
+    assert found.asymmetry < mpmath.mpf(10) ** -30
+    nearby = [moved(amplitudes, seed, part) for part in ("1e-12", "-1e-12")]
+    ends = [refine_at_amplitudes(guess, given, digits=40) for given in nearby]
+    assert missed(found, ends) < PRECISE_TWIST
+
+
+def test_digits_of_a_breather():
+    chain, given = Chain(5, alpha="0.3", beta="0.2"), {2: "0.4"}
+    orbit = breather_at_amplitude(chain, 2, "0.4")
+    found = twist(periodic_orbit_digits(orbit, 30, amplitude="0.4"))
+    nearby = [moved(given, 2, part)[2] for part in ("1e-12", "-1e-12")]
+    ends = [periodic_orbit_digits(orbit, 40, amplitude=A) for A in nearby]
+    assert missed(found, ends) < PRECISE_TWIST
+
+
+def test_sweeps_that_gain_nothing_are_named(monkeypatch):
+    orbit = periodic_orbit_digits(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), 20)
+    monkeypatch.setattr(precise_twist, "SWEEPS", 1)
+    with pytest.raises(NoTwist, match=r"the sweeps in fixed point leave 1e-.*in_doubles"):
+        twist(orbit)
+
+
+def test_an_even_potential_with_more_harmonics_than_a_block_has():
+    """Many digits keep odd harmonics alone; the slopes V''(r) - 1 have even ones alone."""
+    amplitudes = {1: "0.1", 2: "0.1"}
+    guess = torus_at_amplitudes(Chain(4, beta="0.5"), amplitudes, 4)
+    torus = refine_at_amplitudes(guess, amplitudes, digits=30)
+    assert np.count_nonzero(torus.cosines) > SMALLEST_BLOCK
+    assert (torus.harmonics.sum(axis=1) % 2 == 1).all()
+    expected = twist(refine_at_amplitudes(guess, amplitudes))
+    for again in (torus, torus.in_doubles()):
+        assert twist(again).matrix.astype(float) == pytest.approx(expected.matrix, rel=NEWTON_TWIST)
 
 
 def test_what_is_not_refined_is_refused():

@@ -190,3 +190,15 @@ def test_sweeps_that_gain_nothing_are_given_up(monkeypatch):
     monkeypatch.setattr("scipy.linalg.lu_solve", lambda matrix, values: 0 * values)
     with pytest.raises(NoPeriodicOrbit, match="the sweeps in fixed point stop at a residual of 1e-1"):
         periodic_orbit_digits(orbit, 30)
+
+
+@pytest.mark.parametrize("amplitude", ["0.3", 1])
+def test_a_frequency_that_does_not_tell_the_amplitude_is_named(amplitude):
+    """alpha, N = 4, seed 2: r^2 is the same on all bonds, so that no force is left but the linear one: omega = Omega_2."""
+    orbit = breather_at_amplitude(Chain(4, alpha="0.5"), 2, amplitude)
+    with pytest.raises(NoPeriodicOrbit, match=rf"hold the amplitude, amplitude={float(amplitude):g}$"):
+        periodic_orbit_digits(orbit, 20)
+    precise = periodic_orbit_digits(orbit, 20, amplitude=amplitude)
+    with mpmath.workdps(2 * precise.digits):
+        exact = mpmath.mpf(precise.frequency.numerator) / precise.frequency.denominator
+        assert abs(exact - mpmath.sqrt(2)) < mpmath.mpf(10) ** -precise.digits

@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.certified.frame import directions_of
 from symfpu.certified.growth import Growth
 from symfpu.certified.norms import norms, weights_of
@@ -16,6 +17,8 @@ from symfpu.certified.rounded_torus import residual_of, rounded_torus, stretches
 from symfpu.certified.stay import NoStayProof, prove_stay
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
+from symfpu.normal.modes import NoNormalModes
+from symfpu.normal.search import _Search
 from symfpu.refinement.tori import refine, refine_at_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.quasiperiodic import FourierTorus
@@ -40,6 +43,14 @@ def coarse(size=1e-10):
     moved = exact.cosines.copy()
     moved[exact.harmonics.tolist().index([2, 0]), 1] += size
     return FourierTorus(exact.chain, exact.seeds, exact.frequencies, exact.harmonics, moved, exact.phases)
+
+
+def test_a_frame_takes_all_modes(monkeypatch):
+    """Where one is missing it names that one: the others are no frame."""
+    found = _Search.mode
+    monkeypatch.setattr(_Search, "mode", lambda search, q, *rest: None if q == 3 else found(search, q, *rest))
+    with pytest.raises(NoNormalModes, match="continues mode 3"):
+        directions_of(breather_at_amplitude(Chain(4, alpha="0.3"), 2, "0.1"), silent)
 
 
 def taylor(torus, time, step, order=20, digits=30):

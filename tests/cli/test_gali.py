@@ -16,6 +16,7 @@ from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
+from symfpu.normal.search import _Search
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from tests.tolerances import COMMANDED_SECONDS, FORETOLD, GALI_SLOPE, VOLUME_BY_SCHEME
@@ -206,3 +207,13 @@ def test_only_tori_foretell(capsys, kept):
     save(rough, solve_amplitudes(lindstedt(Chain(8, beta=1), (4,), ("1.44",), 1)))
     code, _, err = run(capsys, "gali", str(rough), "--time", "300", "--foretold")
     assert (code, "refine" in err) == (2, True)
+
+
+def test_it_foretells_by_all_normal_modes(capsys, tmp_path, monkeypatch):
+    """One that cannot be told from others is named."""
+    file, found = tmp_path / "breather", _Search.mode
+    save(file, breather_at_amplitude(Chain(4, beta=1), 2, "0.4"))
+    monkeypatch.setattr(_Search, "mode", lambda search, q, *rest: None if q == 3 else found(search, q, *rest))
+    code, _, err = run(capsys, "gali", str(file), "--time", "300", "--foretold")
+    assert code == 1
+    assert "continues mode 3" in err

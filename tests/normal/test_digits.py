@@ -18,6 +18,7 @@ from symfpu.normal import digits as sweeps
 from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
 from symfpu.normal.self_consistent import solve_normal_frequency
+from symfpu.refinement.digits import Failure
 from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.saved.results import load, save
 from symfpu.tori.frequencies import torus_at_amplitudes
@@ -204,6 +205,26 @@ def test_sweeps_that_gain_nothing_are_named(monkeypatch):
     monkeypatch.setattr(sweeps, "SWEEPS", 1)
     with pytest.raises(NoNormalModes, match=r"no 40 digits.*in_doubles"):
         normal_modes(small(40))
+
+
+def test_one_mode_without_digits_does_not_lose_the_others(monkeypatch):
+    refined = sweeps.PreciseModes.refined
+
+    def stopped(modes, mode, tell):
+        if mode.mode == 3:
+            raise Failure("no more")
+        return refined(modes, mode, tell)
+
+    orbit = periodic_orbit_digits(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), 20)
+    whole = normal_modes(orbit)
+    assert whole.frequencies.keys() == {1, 3}
+    monkeypatch.setattr(sweeps.PreciseModes, "refined", stopped)
+    found = normal_modes(orbit)
+    assert found.missing.keys() == {3}
+    assert "no 20 digits of its frequency: no more" in found.missing[3]
+    assert found.frequencies == {1: whole.frequencies[1]}
+    with pytest.raises(NoNormalModes, match="no more"):
+        normal_modes(orbit, modes=[1, 3])
 
 
 def test_more_harmonics_are_taken_where_some_are_missing(monkeypatch):

@@ -1,6 +1,7 @@
 """Normal modes of waves of a ring: Floquet, Toda's spectral curve, tori with one wave more, integrated variations."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.tori import refine, refine_at_amplitudes
 from symfpu.refinement.travelling_breather import travelling_breather
+from symfpu.saved.results import load
 from symfpu.series.travelling import travelling_waves
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.ring_torus import travelling_torus, unfold
@@ -192,11 +194,35 @@ def test_variations_of_standing_waves():
 
 
 def test_a_displacement_that_costs_nothing_is_named():
-    """N = 8: sigma_-1 and omega_1 are apart by an Umklapp of high order alone."""
+    """N = 8: sigma_-1 and omega_1 are apart by an Umklapp of high order alone. The others are found."""
     waves = unfold(breather_at_amplitude(Chain(8, beta=1), 1, "0.3"))
-    with pytest.raises(NoNormalModes, match=r"mode -1 .*sigma_-1 = \(1\)\.omega, off by"):
-        normal_modes(waves)
-    assert normal_modes(waves, modes=[-2, 2]).stable
+    reason = r"mode -1 .*sigma_-1 = \(1\)\.omega, off by"
+    for named in ([-1], [-2, -1, 2]):
+        with pytest.raises(NoNormalModes, match=reason):
+            normal_modes(waves, modes=named)
+    found = normal_modes(waves)
+    assert re.search(reason, found.missing.pop(-1))
+    assert not found.missing
+    others = [q for q in waves.chain.mode_numbers if q not in (-1, 1)]
+    expected = normal_modes(waves, modes=others)
+    assert found.frequencies == expected.frequencies
+    assert expected.stable
+
+
+def test_a_missing_mode_leaves_the_verdict_open(tmp_path, capsys):
+    file = str(save(tmp_path / "waves", unfold(breather_at_amplitude(Chain(8, beta=1), 1, "0.3"))))
+    kept = str(tmp_path / "modes.symfpu")
+    assert main(["stability", file, "--json", "--save", kept]) == 0
+    record = json.loads(capsys.readouterr().out)
+    found = load(kept).result
+    assert record["missing"] == {"-1": found.missing[-1]}
+    assert (record["stable"], found.stable) == (None, None)
+    assert found.verdict == "undecided: no normal frequency of modes -1"
+    assert ", no sigma_-1, residual" in repr(found)
+    with pytest.raises(InputError, match="see missing"):
+        found.mode(-1)
+    assert main(["stability", file]) == 0
+    assert found.missing[-1] in capsys.readouterr().out.replace("\n", " ")
 
 
 def test_waves_that_neither_travel_nor_stand_are_refused():
