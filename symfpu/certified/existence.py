@@ -51,6 +51,7 @@ MORE_HARMONICS = (
     "more harmonics may help: periodic_orbit_digits(orbit, 40) takes what it needs"
 )
 SMALLER = "an orbit of smaller amplitude is easier"
+GIVEN = "give amplitude= or energy= instead of it"
 NO_ORBIT = "more digits of it do not help: Newton's method, periodic_orbit, finds orbits"
 HALF_A_RING = (
     "a standing breather of a ring, odd about two particles, is that of half the ring with fixed "
@@ -246,13 +247,20 @@ def prove_existence(
             rounded = fixed_orbit(rounded, fixed)
         bounds, linear = proof_bounds(rounded, fixed)
         if bounds is None:
-            raise NoExistenceProof("Z1", linear, 1.0, f"{MORE_HARMONICS}; {SMALLER}")
+            raise NoExistenceProof("Z1", linear, 1.0, advice_of(linear, fixed))
         line = line_of(bounds) if fixed.half_width else None
         bounds = on_line(bounds, line)
         found = radii(bounds)
         if found is None:
             raise NoExistenceProof(*not_small(bounds))
         return assembled(bounds, found, fixed, line)
+
+
+def advice_of(linear: float, fixed: Fixed) -> str:
+    """What helps where no block makes Z small."""
+    if math.isinf(linear) and fixed.kind == FREQUENCY:
+        return f"the frequency may not tell this orbit from its neighbours: {GIVEN}"
+    return f"{MORE_HARMONICS}; {SMALLER}"
 
 
 def fixed_value(

@@ -35,6 +35,7 @@ from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
@@ -120,9 +121,11 @@ class StabilityProof(Tabled):
         widest = max((e.radius for e in self.exponents), default=0.0)
         if not self.stable:
             least, most = self.growth
-            return f"linearly unstable, growth rate in {least:.9g} .. {most:.9g}"
-        count = f"{len(self.exponents)} exponents within {widest:.1g}"
-        gap = f", smallest gap {self.gaps[0].least:.6g} omega" if self.gaps else ""
+            return (
+                f"linearly unstable, growth rate in {below(least, 9)} .. {above(most, 9)}"
+            )
+        count = f"{len(self.exponents)} exponents within {above(widest, 1)}"
+        gap = f", smallest gap {below(self.gaps[0].least, 5)} omega" if self.gaps else ""
         return f"linearly stable, {count}{gap}"
 
     @property
@@ -136,14 +139,14 @@ class StabilityProof(Tabled):
         proof = self.existence
         chain = repr(proof.chain)
         orbit = f"the periodic orbit of {chain} with frequency {decimal(proof.frequency)}"
-        where = f"within {proof.radius:.2g} of the computed one"
+        where = f"within {above(proof.radius, 2)} of the computed one"
         if not self.stable:
             least, most = self.growth
             return (
                 f"{orbit} {where} is linearly unstable: a solution of the linearised equations "
-                f"grows with a rate between {least:.10g} and {most:.10g}"
+                f"grows with a rate between {below(least, 10)} and {above(most, 10)}"
             )
-        gap = f", {self.gaps[0].least:.3g} omega or more apart" if self.gaps else ""
+        gap = f", {below(self.gaps[0].least, 3)} omega or more apart" if self.gaps else ""
         return (
             f"{orbit} {where} is linearly stable: all multipliers lie on the unit circle, 1 is "
             f"double and all others are simple within their symmetry sector{gap}"

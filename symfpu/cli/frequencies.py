@@ -235,6 +235,7 @@ def _print(found: FrequencyAnalysis | FrequencyMap, level: float) -> None:
         say("\n".join(text_table(head, _map_rows(found))))
         return
     say(f"independent frequencies above {level:g} of the strongest: {found.count(level)}")
+    say("errors of the lines of the computed orbit; what its step adds, half of it shows")
     head = ["mode", "frequency", "error", "amplitude", "harmonic"]
     strongest = sorted(found.lines, key=lambda line: -line.amplitude)[:SHOWN_LINES]
     say("\n".join(text_table(head, [_line_row(line) for line in strongest])))

@@ -110,5 +110,8 @@ def _count_rows(sweep: Sweep) -> list[list[str]]:
 
 def _exception_row(case: SweepCase) -> list[str]:
     seeds = ", ".join(map(str, case.seeds))
-    moved = [f"{q}: {predicted} -> {actual}" for q, predicted, actual in case.exceptions]
+    moved = [
+        f"{q}: {predicted} -> {'later' if actual is None else actual}"
+        for q, predicted, actual in case.exceptions
+    ]
     return [str(case.N), seeds, "; ".join(moved)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.certified.stability_proof import ProvedExponent, StabilityProof
+from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import fifteen_digits
 
@@ -52,13 +53,15 @@ def stability_text(proof: StabilityProof) -> str:
     lines = [first, f"  {proof.theorem}"]
     for gap in proof.gaps[:MOST_GAPS]:
         left, right = gap.between
-        lines.append(f"  gap {gap.least:.6g} .. {gap.most:.6g} omega: {left}; {right}")
+        lines.append(
+            f"  gap {below(gap.least, 6)} .. {above(gap.most, 6)} omega: {left}; {right}"
+        )
     for one in proof.exponents:
         if not one.circle:
             least, most = one.growth
             lines.append(
-                f"  sigma = {one.sigma:.10g} within {one.radius:.2g}: "
-                f"grows with a rate of {least:.8g} .. {most:.8g}"
+                f"  sigma = {one.sigma:.10g} within {above(one.radius, 2)}: "
+                f"grows with a rate of {below(least, 9)} .. {above(most, 9)}"
             )
     count, largest = (
         len(proof.exponents),

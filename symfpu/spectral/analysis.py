@@ -162,7 +162,8 @@ def frequency_analysis(
         scheme and step and looked at every half unit of time, so that its samples may be few.
         None of it is kept: memory does not grow with T.
     lines : at most, of each mode. level : of a mode's strongest line, below which none is taken;
-        dimensionless, as all numbers here.
+        dimensionless, as all numbers here. A mode whose strongest line is below 4e-15 of the
+        largest coordinate is at rest: rounding has lines, too.
     windows : equal parts of the time, for the drift.
     progress : called as (label, fraction).
 
@@ -188,16 +189,28 @@ def frequency_analysis(
     bands = list(_bands(samples, most, level, progress or unheard))
     found: list[SpectralLine] = []
     drifts = np.full((parts, orbit.chain.N - 1), np.nan)
-    for mode in range(orbit.chain.N - 1):
-        own = [
-            line for band in bands if band.mode == mode for line in band.lines(most, level)
-        ]
-        own.sort(key=lambda pair: -pair[0].amplitude)
+    for mode, own in _moving(bands, most, level).items():
         found += _kept([line for line, _ in own[:most]], level, samples.T)
-        if own:
-            drifts[:, mode] = own[0][1].in_windows(parts, own[0][0].frequency)
+        drifts[:, mode] = own[0][1].in_windows(parts, own[0][0].frequency)
     rate = 2 * math.pi / samples.interval
     return _identified(orbit.chain, samples.T, rate, found, drifts)
+
+
+def _moving(
+    bands: list[_Band], most: int, level: float
+) -> dict[int, list[tuple[SpectralLine, _Band]]]:
+    """Lines by mode, strongest first; not those that rounding leaves of a mode at rest."""
+    by_mode: dict[int, list[tuple[SpectralLine, _Band]]] = {}
+    for band in bands:
+        by_mode.setdefault(band.mode, []).extend(band.lines(most, level))
+    for own in by_mode.values():
+        own.sort(key=lambda pair: -pair[0].amplitude)
+    largest = max((own[0][0].amplitude for own in by_mode.values() if own), default=0.0)
+    return {
+        mode: own
+        for mode, own in sorted(by_mode.items())
+        if own and own[0][0].amplitude > ROUNDING * largest
+    }
 
 
 def _kept(lines: list[SpectralLine], level: float, T: float) -> list[SpectralLine]:

@@ -425,7 +425,7 @@ def require_solution(solution: object, argument: str) -> None:
     """InputError for what is no solution; for a wave on a ring one that names the ring."""
     if not isinstance(solution, QuasiPeriodic):
         chain = getattr(solution, "chain", None)
-        if isinstance(chain, Chain):
+        if isinstance(chain, Chain) and hasattr(solution, "harmonics"):
             require_fixed_ends(chain)
         advice = "pass what solve_amplitudes, refine or periodic_orbit gave"
         raise InputError(

@@ -167,3 +167,11 @@ def test_no_error_is_below_the_spacing_of_doubles():
     single = Chain(N=2, beta="1/2")
     found = frequency_analysis(integrate(single, [0.2], [0.0], 500, step=0.1))
     assert all(line.error >= np.spacing(line.frequency) / 2 for line in found.lines)
+
+
+def test_a_mode_at_rest_has_no_lines():
+    """Seed 4 of five bonds, beta: modes 1 and 3 hold nothing but rounding, which has lines of its own."""
+    breather = breather_at_amplitude(Chain(N=5, beta=1), 4, "0.7")
+    found = frequency_analysis(integrate(breather.chain, *breather.state(), 400, step=0.1))
+    assert {line.mode for line in found.lines} == {2, 4}
+    assert found.seeds == (4,)
