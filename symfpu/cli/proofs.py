@@ -36,6 +36,7 @@ from symfpu.cli.theorems import (
 )
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
+from symfpu.files.progress import NO_FRACTION
 from symfpu.files.writing import output_file, write_text
 from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
@@ -211,7 +212,9 @@ def verify(
     """
     path = path_named("certificate", file)
     try:
-        certificate, checked = verified_certificate(path)
+        with progress_bar("check") as advance:
+            advance(f"check of {path.name}", NO_FRACTION)
+            certificate, checked = verified_certificate(path)
     except CertificateError as error:
         raise InputError(
             "certificate", str(path), ALLOWED_CERTIFICATE, str(error)
