@@ -22,7 +22,7 @@ from fractions import Fraction
 from functools import partial
 from math import comb, pi, prod
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,7 +99,7 @@ READERS: dict[str, Callable[[Archive, Json], QuasiPeriodic | RingTorus]] = {
     REFINED_WAVES: refined_waves_from,
 }
 SERIES: tuple[type[Any], ...] = LindstedtSeries, TravellingSeries
-Result = LindstedtSeries | TravellingSeries | QuasiPeriodic | RingTorus
+Result: TypeAlias = LindstedtSeries | TravellingSeries | QuasiPeriodic | RingTorus
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
 

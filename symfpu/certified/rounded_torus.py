@@ -22,7 +22,7 @@ import mpmath
 import numpy as np
 
 from symfpu.certified.series import Integers, Series, trimmed
-from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.arithmetic import Numbers
@@ -127,9 +127,12 @@ def rounded_torus(solution: object) -> RoundedTorus:
 
 def checked_torus(solution: object) -> QuasiPeriodic:
     """A torus of two angles or more of fixed ends and a polynomial V, or InputError."""
+    chain = getattr(solution, "chain", None)
+    if isinstance(chain, Chain) and chain.periodic:
+        advice = "leave ends= out: what is proved of N bonds holds, unfolded, on a ring of 2N"
+        raise InputError("torus", repr(chain), "of a chain with fixed ends", advice)
     require_solution(solution, "torus")
     assert isinstance(solution, QuasiPeriodic)
-    require_fixed_ends(solution.chain)
     if len(solution.seeds) < 2:
         advice = "take prove_existence: of one angle more can be proved"
         raise InputError("torus", "a breather", "a torus of two or more angles", advice)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import mpmath
 import numpy as np
@@ -40,7 +40,7 @@ from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 from symfpu.tori.ring_torus import RingTorus
 
-Solution = QuasiPeriodic | RingTorus
+Solution: TypeAlias = QuasiPeriodic | RingTorus
 PRECISE = (PreciseTorus, PreciseOrbit)  # solutions whose digits are those of the equations
 REFINED = 1e-9  # residual of a torus, relative, above which it is refused
 # coefficients of the torus above these parts of its largest, and what their harmonics may leave

@@ -422,11 +422,8 @@ class QuasiPeriodic(Shown, Gridded, Parts):
 
 
 def require_solution(solution: object, argument: str) -> None:
-    """InputError for what is no solution; for a wave on a ring one that names the ring."""
+    """InputError for what is no solution."""
     if not isinstance(solution, QuasiPeriodic):
-        chain = getattr(solution, "chain", None)
-        if isinstance(chain, Chain) and hasattr(solution, "harmonics"):
-            require_fixed_ends(chain)
         advice = "pass what solve_amplitudes, refine or periodic_orbit gave"
         raise InputError(
             argument, type(solution).__name__, "a solution: a torus or a breather", advice

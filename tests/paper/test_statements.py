@@ -222,5 +222,5 @@ def test_slopes_of_tori_are_logarithms(monkeypatch):
 @pytest.mark.long
 def test_every_statement_has_a_verdict(tmp_path):
     figure = statements.statements(tmp_path, unheard)
-    assert len(figure.claims) == 14
+    assert len(figure.claims) == 20
     assert figure.panels == ()
