@@ -129,7 +129,9 @@ def checked_torus(solution: object) -> QuasiPeriodic:
     """A torus of two angles or more of fixed ends and a polynomial V, or InputError."""
     chain = getattr(solution, "chain", None)
     if isinstance(chain, Chain) and chain.periodic:
-        advice = "leave ends= out: what is proved of N bonds holds, unfolded, on a ring of 2N"
+        advice = (
+            "leave ends= out: what is proved of N bonds holds, unfolded, on a ring of 2N"
+        )
         raise InputError("torus", repr(chain), "of a chain with fixed ends", advice)
     require_solution(solution, "torus")
     assert isinstance(solution, QuasiPeriodic)
