@@ -15,7 +15,9 @@ from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.certified.stability_proof import prove_stability
 from symfpu.chain.chain import Chain
 from symfpu.proofs import check_stability
-from symfpu.proofs.check_stability import ONE, PLACES, StabilityError, inverse_of, verify
+from symfpu.proofs.check_stability import StabilityError, verify
+from symfpu.proofs.check_stability.bounds import INVERSE_BITS, inverse_of
+from symfpu.proofs.check_stability.fixed_point import ONE, PLACES
 from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.verify import CertificateError
 from tests.proofs.test_check_existence import altered, moved, numbers
@@ -138,18 +140,24 @@ def test_a_certificate_finds_its_checker(tmp_path):
         verify_certificate(path)
 
 
-def test_it_imports_the_standard_library_and_the_other_checker_alone():
-    tree = ast.parse(Path(check_stability.__file__).read_text())
+FOLDER = Path(check_stability.__file__).parent
+
+
+@pytest.mark.parametrize("file", sorted(FOLDER.glob("*.py")), ids=lambda file: file.stem)
+def test_it_imports_itself_the_other_checker_and_the_standard_library_alone(file):
+    tree = ast.parse(file.read_text())
     imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
     names = {alias.name for node in imports if isinstance(node, ast.Import) for alias in node.names}
     names |= {node.module for node in imports if isinstance(node, ast.ImportFrom)}
-    assert {name.partition(".")[0] for name in names} <= sys.stdlib_module_names | {"symfpu"}
-    own = [node for node in imports if isinstance(node, ast.ImportFrom) and node.module.startswith("symfpu")]
-    assert [alias.name for node in own for alias in node.names] == ["check_existence"]
+    others = {name for name in names if not name.startswith(check_stability.__name__)}
+    assert {name.partition(".")[0] for name in others} <= sys.stdlib_module_names | {"symfpu"}
+    own = [node for node in imports if isinstance(node, ast.ImportFrom) and node.module == "symfpu.proofs"]
+    assert {name for name in others if name.startswith("symfpu")} <= {"symfpu.proofs"}
+    assert {alias.name for node in own for alias in node.names} <= {"check_existence"}
 
 
 def test_the_inverse_of_a_block_is_one():
     rng = random.Random(3)
     matrix = [[rng.randrange(-ONE, ONE) for _ in range(5)] for _ in range(5)]
-    inverse = np.array(inverse_of(copy.deepcopy(matrix)), dtype=float) / 2.0**check_stability.INVERSE_BITS
+    inverse = np.array(inverse_of(copy.deepcopy(matrix)), dtype=float) / 2.0**INVERSE_BITS
     np.testing.assert_allclose(inverse @ (np.array(matrix, dtype=float) / 2.0**PLACES), np.eye(5), atol=INVERSE_OF_BLOCK)
