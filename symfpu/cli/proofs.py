@@ -41,8 +41,8 @@ from symfpu.files.writing import output_file, write_text
 from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
 from symfpu.proofs.checkers import verified_certificate
+from symfpu.proofs.reading import CertificateError
 from symfpu.proofs.sweeps import sweep_propagation
-from symfpu.proofs.verify import CertificateError
 from symfpu.reports.proofs import certificate_record, sweep_markdown
 
 ALLOWED_CERTIFICATE = "one written by symfpu prove or certify, unaltered"

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from symfpu.proofs import (
     check_existence,
@@ -17,9 +17,8 @@ from symfpu.proofs import (
     verify,
     verify_theorem,
 )
-from symfpu.proofs.verify import CertificateError
+from symfpu.proofs.reading import Json, verified
 
-Json = dict[str, Any]
 PROPAGATION = "symfpu propagation certificate"
 KIND = re.compile(r'"format":\s*"([^"\\]*)"')
 LONGEST_HEAD = 4096  # characters in which a file names its kind
@@ -61,19 +60,7 @@ def verified_certificate(path: str | Path) -> tuple[Json, list[str]]:
     """The same with the certificate, which is read once."""
     path = Path(path)
     checker = CHECKERS.get(kind_of(path), CHECKERS[PROPAGATION])
-    try:
-        certificate = checker.read(path)
-        return certificate, checker.check(certificate)
-    except CertificateError:
-        raise
-    except (
-        check_existence.ExistenceError,
-        check_stability.StabilityError,
-        check_torus.TorusError,
-    ) as error:
-        raise CertificateError(str(error)) from error
-    except verify.READING_ERRORS as error:
-        raise CertificateError(f"no readable certificate: {error!r:.200}") from None
+    return verified(path, checker.read, checker.check)
 
 
 def kind_of(path: Path) -> str:

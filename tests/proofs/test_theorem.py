@@ -16,7 +16,8 @@ from symfpu.proofs.decided_file import DecidedFile
 from symfpu.proofs.every_length import decided_flat
 from symfpu.proofs.flats import Flat, last_order
 from symfpu.proofs.plus_terms import BOTH, MINUS, PLUS, PlusResidues, PlusTerms, sign_product, splits
-from symfpu.proofs.verify import MODELS, Budget, Case, CertificateError, Point, Recursion
+from symfpu.proofs.reading import CertificateError
+from symfpu.proofs.verify import MODELS, Budget, Case, Point, Recursion
 from symfpu.proofs.verify_theorem import read_claim
 
 

@@ -8,7 +8,7 @@ and Z2 of every exponent, then the count.
 
 Fixed point: an integer times 2^-PLACES unless said. Bounds are rounded up, divisors down; of a
 complex number |Re| + |Im| is the norm. The folder shares no code with the prover and imports
-nothing but the standard library and the checker of existence.
+nothing but the standard library, the checker of existence and what checkers read and round with.
 """
 
 from pathlib import Path
@@ -17,21 +17,15 @@ from symfpu.proofs.check_stability.bounds import Bounds as Bounds
 from symfpu.proofs.check_stability.exponent import read_exponent as read_exponent
 from symfpu.proofs.check_stability.orbit import orbit_of as orbit_of
 from symfpu.proofs.check_stability.reading import FORMAT as FORMAT
-from symfpu.proofs.check_stability.reading import READING_ERRORS as READING_ERRORS
-from symfpu.proofs.check_stability.reading import StabilityError as StabilityError
 from symfpu.proofs.check_stability.reading import read_certificate as read_certificate
 from symfpu.proofs.check_stability.slopes import Slopes as Slopes
 from symfpu.proofs.check_stability.theorem import check_certificate as check_certificate
+from symfpu.proofs.reading import verified
 
 
 def verify(path: str | Path) -> list[str]:
     """Lines that say what was checked in the certificate of a file.
 
-    Raises StabilityError, with the reason, if it is not right.
+    Raises CertificateError, with the reason, if it is not right.
     """
-    try:
-        return check_certificate(read_certificate(Path(path)))
-    except StabilityError:
-        raise
-    except READING_ERRORS as error:
-        raise StabilityError(f"no readable certificate: {error!r:.200}") from None
+    return verified(path, read_certificate, check_certificate)[1]

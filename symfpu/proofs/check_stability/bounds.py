@@ -2,38 +2,15 @@
 
 from fractions import Fraction
 from operator import mul
-from typing import NamedTuple
 
+from symfpu.proofs.check_stability.divisors import Divisors
 from symfpu.proofs.check_stability.exponent import WEIGHT_BITS, Exponent, Gaussian
-from symfpu.proofs.check_stability.fixed_point import (
-    COSINE_UNITS,
-    ONE,
-    PLACES,
-    Cosines,
-    floor,
-)
 from symfpu.proofs.check_stability.orbit import Place
-from symfpu.proofs.check_stability.reading import need
-from symfpu.proofs.check_stability.slopes import COARSE, Slopes
-from symfpu.proofs.check_stability.wording import scientific
+from symfpu.proofs.check_stability.slopes import COARSE, ONE, PLACES, Slopes
+from symfpu.proofs.reading import need
+from symfpu.proofs.rounding import scientific
 
 INVERSE_BITS = 32  # of the entries of the approximate inverse
-
-
-class Divisor(NamedTuple):
-    """lambda of a place: real and imaginary part, each off by at most `off`."""
-
-    re: int
-    im: int
-    off: int
-
-    @property
-    def inverse(self) -> int:
-        """Above |Re| + |Im| of 1/lambda, PLACES; refused where lambda may be zero."""
-        re, im = max(0, abs(self.re) - self.off), max(0, abs(self.im) - self.off)
-        need(re or im, "a divisor outside the block may be zero")
-        size = abs(self.re) + abs(self.im) + 2 * self.off
-        return (size << (2 * PLACES)) // (re * re + im * im) + 1
 
 
 class Bounds:
@@ -43,61 +20,11 @@ class Bounds:
         self.slopes, self.exponent, self.free = slopes, exponent, free
         self.sector, self.N = exponent.sector, slopes.orbit.N
         self.last = free + slopes.K
-        self.read_frequencies()
-        self.check_beyond()
+        self.divisors = Divisors(slopes.orbit, exponent, free)
         self.members = {place: i for i, place in enumerate(exponent.block)}
         self.invert()
         self.norms = self.norms_of_columns()
         self.spread = self.largest_sum()
-
-    # divisors
-
-    def read_frequencies(self) -> None:
-        """1/Omega_q^2 between two integers."""
-        cosines = Cosines(self.N, PLACES)
-        off = 2 * COSINE_UNITS
-        self.least, self.most = [0], [0]
-        for q in range(1, self.N):
-            squared = 2 * ONE - 2 * cosines.of(2 * q)
-            need(squared > off, "places do not resolve Omega_1")
-            self.least.append(ONE * ONE // (squared + off))
-            self.most.append(ONE * ONE // (squared - off) + 1)
-
-    def angle(self, n: int) -> Gaussian:
-        """sigma + n omega, each part rounded down."""
-        real = self.exponent.real + n * self.slopes.orbit.omega
-        return floor(real), floor(self.exponent.imaginary)
-
-    def size_of_angle(self, n: int) -> int:
-        """Above |Re| + |Im| of it."""
-        re, im = self.angle(n)
-        return abs(re) + abs(im) + 2
-
-    def divisor(self, place: Place) -> Divisor:
-        """1 - (sigma + n omega)^2 / Omega_q^2."""
-        n, q = place
-        (x, y), least, most = self.angle(n), self.least[q], self.most[q]
-        re = ONE - ((x * x - y * y) * least >> (2 * PLACES))
-        im = -(2 * x * y * least >> (2 * PLACES))
-        size = self.size_of_angle(n)
-        off_square = (2 * size >> PLACES) + 2  # rounding of the angle, units
-        off = off_square * most + size * size * (most - least) // ONE
-        return Divisor(re, im, (off >> PLACES) + 2)
-
-    def edge(self, n: int, q: int) -> int:
-        """Below |lambda_q| of every harmonic from n on, on both sides, where it is positive."""
-        far = floor(n * self.slopes.orbit.omega - abs(self.exponent.real))
-        return (far * far * self.least[q] >> (2 * PLACES)) - ONE if far > 0 else -ONE
-
-    def check_beyond(self) -> None:
-        """Beyond `free` every harmonic is above all modes: |lambda| grows from there on."""
-        for q in range(1, self.N):
-            need(self.edge(self.free + 1, q) > 0, f"harmonic {self.free + 1} is too low")
-
-    def inverse_beyond(self, n: int, q: int) -> int:
-        """Above |Re| + |Im| of 1/lambda_q of every harmonic from n on."""
-        found = ONE * ONE // self.edge(n, q) + 1
-        return found if self.exponent.reals else found * 3 // 2 + 1  # above the root of 2
 
     # the approximate inverse
 
@@ -114,12 +41,13 @@ class Bounds:
         """-2 (sigma + n omega) v / Omega_q^2, and a bound of its error."""
         n, q = place
         v = self.coefficient(place)
-        (x, y), least, most, shift = self.angle(n), self.least[q], self.most[q], PLACES
-        drop = shift + self.exponent.bits
+        x, y = self.divisors.angle(n)
+        least, most = self.divisors.least[q], self.divisors.most[q]
+        drop = PLACES + self.exponent.bits
         re = -(2 * (x * v[0] - y * v[1]) * least >> drop)
         im = -(2 * (x * v[1] + y * v[0]) * least >> drop)
         size = abs(v[0]) + abs(v[1])
-        error = 2 * size * (2 * most + self.size_of_angle(n) * (most - least))
+        error = 2 * size * (2 * most + self.divisors.size_of_angle(n) * (most - least))
         return (re, im), (error >> drop) + 2
 
     def coefficient(self, place: Place) -> Gaussian:
@@ -137,7 +65,7 @@ class Bounds:
         result = [(self.derivative(place, column), 0) for place in self.exponent.block]
         own = self.members.get(column)
         if own is not None:
-            divisor = self.divisor(column)
+            divisor = self.divisors.of(column)
             result[own] = result[own][0] + divisor.re, divisor.im
         return result
 
@@ -179,7 +107,9 @@ class Bounds:
                 if place in of_block:
                     row.append(of_block[place])
                 else:
-                    row.append(self.exponent.weight(place) * self.divisor(place).inverse)
+                    row.append(
+                        self.exponent.weight(place) * self.divisors.of(place).inverse
+                    )
             found[n] = row
         return found
 
@@ -202,11 +132,13 @@ class Bounds:
         n, q = place
         if n in self.norms:
             return self.norms[n][(q - self.sector.allowed(n)[0]) // 2]
-        return self.inverse_beyond(self.last + 1, q) << WEIGHT_BITS
+        return self.divisors.inverse_beyond(self.last + 1, q) << WEIGHT_BITS
 
     def largest_sum(self) -> Fraction:
         """S, above sum_q a_q[n] of every n."""
-        beyond = sum(self.inverse_beyond(self.last + 1, q) for q in range(1, self.N))
+        beyond = sum(
+            self.divisors.inverse_beyond(self.last + 1, q) for q in range(1, self.N)
+        )
         largest = max([beyond << WEIGHT_BITS, *map(sum, self.norms.values())])
         return Fraction(largest, ONE << WEIGHT_BITS)
 
@@ -252,7 +184,7 @@ class Bounds:
             re += sum(map(mul, coupling, [x for x, _ in row]))
             if not self.exponent.reals:
                 im += sum(map(mul, coupling, [y for _, y in row]))
-        (x, y), divisor = self.coefficient(place), self.divisor(place)
+        (x, y), divisor = self.coefficient(place), self.divisors.of(place)
         re += divisor.re * x - divisor.im * y
         im += divisor.re * y + divisor.im * x
         return abs(re) + abs(im) + 2 * divisor.off * (abs(x) + abs(y))
@@ -291,7 +223,7 @@ class Bounds:
         found = Fraction(total, 1 << (PLACES + WEIGHT_BITS + COARSE))
         found += self.in_block(column)
         if column in self.members:
-            off = 2 * self.divisor(column).off * self.norm(column)
+            off = 2 * self.divisors.of(column).off * self.norm(column)
             found += Fraction(off, 1 << (2 * PLACES + WEIGHT_BITS))
         return found * (1 << WEIGHT_BITS) / self.exponent.weight(column)
 
@@ -325,7 +257,7 @@ class Bounds:
     def of_tail(self) -> Fraction:
         """Every column beyond M + K: it meets rows beyond M alone."""
         modes = range(1, self.N)
-        inverse = [0] + [self.inverse_beyond(self.free + 1, q) for q in modes]
+        inverse = [0] + [self.divisors.inverse_beyond(self.free + 1, q) for q in modes]
         worst = 0
         for p in modes:
             total = 0
@@ -343,17 +275,17 @@ class Bounds:
         e1, e2 = self.curvature_beyond()
         unit = 1 << (2 * PLACES)
         for n in range(-self.last, self.last + 1):
-            size = Fraction(self.size_of_angle(n), ONE)
+            size = Fraction(self.divisors.size_of_angle(n), ONE)
             for q, norm in zip(self.sector.allowed(n), self.norms[n], strict=True):
                 if (n, q) != self.exponent.kappa:
                     weight = self.exponent.weight((n, q))
-                    ratio = Fraction(2 * norm * self.most[q], weight * unit)
+                    ratio = Fraction(2 * norm * self.divisors.most[q], weight * unit)
                     e1, e2 = max(e1, ratio * size), max(e2, ratio)
         e3 = 0
         for n, row in self.exponent.rows.items():
             for q, (x, y) in zip(self.sector.allowed(n), row, strict=True):
                 if x or y:
-                    e3 += 2 * self.norm((n, q)) * self.most[q] * (abs(x) + abs(y))
+                    e3 += 2 * self.norm((n, q)) * self.divisors.most[q] * (abs(x) + abs(y))
         third = Fraction(e3, unit << (WEIGHT_BITS + self.exponent.bits))
         return e1, e2, third
 
@@ -363,8 +295,10 @@ class Bounds:
         |z| / |z^2 - Omega^2| falls with |z|, on both sides.
         """
         n = self.last + 1
-        size = max(self.size_of_angle(n), self.size_of_angle(-n))
-        worst = max(2 * self.inverse_beyond(n, q) * self.most[q] for q in range(1, self.N))
+        divisors = self.divisors
+        size = max(divisors.size_of_angle(n), divisors.size_of_angle(-n))
+        modes = range(1, self.N)
+        worst = max(2 * divisors.inverse_beyond(n, q) * divisors.most[q] for q in modes)
         second = Fraction(worst, ONE * ONE)
         return second * Fraction(size, ONE), second
 

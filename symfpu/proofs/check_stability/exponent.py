@@ -5,7 +5,7 @@ from math import isqrt
 from typing import Any, NamedTuple
 
 from symfpu.proofs.check_stability.orbit import Orbit, Place, Sector, sectors_of
-from symfpu.proofs.check_stability.reading import Json, need, whole
+from symfpu.proofs.reading import Json, dyadic, need, whole
 
 EXPONENT_KEYS = {
     "sector", "base", "bits", "sigma", "kappa", "vector", "block", "weights", "radius",
@@ -76,10 +76,7 @@ def read_exponent(data: Json, orbit: Orbit, free: int) -> Exponent:
     ascending = block == sorted(set(block)) and set(block) <= set(weights)
     need(ascending and len(block) <= MOST_BLOCK, "the block is not of ascending places")
     need(kappa in block, "kappa is not in the block")
-    mantissa = whole(data["radius"][0], 1, 2**64, "radius")
-    places = whole(data["radius"][1], 0, 4096, "radius")
-    need(len(data["radius"]) == 2, "the radius is no pair")
-    radius = Fraction(mantissa, 1 << places)
+    radius = dyadic(data["radius"], "radius")
     return Exponent(sector, real, imaginary, bits, kappa, rows, block, weights, radius)
 
 

@@ -1,12 +1,10 @@
 """The orbit whose stability is claimed: its own checker proves it, and what its symmetry allows."""
 
-import hashlib
-import json
 from fractions import Fraction
 from typing import NamedTuple
 
 from symfpu.proofs import check_existence
-from symfpu.proofs.check_stability.reading import Json, StabilityError, need
+from symfpu.proofs.reading import CertificateError, Json, check_kind, dyadic, need
 
 Place = tuple[int, int]  # harmonic n, mode q
 
@@ -33,17 +31,11 @@ class Orbit(NamedTuple):
 
 def check_existence_of(data: Json) -> str:
     """The orbit exists: the sentence of the other checker."""
-    need(data["format"] == check_existence.FORMAT, "it holds no certificate of existence")
-    schema = check_existence.reading.SCHEMA
-    need(data["schema"] == schema, "a proof of existence of another schema")
-    contents = {key: data[key] for key in data if key != "digest"}
-    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    need(data["digest"] == digest, "the digest of the proof of existence does not fit")
+    check_kind(data, check_existence.KIND)
     try:
         return check_existence.check_certificate(data)[0]
-    except check_existence.ExistenceError as error:
-        raise StabilityError(f"no orbit is proved: {error}") from error
+    except CertificateError as error:
+        raise CertificateError(f"no orbit is proved: {error}") from error
 
 
 def orbit_of(data: Json) -> Orbit:
@@ -54,7 +46,7 @@ def orbit_of(data: Json) -> Orbit:
     rows = [[0] * claim.N for _ in range(claim.harmonics + 1)]
     for (n, q), c in claim.orbit.items():
         rows[n][q] = c
-    radius = check_existence.dyadic(data["radius"], "radius")
+    radius = dyadic(data["radius"], "radius")
     couplings = claim.force.couplings
     return Orbit(claim.N, couplings, claim.seed, claim.omega, claim.bits, rows, radius)
 

@@ -4,14 +4,16 @@ from fractions import Fraction
 from operator import mul
 from typing import NamedTuple
 
-from symfpu.proofs.check_stability.fixed_point import COSINE_UNITS, ONE, PLACES, Cosines, up
+from symfpu.proofs.check_existence.fixed_point import COSINE_UNITS, Cosines
 from symfpu.proofs.check_stability.orbit import Orbit
+from symfpu.proofs.rounding import up
 
+PLACES = 64
+ONE = 1 << PLACES
 COARSE = 48  # places of the moduli of couplings
 FINE = 96  # of the slopes while they are computed
-SMALLEST_SLOPE = (
-    24  # units: harmonics of slopes below it are left out of Y and counted as lost
-)
+# units: harmonics of slopes below it are left out of Y and counted as lost
+SMALLEST_SLOPE = 24
 
 
 class Series(NamedTuple):

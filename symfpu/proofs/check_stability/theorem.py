@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from fractions import Fraction
 from itertools import pairwise
+from math import floor
 
 from symfpu.proofs.check_stability.bounds import Bounds
 from symfpu.proofs.check_stability.exponent import MOST_HARMONICS, Exponent, read_exponent
@@ -12,9 +13,9 @@ from symfpu.proofs.check_stability.orbit import (
     orbit_of,
     sectors_of,
 )
-from symfpu.proofs.check_stability.reading import Json, need, whole
 from symfpu.proofs.check_stability.slopes import Slopes
-from symfpu.proofs.check_stability.wording import scientific, scientific_below
+from symfpu.proofs.reading import Json, need, whole
+from symfpu.proofs.rounding import scientific
 
 MOST_STEPS = 10**9
 
@@ -69,7 +70,7 @@ def check_stable(orbit: Orbit, exponents: Iterable[Exponent]) -> str:
         "theorem: the periodic orbit of the next line is linearly stable: all its Floquet "
         f"multipliers lie on the unit circle, 1 is double, and within each of "
         f"{len(sectors_of(orbit))} symmetry sectors all others are simple, their exponents at "
-        f"least {scientific_below(min(gaps))} omega apart"
+        f"least {scientific(min(gaps), rounded=floor)} omega apart"
     )
 
 
@@ -84,6 +85,6 @@ def check_unstable(orbit: Orbit, exponents: Iterable[Exponent]) -> str:
     least, most = max(rates)
     return (
         "theorem: the periodic orbit of the next line is linearly unstable: a solution of its "
-        f"linearised equations grows with a rate between {scientific_below(least, 10)} and "
+        f"linearised equations grows with a rate between {scientific(least, 10, floor)} and "
         f"{scientific(most, 10)}"
     )
