@@ -67,7 +67,7 @@ def read_kind(path: Path, kind: Kind) -> Json:
     text = text_of(path, kind.largest_file)
     strange = re.search(r'[^\s0-9{}\[\],:"-]|[0-9]{3000}', outside_strings(text))
     need(not strange, "not JSON of plain strings and integers of less than 3000 digits")
-    data: Json = json.loads(text, object_pairs_hook=without_repeats)
+    data = parsed(text)
     check_kind(data, kind)
     return data
 
@@ -82,6 +82,13 @@ def text_of(path: Path, largest_file: int = LARGEST_FILE) -> str:
 def outside_strings(text: str) -> str:
     """JSON without what stands in its strings."""
     return re.sub(r'"[^"\\]*"', '"', text)
+
+
+def parsed(text: str) -> Json:
+    """The object that JSON says, which names its format; no key twice."""
+    data = json.loads(text, object_pairs_hook=without_repeats)
+    need(type(data) is dict and "format" in data, "it names no format, as certificates do")
+    return dict(data)
 
 
 def without_repeats(pairs: list[tuple[str, Any]]) -> Json:

@@ -16,7 +16,6 @@ function, in the order in which `verify` calls them. The file shares no code wit
 imports nothing but the standard library and what checkers read with, `reading.py`.
 """
 
-import json
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
@@ -33,6 +32,7 @@ from symfpu.proofs.reading import (
     check_digest,
     need,
     outside_strings,
+    parsed,
     text_of,
     verified,
 )
@@ -83,7 +83,7 @@ def read_certificate(path: Path) -> Json:
     need(values <= MOST_VALUES, "the file has more than 10^6 values")
     strange = re.search(r'[^\s0-9{}\[\],:nul"]|[0-9]{21}', bare)
     need(not strange, "not JSON of plain strings, null and integers of at most 20 digits")
-    data: Json = json.loads(text)
+    data = parsed(text)
     check_header(data)
     check_digest(data)
     check_keys(data, bare.count(":"))

@@ -8,7 +8,6 @@ make these proofs are in docs/propagation.md. It shares no code with the prover 
 nothing but the standard library, the checker of certificates of one N and what checkers read with.
 """
 
-import json
 import re
 from collections.abc import Iterator
 from fractions import Fraction
@@ -25,6 +24,7 @@ from symfpu.proofs.reading import (
     check_digest,
     need,
     outside_strings,
+    parsed,
     text_of,
     verified,
 )
@@ -75,7 +75,7 @@ def read_theorem(path: Path) -> Json:
     bare = outside_strings(text)
     strange = re.search(r'[^\s0-9{}\[\],:nul"]|[0-9]{21}', bare)
     need(not strange, "not JSON of plain strings, null and integers of at most 20 digits")
-    data: Json = json.loads(text)
+    data = parsed(text)
     need(data["format"] == FORMAT, "not a theorem for all N")
     need(data["schema"] == 2, "schema version unknown: this checker supports version 2")
     once = bare.count(":") == len(data)
