@@ -21,8 +21,8 @@ BondsOption = Annotated[
         "-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"
     ),
 ]
-AlphaOption = Annotated[str, typer.Option("--alpha", help="Cubic coupling.")]
-BetaOption = Annotated[str, typer.Option("--beta", help="Quartic coupling.")]
+AlphaOption = Annotated[str, typer.Option("--alpha", help="Cubic coupling.", metavar="X")]
+BetaOption = Annotated[str, typer.Option("--beta", help="Quartic coupling.", metavar="X")]
 PotentialOption = Annotated[
     str | None,
     typer.Option(

@@ -121,7 +121,9 @@ def prove(
     potential: PotentialOption = None,
     points: Annotated[
         str | None,
-        typer.Option(help="Independent primes and random frequencies.  Default: 1."),
+        typer.Option(
+            help="Independent primes and random frequencies.  Default: 1.", metavar="P"
+        ),
     ] = None,
     all_N: Annotated[
         bool, typer.Option("--all-N", help="Prove it for every N and all sets of S seeds.")

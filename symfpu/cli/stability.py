@@ -74,7 +74,9 @@ def stability(
     ] = None,
     members: Annotated[
         str | None,
-        typer.Option(help=f"With --to-amplitudes: number of tori.  Default: {MEMBERS}."),
+        typer.Option(
+            help=f"With --to-amplitudes: number of tori.  Default: {MEMBERS}.", metavar="M"
+        ),
     ] = None,
     output: Annotated[
         str | None,

@@ -37,7 +37,8 @@ def check_certificate(data: Json) -> list[str]:
     line = check(orbit, exponents)
     largest = [max((pair[i] for pair in bounds), default=Fraction(0)) for i in (0, 1)]
     numbers = f"Y up to {scientific(largest[0])}, Z up to {scientific(largest[1])}"
-    return [line, sentence, f"{len(given)} exponents: {numbers}: recomputed with integers"]
+    count = "1 exponent" if len(given) == 1 else f"{len(given)} exponents"
+    return [line, sentence, f"{count}: {numbers}: recomputed with integers"]
 
 
 def check_cost(orbit: Orbit, K: int, free: int, exponents: int) -> None:
@@ -55,7 +56,7 @@ def check_stable(orbit: Orbit, exponents: Iterable[Exponent]) -> str:
         own = [one for one in listed if one.sector == sector]
         need(
             len(own) == sector.exponents,
-            f"a sector needs {sector.exponents} exponents, not {len(own)}",
+            f"exponents of a sector: {len(own)} where {sector.exponents} are due",
         )
         need(all(one.reals for one in own), "an exponent of a stable orbit is not real")
         ends = sorted((one.real - one.off, one.real + one.off) for one in own)
@@ -66,10 +67,12 @@ def check_stable(orbit: Orbit, exponents: Iterable[Exponent]) -> str:
                 a[1] < b[0], "two exponents may be the same, or one at 0 or half the period"
             )
             gaps.append((b[0] - a[1]) / orbit.omega)
+    count = len(sectors_of(orbit))
+    sectors = "its symmetry sector" if count == 1 else f"each of {count} symmetry sectors"
     return (
         "theorem: the periodic orbit of the next line is linearly stable: all its Floquet "
-        f"multipliers lie on the unit circle, 1 is double, and within each of "
-        f"{len(sectors_of(orbit))} symmetry sectors all others are simple, their exponents at "
+        f"multipliers lie on the unit circle, 1 is double, and within {sectors} all others are "
+        f"simple, their exponents at "
         f"least {scientific(min(gaps), rounded=floor)} omega apart"
     )
 
