@@ -266,7 +266,8 @@ def _refuse_on_a_ring(wish: Wish) -> None:
             raise InputError(name, getattr(wish, name), allowed, advice)
     if wish.digits is not None:
         allowed = "none with --ends periodic, which is in doubles"
-        raise InputError("digits", wish.digits, allowed, "leave it out")
+        advice = "leave it out; what takes a ring is in docs/chains.md"
+        raise InputError("digits", wish.digits, allowed, advice)
 
 
 def _on_a_ring(
