@@ -26,7 +26,10 @@ MODELS: dict[str, dict[str, str]] = {
     "potential=toda:1": {"potential": "toda:1"},
 }
 TODA = "potential=toda:1"
-ORDERS = {1: {"alpha=1": (16, 12), "beta=1": (8, 6), TODA: (16,)}, 2: {"alpha=1": (8, 6), "beta=1": (5, 4), TODA: (8,)}}
+ORDERS = {
+    1: {"alpha=1": (16, 12), "beta=1": (8, 6), TODA: (16,)},
+    2: {"alpha=1": (8, 6), "beta=1": (5, 4), TODA: (8,)},
+}
 EXTENSIVE = {"alpha=1": 4, "beta=1": 3}
 PARTS = {"1/32": (32, 64, 128, 256), "1/16": (16, 32, 64, 128)}
 REACH = 2
@@ -38,12 +41,14 @@ def grids() -> Iterator[dict[str, Any]]:
     for model, couplings in MODELS.items():
         for N in LENGTHS:
             chain = Chain(N, **couplings)
-            extra = ("fold", "newton") if N <= 64 else ()
-            stable = ("stability",) if N <= 32 and model != TODA else ()
-            places = ("low", "middle", "high")
-            one = SERIES + extra + stable
-            yield grid(chain, [f"{p}:1" for p in places], ORDERS[1][model], one)
-            two = SERIES + (("fold", "newton") if N <= 32 else ())
+            for place in ("low", "middle", "high"):
+                borders = SERIES
+                if (16 if place == "middle" else 64) >= N:
+                    borders += ("fold",)
+                if N <= 32 and model != TODA and place != "middle":
+                    borders += ("stability",)
+                yield grid(chain, [f"{place}:1"], ORDERS[1][model], borders)
+            two = (*SERIES, "newton") if N <= 32 and model != TODA else SERIES
             packets = ["low:2"] if model == TODA else ["low:2", "high:2"]
             yield grid(chain, packets, ORDERS[2][model], two)
     for model, order in EXTENSIVE.items():
@@ -55,7 +60,9 @@ def grids() -> Iterator[dict[str, Any]]:
         yield grid(Chain(16, **MODELS[model]), seeds, (order,), (*SERIES, "fold"))
 
 
-def grid(chain: Chain, packets: list[str], order: tuple[int, ...], borders: tuple[str, ...]) -> dict[str, Any]:
+def grid(
+    chain: Chain, packets: list[str], order: tuple[int, ...], borders: tuple[str, ...]
+) -> dict[str, Any]:
     """One call of `atlas`."""
     return {"chains": [chain], "packets": packets, "order": order, "borders": borders}
 
@@ -94,14 +101,26 @@ def exponent(found: Atlas, packet: str, border: str, model: str, **how: Any) -> 
 
 def laws_table(found: Atlas) -> str:
     """Exponents of H in N at a fixed number of seeds."""
-    head = ["model", "packet", "ratio", "Padé poles", "the same, lower order", "fold", "Newton's end", "stability"]
+    head = [
+        "model",
+        "packet",
+        "ratio",
+        "Padé poles",
+        "the same, lower order",
+        "fold",
+        "Newton's end",
+        "stability",
+    ]
     rows = []
     for model in MODELS:
         for packet in ("low:1", "middle:1", "high:1", "low:2", "high:2"):
             lower = ORDERS[int(packet[-1])][model][-1]
             cells = [exponent(found, packet, name, model) for name in SERIES]
             cells.append(exponent(found, packet, "poles", model, order=lower))
-            cells += [exponent(found, packet, name, model) for name in ("fold", "newton", "stability")]
+            cells += [
+                exponent(found, packet, name, model)
+                for name in ("fold", "newton", "stability")
+            ]
             if any(cells):
                 rows.append([model, packet, *cells])
     return rows_of(head, rows)
@@ -110,22 +129,42 @@ def laws_table(found: Atlas) -> str:
 def chosen(found: Atlas, packet: str, border: str, model: str) -> dict[int, AtlasBorder]:
     """Borders by N, of the largest order."""
     members = sorted(found.borders, key=lambda b: b.order)
-    wanted = [b for b in members if (b.packet, b.border, b.model) == (packet, border, model)]
+    wanted = [
+        b for b in members if (b.packet, b.border, b.model) == (packet, border, model)
+    ]
     return {b.N: b for b in wanted if b.energy is not None}
 
 
 def folds_table(found: Atlas) -> str:
     """Energies of the lowest borders of one low seed, in units of lambda = 1."""
-    head = ["model", "N", "ratio", "Padé poles", "fold", "what folds", "lambda of the fold", "stability lost"]
+    head = [
+        "model",
+        "N",
+        "ratio",
+        "Padé poles",
+        "fold",
+        "what folds",
+        "lambda of the fold",
+        "stability lost",
+    ]
     rows = []
     for model in ("alpha=1", "beta=1"):
-        by_name = {name: chosen(found, "low:1", name, model) for name in (*SERIES, "fold", "stability")}
+        by_name = {
+            name: chosen(found, "low:1", name, model)
+            for name in (*SERIES, "fold", "stability")
+        }
         for N in LENGTHS:
             cells = [energy(by_name[name].get(N)) for name in (*SERIES, "fold")]
             fold = by_name["fold"].get(N)
-            what = "" if fold is None else f"mode {fold.details['mode']}, harmonic {fold.details['harmonic'][0]}"
+            what = (
+                ""
+                if fold is None
+                else f"mode {fold.details['mode']}, harmonic {fold.details['harmonic'][0]}"
+            )
             size = "" if fold is None else f"{fold.energy / unit(model, N, 1):.3f}"
-            rows.append([model, str(N), *cells, what, size, energy(by_name["stability"].get(N))])
+            rows.append(
+                [model, str(N), *cells, what, size, energy(by_name["stability"].get(N))]
+            )
     return rows_of(head, rows)
 
 
@@ -188,7 +227,9 @@ def draw(found: Atlas) -> None:
 
     packets = ["low:1", "high:1", "low:2"]
     for model, name in zip(("alpha=1", "beta=1"), PICTURES, strict=False):
-        axes = plots.atlas_borders(found, models=[model], packets=packets, borders=["poles", "fold"])
+        axes = plots.atlas_borders(
+            found, models=[model], packets=packets, borders=["poles", "fold"]
+        )
         save(axes, name)
     axes = plots.atlas_map(found, N=16, model="alpha=1", border="fold")
     save(axes, PICTURES[-1])
@@ -196,7 +237,9 @@ def draw(found: Atlas) -> None:
 
 def save(axes: Any, name: str) -> None:
     """A picture beside the page."""
-    axes.figure.savefig(HERE / name, dpi=110, bbox_inches="tight", metadata={"Software": None})
+    axes.figure.savefig(
+        HERE / name, dpi=110, bbox_inches="tight", metadata={"Software": None}
+    )
 
 
 def main() -> None:

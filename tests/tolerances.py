@@ -717,3 +717,10 @@ COARSE_STAY, DOUBLES_STAY, DIGITS_STAY = 1e-7, 1e-3, 1e-18
 
 # The first step of a KAM iteration for N = 3, as a part of what it may be: 0.07 in doubles, 8e-20 with 30 digits.
 KAM_DOUBLES, KAM_DIGITS = 1e-3, 1e-15
+
+# Radius of convergence from terms of order 58 to 64 fitted to k^(-3/2) R^-k at a fold: the next term of the fit, of relative size
+# 1/k, changes its slope by about 1/k^2 = 2.4e-4.
+FOLD_RADIUS = 1e-3
+
+# ln of a determinant of some 100 rows by differences with a step of 1e-6: each entry to 1e-9, times the inverse near the fold.
+SHEET_DETERMINANT = 1e-5

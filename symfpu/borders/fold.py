@@ -28,11 +28,12 @@ Floats = NDArray[np.float64]
 class Sheet:
     """The derivative of the equations of the other coefficients, at one torus.
 
-    sign : of its determinant, relative to that of the linear chain; it changes where the series
-    is singular. mode, harmonic : the coefficient that moves most in its weakest direction.
+    sign, logarithm : of its determinant divided by that of the linear chain at these frequencies,
+    the product of the divisors; the sign changes where the series is singular. mode, harmonic : the coefficient that moves most in its weakest direction.
     """
 
     sign: int
+    logarithm: float
     mode: int
     harmonic: tuple[int, ...]
 
@@ -49,16 +50,14 @@ def sheet_of(torus: RefinedTorus) -> Sheet | None:
     slopes = equation.slopes(cosines)
     divisors = equation.divisors(shifts_of(torus)).astype(float)[rows, columns]
     matrix = np.diag(divisors) - equation.block(slopes, rows, columns)
-    matrix /= np.abs(divisors)[:, None]
-    sign, weakest = _sign_and_weakest(matrix)
-    sign *= int(np.prod(np.sign(divisors)))
-    return Sheet(
-        sign, int(columns[weakest]) + 1, tuple(map(int, torus.harmonics[rows[weakest]]))
-    )
+    matrix /= divisors[:, None]
+    sign, logarithm, weakest = _determinant(matrix)
+    harmonic = tuple(map(int, torus.harmonics[rows[weakest]]))
+    return Sheet(sign, logarithm, int(columns[weakest]) + 1, harmonic)
 
 
-def _sign_and_weakest(matrix: Floats) -> tuple[int, int]:
-    """Of the determinant, and the place that is largest in the nearly null vector."""
+def _determinant(matrix: Floats) -> tuple[int, float, int]:
+    """Its sign, the logarithm of its size, and what is largest in the nearly null vector."""
     from scipy import linalg
 
     with warnings.catch_warnings():
@@ -71,4 +70,5 @@ def _sign_and_weakest(matrix: Floats) -> tuple[int, int]:
         vector = linalg.lu_solve((factors, pivots), vector, check_finite=False)
         vector /= np.abs(vector).max()
     sign = -1 if (swaps + negative) % 2 else 1
-    return sign, int(np.argmax(np.abs(vector)))
+    logarithm = float(np.log(np.abs(factors.diagonal())).sum())
+    return sign, logarithm, int(np.argmax(np.abs(vector)))
