@@ -13,7 +13,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
-from math import comb
+from math import comb, prod
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -26,6 +26,7 @@ from symfpu.algebra.uncompiled import TILE
 Floats = NDArray[np.float64]
 Bonds = TypeVar("Bonds")
 
+CACHE_LINE = 64  # bytes
 EULER = 0  # the name of d c_d among the powers
 PARALLEL_FROM = 500_000  # multiply-adds below which threads cost more than they give
 
@@ -78,6 +79,14 @@ def predicted_bytes(N: int, seeds: int, top: int, *, powers: int) -> int:
     return stored + modes + products + last_modes + transforms
 
 
+def aligned_zeros(shape: tuple[int, ...], kind: Any = np.float64) -> NDArray[Any]:
+    """Zeros that begin at a line of the cache: no row of 64 bytes then lies on two."""
+    size = np.dtype(kind).itemsize * prod(shape)
+    memory = np.zeros(size + CACHE_LINE, dtype=np.uint8)
+    first = -memory.ctypes.data % CACHE_LINE
+    return np.asarray(memory[first : first + size].view(kind).reshape(shape))
+
+
 class DenseRing(ABC, Generic[Bonds]):
     """Coefficients as doubles; products on bonds by compiled, threaded kernels.
 
@@ -87,7 +96,9 @@ class DenseRing(ABC, Generic[Bonds]):
     """
 
     modulus: float | None = None
+    kind: Any = np.float64  # of what is kept on the bonds
     grows = False
+    reduces = False  # whether the kernels leave their sums in normal form
 
     def __init__(
         self, space: CosineModes, *, workers: int | None = None, points: int | None = None
@@ -104,15 +115,15 @@ class DenseRing(ABC, Generic[Bonds]):
         self._pool = ThreadPoolExecutor(self._workers)
         self._points = points or space.half
         self._convolves = len(space.seeds) == 1 and self.modulus is None
-        self._lanes = 8 if self._convolves else lane_width(self._points)
+        self._lanes = 8 if self._convolves else self._lane_width()
         self._slices = -(-self._points // self._lanes)
         rows, seed_slices = int(self.grading.first_row[-1]), -(-len(space.seeds) // 8)
-        self._bonds = np.zeros((self._slices, rows, self._lanes))
+        self._bonds = aligned_zeros((self._slices, rows, self._lanes), self.kind)
         self._powers: dict[
             int, Floats
         ] = {}  # of the bonds, as far as higher powers need them
-        self._seed_modes = np.zeros((seed_slices, rows, 8))
-        self._corrections = np.zeros((seed_slices, rows, 8))
+        self._seed_modes = aligned_zeros((seed_slices, rows, 8))
+        self._corrections = aligned_zeros((seed_slices, rows, 8))
         self._active = np.zeros(rows, dtype=np.bool_)
         self._degrees: list[int] = []
         self._power_degrees: dict[int, list[int]] = {}
@@ -122,6 +133,13 @@ class DenseRing(ABC, Generic[Bonds]):
         self._modes: list[Floats] = []
         self._diagonal: list[Floats] = []
         self._to_bonds, self._to_modes = self._transforms()
+
+    def _lane_width(self) -> int:
+        return lane_width(self._points)
+
+    def _reductions(self, slice_: int, *, sparse: bool = False) -> tuple[Any, ...]:
+        """What else the kernels need to reduce the sums of one slice: moduli and a limit."""
+        return ()
 
     @abstractmethod
     def _cosines(self, angles: Ints) -> Floats:
@@ -250,7 +268,7 @@ class DenseRing(ABC, Generic[Bonds]):
         """
         rows = self._rows(degree)
         slices, _, width = left.shape
-        out = np.zeros((slices, rows.stop - rows.start, width))
+        out = aligned_zeros((slices, rows.stop - rows.start, width))
         if not splits:
             return out
         if self._convolves and not sparse:
@@ -276,6 +294,7 @@ class DenseRing(ABC, Generic[Bonds]):
                 blocks[first::chunks],
                 self.grading.tables,
                 self.modulus,
+                *self._reductions(slice_, sparse=sparse),
             )
             return int(count)
 
@@ -286,7 +305,7 @@ class DenseRing(ABC, Generic[Bonds]):
         count = sum(done)
         if not sparse:
             self.multiply_adds += count
-        return self._reduced(out)
+        return out if self.reduces else self._reduced(out)
 
     def _convolve(
         self,
@@ -321,7 +340,14 @@ class DenseRing(ABC, Generic[Bonds]):
             slice_, first = part
             some = tiles[first::chunks]
             count = self._one_seed.convolve(
-                lanes, left[slice_], right[slice_], out[slice_], table, starts, some
+                lanes,
+                left[slice_],
+                right[slice_],
+                out[slice_],
+                table,
+                starts,
+                some,
+                *self._reductions(slice_),
             )
             return int(count)
 
@@ -363,7 +389,7 @@ class DenseRing(ABC, Generic[Bonds]):
     def _store_power(self, power: int, degree: int, values: Floats) -> None:
         """Keep a power of the bonds, (canonical, points), as a factor of higher powers."""
         if power not in self._powers:
-            self._powers[power] = np.zeros_like(self._bonds)
+            self._powers[power] = aligned_zeros(self._bonds.shape, self.kind)
             self._power_degrees[power] = []
         if degree not in self._power_degrees[power]:
             self._power_degrees[power].append(degree)
@@ -483,13 +509,13 @@ class ValuesRing(DenseRing[Floats]):
         """
         if name not in self._completed:
             self._completed[name] = set()
-            self._powers[name] = np.zeros_like(self._bonds)
+            self._powers[name] = aligned_zeros(self._bonds.shape, self.kind)
             self._power_degrees[name] = list(self._degrees)
         missing = [d for d in self._degrees if d not in self._completed[name]]
         for degree in missing:
             rows, target = self._rows(degree), self._powers[name]
             weight = self.number(Fraction(degree) if factor is None else factor)
-            own = self._times(self._bonds[:, rows].copy(), weight)
+            own = self._times(self._bonds[:, rows].astype(np.float64), weight)
             own += target[:, rows]
             target[:, rows] = self._reduced(own)
             self._completed[name].add(degree)
@@ -503,7 +529,7 @@ class ValuesRing(DenseRing[Floats]):
         of_rows = np.repeat(self._reduced(weights), counts)[:, None]
         end = int(first_row[degree])
         if self._weighted is None:
-            self._weighted = np.empty_like(self._bonds)
+            self._weighted = aligned_zeros(self._bonds.shape)
         lower = self._weighted[:, :end]
         np.copyto(lower, self._bonds[:, :end])
         return self._times(lower, of_rows)

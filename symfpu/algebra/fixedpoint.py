@@ -2,9 +2,9 @@
 modulo many primes.
 
 Every product of the recursion (on bonds, with cosines, with multipliers) is exact, modulo primes
-of 40 bits, at the speed of the residue kernels. Between two products the integers are recombined
-and rounded to the nearest at `bits` binary places. All arrays of degree d carry the factor
-unit^-(d - 1), which keeps the degrees of one series near one.
+so small that it costs one multiply-add each (`SeveralPrimesRing`). Between two products the
+integers are recombined and rounded to the nearest at `bits` binary places. All arrays of degree d
+carry the factor unit^-(d - 1), which keeps the degrees of one series near one.
 
 A function g with (1 + slope r) g' = rate g is kept as h = (g - 1)/(2 rate), which begins as c:
     h_d = c_d + 2/d sum (rate j - slope (d - j)) c_j h_(d-j),
@@ -14,7 +14,7 @@ an exact sum that is rounded once, when it is divided.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.dense import Floats, threads_of_a_computation
 from symfpu.algebra.grading import Ints
-from symfpu.algebra.residue import ResidueRing, largest_modulus
 from symfpu.algebra.selection import CosineModes
+from symfpu.algebra.several_primes import SeveralPrimesRing, largest_prime
 from symfpu.algebra.words import LIMB_BITS, IntegerTable, ResidueBasis, divided, words_of
 
 BLOCK = 1 << 15  # integers converted at once, so that they stay in the cache
@@ -60,47 +60,6 @@ class Bonds(NamedTuple):
     factor: Fraction = Fraction(1)
 
 
-class _Image(ResidueRing):
-    """The series modulo one prime; what it stores is rounded by the ring that owns it."""
-
-    def __init__(self, space: CosineModes, prime: int) -> None:
-        super().__init__(space, prime, 0, workers=1)
-
-    def _transforms(self) -> tuple[Floats, Floats]:
-        return np.zeros((0, 0)), np.zeros((0, 0))
-
-    def store(self, degree: int, modes: Floats) -> None:
-        """Register a degree; its bonds are stored apart."""
-        self._degrees.append(degree)
-        self._store_seed_modes(degree, modes)
-
-    def store_bonds(self, degree: int, rows: Ints, values: Floats) -> None:
-        self._store(self._bonds, degree, rows, values)
-
-    def store_power(self, power: int, degree: int, values: Floats) -> None:
-        self._store_power(power, degree, values)
-
-    def canonical_power(self, power: int, degree: int) -> Floats:
-        return self._canonical_points(degree, self.power(power, degree))
-
-    def canonical_growth(
-        self, name: int, slope: Fraction, rate: Fraction, degree: int
-    ) -> Floats:
-        """The sum of a growth over lower degrees; slope and rate are whole numbers but for a
-        rate beside slope 0, which is left out.
-        """
-        self._complete(name, Fraction(1))
-        values, _ = self._grown(name, slope, rate, degree)
-        return self._canonical_points(degree, values)
-
-    def add_projection(
-        self, degree: int, total: Floats, values: Floats, back: Floats
-    ) -> None:
-        """Add the modes of values on bonds (canonical, points)."""
-        for rows, columns in self._parts(degree):
-            total[rows, columns] += self._matrix_product(values[rows], back[columns].T)
-
-
 class FixedPointRing:
     """Coefficients as integers times 2^-bits."""
 
@@ -110,11 +69,11 @@ class FixedPointRing:
     def __init__(self, space: CosineModes, precision: Precision) -> None:
         self.space, self.grading, self.precision = space, space.grading, precision
         self._drop = precision.bits // LIMB_BITS
-        largest = largest_modulus(len(space.seeds), space.grading.degree)
+        largest = largest_prime(space.grading.degree)
         self.basis = ResidueBasis(2 * precision.bits + precision.headroom, largest)
-        self._images = [_Image(space, p) for p in self.basis.primes]
-        self._pool = ThreadPoolExecutor(threads_of_a_computation())
-        self._points = self._images[0]._slices * self._images[0]._lanes
+        self._image = SeveralPrimesRing(space, self.basis)
+        self._threads = threads_of_a_computation()
+        self._pool = ThreadPoolExecutor(self._threads)
         self._to_bonds = self._cosines(np.ones(space.half))
         self._back: dict[Fraction, Floats] = {}
         self._stored: set[tuple[int, int]] = set()  # powers of the bonds, and their degrees
@@ -124,13 +83,10 @@ class FixedPointRing:
     @property
     def multiply_adds(self) -> int:
         """Multiply-adds of the kernels, over all primes."""
-        return sum(image.multiply_adds for image in self._images)
+        return self._image.multiply_adds
 
     def coupling(self, power: int, value: Fraction) -> Fraction:
         return value
-
-    def _each(self, work: Callable[[int, _Image], Any]) -> list[Any]:
-        return list(self._pool.map(lambda item: work(*item), enumerate(self._images)))
 
     def _cosines(self, weights: NDArray[Any]) -> Floats:
         """Residues of weight_j cos(q (j + 1/2) pi / N) on half of the bonds.
@@ -141,7 +97,7 @@ class FixedPointRing:
         odd = 2 * np.arange(half) + 1
         angles = np.outer(np.arange(1, N), odd) % (4 * N)
         angles = np.minimum(angles, 4 * N - angles)
-        whole = np.zeros((N - 1, self._points), dtype=object)
+        whole = np.zeros((N - 1, half), dtype=object)
         largest = max(1, *(abs(w) for w in weights))
         with mpmath.workprec(bits + math.ceil(math.log2(largest)) + 32):
             cosines = [mpmath.cospi(mpmath.mpf(n) / (2 * N)) for n in range(2 * N + 1)]
@@ -168,32 +124,40 @@ class FixedPointRing:
         self, residues: Floats, divisor: int = 1
     ) -> tuple[Floats, NDArray[np.int64]]:
         """Integers / (2^bits divisor), rounded: residues (primes, count) and words (count, n)."""
+        if divisor == 1:
+            every = np.ones(residues.shape[1], dtype=np.bool_)
+            return residues, self._round(residues, every)
         starts = range(0, residues.shape[1], BLOCK)
 
         def convert(start: int) -> tuple[Floats, NDArray[np.int64]]:
             block = residues[:, start : start + BLOCK].copy()
-            if divisor == 1:
-                limbs = self.basis.limbs(block, self._drop)
-            else:
-                limbs = divided(self.basis.limbs(block, self._drop - 1), divisor)
+            limbs = divided(self.basis.limbs(block, self._drop - 1), divisor)
             return self.basis.residues(limbs), words_of(limbs)
 
         parts = list(self._pool.map(convert, starts))
         if not parts:
             return np.zeros((len(self.basis), 0)), np.zeros((0, 1), dtype=np.int64)
         rounded, words = zip(*parts, strict=True)
-        longest = max(part.shape[1] for part in words)
-        padded = [np.pad(part, ((0, 0), (0, longest - part.shape[1]))) for part in words]
-        return np.concatenate(rounded, axis=1), np.concatenate(padded)
+        return np.concatenate(rounded, axis=1), _joined(words)
+
+    def _round(self, residues: Floats, wanted: NDArray[np.bool_]) -> NDArray[np.int64]:
+        """Integers / 2^bits in their place, zero where not wanted; words of the wanted ones."""
+        step = max(BLOCK, -(-len(wanted) // (8 * self._threads)))
+
+        def convert(start: int) -> NDArray[np.int64]:
+            some = slice(start, start + step)
+            return self.basis.round_in_place(residues[:, some], wanted[some], self._drop)
+
+        parts = list(self._pool.map(convert, range(0, len(wanted), step)))
+        return _joined(parts) if parts else np.zeros((0, 1), dtype=np.int64)
 
     def _rounded_where(self, residues: Floats, wanted: NDArray[np.bool_]) -> Modes:
         """Round the wanted entries of (primes, rows, columns); the others are exactly zero."""
-        chosen, words = self._rounded(residues[:, wanted])
-        result = np.zeros_like(residues)
-        result[:, wanted] = chosen
+        flat = residues.reshape(len(self.basis), -1)
+        words = self._round(flat, wanted.ravel())
         table = np.zeros((*wanted.shape, words.shape[1]), dtype=np.int64)
         table[wanted] = words
-        return Modes(result, IntegerTable(table))
+        return Modes(flat.reshape(residues.shape), IntegerTable(table))
 
     def seed_terms(self) -> Modes:
         seeds, one = self.space.seeds, 1 << self.precision.bits
@@ -205,39 +169,33 @@ class FixedPointRing:
 
     def put(self, degree: int, modes: Modes) -> None:
         self._modes.append(modes.table)
-        self._each(lambda i, image: image.store(degree, modes.residues[i]))
-        for rows, columns in self._images[0]._parts(degree):
+        self._image.store(degree, modes.residues)
+        for rows, columns in self._image._parts(degree):
             self._put_part(degree, rows, columns, modes.residues)
 
     def _put_part(self, degree: int, rows: Ints, columns: slice, residues: Floats) -> None:
-        def to_bonds(i: int, image: _Image) -> Floats:
-            return image._matrix_product(
-                residues[i][rows, columns], self._to_bonds[i][columns]
-            )
+        products = np.zeros((len(self.basis), len(rows), self.space.half))
+        right = self._to_bonds[:, columns]
+        everywhere = (slice(None), slice(None))
+        self._image.matrix_products(residues, rows, columns, right, products, everywhere)
+        values, _ = self._rounded(products.reshape(len(self.basis), -1))
+        self._image.store_bonds(degree, rows, values.reshape(products.shape))
 
-        primes = len(self.basis)
-        products = np.stack(self._each(to_bonds))
-        values, _ = self._rounded(products.reshape(primes, -1))
-        shaped = values.reshape(primes, len(rows), self._points)
-        self._each(lambda i, image: image.store_bonds(degree, rows, shaped[i]))
-
-    def _bonds(self, products: list[Floats], power: int) -> Bonds:
-        stack = np.stack(products)
-        values, _ = self._rounded(stack.reshape(len(self.basis), -1))
-        return Bonds(values.reshape(stack.shape), power)
+    def _bonds(self, products: Floats, power: int) -> Bonds:
+        values, _ = self._rounded(products.reshape(len(self.basis), -1))
+        return Bonds(values.reshape(products.shape), power)
 
     def power(self, power: int, degree: int) -> Bonds:
         lower = power - 1
         for d in range(lower, degree if power > 2 else 0):
             if (lower, d) not in self._stored:
                 self._put_power(lower, d)
-        products = self._each(lambda _, image: image.canonical_power(power, degree))
-        return self._bonds(products, lower)
+        return self._bonds(self._image.canonical_power(power, degree), lower)
 
     def _put_power(self, power: int, degree: int) -> None:
         values = self.power(power, degree).residues
         self._stored.add((power, degree))
-        self._each(lambda i, image: image.store_power(power, degree, values[i]))
+        self._image.store_power(power, degree, values)
 
     def number(self, value: Fraction) -> Fraction:
         return value
@@ -246,15 +204,13 @@ class FixedPointRing:
         """As of `GrowingRing`: h, with the factor 2 rate."""
         name = -1 - number
         whole, share = whole_growth(slope, rate, degree, self.precision.unit)
-        sums = np.stack(
-            self._each(lambda _, image: image.canonical_growth(name, *whole, degree))
-        )
+        sums = self._image.canonical_growth(name, *whole, degree)
         numerator = self.basis.of_integers(np.array([share.numerator], dtype=object))
         products = sums.reshape(len(self.basis), -1)
         self.basis.scale(products, numerator[:, 0])
         values, _ = self._rounded(products, share.denominator)
         shaped = values.reshape(sums.shape)
-        self._each(lambda i, image: image.store_power(name, degree, shaped[i]))
+        self._image.store_power(name, degree, shaped)
         return Bonds(shaped, 0, 2 * rate)
 
     def project(self, degree: int, parts: Sequence[tuple[Fraction, Bonds]]) -> Modes:
@@ -264,30 +220,28 @@ class FixedPointRing:
             scale = bonds.factor / self.precision.unit**bonds.power
             back = self._to_modes(coefficient * scale)
             self._add_projection(degree, total, bonds.residues, back)
-        self._each(lambda i, image: image.reduced(total[i]))
         return self._rounded_where(total, self.space.mask(degree))
 
     def _add_projection(
         self, degree: int, total: Floats, values: Floats, back: Floats
     ) -> None:
-        self._each(
-            lambda i, image: image.add_projection(degree, total[i], values[i], back[i])
-        )
+        for rows, columns in self._image._parts(degree):
+            right = np.moveaxis(back[:, columns], 1, 2)
+            at = (rows, columns)
+            self._image.matrix_products(values, rows, slice(None), right, total, at)
 
     def secular(self, degree: int, modes: Modes) -> Modes:
-        residues = self._each(lambda i, image: image.secular(degree, modes.residues[i]))
-        image, words = self._images[0], modes.table.words
-        # only picks entries
-        columns = [image.secular(degree, words[..., n]) for n in range(words.shape[2])]
-        table = IntegerTable(np.stack(columns, axis=-1))
-        return Modes(np.stack(residues), table)
+        # the image only picks entries
+        residues = self._image.secular(degree, np.moveaxis(modes.residues, 0, 2))
+        words = self._image.secular(degree, modes.table.words)
+        return Modes(np.moveaxis(residues, 2, 0), IntegerTable(words))
 
     def correct(self, degree: int, corrections: Modes) -> None:
         self._corrections.append(corrections.table)
-        self._each(lambda i, image: image.correct(degree, corrections.residues[i]))
+        self._image.correct_by(degree, corrections.residues)
 
     def corrected(self, degree: int) -> Modes:
-        residues = np.stack(self._each(lambda _, image: image.corrected(degree)))
+        residues = self._image.corrected_residues(degree)
         every = np.ones(residues.shape[1:], dtype=np.bool_)
         return self._rounded_where(residues, every)
 
@@ -298,16 +252,14 @@ class FixedPointRing:
         seeds = np.array(self.space.seeds) - 1
         sizes = (multipliers / 2**self.precision.bits).astype(float)
         self._check_range(corrected, force, sizes[index], seeds)
-        factors = self.basis.of_integers(multipliers)
-
-        def work(i: int, image: _Image) -> Floats:
-            bracket = -force.residues[i]
-            bracket[:, seeds] += corrected.residues[i]
-            return image.products(image.reduced(bracket), factors[i][index])
-
-        products = np.stack(self._each(work))
         carried = multipliers != 0
-        return self._rounded_where(products, carried[index])
+        wanted = carried[index]
+        bracket = np.negative(force.residues, out=force.residues)
+        bracket[:, :, seeds] += corrected.residues
+        places = np.cumsum(carried).reshape(carried.shape) - 1
+        factors = self.basis.of_integers(multipliers[carried])
+        self._image.multiply_at(bracket, wanted, factors, places[index])
+        return self._rounded_where(bracket, wanted)
 
     def _check_range(
         self, corrected: Modes, force: Modes, factors: Floats, seeds: Ints
@@ -337,6 +289,13 @@ def whole_growth(
         return (slope, rate), rate * share
     common = math.lcm(slope.denominator, rate.denominator)
     return (slope * common, rate * common), share / common
+
+
+def _joined(words: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
+    """Words (count, n) of several parts as one array, of as many words as the longest."""
+    longest = max(part.shape[1] for part in words)
+    padded = [np.pad(part, ((0, 0), (0, longest - part.shape[1]))) for part in words]
+    return np.concatenate(padded)
 
 
 def _weighted(table: Sequence[Any], weight: Fraction) -> NDArray[np.object_]:

@@ -23,6 +23,7 @@ from symfpu.algebra import uncompiled
 from symfpu.compiled import JIT, compiled
 
 INT64 = ir.IntType(64)
+COLUMNS = 128  # integers rounded at once, so that they stay in the cache
 Float64 = types.float64
 
 
@@ -36,6 +37,11 @@ def _emit(builder: Any, name: str, *operands: Any) -> Any:
         declared.get_or_insert_function(builder.module, signature, f"{name}.{suffix}"),
         operands,
     )
+
+
+def as_doubles(builder: Any, values: Any, vector: Any) -> Any:
+    """A vector of doubles as it is, one of singles converted."""
+    return values if values.type == vector else builder.fpext(values, vector)
 
 
 def _modular_product(builder: Any, a: Any, b: Any, modulus: Any, inverse: Any) -> Any:
@@ -111,9 +117,13 @@ def _row_code(
             ).data
 
         def row(base: Any, index: Any) -> Any:
-            return builder.bitcast(
-                builder.gep(base, [builder.mul(index, INT64(width))]), vector.as_pointer()
-            )
+            first = builder.gep(base, [builder.mul(index, INT64(width))])
+            kind = ir.VectorType(base.type.pointee, width)
+            return builder.bitcast(first, kind.as_pointer())
+
+        def load(place: Any) -> Any:
+            """A row of doubles, or of singles as doubles."""
+            return as_doubles(builder, builder.load(place, align=4), vector)
 
         def spread(value: Any) -> Any:
             undefined = ir.Constant(vector, ir.Undefined)
@@ -124,9 +134,7 @@ def _row_code(
                 ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width),
             )
 
-        factor = builder.fmul(
-            builder.load(row(pointer(1), args[2]), align=8), spread(args[3])
-        )
+        factor = builder.fmul(load(row(pointer(1), args[2])), spread(args[3]))
         right_rows, out_rows = row(pointer(4), args[5]), row(pointer(6), args[7])
         places = builder.gep(pointer(8), [args[9]])
         modular = sig.args[12] != types.none
@@ -141,7 +149,7 @@ def _row_code(
         ):
             place = builder.sext(builder.load(builder.gep(places, [n])), INT64)
             target = builder.gep(out_rows, [place])
-            other = builder.load(builder.gep(right_rows, [n]), align=8)
+            other = load(builder.gep(right_rows, [n]))
             if modular:
                 total = builder.fadd(
                     builder.load(target, align=8),
@@ -163,6 +171,31 @@ multiply_row: Any = _row_code if JIT else uncompiled.multiply_row
 
 
 @compiled()
+def reduce_lanes(rows, first, last, moduli, inverses):  # type: ignore[no-untyped-def]
+    """Rows first .. last - 1 modulo the modulus of each lane, in -p/2 .. p/2.
+
+    Integers below 2^52 in size, overwritten. rows : (count, lanes). moduli, inverses : (lanes,).
+    """
+    for n in range(first, last):
+        for lane in range(len(moduli)):
+            value = rows[n, lane]
+            turns = np.rint(value * inverses[lane])
+            rows[n, lane] = value - moduli[lane] * turns
+
+
+@compiled()
+def _with_room(pending, weight, limit, out, rows, moduli):  # type: ignore[no-untyped-def]
+    """How many products the sums have after the next; sums are reduced first where need be.
+
+    Without moduli nothing is reduced.
+    """
+    if moduli is None or pending <= limit:
+        return pending
+    reduce_lanes(out, rows[0], rows[1], moduli, 1.0 / moduli)
+    return 1.0 + weight
+
+
+@compiled()
 def multiply(
     lanes: Any,
     left: Any,
@@ -176,6 +209,8 @@ def multiply(
     blocks: Any,
     tables: Any,
     modulus: Any,
+    moduli: Any = None,
+    limit: int = 0,
 ) -> int:
     """Add the products of all `splits` of a degree into out, canonical rows only.
 
@@ -188,6 +223,8 @@ def multiply(
     and each unordered pair is multiplied once and added with weight two (a square once). active :
     for a sparse left factor, which of its rows are not zero; else empty. blocks : outer monomials
     to fill. tables : algebra.grading.ProductTables. modulus : None or a prime.
+    moduli : None, or of each lane, with modulus None: sums are reduced, to -p/2 .. p/2, only where
+    they could have more than `limit` products, and at the end.
     """
     (
         outer_degree,
@@ -208,6 +245,8 @@ def multiply(
         x = outer_degree[outer]
         target = block[degree, outer] - first_row
         wanted = first_canonical[degree - x] if inner_start[outer] else 0
+        rows = (target + wanted, target + inner_count[degree - x])
+        pending = 1.0
         for split in range(len(splits)):
             d1, d2 = splits[split, 0], splits[split, 1]
             mirror = symmetric and d1 == d2
@@ -232,6 +271,9 @@ def multiply(
                             start -= 1
                         if sparse and not active[i0 + i]:
                             continue
+                        pending = _with_room(
+                            pending + weight, weight, limit, out, rows, moduli
+                        )
                         if swap:
                             multiply_row(
                                 lanes,
@@ -265,6 +307,7 @@ def multiply(
                                 modulus,
                             )
                         count += length - start
+        _with_room(2.0, 1.0, 1, out, rows, moduli)
     return count * len(lanes)
 
 
@@ -306,3 +349,144 @@ def reduce_rows(values, moduli):  # type: ignore[no-untyped-def]
         inverse = 1.0 / modulus
         for n in range(values.shape[1]):
             values[i, n] -= modulus * np.rint(values[i, n] * inverse)
+
+
+@compiled()
+def _next_columns(residues, wanted, first, places):  # type: ignore[no-untyped-def]
+    """The next wanted columns from `first` on, into places; those between are set to zero.
+
+    Returns how many they are, and where to go on.
+    """
+    n, at = 0, first
+    while at < residues.shape[1] and n < len(places):
+        if wanted[at]:
+            places[n] = at
+            n += 1
+        else:
+            residues[:, at] = 0.0
+        at += 1
+    return n, at
+
+
+@compiled()
+def _shares(residues, places, basis, shares, turns):  # type: ignore[no-untyped-def]
+    """Residues over the cofactors, (primes, n), and the multiple of all primes that they exceed.
+
+    Returns the largest distance of a sum of shares from that whole number.
+    """
+    n = len(places)
+    turns[:n] = 0.0
+    for i in range(len(residues)):
+        modulus, own = basis.moduli[i], basis.inverses[i]
+        inverse = 1.0 / modulus
+        for b in range(n):
+            value = residues[i, places[b]] * own
+            value -= modulus * np.rint(value * inverse)
+            shares[i, b] = value
+            turns[b] += value * inverse
+    farthest = 0.0
+    for b in range(n):
+        whole = np.rint(turns[b])
+        farthest = max(farthest, abs(turns[b] - whole))
+        turns[b] = whole
+    return farthest
+
+
+@compiled()
+def _limbs_of(shares, turns, n, basis, limb, limbs):  # type: ignore[no-untyped-def]
+    """Balanced limbs (limbs, n) of the integers with these shares."""
+    for k in range(len(limbs)):
+        row, multiple = limbs[k], basis.modulus_limbs[k]
+        for b in range(n):
+            row[b] = -multiple * turns[b]
+        for i in range(len(shares)):
+            factor = basis.cofactor_limbs[k, i]
+            for b in range(n):
+                row[b] += factor * shares[i, b]
+        if k > 0:
+            before = limbs[k - 1]
+            for b in range(n):
+                carry = np.rint(before[b] / limb)
+                before[b] -= carry * limb
+                row[b] += carry
+
+
+@compiled()
+def _residues_of(limbs, places, basis, total, residues):  # type: ignore[no-untyped-def]
+    """residues[:, places] of the integers with these limbs."""
+    n = len(places)
+    for i in range(len(residues)):
+        modulus = basis.moduli[i]
+        inverse = 1.0 / modulus
+        total[:n] = 0.0
+        for k in range(len(limbs)):
+            factor = basis.powers[i, k]
+            for b in range(n):
+                total[b] += factor * limbs[k, b]
+        for b in range(n):
+            residues[i, places[b]] = total[b] - modulus * np.rint(total[b] * inverse)
+
+
+@compiled()
+def round_columns(residues, wanted, drop, basis, limb, words):  # type: ignore[no-untyped-def]
+    """Integers of which residues are given, / limb^drop, rounded to the nearest, in their place.
+
+    Zero where they are not wanted. Returns the largest distance of a sum of shares from a whole
+    number, which is small unless an integer exceeds the range.
+
+    residues : (primes, count), overwritten. wanted : (count,). basis : a `words.Rounding` of small
+    primes. limb : 2^20. words : (wanted, n) int64 of three limbs each, zeros, filled.
+    """
+    primes = len(residues)
+    shares = np.empty((primes, COLUMNS))
+    limbs = np.empty((len(basis.modulus_limbs), COLUMNS))
+    turns = np.empty(COLUMNS)
+    places = np.empty(COLUMNS, dtype=np.int64)
+    done, at, farthest = 0, 0, 0.0
+    while at < residues.shape[1]:
+        n, at = _next_columns(residues, wanted, at, places)
+        distance = _shares(residues, places[:n], basis, shares, turns)
+        farthest = max(farthest, distance)
+        _limbs_of(shares, turns, n, basis, limb, limbs)
+        _residues_of(limbs[drop:], places[:n], basis, turns, residues)
+        for k in range(drop, len(limbs)):
+            word, place = divmod(k - drop, 3)
+            for b in range(n):
+                words[done + b, word] += np.int64(limbs[k, b]) << (20 * place)
+        done += n
+    return farthest
+
+
+@compiled()
+def to_lanes(values, target, rows):  # type: ignore[no-untyped-def]
+    """target[slice, rows[r]] = values[., r, .], lanes counted through the slices.
+
+    values : (primes, rows, half). target : (slices, all rows, lanes); the last lanes may be over.
+    """
+    slices, _, width = target.shape
+    primes, count, half = values.shape
+    for part in range(slices):
+        first, last = part * width, min((part + 1) * width, primes * half)
+        for r in range(count):
+            i, j = divmod(first, half)
+            for lane in range(last - first):
+                target[part, rows[r], lane] = values[i, r, j]
+                j += 1
+                if j == half:
+                    i, j = i + 1, 0
+
+
+@compiled()
+def from_lanes(source, values, rows, factor):  # type: ignore[no-untyped-def]
+    """The way back: values[., r, .] = factor source[slice, rows[r]]."""
+    slices, _, width = source.shape
+    primes, count, half = values.shape
+    for part in range(slices):
+        first, last = part * width, min((part + 1) * width, primes * half)
+        for r in range(count):
+            i, j = divmod(first, half)
+            for lane in range(last - first):
+                values[i, r, j] = factor * source[part, rows[r], lane]
+                j += 1
+                if j == half:
+                    i, j = i + 1, 0

@@ -17,6 +17,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from symfpu.algebra import uncompiled
+from symfpu.algebra.kernels import as_doubles, reduce_lanes
 from symfpu.algebra.uncompiled import TILE
 from symfpu.compiled import JIT, compiled
 
@@ -35,10 +36,13 @@ class _Rows:
         builder = self.builder
         row = builder.add(index, INT64(offset))
         first = builder.gep(self.base, [builder.mul(row, INT64(self.width))])
-        return builder.bitcast(first, self.vector.as_pointer())
+        kind = ir.VectorType(self.base.type.pointee, self.width)
+        return builder.bitcast(first, kind.as_pointer())
 
     def load(self, index: Any, offset: int = 0) -> Any:
-        return self.builder.load(self.at(index, offset), align=8)
+        """As doubles."""
+        row = self.builder.load(self.at(index, offset), align=4)
+        return as_doubles(self.builder, row, self.vector)
 
 
 class _Tile:
@@ -132,18 +136,25 @@ def _add_terms(lanes, left, i, right, j, first, last, out, o):  # type: ignore[n
 
 
 @compiled()
-def convolve(lanes, left, right, out, splits, starts, tiles):  # type: ignore[no-untyped-def]
+def convolve(lanes, left, right, out, splits, starts, tiles, moduli=None, limit=0):  # type: ignore[no-untyped-def]
     """out[p] += sum of left_d[m] right_e[p - m] over all splits (d, e) of a degree.
 
     Returns the number of multiply-adds.
 
     lanes : a tuple whose length is the row's. left, right : (rows of all degrees, lanes). out :
     (rows of this degree, lanes). starts : (degrees,) first row of each. tiles : first rows of the
-    tiles to fill.
+    tiles to fill. moduli, limit : as of `kernels.multiply`; a split has fewer products than that.
     """
     count = 0
+    pending = 1
     for split in range(len(splits)):
         d, e = splits[split, 0], splits[split, 1]
+        if moduli is not None:
+            added = min(d, e) + 1
+            if pending + added > limit:
+                _reduce_tiles(out, tiles, moduli)
+                pending = 1
+            pending += added
         i, j = starts[d], starts[e]
         for p in tiles:
             # terms that all rows of the tile have
@@ -161,4 +172,14 @@ def convolve(lanes, left, right, out, splits, starts, tiles):  # type: ignore[no
                     )
                     begin = last + 1
                 count += _add_terms(lanes, left, i, right, j + t, begin, end, out, t)
+    if moduli is not None:
+        _reduce_tiles(out, tiles, moduli)
     return count * len(lanes)
+
+
+@compiled()
+def _reduce_tiles(out, tiles, moduli):  # type: ignore[no-untyped-def]
+    """The rows of these tiles modulo the modulus of each lane."""
+    inverses = 1.0 / moduli
+    for p in tiles:
+        reduce_lanes(out, p, min(p + TILE, len(out)), moduli, inverses)

@@ -42,7 +42,7 @@ def multiply_row(
 
     Modulo the modulus, if it is not None.
     """
-    factor = left[i] * weight
+    factor = left[i].astype(np.float64) * weight
     for n in range(start, stop):
         other = right[j + n]
         product = (
@@ -66,7 +66,8 @@ def add_one_row(
 ) -> None:
     """out[o] += sum of left[i + n] right[j - n] over n < count."""
     backwards = right[j + 1 - count : j + 1][::-1]
-    out[o] += (left[i : i + count] * backwards).sum(axis=0)
+    factors = left[i : i + count].astype(np.float64)
+    out[o] += (factors * backwards).sum(axis=0)
 
 
 def _exact_product(a: Any, b: Any) -> tuple[Any, Any]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 import flint
 import numpy as np
@@ -23,6 +23,7 @@ LIMB_BITS = 20
 LIMB = 2.0**LIMB_BITS
 LIMBS_PER_WORD = 3
 LARGEST_DIVISOR = 2**42
+EXACT = 2.0**52  # integers below it are exact in doubles
 WORD_BITS = LIMB_BITS * LIMBS_PER_WORD
 
 
@@ -86,6 +87,18 @@ class IntegerTable:
         return IntegerTable(np.stack(words, axis=-1))
 
 
+class Rounding(NamedTuple):
+    """Tables of `kernels.round_columns`: moduli, inverses of cofactors, limbs of the cofactors
+    (limbs, primes) and of the product of all primes (limbs,), powers of 2^20 (primes, limbs).
+    """
+
+    moduli: Floats
+    inverses: Floats
+    cofactor_limbs: Floats
+    modulus_limbs: Floats
+    powers: Floats
+
+
 class ResidueBasis:
     """Integers below `bits` bits as residues modulo enough primes below `largest`.
 
@@ -114,6 +127,14 @@ class ResidueBasis:
         powers = [self._centred([2 ** (LIMB_BITS * n)] * len(self)) for n in range(count)]
         self._powers = np.stack(powers, axis=1)
         self._fold = self._centred([2**LIMB_BITS] * len(self))
+        self._turn = self._centred([2 ** (LIMB_BITS * count)] * len(self))
+        self._rounding = Rounding(
+            self.moduli,
+            self._inverses,
+            self._cofactor_limbs,
+            self._modulus_limbs[:, 0].copy(),
+            self._powers,
+        )
 
     def _centred(self, numbers: Sequence[int]) -> Floats:
         """One number for each prime, as residues in -p/2 .. p/2."""
@@ -134,9 +155,7 @@ class ResidueBasis:
         low = residues - high * LIMB
         share = (1 / self.moduli) @ residues
         turns = np.rint(share)
-        off = np.abs(share - turns)
-        if np.any(off > self._limit + 2.0**-40):
-            raise OverflowError("an integer exceeds the range of the residues")
+        self._check(float(np.abs(share - turns).max(initial=0.0)))
         limbs = self._cofactor_limbs @ low - self._modulus_limbs * turns
         above = self._cofactor_limbs @ high
         limbs[1:] += above[:-1]
@@ -145,6 +164,40 @@ class ResidueBasis:
             limbs[n] -= carry * LIMB
             limbs[n + 1] += carry
         return np.asarray(limbs[drop:])
+
+    @property
+    def small(self) -> bool:
+        """Whether sums over all primes of residues times limbs are exact in doubles."""
+        largest = float(self.moduli.max(initial=0.0))
+        return len(self) * largest * LIMB / 4 <= EXACT and largest**2 / 4 <= EXACT
+
+    def round_in_place(
+        self, residues: Floats, wanted: NDArray[np.bool_], drop: int
+    ) -> Words:
+        """The wanted integers / 2^(20 drop), rounded to the nearest; zeros where not wanted.
+
+        residues : (primes, count), overwritten. Returns the words of the wanted
+        ones, (wanted, n). Raises OverflowError as `limbs` does.
+        """
+        if not self.small:
+            rounded = self.limbs(residues[:, wanted], drop)
+            residues[:] = 0.0
+            residues[:, wanted] = self.residues(rounded)
+            return words_of(rounded)
+        limbs = len(self._modulus_limbs) - drop
+        count = int(np.count_nonzero(wanted))
+        words = np.zeros((count, -(-limbs // LIMBS_PER_WORD)), dtype=np.int64)
+        farthest = self._kernels.round_columns(
+            residues, wanted, drop, self._rounding, LIMB, words
+        )
+        self._check(farthest)
+        used = np.flatnonzero(words.any(axis=0))
+        return words[:, : used[-1] + 1 if len(used) else 1]
+
+    def _check(self, farthest: float) -> None:
+        """OverflowError where a sum of shares is too far from a whole number."""
+        if farthest > self._limit + 2.0**-40:
+            raise OverflowError("an integer exceeds the range of the residues")
 
     def residues(self, limbs: Floats) -> Floats:
         """Residues (primes, count) of the integers given by balanced limbs (limbs, count)."""
@@ -158,18 +211,54 @@ class ResidueBasis:
         self._kernels.reduce_rows(top, self.moduli)
         return np.asarray(top)
 
+    def reduce(self, residues: Floats) -> None:
+        """Integers (primes, ...) below 2^52 in size modulo each prime; overwritten."""
+        flat = residues.reshape(len(self), -1)
+        assert np.shares_memory(flat, residues) or not residues.size
+        self._kernels.reduce_rows(flat, self.moduli)
+
+    def reduced(self, residues: Floats, i: int) -> Floats:
+        """Integers below 2^52 in size modulo the i-th prime; overwritten."""
+        flat = residues.reshape(1, -1)
+        self._kernels.reduce_rows(flat, self.moduli[i : i + 1])
+        return flat.reshape(residues.shape)
+
     def scale(self, residues: Floats, factors: Floats) -> None:
         """Multiply residues (primes, count), which are overwritten, by one number (primes,)."""
         self._kernels.multiply_rows(residues, factors, self.moduli)
 
     def of_integers(self, integers: NDArray[np.object_]) -> Floats:
         """Residues (primes, ...) of Python's integers, of any size."""
-        stack = []
-        for p in self.primes:
-            residues = (integers % p).astype(np.float64)
-            centred = np.where(residues > p // 2, residues - p, residues)
-            stack.append(centred)
-        return np.stack(stack)
+        flat = [int(x) for x in np.asarray(integers, dtype=object).ravel()]
+        limbs = limbs_of(flat)
+        total = np.zeros((len(self), len(flat)))
+        step = self._powers.shape[1]
+        for start in range(len(limbs) - len(limbs) % step, -1, -step):
+            # by Horner's rule over so many limbs at once
+            self._kernels.multiply_rows(total, self._turn, self.moduli)
+            total += self.residues(limbs[start : start + step])
+        self._kernels.reduce_rows(total, self.moduli)
+        return total.reshape(len(self), *np.shape(integers))
+
+
+def limbs_of(integers: Sequence[int]) -> Floats:
+    """Limbs (limbs, count) of Python's integers, 0 .. 2^20 - 1 but the highest, which is signed.
+
+    >>> limbs_of([-1, 2**20 + 3]).tolist()
+    [[1048575.0, 3.0], [-1.0, 1.0]]
+    """
+    longest = max((x.bit_length() for x in integers), default=0) + 1
+    pairs = -(-longest // (2 * LIMB_BITS))
+    size = 2 * LIMB_BITS // 8 * pairs
+    joined = b"".join(x.to_bytes(size, "little", signed=True) for x in integers)
+    bytes_of = np.frombuffer(joined, dtype=np.uint8).reshape(len(integers), pairs, 5)
+    weights = 256.0 ** np.arange(3)
+    limbs = np.empty((pairs, 2, len(integers)))
+    low, middle, high = bytes_of[..., :2], bytes_of[..., 2], bytes_of[..., 3:]
+    limbs[:, 0] = (low @ weights[:2] + (middle & 15) * weights[2]).T
+    limbs[:, 1] = ((middle >> 4) + high @ (16 * weights[:2])).T
+    limbs[-1, 1] -= 2.0**LIMB_BITS * (limbs[-1, 1] >= 2.0 ** (LIMB_BITS - 1))
+    return limbs.reshape(2 * pairs, len(integers))
 
 
 def divided(limbs: Floats, divisor: int) -> Floats:

@@ -45,9 +45,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.integrable.discriminant import Edges
-from symfpu.integrable.mpfr import MPFR, in_mpf
 from symfpu.integrable.quadrature import mean_rule
 from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
+from symfpu.numbers.mpfr import MPFR, in_mpf
 
 
 @dataclass(frozen=True)

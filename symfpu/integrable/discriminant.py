@@ -28,8 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import SymfpuError
-from symfpu.integrable.mpfr import MPFR
 from symfpu.numbers.arithmetic import Numbers
+from symfpu.numbers.mpfr import MPFR
 
 Floats = NDArray[np.float64]
 MOST_STEPS = 200

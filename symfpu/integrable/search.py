@@ -26,8 +26,8 @@ from symfpu.integrable.discriminant import (
     edges,
     free_points,
 )
-from symfpu.integrable.mpfr import MPFR, in_mpf, working_digits
-from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, working_digits
+from symfpu.numbers.mpfr import MPFR, in_mpf
 
 START_DIGITS = 12  # of the stage with full Newton steps
 DIFFERENCE = 2.0**-33  # of the logarithms, for derivatives

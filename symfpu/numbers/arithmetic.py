@@ -10,13 +10,14 @@ decimal: 0.1 means one tenth. What is handed to users are mpf that print their d
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any, TypeVar, cast
 
+import gmpy2
 import mpmath
 import numpy as np
 from mpmath import libmp
@@ -26,6 +27,18 @@ Numbers = NDArray[Any]  # doubles, or mpf
 Value = TypeVar("Value")
 
 GUARD_DIGITS = 15  # carried beyond the asked digits by every evaluation
+
+
+@contextmanager
+def working_digits(digits: int) -> Iterator[None]:
+    """The same working precision for mpmath and for MPFR, restored afterwards."""
+    with mpmath.workdps(digits), mpfr_as_mpf():
+        yield
+
+
+def mpfr_as_mpf() -> AbstractContextManager[Any]:
+    """MPFR's working precision is mpmath's; restored afterwards."""
+    return gmpy2.context(gmpy2.get_context(), precision=mpmath.mp.prec)  # type: ignore[no-any-return]
 
 
 class Arithmetic:
@@ -73,7 +86,7 @@ class Multiprecision(Arithmetic):
 
     def context(self, digits: int | None) -> AbstractContextManager[Any]:
         assert digits is not None
-        return mpmath.workdps(digits + GUARD_DIGITS)  # type: ignore[no-any-return]
+        return working_digits(digits + GUARD_DIGITS)
 
     def number(self, value: Fraction) -> Any:
         return mpmath.mpf(value.numerator) / value.denominator

@@ -29,15 +29,14 @@ from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
-    DOUBLES,
     MULTIPRECISION,
     Arithmetic,
     Numbers,
-    from_integers,
     integers,
     with_digits,
 )
 from symfpu.numbers.counted import counted
+from symfpu.numbers.mpfr import MPFR, at_the_face, in_mpf, scaled_integers
 from symfpu.numbers.typed import Number, integer
 from symfpu.series.arguments import digits_of, frequencies_of
 from symfpu.series.coefficient_table import (
@@ -537,6 +536,16 @@ class LindstedtSeries(Shown, Tabled):
         absolute : take the modulus of every monomial before they are summed (for S_1 of Eq.
         serabs2); always doubles.
         """
+        nu, values = self.harmonic_sums(amplitudes, order, absolute=absolute)
+        return nu, with_digits(at_the_face(values), self.digits)
+
+    def harmonic_sums(
+        self, amplitudes: ArrayLike, order: int, *, absolute: bool = False
+    ) -> tuple[Ints, Numbers]:
+        """`harmonic_terms` for further sums: with digits, values are MPFR's numbers.
+
+        Raises InputError for amplitudes that do not fit the seeds.
+        """
         self._numeric()
         shape = np.shape(amplitudes)
         if shape != (len(self.seeds),):
@@ -545,23 +554,21 @@ class LindstedtSeries(Shown, Tabled):
         nu, index = self.grading.harmonics(self.degree(order))
         by_harmonic = np.argsort(index, kind="stable")
         starts = np.searchsorted(index[by_harmonic], np.arange(len(nu)))
-        doubles = absolute or self.digits is None
+        oscillates = (nu != 0).any(axis=1)
         with self._context():
             factor = self._sign(order) / self._kappa
-            if doubles:
+            if absolute or self.digits is None:
                 table = self._doubles(amplitudes, order)[by_harmonic]
                 summands = np.abs(table) if absolute else table
-                sums = np.add.reduceat(summands, starts, axis=0)
-                values = sums * float(factor)
+                values = np.add.reduceat(summands, starts, axis=0)
+                values = values * float(factor) / self.chain.frequencies()
             else:
                 whole, exponent = self._integers(amplitudes, order)
                 sums = np.add.reduceat(whole[by_harmonic], starts, axis=0)
-                values = from_integers(sums, exponent) * factor
-            numbers = DOUBLES if doubles else MULTIPRECISION
-            values = values / self.chain.frequencies(numbers)
-            oscillates = (nu != 0).any(axis=1)
+                linear = MPFR.array(self.chain.frequencies(MULTIPRECISION))
+                values = scaled_integers(sums, exponent) * MPFR.array(factor)[()] / linear
             values[oscillates] *= 2
-        return nu, np.abs(values) if absolute else with_digits(values, self.digits)
+        return nu, np.abs(values) if absolute else values
 
     def _doubles(self, amplitudes: ArrayLike, order: int) -> Floats:
         """Every coefficient of an order times its monomial, as doubles."""
@@ -623,17 +630,24 @@ class LindstedtSeries(Shown, Tabled):
             squares = np.asarray(squared_amplitudes, dtype=float)
             return self._frequency_doubles(squares, top)
         with self._context():
-            point = list(self.numbers.array(squared_amplitudes))
+            point = list(MPFR.array(self.numbers.array(squared_amplitudes)))
             highest = self.chain.degree_step * top // 2
-            powers = powers_of(point, highest, mpmath.mpf(1))
+            powers = powers_of(point, highest, MPFR.number(Fraction(1)))
             values, gradients = [], []
-            for polynomials in self._frequency_polynomials[: top + 1]:
+            for polynomials in self._summed_polynomials[: top + 1]:
                 parts = [evaluate(p, powers) for p in polynomials]
-                values.append([mpmath.mpf(value) for value, _ in parts])
-                gradients.append([list(map(mpmath.mpf, gradient)) for _, gradient in parts])
-            terms = np.array(values, dtype=object)
-            slopes = np.array(gradients, dtype=object)
+                values.append([value for value, _ in parts])
+                gradients.append([gradient for _, gradient in parts])
+            terms, slopes = in_mpf(MPFR.array(values)), in_mpf(MPFR.array(gradients))
         return with_digits(terms, self.digits), with_digits(slopes, self.digits)
+
+    @cached_property
+    def _summed_polynomials(self) -> list[list[Polynomial]]:
+        """The same in MPFR's numbers."""
+        return [
+            [{e: MPFR.array(c)[()] for e, c in polynomial.items()} for polynomial in row]
+            for row in self._frequency_polynomials
+        ]
 
     @cached_property
     def _frequency_polynomials(self) -> list[list[Polynomial]]:

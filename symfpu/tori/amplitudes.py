@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
 from typing import Any, Protocol
@@ -543,7 +543,7 @@ def residual_doubts(torus: QTorus) -> tuple[str, ...]:
         )
     before = torus.order - 2
     if before >= 1 and residual > RESIDUAL_FLOOR:
-        shorter = replace(torus, order=before)
+        shorter = torus.cut_at(before)
         earlier = shorter.residual(points)
         if residual > 1.05 * earlier:
             growth = f"grows, {residual / earlier:.3g} times from order {before} to {torus.order}"

@@ -21,7 +21,14 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.table import Column, Table
 from symfpu.frames.tabled import Tabled
-from symfpu.numbers.arithmetic import Numbers, with_digits
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    Numbers,
+    arithmetic_of,
+    mpfr_as_mpf,
+    with_digits,
+)
+from symfpu.numbers.mpfr import MPFR, at_the_face, in_mpf, inside
 from symfpu.numbers.typed import integer
 from symfpu.series.series import LindstedtSeries, require_series
 from symfpu.tori.amplitudes import (
@@ -88,9 +95,17 @@ def pade_sum(terms: Numbers) -> PadeSum:
     not zero; one that is zero throughout has the sum zero.
     """
     terms = np.asarray(terms)
-    numbers = terms.astype(float) if terms.dtype.kind in "iu" else terms
+    if arithmetic_of(terms) is DOUBLES:
+        return _pade_sum(terms.astype(float) if terms.dtype.kind in "iu" else terms)
+    with mpfr_as_mpf():
+        summed = _pade_sum(MPFR.array(terms))
+        return replace(summed, values=in_mpf(summed.values))
+
+
+def _pade_sum(terms: Numbers) -> PadeSum:
+    """The same in doubles or MPFR's numbers."""
     shape = terms.shape[1:]
-    flat = numbers.reshape(len(terms), -1)
+    flat = terms.reshape(len(terms), -1)
     values = flat.sum(axis=0)
     disagreement = np.zeros(flat.shape[1])
     present = flat != 0
@@ -330,14 +345,15 @@ def resum_by_order(torus: QTorus, orders: Iterable[int]) -> Iterator[ResummedTor
 
 
 def _terms_by_order(torus: QTorus) -> Numbers:
-    """The terms of the coefficients of a torus by order; shape (order + 1, H, N-1)."""
+    """The terms of the coefficients of a torus by order; shape (order + 1, H, N-1).
+
+    With digits, MPFR's numbers.
+    """
     series = torus.series
     grading = series.grading
-    amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     keys = grading.harmonic_keys(torus.harmonics)
-    table = series.numbers.zeros((torus.order + 1, *torus.cosines.shape))
-    for k in range(torus.order + 1):
-        nu, values = series.harmonic_terms(amplitudes, k)
+    table = inside(series.numbers).zeros((torus.order + 1, *torus.cosines.shape))
+    for k, (nu, values) in enumerate(torus.terms_by_order[: torus.order + 1]):
         rows = np.searchsorted(keys, grading.harmonic_keys(nu))
         table[k, rows] = values
     return table
@@ -348,7 +364,7 @@ def _resummed(table: Numbers, torus: QTorus) -> tuple[Numbers, Floats]:
 
     Those at which its harmonic can appear.
     """
-    cosines = np.zeros_like(torus.cosines)
+    cosines = inside(torus.numbers).zeros(torus.cosines.shape)
     disagreement = np.zeros(torus.cosines.shape)
     step = 2 // torus.chain.degree_step
     degrees = np.abs(torus.harmonics).sum(axis=1)
@@ -359,10 +375,10 @@ def _resummed(table: Numbers, torus: QTorus) -> tuple[Numbers, Floats]:
         # degree k + 1 has the parity of its harmonics
         first = 1 - parity if step == 2 else 0
         if first < len(table):
-            part = pade_sum(table[first::step, rows])
+            part = _pade_sum(table[first::step, rows])
             cosines[rows] = part.values
             disagreement[rows] = part.disagreement
-    return cosines, disagreement
+    return at_the_face(cosines), disagreement
 
 
 def pade_poles(

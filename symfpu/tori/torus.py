@@ -17,6 +17,7 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import Numbers, text, with_digits
+from symfpu.numbers.mpfr import at_the_face, inside
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic, show
 
@@ -133,30 +134,44 @@ class QTorus(QuasiPeriodic):
 
     def doubted(self, warnings: tuple[str, ...]) -> QTorus:
         """The same torus with warnings; what was computed of it is kept."""
-        torus = replace(self, warnings=warnings)
-        for name in ("_terms", "_residual"):
+        return self._with_known(replace(self, warnings=warnings), "_terms", "_residual")
+
+    def cut_at(self, order: int) -> QTorus:
+        """The same torus up to a lower order of its coordinates; its terms are kept."""
+        return self._with_known(replace(self, order=order))
+
+    def _with_known(self, torus: QTorus, *names: str) -> QTorus:
+        for name in ("terms_by_order", *names):
             if name in self.__dict__:
                 torus.__dict__[name] = self.__dict__[name]
         return torus
 
     @cached_property
+    def terms_by_order(self) -> tuple[tuple[Ints, Numbers], ...]:
+        """Harmonics (H, s) and terms of their coefficients (H, N-1) of every order from 0 on.
+
+        At least up to that of the torus; with digits, MPFR's numbers.
+        """
+        amplitudes = [self.amplitudes[q] for q in self.seeds]
+        orders = range(self.order + 1)
+        return tuple(self.series.harmonic_sums(amplitudes, k) for k in orders)
+
+    @cached_property
     def _terms(self) -> tuple[Ints, Numbers]:
         """Harmonics (H, s) and cosine coefficients (H, N-1), all orders summed."""
-        amplitudes = [self.amplitudes[q] for q in self.seeds]
+        parts = self.terms_by_order[: self.order + 1]
+        keys = [self.series.grading.harmonic_keys(nu) for nu, _ in parts]
+        _, first, index = np.unique(
+            np.concatenate(keys), return_index=True, return_inverse=True
+        )
         with self._context():
-            orders = range(self.order + 1)
-            parts = [self.series.harmonic_terms(amplitudes, k) for k in orders]
-            keys = np.concatenate(
-                [self.series.grading.harmonic_keys(nu) for nu, _ in parts]
-            )
-            _, first, index = np.unique(keys, return_index=True, return_inverse=True)
-            values = self.numbers.zeros((len(first), self.chain.N - 1))
+            values = inside(self.numbers).zeros((len(first), self.chain.N - 1))
             at = 0
             for nu, part in parts:
                 values[index[at : at + len(nu)]] += part
                 at += len(nu)
         harmonics = np.concatenate([nu for nu, _ in parts])[first]
-        return harmonics, with_digits(values, self.digits)
+        return harmonics, with_digits(at_the_face(values), self.digits)
 
     @property
     def harmonics(self) -> Ints:

@@ -25,6 +25,7 @@ from symfpu.frames.table import Column, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, text
+from symfpu.numbers.mpfr import at_the_face, inside
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import (
@@ -375,31 +376,32 @@ def _by_order(torus: QTorus, numbers: Arithmetic) -> Iterator[_Order]:
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     number = _angles_a_seed(len(torus.seeds), numbers)
     with numbers.context(torus.digits):
-        theta = numbers.array(_angles(torus, number))
-        omega = numbers.array([numbers.number(w) for w in torus.frequencies])
+        sums = inside(numbers)
+        theta = sums.array(_angles(torus, number))
+        omega = np.array([sums.number(w) for w in torus.frequencies])
         shape = (len(theta), chain.N - 1)
-        Q = numbers.zeros(shape)
-        P = numbers.zeros(shape)
-        second = numbers.zeros(shape)
-        for k in range(torus.order + 1):
-            nu, exact = series.harmonic_terms(amplitudes, k)
+        Q = sums.zeros(shape)
+        P = sums.zeros(shape)
+        second = sums.zeros(shape)
+        for k, (nu, exact) in enumerate(torus.terms_by_order[: torus.order + 1]):
             values = exact.astype(float) if numbers is DOUBLES else exact
             _, moduli = series.harmonic_terms(amplitudes, k, absolute=True)
             rates = nu @ omega
             angles = theta @ nu.T
-            cosines = numbers.cos(angles)
-            sines = numbers.sin(angles)
+            cosines = sums.cos(angles)
+            sines = sums.sin(angles)
             velocities = rates[:, None] * values
             curvatures = (rates**2)[:, None] * values
-            Q = Q + numbers.dot(cosines, values)
-            P = P - numbers.dot(sines, velocities)
-            second = second - numbers.dot(cosines, curvatures)
-            force = chain.accelerations(Q)
-            energy = chain.energy(Q, P)
+            Q = Q + sums.dot(cosines, values)
+            P = P - sums.dot(sines, velocities)
+            second = second - sums.dot(cosines, curvatures)
+            positions = at_the_face(Q)
+            force = chain.accelerations(positions)
+            energy = chain.energy(positions, at_the_face(P))
             largest = _largest(torus, k, nu, values)
             S_1 = _column_sums(moduli, torus.seeds)
             S_2 = _column_sums(np.abs(values), torus.seeds)
-            residual = np.abs(second - force).max() / np.abs(force).max()
+            residual = np.abs(at_the_face(second) - force).max() / np.abs(force).max()
             spread = (energy.max() - energy.min()) / abs(energy.mean())
             yield _Order(largest, S_1, S_2, float(residual), float(spread))
 

@@ -153,3 +153,40 @@ def test_floats_are_the_numbers_to_about_an_ulp(integers, exponent):
 def test_floats_of_entries_that_only_fit_with_their_exponent():
     assert IntegerTable.of(row([[3 << 4000, 0]])).floats(-4000).tolist() == [[3.0, 0.0]]
     assert IntegerTable.of(row([[1]])).floats(-4000).tolist() == [[0.0]]
+
+
+SMALL = ResidueBasis(BITS, 2**23)
+
+
+@pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
+@given(st.lists(st.tuples(within, st.booleans()), max_size=300), st.integers(0, BITS // LIMB_BITS))
+def test_rounding_in_place_is_that_by_limbs(basis, entries, drop):
+    """Entries that are not wanted become zero, and have no words."""
+    integers, wanted = [x for x, _ in entries], np.array([kept for _, kept in entries], dtype=bool)
+    residues = basis.of_integers(row(integers))
+    limbs = basis.limbs(residues[:, wanted], drop)
+    expected = np.zeros_like(residues)
+    expected[:, wanted] = basis.residues(limbs)
+    words = basis.round_in_place(residues, wanted, drop)
+    assert np.array_equal(residues, expected)
+    assert of_words(words) == of_words(words_of(limbs))
+
+
+def test_which_primes_are_small():
+    assert SMALL.small
+    assert not BASIS.small
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_rounding_in_place_sees_an_integer_beyond_the_promised_bits(sign):
+    residues = SMALL.of_integers(row([1, sign * 2 ** (BITS + 1)]))
+    with pytest.raises(OverflowError, match="range"):
+        SMALL.round_in_place(residues, np.ones(2, dtype=bool), 1)
+
+
+@given(st.lists(st.integers(-(2**900), 2**900), max_size=5))
+def test_residues_of_integers_of_any_size(integers):
+    """Longer ones than those of the basis go by Horner's rule."""
+    for p, residues in zip(SMALL.primes, SMALL.of_integers(row(integers)), strict=True):
+        assert [int(r) % p for r in residues] == [x % p for x in integers]
+        assert np.abs(residues).max(initial=0) <= p // 2

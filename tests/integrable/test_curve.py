@@ -9,9 +9,9 @@ import pytest
 from symfpu import BandsTooNarrow, Chain, InputError, NoDiscriminant, NoTodaTorus, toda, toda_invariants, toda_torus
 from symfpu.integrable.discriminant import Edges, critical_points, edges, free_points, gauss_legendre
 from symfpu.integrable.inverse import persymmetric_matrix, ring_state
-from symfpu.integrable.mpfr import MPFR, in_mpf, working_digits
 from symfpu.integrable.quadrature import mean_rule
-from symfpu.numbers.arithmetic import MULTIPRECISION
+from symfpu.numbers.arithmetic import MULTIPRECISION, working_digits
+from symfpu.numbers.mpfr import MPFR, in_mpf
 from tests.integrable.chains import discriminant
 from tests.tolerances import ACTIONS_IN_DOUBLES, FORTY_DIGITS, GAP, THIRTY_DIGITS, THOUSAND_ROUNDINGS, TODA_LINEAR
 

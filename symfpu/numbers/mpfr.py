@@ -1,12 +1,12 @@
-"""Arrays of MPFR's numbers: several times faster than mpmath's in long products.
+"""Arrays of MPFR's numbers: ten times faster than mpmath's in long sums and products.
 
-They are used inside the search of a torus; what leaves it are mpf.
+They are used inside of long computations; what leaves these are mpf. Sums, products, quotients and
+square roots of both are rounded to the nearest at one working precision, so they are the same to
+the last bit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
 
@@ -16,11 +16,12 @@ import numpy as np
 from mpmath import libmp
 from numpy.typing import NDArray
 
-from symfpu.numbers.arithmetic import Arithmetic, Numbers
+from symfpu.numbers.arithmetic import MULTIPRECISION, Arithmetic, Numbers
 
 
 class Mpfr(Arithmetic):
-    """Object arrays of mpfr at the working precision that `working_digits` sets."""
+    """Object arrays of mpfr at the working precision that
+    `Multiprecision.context` and `working_digits` set."""
 
     def number(self, value: Fraction) -> Any:
         return gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator))
@@ -55,14 +56,9 @@ class Mpfr(Arithmetic):
 MPFR = Mpfr()
 
 
-@contextmanager
-def working_digits(digits: int) -> Iterator[None]:
-    """The same working precision for mpmath and for MPFR, restored afterwards."""
-    with (
-        mpmath.workdps(digits),
-        gmpy2.context(gmpy2.get_context(), precision=mpmath.mp.prec),
-    ):
-        yield
+def inside(numbers: Arithmetic) -> Arithmetic:
+    """The arithmetic of long sums whose results are in this one: MPFR's numbers for mpf."""
+    return MPFR if numbers is MULTIPRECISION else numbers
 
 
 def in_mpf(values: Numbers) -> Numbers:
@@ -70,13 +66,30 @@ def in_mpf(values: Numbers) -> Numbers:
     return np.asarray(_MPF(values), dtype=object)
 
 
+def at_the_face(values: Numbers) -> Numbers:
+    """Results of long sums: mpf for MPFR's numbers, doubles as they are."""
+    return in_mpf(values) if values.dtype == object else values
+
+
+def scaled_integers(
+    values: NDArray[np.object_], exponents: NDArray[Any]
+) -> NDArray[np.object_]:
+    """Integers times 2^exponents, rounded to the working precision; shapes that broadcast."""
+    whole_exponents = np.asarray(exponents).astype(object)
+    return np.asarray(_SCALED(values, whole_exponents), dtype=object)
+
+
+def _scaled(value: int, exponent: int) -> Any:
+    number = gmpy2.mpfr(value)
+    if exponent >= 0:
+        return gmpy2.mul_2exp(number, exponent)
+    return gmpy2.div_2exp(number, -exponent)
+
+
 def _mpfr(value: Any) -> Any:
     if isinstance(value, mpmath.mpf):
         sign, mantissa, exponent, _ = value._mpf_
-        number = gmpy2.mpfr(-mantissa if sign else mantissa)
-        if exponent >= 0:
-            return gmpy2.mul_2exp(number, exponent)
-        return gmpy2.div_2exp(number, -exponent)
+        return _scaled(-mantissa if sign else mantissa, exponent)
     if isinstance(value, Fraction):
         return MPFR.number(value)
     return gmpy2.mpfr(value)
@@ -88,6 +101,7 @@ def _mpf(value: Any) -> Any:
 
 
 _MPFR, _MPF = np.frompyfunc(_mpfr, 1, 1), np.frompyfunc(_mpf, 1, 1)
+_SCALED = np.frompyfunc(_scaled, 2, 1)
 _COS, _SIN, _SQRT, _EXP, _LOG = (
     np.frompyfunc(f, 1, 1) for f in (gmpy2.cos, gmpy2.sin, gmpy2.sqrt, gmpy2.exp, gmpy2.log)
 )

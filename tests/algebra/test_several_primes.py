@@ -1,0 +1,65 @@
+"""Sums that are reduced now and then are those modulo every prime, however many products they have."""
+
+import numpy as np
+import pytest
+
+from symfpu.algebra import kernels, one_seed, uncompiled
+from symfpu.algebra.grading import Grading
+from symfpu.algebra.several_primes import EXACT, largest_prime, products_between_reductions
+from symfpu.algebra.words import ResidueBasis
+
+WIDTH = 8
+
+
+def factors(grading, basis):
+    """The largest residues, of one sign: nothing cancels, so sums are as large as they can be."""
+    lanes = np.resize(basis.moduli, WIDTH)
+    rows = int(grading.first_row[-1])
+    return np.floor(np.tile(lanes / 2, (rows, 1))).astype(np.float32), lanes
+
+
+@pytest.mark.parametrize("degree", [1, 30, 251, 2000])
+def test_as_many_products_as_said_are_exact(degree):
+    p = largest_prime(degree)
+    assert (p // 2 + 1) ** 2 * products_between_reductions(degree) <= EXACT
+
+
+@pytest.mark.parametrize(("seeds", "top"), [(1, 301), (2, 25), (4, 7)])
+@pytest.mark.parametrize("symmetric", [True, False])
+def test_the_largest_sums_stay_exact(seeds, top, symmetric):
+    grading = Grading(seeds=seeds, degree=top)
+    basis = ResidueBasis(100, largest_prime(top))
+    values, moduli = factors(grading, basis)
+    splits = [(d, top - d) for d in range(1, top) if not symmetric or 2 * d <= top]
+    start = int(grading.first_row[top])
+    out = np.zeros((int(grading.first_row[-1]) - start, WIDTH))
+    limit = products_between_reductions(top)
+    blocks, none = grading.wanted_blocks(top), np.zeros(0, dtype=bool)
+    table = np.array(splits)
+    kernels.multiply((0.0,) * WIDTH, values, values, out, top, start, table, symmetric, none, blocks, grading.tables, None, moduli, limit)
+    ones = np.ones(values.shape)
+    counts = np.zeros_like(out)
+    kernels.multiply((0.0,) * WIDTH, ones, ones, counts, top, start, table, symmetric, none, blocks, grading.tables, None)
+    canonical = grading.canonical(top)
+    assert counts[canonical].max() > limit or seeds == 4
+    for found, count in zip(out[canonical], counts[canonical], strict=True):
+        for lane, p in enumerate(moduli):
+            exact = int(count[lane]) * int(values[0, lane]) ** 2
+            assert (int(found[lane]) - exact) % int(p) == 0
+            assert abs(found[lane]) <= p // 2
+
+
+def test_the_largest_sums_of_one_seed_stay_exact():
+    top = 301
+    grading = Grading(seeds=1, degree=top)
+    values, moduli = factors(grading, ResidueBasis(100, largest_prime(top)))
+    splits = np.array([(d, top - d) for d in range(1, top)])
+    first = int(grading.canonical(top)[0])
+    tiles = np.arange(first, top + 1, uncompiled.TILE)
+    ours, counts = np.zeros((2, top + 1, WIDTH))
+    lanes, ones = (0.0,) * WIDTH, np.ones(values.shape)
+    one_seed.convolve(lanes, values, values, ours, splits, grading.first_row, tiles, moduli, products_between_reductions(top))
+    one_seed.convolve(lanes, ones, ones, counts, splits, grading.first_row, tiles)
+    for found, count in zip(ours[first:], counts[first:], strict=True):
+        for lane, p in enumerate(moduli):
+            assert (int(found[lane]) - int(count[lane]) * int(values[0, lane]) ** 2) % int(p) == 0
