@@ -233,13 +233,8 @@ def _pool(executor: Any, calls: int) -> Iterator[Executor]:
     if executor is not None:
         yield executor.get_executor() if hasattr(executor, "get_executor") else executor
         return
-    pool = ProcessWorkers(min(calls, available_cores()))
-    try:
+    with ProcessWorkers(min(calls, available_cores())) as pool:
         yield pool
-    except BaseException:
-        pool.shutdown(cancel_futures=True)
-        raise
-    pool.shutdown()
 
 
 def _limit(memory: Memory | None, within: int | None) -> int:
