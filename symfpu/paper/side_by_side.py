@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from concurrent.futures import Future, as_completed
+from functools import partial
 from pathlib import Path
 
 from symfpu.algebra.dense import available_cores
@@ -26,7 +27,8 @@ class TargetsFailed(SymfpuError):
     def __init__(self, failures: Mapping[str, Exception]) -> None:
         self.failures = dict(failures)
         parts = [
-            f"{target} ({type(error).__name__}: {error})" for target, error in failures.items()
+            f"{target} ({type(error).__name__}: {error})"
+            for target, error in failures.items()
         ]
         super().__init__(f"no figures of {'; '.join(parts)}; the others are done")
 
@@ -37,7 +39,7 @@ def side_by_side(
     progress: Progress,
     *,
     full: Mapping[str, float] | None = None,
-) -> Iterator[Found]:
+) -> Generator[Found, None, None]:
     """Each target with its figure, or with the error that it ended with, as they end.
 
     On as many processes as there are cores, a single one in this process. full : the seconds that
@@ -65,7 +67,10 @@ def _in_this_process(
     order: list[str], folder: Path, left: TimeLeft, workers: int, *, full: bool
 ) -> Iterator[Found]:
     for target in order:
-        yield target, _tried(lambda: reproduced(target, folder, left.of(target), full=full))
+        yield (
+            target,
+            _tried(partial(reproduced, target, folder, left.of(target), full=full)),
+        )
 
 
 def _in_workers(

@@ -23,7 +23,9 @@ from symfpu.files.progress import Progress, unheard
 
 STARTS = 20  # times that a process may be killed before it is ready, or has begun a task
 READY, BEGUN = b"ready", b"begun"  # what a worker says before its answers
-TOLD = "told"  # in place of whether a call succeeded: its progress, and the answer is to come
+TOLD = (
+    "told"  # in place of whether a call succeeded: its progress, and the answer is to come
+)
 # each worker is one of as many as there are cores: its libraries shall not start more threads
 THREADS = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 ENVIRONMENT = threading.Lock()
