@@ -53,8 +53,8 @@ def side_by_side(
     left = TimeLeft(seconds, workers, progress)
     computed = _in_this_process if workers == 1 else _in_workers
     for target, found in computed(order, folder, left, workers, full=full is not None):
-        left.ended(target)
         yield target, found
+        left.ended(target)
 
 
 def in_turn(seconds: Mapping[str, float]) -> list[str]:
