@@ -26,7 +26,7 @@ Start = tuple[Floats, Floats]
 TIME, FULL_TIME = 1e7, 1e9  # default, at the latest; the paper's, with --full
 # times at which it is looked whether what is foretold is confirmed, and the least growth of
 # log |v_1| by then
-STAGES, SEEN_GROWTH = (3e5, 1e6, 3e6), 1.0
+STAGES, SEEN_GROWTH = (1e6, 3e6), 1.0
 # by figure: whose chain, and how many vectors
 VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}
 GALI_STEP = 0.4  # of the tangent map
