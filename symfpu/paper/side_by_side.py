@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from concurrent.futures import Future, as_completed
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 
@@ -52,9 +53,11 @@ def side_by_side(
     workers = min(len(order), available_cores())
     left = TimeLeft(seconds, workers, progress)
     computed = _in_this_process if workers == 1 else _in_workers
-    for target, found in computed(order, folder, left, workers, full=full is not None):
-        yield target, found
-        left.ended(target)
+    coming = computed(order, folder, left, workers, full=full is not None)
+    with left.ticking(), closing(coming):
+        for target, found in coming:
+            yield target, found
+            left.ended(target)
 
 
 def in_turn(seconds: Mapping[str, float]) -> list[str]:
@@ -65,7 +68,7 @@ def in_turn(seconds: Mapping[str, float]) -> list[str]:
 
 def _in_this_process(
     order: list[str], folder: Path, left: TimeLeft, workers: int, *, full: bool
-) -> Iterator[Found]:
+) -> Generator[Found, None, None]:
     for target in order:
         yield (
             target,
@@ -75,7 +78,7 @@ def _in_this_process(
 
 def _in_workers(
     order: list[str], folder: Path, left: TimeLeft, workers: int, *, full: bool
-) -> Iterator[Found]:
+) -> Generator[Found, None, None]:
     with ProcessWorkers(workers) as pool:
         futures: dict[Future[PaperFigure], str] = {}
         for target in order:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from time import monotonic
 
 from symfpu.files.progress import Progress
 
 ENDING = 0.05  # of a target that takes longer than it should: so much is left of it
+TICK = 1.0  # seconds
 TRUSTED = 20.0  # seconds, until which a machine counts as fast as that of the table
 
 
@@ -52,6 +54,24 @@ class TimeLeft:
             now = self._clock()
             self._took[target] = now - self._begun.setdefault(target, now)
             self._steps.pop(target, None)
+
+    @contextmanager
+    def ticking(self, every: float = TICK) -> Iterator[None]:
+        """Inside of it the time left is told again and again, also while all steps are silent."""
+        over = threading.Event()
+        watch = threading.Thread(target=self._tick, args=(over, every), daemon=True)
+        watch.start()
+        try:
+            yield
+        finally:
+            over.set()
+            watch.join()
+
+    def _tick(self, over: threading.Event, every: float) -> None:
+        while not over.wait(every):
+            with self._lock:
+                if self._steps:
+                    self._tell(self._line(), self._done())
 
     def _line(self) -> str:
         """How many targets are done, and all steps at work."""

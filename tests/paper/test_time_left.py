@@ -1,6 +1,7 @@
 """Time left of targets side by side, by a clock that goes when it is told to."""
 
 import math
+import threading
 
 import pytest
 
@@ -75,3 +76,16 @@ def test_one_target_alone_counts_no_others(clock, heard):
     clock.now += 5.0
     left.of("a")("a: orbit", 0.5)
     assert heard == [("a: orbit", 0.0), ("a: orbit (50%)", 0.5)]
+
+
+def test_silent_steps_do_not_stop_the_time_left(clock, heard):
+    left = left_of({"a": 10.0}, 1, heard, clock)
+    told = threading.Event()
+    left._tell = lambda label, fraction: told.set() if fraction == 0.5 else None
+    left.of("a")("a: series", math.nan)
+    threads = threading.active_count()
+    with left.ticking(0.01):
+        assert not told.wait(0.05)
+        clock.now += 5.0
+        assert told.wait(10.0)
+    assert threading.active_count() == threads
