@@ -14,7 +14,7 @@ from symfpu.files.progress import Progress
 from symfpu.paper.claims import PaperFigure
 from symfpu.paper.targets import FIRST_PICTURE, SECONDS, reproduced
 from symfpu.paper.time_left import TimeLeft
-from symfpu.sweeps.workers import ProcessWorkers
+from symfpu.sweeps.workers import worker_processes
 
 Found = tuple[str, PaperFigure | Exception]
 
@@ -79,7 +79,7 @@ def _in_this_process(
 def _in_workers(
     order: list[str], folder: Path, left: TimeLeft, workers: int, *, full: bool
 ) -> Generator[Found, None, None]:
-    with ProcessWorkers(workers) as pool:
+    with worker_processes(workers) as pool:
         futures: dict[Future[PaperFigure], str] = {}
         for target in order:
             task = pool.submit_heard(left.of(target), reproduced, target, folder, full=full)

@@ -18,6 +18,7 @@ from multiprocessing.connection import Connection, wait
 from queue import Empty, SimpleQueue
 from typing import Any, NamedTuple
 
+from symfpu.algebra.dense import available_cores
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress, unheard
 
@@ -50,12 +51,13 @@ class WorkerDied(SymfpuError):
 class WorkersDoNotStart(SymfpuError, BrokenExecutor):
     """Worker processes die before they are ready.
 
-    Raised in `sweep`, the cause of SweepStopped. reason : how they end. Ours.
+    Raised in `sweep`, the cause of SweepStopped, and in `prove_for_all_N`. reason : how they end.
+    Ours.
     """
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
-        advice = "in a script, start the sweep under `if __name__ == '__main__':`"
+        advice = "in a script, start them under `if __name__ == '__main__':`"
         super().__init__(f"worker processes do not start ({reason}); {advice}")
 
 
@@ -73,7 +75,7 @@ class ProcessWorkers(Executor):
     workers : how many. A task whose process dies raises WorkerDied, a process
     that does not start WorkersDoNotStart. Libraries in them run on one thread, unless the
     environment says otherwise. Ends with its `with`: what runs is waited for, or ended where
-    futures are cancelled, as they are where an error leaves the `with`.
+    futures are cancelled.
     """
 
     def __init__(self, workers: int) -> None:
@@ -106,9 +108,6 @@ class ProcessWorkers(Executor):
         future: Future[Any] = Future()
         self._tasks.put(Task(future, pickle.dumps(call), hear))
         return future
-
-    def __exit__(self, kind: object, *reason: object) -> None:
-        self.shutdown(cancel_futures=kind is not None)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """No more tasks; those at work are ended too where futures are cancelled."""
@@ -143,6 +142,18 @@ class ProcessWorkers(Executor):
                 else:
                     task.future.set_exception(value)
         worker.close()
+
+
+@contextmanager
+def worker_processes(tasks: int) -> Iterator[ProcessWorkers]:
+    """A process for each task, but no more than cores; all end at once where an error is raised."""
+    pool = ProcessWorkers(min(tasks, available_cores()))
+    try:
+        yield pool
+    except BaseException:
+        pool.shutdown(cancel_futures=True)
+        raise
+    pool.shutdown()
 
 
 class Worker:

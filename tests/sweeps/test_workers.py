@@ -16,7 +16,7 @@ import pytest
 from symfpu.algebra.dense import available_cores, threads_of_a_computation
 from symfpu.sweeps.rows_file import read_rows
 from symfpu.sweeps.sweep import sweep
-from symfpu.sweeps.workers import ProcessWorkers
+from symfpu.sweeps.workers import ProcessWorkers, worker_processes
 from tests.sweeps.functions import deadly_square, slow_square, square, square_in_little_memory, told_square
 
 ROOT = Path(__file__).parents[2]
@@ -98,7 +98,7 @@ def test_an_error_in_a_with_ends_what_is_at_work():
     futures = []
 
     def interrupted():
-        with ProcessWorkers(1) as pool:
+        with worker_processes(1) as pool:
             pool.submit(os.getpid).result()
             futures.append(pool.submit(time.sleep, 60))
             while not futures[0].running():
@@ -119,7 +119,7 @@ def test_a_script_without_its_guard_is_told(tmp_path):
     done = run([str(script)])
     _, error = done.communicate(timeout=60)
     assert done.returncode == 1
-    assert "start the sweep under `if __name__ == '__main__':`" in error.decode()
+    assert "start them under `if __name__ == '__main__':`" in error.decode()
 
 
 def test_a_function_that_was_typed_is_refused_before_processes_start():
