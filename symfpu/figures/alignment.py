@@ -16,6 +16,10 @@ from symfpu.plots.indices import alignment, lyapunov
 
 Floats = NDArray[np.float64]
 Curves = tuple[Floats, Floats]
+ABOVE, TOP = (
+    0.25,
+    1.25,
+)  # of all indices, which are at most 0: where a word is written, and room
 
 
 def draw_alignment(found: AlignmentIndices, folder: Path, stem: str = "gali") -> list[Path]:
@@ -31,7 +35,10 @@ def draw_alignment(found: AlignmentIndices, folder: Path, stem: str = "gali") ->
 
 
 def alignment_panel(
-    name: str, title: str, found: AlignmentIndices, beyond: Curves | None = None
+    name: str,
+    title: str,
+    found: AlignmentIndices,
+    beyond: Curves | None = None,
 ) -> Panel:
     """log10 G_k against log10 t.
 
@@ -44,12 +51,13 @@ def alignment_panel(
         fitted = rf"{slope.value:.2f} \pm {slope.error:.2f}"
         label = rf"$G_{{{slope.k}}}$: ${fitted}$"
         log_index = found.log10_gali[:, i]
-        curves.append(Curve(label, log_times, log_index, name=f"G_{slope.k}", group=i))
+        curves.append(Curve(label, log_times, log_index, name=f"G_{slope.k}"))
     if beyond is not None:
         curves += _foretold_curves(float(found.times[-1]), *beyond)
     labels = (r"$\log_{10} t$", r"$\log_{10} G_k$")
     axes = ("log10_t", "log10_G")
-    return Panel(name, title, *labels, tuple(curves), axes, log_y=False)
+    top = None if beyond is None else TOP
+    return Panel(name, title, *labels, tuple(curves), axes, log_y=False, top=top)
 
 
 def _foretold_curves(last: float, times: Floats, log10_gali: Floats) -> Iterator[Curve]:
@@ -57,7 +65,7 @@ def _foretold_curves(last: float, times: Floats, log10_gali: Floats) -> Iterator
     later = times > last
     x = np.log10(times[later])
     y = log10_gali[later]
-    lowest = float(y.min())
-    yield Curve("foretold", x[[0, -1]], np.full(2, lowest), "span", name="foretold from")
+    above = np.full(2, ABOVE)
+    yield Curve("foretold", x[[0, -1]], above, "span", name="foretold from")
     for i, values in enumerate(y.T):
         yield Curve("", x, values, "dotted", name=f"G_{i + 2} foretold", group=i)

@@ -178,12 +178,13 @@ def integrated_text(seen: FigureIndices) -> str:
     text = f"integrated: {slopes_text(seen.found)}"
     if seen.there is None:
         return text
-    word = "as foretold" if seen.confirmed else "not as foretold"
+    word = "those" if seen.confirmed else "not those"
     slopes, levels = (
         slopes_apart(seen.found, seen.there),
         levels_apart(seen.found, seen.there),
     )
-    return f"{text}; {word}, slopes to {slopes:.2f}, levels to {levels:.2f} decades"
+    text += f"; slopes are {word} foretold for the same frame, to {slopes:.2f}; "
+    return f"{text}levels are off by up to {levels:.2f} decades"
 
 
 def slopes_text(found: AlignmentIndices) -> str:

@@ -112,6 +112,8 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     title_c = "Fig. 9(c): average spectra"
     spectra = profile_panel("fig9c", title_c, chain, profiles, law, floors=floors)
     indices = "Fig. 9(d): alignment indices of the FPU-trajectory"
+    if seen.beyond is not None:
+        indices += ", foretold for Toda's chain"
     panels = (
         *_energy_panels(times, breather, trajectory),
         spectra,

@@ -187,8 +187,8 @@ def test_claims_say_what_was_integrated_and_how_it_agrees():
     there = as_foretold(found, steeper=0.1, higher=0.5)
     text = integrated_text(FigureIndices(found, there, there, confirmed=True))
     assert "to t = 1e+06" in text
-    assert text.endswith("as foretold, slopes to 0.10, levels to 0.50 decades")
-    assert "; not as foretold, " in integrated_text(FigureIndices(found, there, there, confirmed=False))
+    assert text.endswith("slopes are those foretold for the same frame, to 0.10; levels are off by up to 0.50 decades")
+    assert "slopes are not those foretold" in integrated_text(FigureIndices(found, there, there, confirmed=False))
     assert "foretold" not in integrated_text(FigureIndices(found))
 
 
