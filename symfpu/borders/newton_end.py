@@ -146,12 +146,28 @@ def newton_end(
         if isinstance(found, _Stop):
             stop = found
             break
-        for name in losses:
-            if name not in lost and (change := TESTS[name](found.torus)):
-                before = points[-1] if points else None
-                lost[name] = _located(ray, TESTS[name], Loss(before, found, change))
         points.append(found)
+        for name in losses:
+            if name not in lost and (loss := _loss(name, points)):
+                lost[name] = _located(ray, TESTS[name], loss)
     return NewtonEnd(stop.reason, stop.above, tuple(points), lost)
+
+
+def _loss(name: str, points: Sequence[RefinedPoint]) -> Loss | None:
+    """What the last of these tori has lost: a sheet only if the torus before had lost it already.
+
+    Next to a weak resonance a torus is on another sheet for a moment, between the zeros of the
+    divisor and of what the amplitudes make of it.
+    """
+    lasting = LASTING[name]
+    if len(points) < lasting:
+        return None
+    latest = points[-lasting:]
+    changes = [TESTS[name](point.torus) for point in latest]
+    if not all(changes):
+        return None
+    before = points[-lasting - 1] if len(points) > lasting else None
+    return Loss(before, latest[0], changes[0])
 
 
 def _located(ray: Ray, test: Test, loss: Loss) -> Loss:
@@ -197,6 +213,8 @@ def _other_sheet(torus: RefinedTorus) -> Json:
 
 
 TESTS: Mapping[str, Test] = {FOLD: _other_sheet, STABILITY: _growth}
+# how many tori in turn must have lost it
+LASTING = {FOLD: 2, STABILITY: 1}
 
 
 @dataclass(frozen=True)
