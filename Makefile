@@ -5,7 +5,7 @@ OUT ?= out
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 # workers of pytest share the cores
 OLD := -W ignore::DeprecationWarning -W ignore::PendingDeprecationWarning # old releases call newer ones of each other
 
-.PHONY: install reproduce test lowest bench sweeps long generated equations citation doors docs links clean
+.PHONY: install reproduce test lowest bench sweeps long generated equations citation doors verdicts docs links clean
 
 install: .venv/installed
 
@@ -56,6 +56,9 @@ citation: install  ## CITATION.cff from symfpu/reports/citation.py
 
 doors: install  ## the table of docs/chains.md, by calling every door
 	$(BIN)/python docs/make_doors.py
+
+verdicts: install  ## the tables of verdicts in docs/errata.md, from $(OUT)/report.json of all targets
+	$(BIN)/python docs/make_verdicts.py $(OUT)/report.json
 
 docs: install  ## the site, build/site/html/index.html; warnings are errors
 	$(BIN)/python docs/make_site.py build/site

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from contextlib import closing
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -28,8 +29,11 @@ from symfpu.paper.claims_page import (
     figure_record,
     file_names,
 )
-from symfpu.paper.targets import LONG_TARGETS, TARGETS, full_estimate, reproduced
+from symfpu.paper.side_by_side import TargetsFailed, side_by_side
+from symfpu.paper.targets import LONG_TARGETS, TARGETS, full_estimate, full_seconds_of
 from symfpu.reports.head import headed
+
+AGAIN = 5.0  # seconds between two lines of the same steps
 
 
 @app.command(epilog="Example: symfpu reproduce table fig1 -o out")
@@ -78,17 +82,42 @@ def reproduce(
         )
     folder = output_folder(path_named("output", output))
     chosen = [target for target in TARGETS if target in targets or "all" in targets]
-    if full:
-        console().print(full_estimate(chosen, folder), highlight=False)
+    added = full_seconds_of(chosen) if full else None
+    if added is not None:
+        console().print(full_estimate(added, folder), highlight=False)
+    figures, failures = _computed(chosen, folder, added)
+    if len(chosen) == 1 and failures:
+        raise failures[chosen[0]]
+    if figures and as_json:
+        print_json(_record(figures))
+    elif figures:
+        _print(figures, folder)
+    if failures:
+        raise TargetsFailed(failures)
+
+
+def _computed(
+    chosen: list[str], folder: Path, added: Mapping[str, float] | None
+) -> tuple[dict[str, PaperFigure], dict[str, Exception]]:
+    """Figures in the order of the paper, and errors, by target."""
     figures: dict[str, PaperFigure] = {}
-    with progress_bar(chosen[0], lambda: _kept(figures, folder)) as advance:
-        for target in chosen:
-            figures[target] = reproduced(target, folder, advance, full=full)
+    failures: dict[str, Exception] = {}
+    with (
+        progress_bar(chosen[0], lambda: _kept(figures, folder), again=AGAIN) as advance,
+        closing(side_by_side(chosen, folder, advance, full=added)) as coming,
+    ):
+        for target, found in coming:
+            if isinstance(found, Exception):
+                failures[target] = found
+                continue
+            known = figures | {target: found}
+            figures = {name: known[name] for name in chosen if name in known}
             # at once: a run that is stopped, or a later target that fails, loses nothing
-            record = _write(figures, folder)
-    if as_json:
-        print_json(record)
-        return
+            _write(figures, folder)
+    return figures, failures
+
+
+def _print(figures: dict[str, PaperFigure], folder: Path) -> None:
     for figure in figures.values():
         for line in figure.lines:
             say(line)
@@ -110,17 +139,19 @@ def _kept(figures: dict[str, PaperFigure], folder: Path) -> str:
     return "; ".join(parts) or NOTHING_KEPT
 
 
-def _write(figures: dict[str, PaperFigure], folder: Path) -> dict[str, Any]:
-    """The report as Markdown and JSON; returns the record."""
-    found = {target: figure_record(figure) for target, figure in figures.items()}
-    record = headed({"kind": "reproduce", "figures": found})
+def _write(figures: dict[str, PaperFigure], folder: Path) -> None:
+    """The report as Markdown and JSON."""
     parts = ["# The paper's numbers, computed from its printed frequencies"]
     if any(figure.claims for figure in figures.values()):
         parts.append(claims_markdown(figures.values()))
     parts += [figure_markdown(figure) for figure in figures.values()]
     write_text(folder / "report.md", "\n\n".join(parts))
-    write_text(folder / "report.json", json.dumps(record, indent=1) + "\n")
-    return record
+    write_text(folder / "report.json", json.dumps(_record(figures), indent=1) + "\n")
+
+
+def _record(figures: dict[str, PaperFigure]) -> dict[str, Any]:
+    found = {target: figure_record(figure) for target, figure in figures.items()}
+    return headed({"kind": "reproduce", "figures": found})
 
 
 def _print_claims(figures: Iterable[PaperFigure]) -> None:

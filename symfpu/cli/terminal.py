@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import shutil
 import sys
 import textwrap
@@ -67,6 +68,7 @@ INDENT = 4  # of what follows on the next line
 PATIENCE = 2.0  # seconds before the first line of progress
 PAUSE = 1.0  # least seconds between two lines
 SHARE = 0.01  # of the time that has passed, which the pause is at least
+NUMBER = re.compile(r"[^a-z]*(e[-+]?\d+)?\W*")  # with what stands around it
 SILENCE = 30.0  # seconds after which a line comes although nothing has changed
 
 
@@ -213,19 +215,19 @@ def console() -> Console:
 
 @contextmanager
 def progress_bar(
-    label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT
+    label: str, kept: Callable[[], str] = lambda: NOTHING_KEPT, *, again: float = 0.0
 ) -> Iterator[Progress]:
     """A function that shows on standard error what is being done.
 
     It shows a bar on a terminal, and lines elsewhere.
 
     label : what is done first. kept : what stands when the interrupt key is pressed, and how to
-        go on.
+        go on. again : least seconds between a line and one of the same words, with other numbers.
     Raises Interrupted in place of KeyboardInterrupt.
     """
     terminal = console()
     moves = terminal.is_terminal and not terminal.is_dumb_terminal
-    shown = Bar(terminal, label) if moves else Lines(label)
+    shown = Bar(terminal, label) if moves else Lines(label, again)
     try:
         with shown:
             yield shown
@@ -284,9 +286,10 @@ class Lines:
     looks on, so that a step which began during a pause has its line, too, however silent it is.
     """
 
-    def __init__(self, label: str) -> None:
+    def __init__(self, label: str, again: float = 0.0) -> None:
         self._begun = self._said = monotonic()
         self._step, self._printed = label, ""
+        self._again, self._known = again, {""}
         self._done: float | None = None
         self._since, self._from = self._begun, 0.0
         self._lock, self._over = Lock(), Event()
@@ -320,7 +323,9 @@ class Lines:
             first = not self._printed
             pause = PATIENCE if first else max(PAUSE, SHARE * passed)
             share = "" if self._done is None else f", {self._done:.0%}"
-            text = self._step + share
+            text, words = self._step + share, _words(self._step)
+            if words in self._known:
+                pause = max(pause, self._again)
             if text == self._printed:
                 pause = max(pause, SILENCE)
             if quiet < pause:
@@ -331,6 +336,7 @@ class Lines:
                 flush=True,
             )
             self._said, self._printed = now, text
+            self._known.add(words)
 
     def _left(self, now: float) -> str:
         """The time left, if the rest of the step goes as its beginning."""
@@ -338,6 +344,11 @@ class Lines:
             return ""
         rest = (1.0 - self._done) / (self._done - self._from)
         return f", {_clock(rest * (now - self._since))} left"
+
+
+def _words(label: str) -> str:
+    """The label without its numbers: what stays while a step goes on."""
+    return " ".join(word for word in label.split() if not NUMBER.fullmatch(word))
 
 
 def _known(fraction: float) -> float | None:

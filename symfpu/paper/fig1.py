@@ -9,11 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import Progress, labelled
 from symfpu.paper.claims import PaperFigure
-from symfpu.paper.dimensions import figure_alignment
+from symfpu.paper.dimensions import (
+    VECTORS,
+    TorusForecast,
+    figure_alignment,
+    indices_panel,
+)
 from symfpu.paper.fig1_claims import figure1_claims
 from symfpu.paper.fig1_data import Figure1, figure1_data
 from symfpu.paper.judgements import sums_panel
@@ -33,12 +37,13 @@ def figure1(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     exact = refine(torus, progress=labelled(progress, "fig1: exact torus"))
     Q = np.asarray(torus.positions(0.0), dtype=float)
     P = np.asarray(torus.momenta(0.0), dtype=float)
-    found = figure_alignment("fig1", (Q, P), progress, folder, full=full)
+    forecast = TorusForecast(exact, VECTORS["fig1"][1])
+    seen = figure_alignment("fig1", (Q, P), progress, folder, forecast, full=full)
     return PaperFigure(
         "fig1",
         "Fig. 1: the 2-torus of N = 16, alpha = 0.33, seeds 1 and 2",
-        (*figure1_panels(data), alignment_panel("fig1e", TITLE_E, found)),
-        figure1_claims(data, exact, found),
+        (*figure1_panels(data), indices_panel("fig1e", TITLE_E, seen)),
+        figure1_claims(data, exact, seen, forecast),
         text=figure1_text(data),
         numbers=figure1_numbers(data),
         lines=_lines(data),

@@ -11,9 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.action_angle.foretold import ForetoldIndices
-from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
-from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import NO_FRACTION, Progress, labelled
 from symfpu.localization.floors import spectrum_floor
@@ -21,7 +19,13 @@ from symfpu.localization.laws import fit_profile, middle_modes
 from symfpu.localization.profiles import normalised_averages
 from symfpu.paper.captions import caption_claim, caption_curve, law_of, printed_line
 from symfpu.paper.claims import Claim, PaperFigure, judged
-from symfpu.paper.dimensions import figure_alignment, foretold_frames
+from symfpu.paper.dimensions import (
+    VECTORS,
+    FigureIndices,
+    TorusForecast,
+    figure_alignment,
+    indices_panel,
+)
 from symfpu.paper.judgements import (
     SIMILAR_DECADES,
     cancellation_claim,
@@ -59,9 +63,10 @@ def figure2(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     exact = refine(torus, progress=labelled(progress, "fig2: exact torus"))
     orbit = integrated_orbit("fig2 PLn", row.chain, torus, TIME, progress)
     start = (torus.positions(0.0), torus.momenta(0.0))
-    found = figure_alignment("fig2", start, progress, folder, full=full)
     progress("fig2: indices foretold", NO_FRACTION)
-    frames = foretold_frames(exact, found.vectors)
+    forecast = TorusForecast(exact, VECTORS["fig2"][1])
+    frames = forecast.frames()
+    seen = figure_alignment("fig2", start, progress, folder, forecast, full=full)
     profiles = {
         "PL": torus.average_spectrum() / torus.energy(),
         "PLn": normalised_averages(orbit)[-1],
@@ -78,11 +83,11 @@ def figure2(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
         exponential_claim(exact),
         _caption_claim(line, torus),
         line_claim(line, profiles["exact torus"]),
-        _dimension_claim(found, frames),
+        _dimension_claim(seen, frames),
         *_sums_claims(sums, row.order),
         root_finding_claim(exact),
     )
-    panels = (_profile_panel(line, profiles, floors), *_other_panels(found, sums))
+    panels = (_profile_panel(line, profiles, floors), *_other_panels(seen, sums))
     return PaperFigure("fig2", title, panels, claims)
 
 
@@ -98,14 +103,12 @@ def _profile_panel(
     return profile_panel("fig2a", title, chain, profiles, *laws, floors=floors)
 
 
-def _other_panels(
-    found: AlignmentIndices, sums: tuple[Floats, Floats]
-) -> tuple[Panel, Panel]:
+def _other_panels(seen: FigureIndices, sums: tuple[Floats, Floats]) -> tuple[Panel, Panel]:
     """Alignment indices; sums of the terms."""
     indices = "Fig. 2(b): alignment indices of PLn"
     cancellations = "Fig. 2(c): cancellations in the series of mode 1"
     return (
-        alignment_panel("fig2b", indices, found),
+        indices_panel("fig2b", indices, seen),
         sums_panel("fig2c", cancellations, 1, sums),
     )
 
@@ -174,9 +177,9 @@ def line_claim(line: PrintedLine, spectrum: Floats) -> Claim:
     return Claim("4", text, "", ours, verdict)
 
 
-def _dimension_claim(found: AlignmentIndices, frames: tuple[ForetoldIndices, ...]) -> Claim:
+def _dimension_claim(seen: FigureIndices, frames: tuple[ForetoldIndices, ...]) -> Claim:
     text = "G_2, G_3 soon constant, G_4 after 3e7, G_5 falls as 1/t from there to 1e9"
-    return foretold_claim("4", text, 4, frames, (4, PLATEAU), found)
+    return foretold_claim("4", text, 4, frames, seen, (4, PLATEAU))
 
 
 def _sums_claims(sums: tuple[Floats, Floats], order: int) -> tuple[Claim, Claim]:

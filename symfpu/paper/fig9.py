@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +16,8 @@ from numpy.typing import NDArray
 
 from symfpu.breathers.balance import periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
-from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.dimension import TorusDimension
 from symfpu.dynamics.orbits import Orbit
-from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Panel
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.localization.laws import natural_packet
@@ -43,8 +42,12 @@ from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.dimensions import (
     FORETOLD_FRAMES,
     FULL_TIME,
+    VECTORS,
+    FigureIndices,
+    Foretold,
     figure_alignment,
-    slopes_text,
+    indices_panel,
+    integrated_text,
 )
 from symfpu.paper.judgements import SIMILAR_DECADES, same_profile
 from symfpu.paper.printed import FIG9_PACKETS, FIG9_RECURRENCE, PrintedTorus
@@ -92,7 +95,10 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     exact = integrated_orbit("fig9 breather", chain, newton, TIME, progress, samples=looks)
     series = integrated_orbit("fig9 PLn", chain, torus, TIME, progress, samples=looks)
     main = orbits[PRINTED_E]
-    found = figure_alignment("fig9", (main.Q[0], main.P[0]), progress, folder, full=full)
+    growth = toda_growth(chain, main.Q[0], main.P[0])
+    start = (main.Q[0], main.P[0])
+    foretell = partial(_foretold, growth)
+    seen = figure_alignment("fig9", start, progress, folder, foretell, full=full)
     times = main.times[::SHOWN_EVERY]
     energies = newton.in_doubles().harmonic_energies(times)
     breather = np.asarray(energies, dtype=float) / float(newton.energy())
@@ -106,10 +112,12 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     title_c = "Fig. 9(c): average spectra"
     spectra = profile_panel("fig9c", title_c, chain, profiles, law, floors=floors)
     indices = "Fig. 9(d): alignment indices of the FPU-trajectory"
+    if seen.beyond is not None:
+        indices += ", foretold for Toda's chain"
     panels = (
         *_energy_panels(times, breather, trajectory),
         spectra,
-        alignment_panel("fig9d", indices, found),
+        indices_panel("fig9d", indices, seen),
     )
     claims = (
         recurrence_claim(row, orbits),
@@ -118,7 +126,7 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
         gain_claim(torus),
         pairs_claim({row.label: closing(row, torus)}),
         law_claim("6.4.3", profiles["Newton"], law),
-        frequencies_claim(found, toda_growth(chain, main.Q[0], main.P[0])),
+        frequencies_claim(seen, growth),
         *packet_claims(row),
     )
     title = "Fig. 9: the q-breather and FPU-trajectory of E = 0.014915"
@@ -215,13 +223,18 @@ def constancy_claim(breather: Floats, orbit: Orbit) -> Claim:
     return Claim("6.4.3", text, "", ours, judged(moves <= CONSTANT_DECADES))
 
 
-def frequencies_claim(found: AlignmentIndices, growth: TodaGrowth) -> Claim:
+def _foretold(growth: TodaGrowth, times: Floats) -> Foretold:
+    """Of the frame that is integrated, on the torus of the Toda chain."""
+    return Foretold(times, *growth.indices(times, VECTORS["fig9"][1], 0))
+
+
+def frequencies_claim(seen: FigureIndices, growth: TodaGrowth) -> Claim:
     """The dimension of the torus on which the FPU-trajectory lies, at the paper's time.
 
     Foretold from the torus of the Toda chain through the same state; the indices integrated to a
     shorter time are beside what is foretold for it.
     """
-    vectors, last = found.vectors, float(found.times[-1])
+    vectors, last = seen.found.vectors, float(seen.found.times[-1])
     said = growth.dimension(FULL_TIME, vectors, FORETOLD_FRAMES)
     early = growth.dimension(last, vectors, FORETOLD_FRAMES)
     shown = growth.first_shown(vectors, FORETOLD_FRAMES, FORETOLD_LAST)
@@ -229,7 +242,7 @@ def frequencies_claim(found: AlignmentIndices, growth: TodaGrowth) -> Claim:
     when = ", ".join(f"{s} from {T:.0e}" for s, T in shown.items())
     ours = "foretold from the Toda chain's torus through the same state, whose directions grow "
     ours += f"at the rates {rates}, ...: {said.verdict} at {FULL_TIME:.0e}; as dimension {when}; "
-    ours += f"at {last:.0e} {_best(early)}; integrated: {slopes_text(found)}"
+    ours += f"at {last:.0e} {_best(early)}; {integrated_text(seen)}"
     text = "five incommensurable frequencies: G_2, G_3 constant from the start, "
     text += "G_4, G_5 from 5e7 on, a torus of dimension 5"
     verdict = judged(said.value == PRINTED_DIMENSION, said.value == DOMINANT)

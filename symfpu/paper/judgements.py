@@ -18,7 +18,13 @@ from symfpu.dynamics.dimension import DECADES
 from symfpu.figures.panels import Curve, Panel
 from symfpu.localization.profiles import profile_distance
 from symfpu.paper.claims import OPEN, Claim, judged
-from symfpu.paper.dimensions import FULL_TIME, foretold_dimension, slopes_text
+from symfpu.paper.dimensions import (
+    FULL_TIME,
+    FigureIndices,
+    foretold_dimension,
+    integrated_text,
+    slopes_text,
+)
 
 Floats = NDArray[np.float64]
 SIMILAR_DECADES = 1.0  # in which profiles over thirty decades are alike
@@ -94,35 +100,43 @@ def foretold_claim(
     text: str,
     printed: int,
     frames: tuple[ForetoldIndices, ...],
-    settled: tuple[int, float],
-    found: AlignmentIndices,
+    seen: FigureIndices,
+    settled: tuple[int, float] | None = None,
 ) -> Claim:
     """Whether the torus itself shows the printed dimension at the paper's time, in closed form.
 
-    settled : k, and the time from which the paper sees G_k constant, which must be within those of
-    the frames; in part if it is not. A frame's is where the first stretch of DECADES begins that
-    has the slope of the torus. found : integrated, for the evidence.
+    seen : what was integrated, for the evidence. settled : k, and the time from which the paper
+    sees G_k constant, which must be within those of the frames; in part if it is not. A frame's is
+    where the first stretch of DECADES begins that has the slope of the torus.
     """
-    k, after = settled
     said = foretold_dimension(frames, FULL_TIME)
-    times = [frame.settling()[k] / 10**DECADES for frame in frames]
     rates = ", ".join(f"{rate:.1e}" for rate in frames[0].rates)
     slopes = np.mean(
         [[s.value for s in frame.slopes(FULL_TIME)] for frame in frames], axis=0
     )
     shown = ", ".join(f"{slope:.2f}" for slope in slopes)
     values = ", ".join("none" if s is None else str(s) for s in said.frames)
-    when = ", ".join(f"{time:.0e}" for time in sorted(times))
     ours = f"foretold from the exact torus, its twist and {len(frames)} frames: {said.verdict} "
     ours += f"at {FULL_TIME:.0e} (by frame {values}; mean slopes {shown} "
-    ours += f"of G_2..G_{found.vectors}); growth rates {rates}; "
-    ours += f"G_{k} has the slope of the torus from t = {when} on, in the paper from {after:.0e}"
-    ours += f"; integrated: {slopes_text(found)}"
+    ours += f"of G_2..G_{frames[0].vectors}); growth rates {rates}; "
+    in_time = True
+    if settled is not None:
+        in_time, when = _settles(frames, *settled)
+        ours += f"{when}; "
+    ours += integrated_text(seen)
     same = said.value == printed
-    in_time = min(times) <= after <= max(times)
     return Claim(
         section, text, f"dimension {printed}", ours, judged(same and in_time, same)
     )
+
+
+def _settles(frames: tuple[ForetoldIndices, ...], k: int, after: float) -> tuple[bool, str]:
+    """Whether the time from which the paper sees G_k constant is one of the frames'."""
+    times = [frame.settling()[k] / 10**DECADES for frame in frames]
+    when = ", ".join(f"{time:.0e}" for time in sorted(times))
+    words = f"G_{k} has the slope of the torus from t = {when} on, "
+    words += f"in the paper from {after:.0e}"
+    return min(times) <= after <= max(times), words
 
 
 def cancellation_claim(

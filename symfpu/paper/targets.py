@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Protocol
 
@@ -54,12 +55,32 @@ TARGETS: dict[str, Maker] = {
 }
 # with a part that takes many minutes, or hours
 LONG_TARGETS = ("table", "fig1", "fig2", "fig9")
+# of processor time, measured: what is begun first, and how long all will take
+SECONDS: dict[str, float] = {
+    "table": 60.0,
+    "section5": 4.0,
+    "statements": 15.0,
+    "fig1": 35.0,
+    "fig2": 40.0,
+    "fig3": 12.0,
+    "fig4": 95.0,
+    "fig5": 18.0,
+    "fig6": 2.0,
+    "fig7": 6.0,
+    "fig8": 5.0,
+    "fig9": 60.0,
+    "convergence": 130.0,
+    "toda": 50.0,
+}
+FULL_TABLE = 600.0  # seconds
+FIRST_PICTURE = "fig6"  # drawn within seconds
 
 
 def reproduced(
     target: str, folder: Path, progress: Progress, *, full: bool = False
 ) -> PaperFigure:
     """The figure of a target, with its tables and pictures in the folder."""
+    progress(target, NO_FRACTION)
     figure = TARGETS[target](folder, progress, full=full)
     write_panel_csv(figure, folder)
     progress(f"{target}: pictures", NO_FRACTION)
@@ -67,14 +88,22 @@ def reproduced(
     return figure
 
 
-def full_estimate(targets: list[str], folder: Path) -> str:
-    """How long --full will take for these targets, and how it goes on if it is stopped."""
+def full_seconds_of(targets: Iterable[str]) -> dict[str, float]:
+    """By target, the seconds that --full adds."""
     times = {figure: full_seconds(figure) for figure in VECTORS if figure in targets}
-    parts = [f"{figure} {seconds / 3600:.1f} h" for figure, seconds in times.items()]
     if "table" in targets:
-        parts.append("table 10 minutes")
+        times["table"] = FULL_TABLE
+    return times
+
+
+def full_estimate(added: Mapping[str, float], folder: Path) -> str:
+    """How long --full will take for these targets, and how it goes on if it is stopped."""
+    parts = []
+    for target, seconds in added.items():
+        hours, minutes = f"{seconds / 3600:.1f} h", f"{seconds / 60:.0f} minutes"
+        parts.append(f"{target} {hours if target in VECTORS else minutes}")
     estimate = f"--full, about: {', '.join(parts)}"
-    if times:
+    if any(target in VECTORS for target in added):
         estimate += "; stopped and started again, alignment indices go on from "
         estimate += f"{folder}/*.checkpoint"
     return estimate

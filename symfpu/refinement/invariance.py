@@ -178,8 +178,9 @@ def _known_lattice(content: bytes, s: int) -> tuple[int, tuple[int, ...]]:
 
 def _distinct(harmonics: Ints, generator: Ints, period: int) -> bool:
     """Whether nu.g modulo the period differs for all harmonics."""
-    places = harmonics @ generator % period
-    return len(np.unique(places)) == len(harmonics)
+    taken = np.zeros(period, dtype=np.bool_)
+    taken[harmonics @ generator % period] = True
+    return int(np.count_nonzero(taken)) == len(harmonics)
 
 
 def generated_lattice(harmonics: Ints) -> tuple[int, Ints]:

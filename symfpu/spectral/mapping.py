@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from multiprocessing import parent_process
 from pathlib import Path
 from typing import Any
 
@@ -222,9 +223,10 @@ class _Told:
 def _executor(work: float, told: _Told) -> ThisProcess | None:
     """None for processes: where several energies take longer than it takes to start them.
 
+    A process that is itself one of a pool has its share of the cores and starts no others.
     work : of one energy, steps times bonds.
     """
-    alone = told.count == 1 or available_cores() == 1
+    alone = told.count == 1 or available_cores() == 1 or parent_process() is not None
     if alone or work * told.count < WORTH_PROCESSES:
         return ThisProcess(progress=told.one)
     told.energies("", 0.0)

@@ -20,9 +20,13 @@ from typing import Any, NamedTuple
 
 from symfpu.algebra.dense import available_cores
 from symfpu.errors import InputError, SymfpuError
+from symfpu.files.progress import Progress, unheard
 
 STARTS = 20  # times that a process may be killed before it is ready, or has begun a task
 READY, BEGUN = b"ready", b"begun"  # what a worker says before its answers
+TOLD = (
+    "told"  # in place of whether a call succeeded: its progress, and the answer is to come
+)
 # each worker is one of as many as there are cores: its libraries shall not start more threads
 THREADS = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 ENVIRONMENT = threading.Lock()
@@ -58,10 +62,11 @@ class WorkersDoNotStart(SymfpuError, BrokenExecutor):
 
 
 class Task(NamedTuple):
-    """What a worker is sent, and where its answer goes."""
+    """What a worker is sent, and where its answer and its progress go."""
 
     future: Future[Any]
     call: bytes
+    hear: Progress
 
 
 class ProcessWorkers(Executor):
@@ -88,8 +93,20 @@ class ProcessWorkers(Executor):
         self, function: Callable[..., Any], /, *args: Any, **named: Any
     ) -> Future[Any]:
         """The future of function(*args, **named), all of which pickle by reference."""
+        return self._put(unheard, (function, args, named, False))
+
+    def submit_heard(
+        self, hear: Progress, function: Callable[..., Any], /, *args: Any, **named: Any
+    ) -> Future[Any]:
+        """The same of a function that has an argument `progress`: `hear` is told what it tells.
+
+        In a thread of this process, before the future ends.
+        """
+        return self._put(hear, (function, args, named, True))
+
+    def _put(self, hear: Progress, call: tuple[Any, ...]) -> Future[Any]:
         future: Future[Any] = Future()
-        self._tasks.put(Task(future, pickle.dumps((function, args, named))))
+        self._tasks.put(Task(future, pickle.dumps(call), hear))
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
@@ -117,7 +134,7 @@ class ProcessWorkers(Executor):
         while task := self._tasks.get():
             if task.future.set_running_or_notify_cancel():
                 try:
-                    done, value = worker.answer(task.call)
+                    done, value = worker.answer(task.call, task.hear)
                 except Exception as error:
                     done, value = False, error
                 if done:
@@ -148,14 +165,22 @@ class Worker:
         self._pipe: Connection | None = None
         self._killed = False
 
-    def answer(self, call: bytes) -> tuple[bool, Any]:
-        """Whether a call succeeded, and its result or error."""
+    def answer(self, call: bytes, hear: Progress) -> tuple[bool, Any]:
+        """Whether a call succeeded, and its result or error. hear : its progress until then."""
         pipe = self._begun(call)
+        said, value = self._said(pipe)
+        while said == TOLD:
+            hear(*value)
+            said, value = self._said(pipe)
+        return said, value
+
+    def _said(self, pipe: Connection) -> tuple[Any, Any]:
+        """What a process at work says next; WorkerDied where it is dead."""
         try:
-            answer: tuple[bool, Any] = pickle.loads(pipe.recv_bytes())  # noqa: S301 (from our own process)
+            said: tuple[Any, Any] = pickle.loads(pipe.recv_bytes())  # noqa: S301 (from our own process)
         except (EOFError, OSError):
             raise WorkerDied(self._ended()) from None
-        return answer
+        return said
 
     def _begun(self, call: bytes) -> Connection:
         """The pipe of a process that has begun a call.
@@ -260,7 +285,7 @@ def serve(pipe: Connection) -> None:
         except (EOFError, OSError):
             return
         pipe.send_bytes(BEGUN)
-        pipe.send_bytes(_answer(call))
+        pipe.send_bytes(_answer(call, Teller(pipe)))
 
 
 def _end_with_parent() -> None:
@@ -271,9 +296,24 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _answer(call: bytes) -> bytes:
+class Teller:
+    """In a worker: the progress of a call, sent to who waits for its answer."""
+
+    def __init__(self, pipe: Connection) -> None:
+        self._pipe = pipe
+        self._lock = threading.Lock()
+
+    def __call__(self, label: str, fraction: float) -> None:
+        said = pickle.dumps((TOLD, (label, float(fraction))))
+        with self._lock:
+            self._pipe.send_bytes(said)
+
+
+def _answer(call: bytes, tell: Progress) -> bytes:
     try:
-        function, args, named = pickle.loads(call)  # noqa: S301 (from our own process)
+        function, args, named, told = pickle.loads(call)  # noqa: S301 (from our own process)
+        if told:
+            named = named | {"progress": tell}
         answer = True, function(*args, **named)
     except Exception as error:
         answer = False, error

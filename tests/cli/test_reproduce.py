@@ -35,7 +35,13 @@ def strict(text):
 
 
 @pytest.fixture
-def short(monkeypatch):
+def alone(monkeypatch):
+    """All targets in this process, where they may be replaced."""
+    monkeypatch.setattr("symfpu.paper.side_by_side.available_cores", lambda: 1)
+
+
+@pytest.fixture
+def short(alone, monkeypatch):
     monkeypatch.setattr(fig2, "TIME", 2e3)
     monkeypatch.setattr(fig3, "TIME", 2e3)
     shorter_figure_9(monkeypatch)
@@ -80,16 +86,28 @@ def test_json_is_strict_and_alone_on_standard_output(capsys, tmp_path):
 
 
 @pytest.mark.long
-def test_a_target_that_fails_loses_nothing_of_those_before(monkeypatch, capsys, tmp_path):
+def test_a_target_that_fails_costs_no_other(alone, monkeypatch, capsys, tmp_path):
     def lost(folder, progress, *, full=False):
         raise NoRecurrence(1e4, 0.9)
 
-    monkeypatch.setitem(targets.TARGETS, "fig9", lost)
-    code, out, err = run(capsys, "fig9", "fig6", "-o", str(tmp_path))
-    assert (code, out) == (1, "")
-    assert "no recurrence" in err
+    monkeypatch.setitem(targets.TARGETS, "fig3", lost)
+    code, out, err = run(capsys, "fig3", "section5", "fig6", "-o", str(tmp_path))
+    assert code == 1
+    assert "no figures of fig3 (NoRecurrence: no recurrence" in err.splitlines()[-1]
+    assert "Fig. 6: orders of first excitation" in out
     assert "Fig. 6" in (tmp_path / "report.md").read_text()
-    assert list(strict((tmp_path / "report.json").read_text())["figures"]) == ["fig6"]
+    assert list(strict((tmp_path / "report.json").read_text())["figures"]) == ["section5", "fig6"]
+
+
+def test_one_target_alone_fails_with_its_own_error(monkeypatch, capsys, tmp_path):
+    def lost(folder, progress, *, full=False):
+        raise NoRecurrence(1e4, 0.9)
+
+    monkeypatch.setitem(targets.TARGETS, "fig3", lost)
+    code, out, err = run(capsys, "fig3", "-o", str(tmp_path), "--json")
+    assert (code, out) == (1, "")
+    assert err.startswith("symfpu: no recurrence")
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.fixture
@@ -139,7 +157,7 @@ def test_a_checkpoint_of_another_run_is_refused_by_name(tmp_path):
     file = tmp_path / "fig9-gali.checkpoint"
     file.write_bytes(b"something else")
     with pytest.raises(SymfpuError, match=r"fig9-gali\.checkpoint"):
-        dimensions.figure_alignment("fig9", (np.ones(31), np.zeros(31)), print, tmp_path, full=True)
+        dimensions.figure_alignment("fig9", (np.ones(31), np.zeros(31)), print, tmp_path, print, full=True)
     assert file.read_bytes() == b"something else"
 
 
@@ -159,23 +177,27 @@ def test_bad_arguments_compute_nothing(monkeypatch, capsys, tmp_path, argv, name
     assert not (tmp_path / "new").exists()
 
 
-def test_targets_are_done_once_and_in_order_of_the_paper(monkeypatch, capsys, tmp_path):
+def test_targets_are_done_once_and_written_in_order_of_the_paper(alone, monkeypatch, capsys, tmp_path):
     done = []
     page = PaperFigure("fig0", "Page", (), ())
     for name in targets.TARGETS:
         monkeypatch.setitem(targets.TARGETS, name, lambda folder, progress, *, full=False, name=name: done.append((name, full)) or page)
     assert run(capsys, "fig9", "table", "fig9", "-o", str(tmp_path))[0] == 0
-    assert done == [("table", False), ("fig9", False)]
+    assert sorted(done) == [("fig9", False), ("table", False)]
+    assert list(strict((tmp_path / "report.json").read_text())["figures"]) == ["table", "fig9"]
     done.clear()
-    monkeypatch.setattr("symfpu.cli.reproduce.full_estimate", lambda chosen, folder: ", ".join(chosen))
+    monkeypatch.setattr("symfpu.cli.reproduce.full_seconds_of", lambda chosen: dict.fromkeys(chosen, 1.0))
     assert run(capsys, "all", "--full", "-o", str(tmp_path))[0] == 0
-    assert done == [(name, True) for name in targets.TARGETS]
+    assert sorted(done) == sorted((name, True) for name in targets.TARGETS)
+    assert list(strict((tmp_path / "report.json").read_text())["figures"]) == list(targets.TARGETS)
 
 
 def test_the_estimate_names_what_takes_long(monkeypatch, tmp_path):
     monkeypatch.setattr(targets, "full_seconds", lambda figure: {"fig1": 3600.0, "fig2": 7200.0, "fig9": 9000.0}[figure])
-    assert targets.full_estimate(["fig2", "fig3", "fig9"], tmp_path).startswith("--full, about: fig2 2.0 h, fig9 2.5 h; stopped")
-    assert targets.full_estimate(["table"], tmp_path) == "--full, about: table 10 minutes"
+    assert targets.full_estimate(targets.full_seconds_of(["fig2", "fig3", "fig9"]), tmp_path).startswith(
+        "--full, about: fig2 2.0 h, fig9 2.5 h; stopped"
+    )
+    assert targets.full_estimate(targets.full_seconds_of(["table"]), tmp_path) == "--full, about: table 10 minutes"
     assert set(targets.LONG_TARGETS) == {"table", *dimensions.VECTORS}
 
 

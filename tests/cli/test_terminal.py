@@ -147,6 +147,28 @@ def test_pauses_grow_and_silence_ends(lines, capsys):
     ]
 
 
+def test_a_step_whose_numbers_change_waits_longer_than_another(monkeypatch, capsys):
+    clock = Clock()
+    monkeypatch.setattr(terminal, "monotonic", clock)
+    monkeypatch.setattr(terminal, "PATIENCE", 2.0)
+    tell = Lines("first", again=5.0)
+    clock.now = 2.5
+    tell("fig2: GALI, t = 1e+03 of 1e+07 (1%)", 0.1)
+    clock.now = 5.0
+    tell("fig2: GALI, t = 2e+03 of 1e+07 (2%)", 0.2)  # the same words, too soon
+    tell("fig3: GALI, t = 2e+03 of 1e+07 (2%)", 0.2)
+    clock.now = 9.0
+    tell("fig2: GALI, t = 3e+03 of 1e+07 (3%)", 0.3)
+    clock.now = 10.5
+    tell("fig2: GALI, t = 4e+03 of 1e+07 (4%)", 0.4)
+    told = [line.split(maxsplit=2)[-1].split(" of")[0] for line in capsys.readouterr().err.splitlines()]
+    assert told == [
+        "fig2: GALI, t = 1e+03",
+        "fig3: GALI, t = 2e+03",
+        "fig2: GALI, t = 4e+03",
+    ]
+
+
 def test_a_step_that_is_silent_has_its_line(monkeypatch, capsys):
     """Told within a pause, shown after it by the thread that looks on, which ends with the bar."""
     monkeypatch.setattr(terminal, "PATIENCE", 0.0)
@@ -186,7 +208,9 @@ def test_reproduce_tells_its_steps(monkeypatch, capsys, tmp_path):
     assert main(["reproduce", "fig6", "-o", str(tmp_path)]) == 0
     captured = capsys.readouterr()
     told = [line.split(maxsplit=2)[-1] for line in captured.err.splitlines()]
-    assert told[-3:] == ["fig6: patterns", "fig6: orbit, 25%", "fig6: pictures"]
+    steps = [re.sub(r", [0-9]+%.*", "", line) for line in told]
+    assert steps[-3:] == ["fig6: patterns", "fig6: orbit (25%)", "fig6: pictures"]
+    assert all(re.search(r", [0-9]+%", line) for line in told[-3:])
     assert "patterns" not in captured.out
 
 
@@ -251,7 +275,7 @@ def test_the_interrupt_key_says_what_is_kept():
         (
             ["reproduce", "section5", "fig6", "-o", "out"],
             "reproduce.TARGETS",
-            "out/report.md and report.json hold section5",
+            "out/report.md and report.json hold fig6",
         ),
         (
             ["propagate", "-N", "8", "--seeds", "1", "--order", "2"],
@@ -271,8 +295,9 @@ def test_an_interrupted_verb_is_one_line_and_code_130(verb, function, kept, monk
     monkeypatch.chdir(tmp_path)
     if function.endswith("TARGETS"):
         page = PaperFigure("fig0", "Page", (), ())
-        monkeypatch.setitem(targets.TARGETS, "section5", lambda folder, progress, *, full=False: page)
-        monkeypatch.setitem(targets.TARGETS, "fig6", interrupted)
+        monkeypatch.setattr("symfpu.paper.side_by_side.available_cores", lambda: 1)
+        monkeypatch.setitem(targets.TARGETS, "fig6", lambda folder, progress, *, full=False: page)
+        monkeypatch.setitem(targets.TARGETS, "section5", interrupted)
     else:
         monkeypatch.setattr(f"symfpu.cli.{function}", interrupted)
     assert main(verb) == 130
@@ -305,14 +330,14 @@ def test_an_interrupted_run_names_its_checkpoint(verb, monkeypatch, capsys, tmp_
 
 @pytest.mark.long
 def test_the_key_itself(tmp_path):
-    """A real interruption of a real process, while it follows an orbit."""
+    """A real interruption of a real process, while a worker of it, if there are cores, follows an orbit."""
     command = [sys.executable, "-m", "symfpu", "reproduce", "fig6", "fig7", "-o", str(tmp_path)]
     surroundings = os.environ | {"COLUMNS": ""}
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=surroundings) as process:
         heard = []
         for line in process.stderr:
             heard.append(line)
-            if "fig7" in line:
+            if "1 of 2 done; fig7" in line:
                 process.send_signal(signal.SIGINT)
                 break
         heard += process.stderr.readlines()

@@ -9,6 +9,7 @@ import pytest
 from symfpu.files.progress import unheard
 from symfpu.paper import fig9
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
+from symfpu.paper.dimensions import FigureIndices
 from symfpu.paper.starts import printed_row
 from tests.paper.cases import alignment, growth_at, shorter_figure_9
 
@@ -44,7 +45,7 @@ def test_breathers_are_almost_constant(swing, verdict):
 def test_five_frequencies(seen, verdict):
     """By what the torus shows at the paper's time; the indices to a shorter one are said beside it."""
     growth = growth_at([1e-4] * seen + [1e-15])
-    claim = fig9.frequencies_claim(alignment(3, vectors=7, T=1e7), growth)
+    claim = fig9.frequencies_claim(FigureIndices(alignment(3, vectors=7, T=1e7)), growth)
     assert claim.verdict == verdict
     assert f"dimension {seen} at 1e+09" in claim.ours
     assert "integrated: slopes" in claim.ours

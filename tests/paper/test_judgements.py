@@ -7,7 +7,15 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.dimension import DECADES
 from symfpu.figures.alignment import alignment_panel
 from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY
-from symfpu.paper.dimensions import foretold_frames, settled_after
+from symfpu.paper.dimensions import (
+    FigureIndices,
+    Foretold,
+    TorusForecast,
+    confirms,
+    indices_panel,
+    integrated_text,
+    settled_after,
+)
 from symfpu.paper.judgements import (
     cancellation_claim,
     dimension_claim,
@@ -72,9 +80,9 @@ def test_as_many_dimensions_as_vectors_decide_nothing():
 def test_a_dimension_foretold(printed, after, verdict):
     """From the exact torus; the time at which G_3 settles is one of the frames' or not."""
     torus = refine(torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.2"}, 6))
-    frames = foretold_frames(torus, 4)
+    frames = TorusForecast(torus, 4).frames()
     settled = after or frames[0].settling()[3] / 10**DECADES
-    claim = foretold_claim("4", "a torus", printed, frames, (3, settled), alignment(2, vectors=4))
+    claim = foretold_claim("4", "a torus", printed, frames, FigureIndices(alignment(2, vectors=4)), (3, settled))
     assert claim.verdict == verdict
     assert "regular, dimension 2 at 1e+09 (by frame 2, 2, 2, 2" in claim.ours
 
@@ -154,6 +162,46 @@ def test_alignment_panels_are_logarithms_already():
     assert [curve.name for curve in made.curves] == ["G_2", "G_3", "G_4", "G_5"]
     assert r"-3.00 \pm 0.00" in made.curves[-1].label
     assert made.curves[-1].y[-1] == pytest.approx(-21, abs=WHOLE_NUMBERS)  # 3 x 7 decades
+
+
+def as_foretold(found, *, steeper=0.0, higher=0.0, growth=1.0):
+    """The same indices, G_5 with another slope and all of them higher."""
+    gali = found.log10_gali + higher
+    gali[:, -1] -= steeper * np.log10(found.times)
+    return Foretold(found.times, gali, growth * found.lyapunov * found.times)
+
+
+@pytest.mark.parametrize(
+    ("off", "same"),
+    [({}, True), ({"steeper": 0.3}, True), ({"steeper": -0.4}, False), ({"higher": 2.0}, True), ({"growth": 0.01}, False)],
+    ids=["the same", "slopes within a third", "another slope", "another level", "nothing seen yet"],
+)
+def test_what_is_foretold_is_confirmed_by_slopes_where_growth_is_seen(off, same):
+    found = alignment(2)
+    assert confirms(found, as_foretold(found, **off)) == same
+    assert not confirms(alignment(2, growth=0.01), as_foretold(alignment(2, growth=0.01)))
+
+
+def test_claims_say_what_was_integrated_and_how_it_agrees():
+    found = alignment(2, T=1e6)
+    there = as_foretold(found, steeper=0.1, higher=0.5)
+    text = integrated_text(FigureIndices(found, there, there, confirmed=True))
+    assert "to t = 1e+06" in text
+    assert text.endswith("slopes are those foretold for the same frame, to 0.10; levels are off by up to 0.50 decades")
+    assert "slopes are not those foretold" in integrated_text(FigureIndices(found, there, there, confirmed=False))
+    assert "foretold" not in integrated_text(FigureIndices(found))
+
+
+def test_what_is_foretold_is_drawn_beyond_what_was_integrated():
+    found, times = alignment(2, T=1e6), np.geomspace(1.0, 1e9, 91)
+    beyond = Foretold(times, np.log10(times)[:, None] * [0.0, -1.0, -2.0, -3.0], times)
+    made = indices_panel("fig1e", "indices", FigureIndices(found, beyond, beyond, confirmed=True))
+    foretold = {curve.name: curve for curve in made.curves if "foretold" in curve.name}
+    assert list(foretold) == ["foretold from", *(f"G_{k} foretold" for k in range(2, 6))]
+    assert all(curve.x.min() > 6.0 and curve.x.max() == 9.0 for curve in foretold.values())
+    assert {curve.style for name, curve in foretold.items() if name != "foretold from"} == {"dotted"}
+    assert indices_panel("fig1e", "", FigureIndices(found)).table()[0] == made.table()[0]
+    assert len(indices_panel("fig1e", "", FigureIndices(found)).curves) == 4
 
 
 def test_an_index_settles_where_it_stays():

@@ -30,6 +30,14 @@ def deadly_square(n):
     return n * n
 
 
+def told_square(n, *, progress, deadly=False):
+    progress("begun", 0.0)
+    if deadly:
+        os._exit(7)
+    progress("squared", 0.5)
+    return n * n
+
+
 def square_in_little_memory(n, numbers):
     """So many doubles in a process that may take 600 MB more than it has."""
     used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()

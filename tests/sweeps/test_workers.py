@@ -16,8 +16,8 @@ import pytest
 from symfpu.algebra.dense import available_cores, threads_of_a_computation
 from symfpu.sweeps.rows_file import read_rows
 from symfpu.sweeps.sweep import sweep
-from symfpu.sweeps.workers import ProcessWorkers
-from tests.sweeps.functions import deadly_square, slow_square, square, square_in_little_memory
+from symfpu.sweeps.workers import ProcessWorkers, worker_processes
+from tests.sweeps.functions import deadly_square, slow_square, square, square_in_little_memory, told_square
 
 ROOT = Path(__file__).parents[2]
 
@@ -74,6 +74,43 @@ def waiting_error(future):
         return future.exception(timeout=5)
     except CancelledError as error:
         return error
+
+
+def test_what_a_task_tells_is_heard_in_its_order_and_before_its_end():
+    heard = []
+    with ProcessWorkers(1) as pool:
+        future = pool.submit_heard(lambda label, fraction: heard.append((label, fraction)), told_square, 3)
+        assert future.result() == 9
+        assert heard == [("begun", 0.0), ("squared", 0.5)]
+        assert pool.submit(square, 3).result() == {"square": 9, "root": 3**0.5}
+
+
+def test_a_task_that_dies_after_it_has_told_something_is_dead():
+    heard = []
+    with ProcessWorkers(1) as pool:
+        future = pool.submit_heard(lambda *told: heard.append(told), told_square, 3, deadly=True)
+        assert future.exception().exit_code == 7
+        assert heard == [("begun", 0.0)]
+        assert pool.submit_heard(lambda *told: None, told_square, 2).result() == 4
+
+
+def test_an_error_in_a_with_ends_what_is_at_work():
+    futures = []
+
+    def interrupted():
+        with worker_processes(1) as pool:
+            pool.submit(os.getpid).result()
+            futures.append(pool.submit(time.sleep, 60))
+            while not futures[0].running():
+                time.sleep(0.01)
+            raise KeyboardInterrupt
+
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    (working,) = futures
+    assert time.monotonic() - start < 20
+    assert working.exception().exit_code == -signal.SIGKILL
 
 
 def test_a_script_without_its_guard_is_told(tmp_path):
