@@ -210,9 +210,8 @@ def integrate(
         raise InputError("averages", averages, "True or False", "leave it out")
     stride = steps_between_looks(step) if averages else 1
     looks = _whole_steps(T, step * stride)
-    run = _Run(
-        chain, found, T, looks * stride, stride * _sample_steps(T, looks, samples), Q, P
-    )
+    marks = stride * _sample_steps(T, looks, samples)
+    run = _Run(chain, found, T, looks * stride, marks, Q, P, workers)
     if averages:
         run.take_averages(stride)
     seconds = seconds_between(every)
@@ -238,6 +237,7 @@ class _Run:
         sampled: Ints,
         Q: Numbers,
         P: Numbers,
+        workers: int,
     ) -> None:
         self.chain, self.scheme = chain, scheme
         self.T, self.steps, self.step = T, steps, T / steps
@@ -257,7 +257,7 @@ class _Run:
         ]
         self.start = chain.harmonic_energies(Q, P)
         bounds = np.array([limit[:2] for limit in limits]).reshape(-1, 2)
-        self.motion = Motion(chain, scheme, self.step, bounds)
+        self.motion = Motion(chain, scheme, self.step, bounds, workers)
         self._sample_at(sampled)
         self.Q[0], self.P[0] = Q, P
         self.state = self.motion.coordinates(Q, P)

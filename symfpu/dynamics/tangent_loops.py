@@ -2,8 +2,7 @@
 
 Importing this module imports numba. x, p : displacements and momenta of one orbit at the sites 0
 .. N, (N+1,), zero at the walls. dx, dp : deviations from it, blocks of LANES vectors, (blocks,
-N+1, LANES), zero at the walls and in lanes that are not used. The lanes are the last axis and
-their number is fixed, so that the loop over them is one or two machine instructions. ring : whether
+N+1, LANES), zero at the walls and in lanes that are not used (symfpu.numbers.lanes). ring : whether
 site N is site 0 again, and moves.
 """
 
@@ -15,72 +14,56 @@ import numpy as np
 
 from symfpu.chain import bond_loops
 from symfpu.compiled import compiled
+from symfpu.numbers.lanes import LANES, entry, put
 
-LANES = 8  # deviation vectors moved by one instruction stream
 # least ratio of a diagonal entry of R to its column, above and below which the block changes
 LONGER_BLOCK, SHORTER_BLOCK = 1e-3, 1e-5
 
+_ONE = np.uint64(1)
 _compiled = compiled(error_model="numpy")
-# a call at every kick costs some per cent of a short chain; so does asking there for the ends,
-# which a literal inlined with the loops decides when they are compiled
+# a call at every kick costs some per cent of a short chain
 _always_inlined = compiled(error_model="numpy", forceinline=True)
 
 
 @_always_inlined
-def move_lanes(
-    dx: Any,
-    dp: Any,
-    stiffness: Any,
-    drift: float,
-    pull: Any,
-    slope: Any,
-    ring: bool,
-) -> None:
-    """A kick of all deviations by bonds of this stiffness times the kick, (N,), and a drift.
+def move_lanes(dx: Any, dp: Any, stiffness: Any, drift: float, ring: bool) -> None:
+    """A kick of one block of deviations by bonds of this stiffness times the kick, and a drift.
 
-    dx, dp, pull, slope : as for `kick_and_drift`.
+    dx, dp : (N+1, LANES). stiffness : (N,).
+
+    Kick and drift are one pass, as for particles: every site is read once and written once.
     """
-    bonds = len(stiffness)
-    last = (bonds - 1) * LANES
-    for j in range(bonds):
-        for c in range(LANES):
-            slope[j * LANES + c] = stiffness[j]
-    for b in range(dx.shape[0]):
-        here, right = dx[b], dx[b, LANES:]
-        for i in range(len(pull)):
-            pull[i] = slope[i] * (right[i] - here[i])
-        momenta, positions, behind = dp[b, LANES:], dx[b, LANES:], pull[LANES:]
-        for i in range(last):
-            momenta[i] += behind[i] - pull[i]
-            positions[i] += drift * momenta[i]
-        if ring:
-            for c in range(LANES):
-                dp[b, c] += pull[c] - pull[last + c]
-                dx[b, c] += drift * dp[b, c]
-                dp[b, last + LANES + c] = dp[b, c]
-                dx[b, last + LANES + c] = dx[b, c]
+    first, bonds = np.uint64(0), np.uint64(len(stiffness))
+    here = entry(dx, _ONE)
+    opening = stiffness[first] * (here - entry(dx, first))
+    left = opening
+    for j in range(_ONE, bonds):
+        ahead = entry(dx, j + _ONE)
+        right = stiffness[j] * (ahead - here)
+        momenta = entry(dp, j) + (right - left)
+        put(dp, j, momenta)
+        put(dx, j, here + drift * momenta)
+        here, left = ahead, right
+    if ring:
+        momenta = entry(dp, first) + (opening - left)
+        positions = here + drift * momenta
+        put(dp, first, momenta)
+        put(dp, bonds, momenta)
+        put(dx, first, positions)
+        put(dx, bonds, positions)
 
 
 @_always_inlined
-def kick_and_drift(
-    x: Any,
-    p: Any,
-    dx: Any,
-    dp: Any,
-    law: Any,
-    kick: float,
-    drift: float,
-    forces: Any,
-    ring: bool,
+def move_orbit(
+    x: Any, p: Any, law: Any, kick: float, drift: float, forces: Any, ring: bool
 ) -> None:
-    """One kick, one drift, and their derivatives.
+    """A kick and a drift of the orbit, and the slopes of its impulses before them.
 
-    Bond j has the tension V'(r), its slope is V''(r). dx, dp : flat blocks, (blocks, (N+1) LANES).
-    forces : room for the impulses of the bonds on the orbit (N,) and on the lanes (N LANES,), for
-    slopes (N,) and (N LANES,). Every loop runs along one flat axis and writes to an array that it
-    reads in the same place only, so that the compiler can vectorise it.
+    Bond j has the tension V'(r), its slope is V''(r). forces : room for the impulses of the bonds
+    and for their slopes, (N,) each. Every loop writes to an array that it reads in the same place
+    only, so that the compiler can vectorise it.
     """
-    tension, pull, stiffness, slope = forces
+    tension, stiffness = forces
     bonds = len(tension)
     ahead = x[1:]
     for j in range(bonds):
@@ -96,7 +79,6 @@ def kick_and_drift(
         x[0] += drift * p[0]
         p[bonds] = p[0]
         x[bonds] = x[0]
-    move_lanes(dx, dp, stiffness, drift, pull, slope, ring)
 
 
 @_compiled
@@ -118,26 +100,19 @@ def advance(
     if steps == 0:
         return
     bonds, blocks = len(x) - 1, dx.shape[0]
-    on_orbit = np.empty(bonds), np.empty(bonds)
-    on_lanes = np.empty(bonds * LANES), np.empty(bonds * LANES)
-    forces = (on_orbit[0], on_lanes[0], on_orbit[1], on_lanes[1])
-    # a reshape is a call: once, not at every kick
-    flat_dx = dx.reshape(blocks, (bonds + 1) * LANES)
-    flat_dp = dp.reshape(blocks, (bonds + 1) * LANES)
+    forces = np.empty(bonds), np.empty(bonds)
     for j in range(bonds + 1):
         x[j] += drifts[0] * p[j]
-    for b in range(blocks):
-        for i in range((bonds + 1) * LANES):
-            flat_dx[b, i] += drifts[0] * flat_dp[b, i]
+        for b in range(blocks):
+            put(dx[b], j, entry(dx[b], j) + drifts[0] * entry(dp[b], j))
     for step in range(steps):
         for i in range(len(kicks)):
             drift = drifts[i + 1]
             if i == len(kicks) - 1 and step < steps - 1:
                 drift += drifts[0]
-            if ring:
-                kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces, True)
-            else:
-                kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces, False)
+            move_orbit(x, p, law, kicks[i], drift, forces, ring)
+            for b in range(blocks):
+                move_lanes(dx[b], dp[b], forces[1], drift, ring)
 
 
 @_compiled
@@ -146,14 +121,11 @@ def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any, ring: bo
 
     kicks : of one step, drifts : after each of them, as lengths of time.
     """
-    blocks, bonds = dx.shape[0], dx.shape[1] - 1
-    pull, slope = np.empty(bonds * LANES), np.empty(bonds * LANES)
-    flat_dx = dx.reshape(blocks, (bonds + 1) * LANES)
-    flat_dp = dp.reshape(blocks, (bonds + 1) * LANES)
     for i in range(slopes.shape[0]):
         stage = i % len(kicks)
         stiffness, drift = kicks[stage] * slopes[i], drifts[stage]
-        move_lanes(flat_dx, flat_dp, stiffness, drift, pull, slope, ring)
+        for b in range(dx.shape[0]):
+            move_lanes(dx[b], dp[b], stiffness, drift, ring)
 
 
 # loops, not expressions of arrays: those take seconds each to compile
