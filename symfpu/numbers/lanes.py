@@ -11,6 +11,7 @@ the lanes in one piece, shorter ones in two or four.
 
 from __future__ import annotations
 
+import functools
 import operator
 from collections.abc import Callable
 from typing import Any
@@ -22,7 +23,7 @@ from numba.core.typeconv import Conversion
 from numba.extending import intrinsic, lower_cast, models, overload, register_model
 from numpy.typing import NDArray
 
-__all__ = ["LANES", "LanesType", "entry", "lane", "put", "with_lane", "within", "zeros"]
+__all__ = ["LANES", "LanesType", "entry", "lane", "put", "total", "with_lane", "within", "zeros"]
 
 LANES = 8
 LINE = 64  # bytes that a processor fetches together; lanes across two of them cost twice
@@ -70,6 +71,11 @@ def entry(row: Any, j: Any) -> Any:
 def put(row: Any, j: Any, value: Any) -> None:
     """Sets row[j]."""
     row[j] = value
+
+
+def total(value: Any) -> float:
+    """The sum of the lanes, from the first to the last."""
+    return float(functools.reduce(operator.add, value))
 
 
 def within(value: Any, least: Any, most: Any) -> bool:
@@ -199,3 +205,14 @@ def _within(value, least, most):  # type: ignore[no-untyped-def]
     if isinstance(value, LanesType):
         return lambda value, least, most: _all_within(value, least, most)
     return lambda value, least, most: (value >= least) & (value <= most)
+
+
+@overload(total)
+def _total(value):  # type: ignore[no-untyped-def]
+    def of_every_lane(value):  # type: ignore[no-untyped-def]
+        found = lane(value, 0)
+        for place in range(1, LANES):
+            found += lane(value, place)
+        return found
+
+    return of_every_lane
