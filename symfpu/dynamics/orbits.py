@@ -114,10 +114,15 @@ class Orbit(Shown, Gridded):
 
         Absolute for orbits at rest.
         """
+        return float(np.max(self.energy_errors))
+
+    @property
+    def energy_errors(self) -> Floats:
+        """The same of each orbit; shape (...)."""
         first = self.energies[0]
         scale = np.where(first == 0, 1.0, np.abs(first))
         deviations = np.abs(self.energies - first) / scale
-        return float(np.max(deviations))
+        return np.asarray(np.max(deviations, axis=0))
 
     def harmonic_energies(self) -> Floats:
         """E_q of every sample; shape (S, ..., N-1)."""
@@ -174,8 +179,9 @@ def integrate(
     It is sampled at multiples of the step.
 
     chain : the model, with either ends; Q, P, T and step are dimensionless.
-    Q, P : shapes (..., N-1), many orbits at once; on a ring complex, Q_(-q) = conj Q_q, of total
-        momentum 0, which particles keep to rounding.
+    Q, P : shapes (..., N-1), many orbits at once: eight go together as one vector of the processor,
+        each in the bits that it has alone; those of aba864_modes go one by one. On a ring complex,
+        Q_(-q) = conj Q_q, of total momentum 0, which particles keep to rounding.
     T : a time, negative for the past.
     step : its length is cut to a whole number of steps.
     scheme : of symfpu.dynamics.schemes; aba864_modes splits harmonic + anharmonic and is for
@@ -191,7 +197,7 @@ def integrate(
         the old are taken; times are taken as they are, and where they have the old end among them
         the bits are those of a run to this T from the start.
     every : those seconds.
-    workers : threads, among which orbits are shared out.
+    workers : threads, among which orbits are shared out; for more than eight orbits.
     progress : called as (label, fraction done).
 
     Solves Eq. eqmo, in particles or in modes. Section 3.2 averages P^2 + Omega^2 Q^2 without the
