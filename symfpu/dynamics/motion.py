@@ -128,9 +128,7 @@ class Motion:
         Q, P = self.modes(seen.reshape(-1, *one))
         return done, Q.reshape(orbits, looks, -1), P.reshape(orbits, looks, -1)
 
-    def _looked(
-        self, rows: Floats, bounds: Floats, stride: int, seen: Floats
-    ) -> list[int]:
+    def _looked(self, rows: Floats, bounds: Floats, stride: int, seen: Floats) -> list[int]:
         """Looks at orbits of one part; seen (orbits, looks, 2, length)."""
         steps = seen.shape[1] * stride
         if len(rows) >= FEWEST:

@@ -152,7 +152,7 @@ def _overlap(u: Any, v: Any) -> float:
     sums = entry(u, 0) * entry(v, 0)
     for g in range(1, len(u)):
         sums = sums + entry(u, g) * entry(v, g)
-    return total(sums)  # type: ignore[no-any-return]
+    return total(sums)
 
 
 @_compiled

@@ -19,11 +19,21 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 from numba.core import types
-from numba.core.typeconv import Conversion
+from numba.core.typeconv.castgraph import Conversion
 from numba.extending import intrinsic, lower_cast, models, overload, register_model
 from numpy.typing import NDArray
 
-__all__ = ["LANES", "LanesType", "entry", "lane", "put", "total", "with_lane", "within", "zeros"]
+__all__ = [
+    "LANES",
+    "LanesType",
+    "entry",
+    "lane",
+    "put",
+    "total",
+    "with_lane",
+    "within",
+    "zeros",
+]
 
 LANES = 8
 LINE = 64  # bytes that a processor fetches together; lanes across two of them cost twice
@@ -32,8 +42,12 @@ _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _MASK = ir.IntType(LANES)
 _PLACE = ir.IntType(32)
 
+# numba's own annotations describe what these are given, not what they make of it
+_intrinsic: Any = intrinsic
+_lower_cast: Any = lower_cast
 
-class LanesType(types.Type):  # type: ignore[misc]
+
+class LanesType(types.Type):
     """Of eight doubles, for the compiler; a number becomes eight of its kind."""
 
     def __init__(self) -> None:
@@ -50,9 +64,9 @@ _LANES = LanesType()
 
 
 @register_model(LanesType)
-class _Model(models.PrimitiveModel):  # type: ignore[misc]
+class _Model(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, _VECTOR)
+        super().__init__(manager, kind, _VECTOR)  # type: ignore[no-untyped-call]
 
 
 def zeros(shape: tuple[int, ...]) -> NDArray[np.float64]:
@@ -83,7 +97,7 @@ def within(value: Any, least: Any, most: Any) -> bool:
     return bool(np.all((value >= least) & (value <= most)))
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@_intrinsic
 def lane(context, value, place):  # type: ignore[no-untyped-def]
     """The number in one lane."""
 
@@ -93,7 +107,7 @@ def lane(context, value, place):  # type: ignore[no-untyped-def]
     return types.float64(_LANES, types.intp), build
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@_intrinsic
 def with_lane(context, value, place, number):  # type: ignore[no-untyped-def]
     """The lanes with another number in one of them."""
 
@@ -104,7 +118,7 @@ def with_lane(context, value, place, number):  # type: ignore[no-untyped-def]
     return _LANES(_LANES, types.intp, types.float64), build
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@_intrinsic
 def _load(context, row, j):  # type: ignore[no-untyped-def]
     def build(target, builder, signature, values):  # type: ignore[no-untyped-def]
         return builder.load(_address(target, builder, signature, values), align=8)
@@ -112,7 +126,7 @@ def _load(context, row, j):  # type: ignore[no-untyped-def]
     return _LANES(row, types.intp), build
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@_intrinsic
 def _store(context, row, j, value):  # type: ignore[no-untyped-def]
     def build(target, builder, signature, values):  # type: ignore[no-untyped-def]
         builder.store(values[2], _address(target, builder, signature, values), align=8)
@@ -157,7 +171,7 @@ def _spread_number(builder: Any, number: Any) -> Any:
     return builder.shuffle_vector(one, nowhere, places)
 
 
-@lower_cast(types.Float, LanesType)  # type: ignore[untyped-decorator]
+@_lower_cast(types.Float, LanesType)
 def _cast(target, builder, kind, lanes, number):  # type: ignore[no-untyped-def]
     return _spread_number(builder, target.cast(builder, number, kind, types.float64))
 
@@ -165,7 +179,7 @@ def _cast(target, builder, kind, lanes, number):  # type: ignore[no-untyped-def]
 def _teach(operation: Callable[..., Any], instruction: str) -> None:
     """Teaches the compiler an operation of lanes, or of lanes and a number."""
 
-    @intrinsic  # type: ignore[untyped-decorator]
+    @_intrinsic
     def of_lanes(context, left, right):  # type: ignore[no-untyped-def]
         def build(target, builder, signature, values):  # type: ignore[no-untyped-def]
             return getattr(builder, instruction)(*values)
@@ -188,7 +202,7 @@ _teach(operator.sub, "fsub")
 _teach(operator.mul, "fmul")
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@_intrinsic
 def _all_within(context, value, least, most):  # type: ignore[no-untyped-def]
     def build(target, builder, signature, values):  # type: ignore[no-untyped-def]
         value, least, most = values
@@ -210,7 +224,7 @@ def _within(value, least, most):  # type: ignore[no-untyped-def]
 @overload(total)
 def _total(value):  # type: ignore[no-untyped-def]
     def of_every_lane(value):  # type: ignore[no-untyped-def]
-        found = lane(value, 0)
+        found: Any = lane(value, 0)
         for place in range(1, LANES):
             found += lane(value, place)
         return found
