@@ -19,38 +19,42 @@ from symfpu.numbers.lanes import LANES, entry, put, total
 # least ratio of a diagonal entry of R to its column, above and below which the block changes
 LONGER_BLOCK, SHORTER_BLOCK = 1e-3, 1e-5
 
-_ONE = np.uint64(1)
+_ZERO, _ONE = np.uint64(0), np.uint64(1)
 _compiled = compiled(error_model="numpy")
 # a call at every kick costs some per cent of a short chain
 _always_inlined = compiled(error_model="numpy", forceinline=True)
 
 
 @_always_inlined
-def move_lanes(dx: Any, dp: Any, stiffness: Any, drift: float, ring: bool) -> None:
+def move_lanes(
+    dx: Any, dp: Any, begin: Any, stiffness: Any, drift: float, ring: bool
+) -> None:
     """A kick of one block of deviations by bonds of this stiffness times the kick, and a drift.
 
-    dx, dp : (N+1, LANES). stiffness : (N,).
+    dx, dp : all blocks, one site after the other, (blocks (N+1), LANES). begin : site 0 of this
+    block. stiffness : (N,).
 
     Kick and drift are one pass, as for particles: every site is read once and written once.
     """
-    first, bonds = np.uint64(0), np.uint64(len(stiffness))
-    here = entry(dx, _ONE)
-    opening = stiffness[first] * (here - entry(dx, first))
+    bonds = np.uint64(len(stiffness))
+    first, end = entry(dx, begin), begin + bonds
+    here = entry(dx, begin + _ONE)
+    opening = stiffness[_ZERO] * (here - first)
     left = opening
     for j in range(_ONE, bonds):
-        ahead = entry(dx, j + _ONE)
+        ahead = entry(dx, begin + j + _ONE)
         right = stiffness[j] * (ahead - here)
-        momenta = entry(dp, j) + (right - left)
-        put(dp, j, momenta)
-        put(dx, j, here + drift * momenta)
+        momenta = entry(dp, begin + j) + (right - left)
+        put(dp, begin + j, momenta)
+        put(dx, begin + j, here + drift * momenta)
         here, left = ahead, right
     if ring:
-        momenta = entry(dp, first) + (opening - left)
-        positions = here + drift * momenta
-        put(dp, first, momenta)
-        put(dp, bonds, momenta)
-        put(dx, first, positions)
-        put(dx, bonds, positions)
+        momenta = entry(dp, begin) + (opening - left)
+        positions = first + drift * momenta
+        put(dp, begin, momenta)
+        put(dp, end, momenta)
+        put(dx, begin, positions)
+        put(dx, end, positions)
 
 
 @_always_inlined
@@ -60,25 +64,23 @@ def move_orbit(
     """A kick and a drift of the orbit, and the slopes of its impulses before them.
 
     Bond j has the tension V'(r), its slope is V''(r). forces : room for the impulses of the bonds
-    and for their slopes, (N,) each. Every loop writes to an array that it reads in the same place
-    only, so that the compiler can vectorise it.
+    and for their slopes, (N,) each. Two loops, which the compiler can vectorise: neither reads what
+    it has just written beside it.
     """
     tension, stiffness = forces
-    bonds = len(tension)
-    ahead = x[1:]
+    bonds = np.uint64(len(tension))
     for j in range(bonds):
-        r = ahead[j] - x[j]
+        r = x[j + _ONE] - x[j]
         tension[j] = kick * bond_loops.tension(law, r)
         stiffness[j] = kick * bond_loops.stiffness(law, r)
-    inner_x, inner_p, after = x[1:], p[1:], tension[1:]
-    for j in range(bonds - 1):
-        inner_p[j] += after[j] - tension[j]
-        inner_x[j] += drift * inner_p[j]
+    for j in range(_ONE, bonds):
+        p[j] += tension[j] - tension[j - _ONE]
+        x[j] += drift * p[j]
     if ring:
-        p[0] += tension[0] - tension[bonds - 1]
-        x[0] += drift * p[0]
-        p[bonds] = p[0]
-        x[bonds] = x[0]
+        p[_ZERO] += tension[_ZERO] - tension[bonds - _ONE]
+        x[_ZERO] += drift * p[_ZERO]
+        p[bonds] = p[_ZERO]
+        x[bonds] = x[_ZERO]
 
 
 @_compiled
@@ -99,20 +101,22 @@ def advance(
     """
     if steps == 0:
         return
-    bonds, blocks = len(x) - 1, dx.shape[0]
-    forces = np.empty(bonds), np.empty(bonds)
-    for j in range(bonds + 1):
+    sites = np.uint64(len(x))
+    forces = np.empty(len(x) - 1), np.empty(len(x) - 1)
+    # rows once: a view of a block at every kick would be counted as a reference
+    rows_x, rows_p = dx.reshape(-1, LANES), dp.reshape(-1, LANES)
+    for j in range(sites):
         x[j] += drifts[0] * p[j]
-        for b in range(blocks):
-            put(dx[b], j, entry(dx[b], j) + drifts[0] * entry(dp[b], j))
+    for j in range(len(rows_x)):
+        put(rows_x, j, entry(rows_x, j) + drifts[0] * entry(rows_p, j))
     for step in range(steps):
         for i in range(len(kicks)):
             drift = drifts[i + 1]
             if i == len(kicks) - 1 and step < steps - 1:
                 drift += drifts[0]
             move_orbit(x, p, law, kicks[i], drift, forces, ring)
-            for b in range(blocks):
-                move_lanes(dx[b], dp[b], forces[1], drift, ring)
+            for b in range(np.uint64(len(dx))):
+                move_lanes(rows_x, rows_p, b * sites, forces[1], drift, ring)
 
 
 @_compiled
@@ -121,11 +125,13 @@ def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any, ring: bo
 
     kicks : of one step, drifts : after each of them, as lengths of time.
     """
+    sites = np.uint64(dx.shape[1])
+    rows_x, rows_p = dx.reshape(-1, LANES), dp.reshape(-1, LANES)
     for i in range(slopes.shape[0]):
         stage = i % len(kicks)
         stiffness, drift = kicks[stage] * slopes[i], drifts[stage]
-        for b in range(dx.shape[0]):
-            move_lanes(dx[b], dp[b], stiffness, drift, ring)
+        for b in range(np.uint64(len(dx))):
+            move_lanes(rows_x, rows_p, b * sites, stiffness, drift, ring)
 
 
 # loops, not expressions of arrays: those take seconds each to compile
