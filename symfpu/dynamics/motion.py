@@ -84,7 +84,7 @@ class Motion:
         return closed and bool(beyond_walls(law, np.diff(row[0])).any())
 
     def advance(self, state: Floats, steps: int, each: Callable[..., Any]) -> list[int]:
-        """Moves all orbits; returns the steps done by each of them before it had to stop.
+        """Moves all orbits; returns the steps of each of them before it had to stop.
 
         each : a map, perhaps of several threads.
         """
@@ -116,7 +116,7 @@ class Motion:
     ) -> tuple[list[int], Numbers, Numbers]:
         """Moves all orbits and looks at them every `stride` steps.
 
-        Returns the steps done, and the Q and P seen, shapes (M, looks, N-1).
+        Returns those steps, and the Q and P seen, shapes (M, looks, N-1).
         """
         orbits, *one = state.shape
         seen = np.zeros((orbits, looks, *one))

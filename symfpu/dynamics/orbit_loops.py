@@ -5,7 +5,8 @@ Importing this module imports numba.
 No fast-math: what comes out does not depend on how loops are cut into vectors, nor on how many
 orbits go together as lanes (symfpu.numbers.lanes). Indices are unsigned, since an index that may
 be negative costs a comparison. Every step ends with a look at the state: a loop stops after the
-first one with a bond stretch out of bounds or not a number, and returns the number of steps done.
+first one with a bond stretch out of bounds or not a number, and returns the number of steps
+before it.
 """
 
 from __future__ import annotations
@@ -58,13 +59,13 @@ def move_particles(
                 put(p, j, momentum)
                 put(x, j, entry(x, j) + drift * momentum)
                 left = right
-        done += 1
         inside = 0
         for j in range(bonds):
             r = entry(x, j + one) - entry(x, j)
             inside += within(r, least, most)
         if inside < bonds:
             break
+        done += 1
     for j in range(one, bonds):
         put(x, j, entry(x, j) - first_drift * entry(p, j))
     return done
@@ -196,12 +197,12 @@ def move_modes(
             for q in range(1, N):
                 w[q] -= kicks[i] * Omega[q] * pull[q]
             _rotate(v, w, halves[i], sines[i])
-        done += 1
         total = 0.0
         for q in range(1, N):
             total += v[q] * v[q]
         if not total <= most:
             break
+        done += 1
     _rotate(v, w, -halves[stages], -sines[stages])
     return done
 

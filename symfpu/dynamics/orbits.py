@@ -375,12 +375,12 @@ class _Run:
     def _move_to(self, end: int, each: Callable[..., Any]) -> None:
         before = self.state.copy()
         steps = end - self.done
-        done = self._moved(steps, each)
+        done = np.array(self._moved(steps, each))
         finite = np.isfinite(self.state).all(axis=(1, 2))
-        well = finite & (np.array(done) == steps)
-        if not well.all():
-            first = int(np.argmin(np.where(well, self.steps, done)))
-            self._stopped_in_block(before, first, done)
+        well = np.where(finite, done, np.minimum(done, steps - 1))
+        if well.min() < steps:
+            row = int(well.argmin())
+            self._stopped_in_block(before, row, int(well[row]))
         self.done = end
         place = int(np.searchsorted(self.sampled, end))
         if self.sampled[place] == end:
@@ -393,7 +393,7 @@ class _Run:
         write_checkpoint(self.path, self.parameters, self.done, self._kept())
 
     def _moved(self, steps: int, each: Callable[..., Any]) -> list[int]:
-        """The steps done by each orbit."""
+        """The steps of each orbit at which all was well."""
         if not self.stride:
             return self.motion.advance(self.state, steps, each)
         done, Q, P = self.motion.look(self.state, steps // self.stride, self.stride, each)
@@ -401,13 +401,12 @@ class _Run:
             self.running.add(Q, P)
         return done
 
-    def _stopped_in_block(self, before: Floats, row: int, done: list[int]) -> None:
+    def _stopped_in_block(self, before: Floats, row: int, well: int) -> None:
         """Goes to the last step at which all was well, where the numbers are finite, and raises."""
         crossed = self.motion.beyond_wall(self.state[row])
         self.state[row] = before[row]
-        if done[row] > 1:
-            self.motion.move(self.state[row], self.motion.bounds[row], done[row] - 1)
-        steps = self.done + done[row] - 1
+        self.motion.move(self.state[row], self.motion.bounds[row], well)
+        steps = self.done + well
         self._stop(row, steps, escaped=self.escapes[row], crossed=crossed)
 
     def _stop(self, row: int, steps: int, *, escaped: bool, crossed: bool = False) -> None:

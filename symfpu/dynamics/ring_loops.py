@@ -29,7 +29,7 @@ def move_ring(
     drifts: Any,
     bounds: Any,
 ) -> int:
-    """Particles of a ring, moved by kicks of all springs; returns the steps done.
+    """Particles of a ring, moved by kicks of all springs; returns the steps that were well.
 
     Displacements and momenta have shape (N+1,), the first particle stands at both ends; of several
     rings at once (N+1, LANES), which stop together. bounds : of the stretches, (2,) or (2, LANES).
@@ -61,13 +61,13 @@ def move_ring(
             put(p, first, momentum)
             put(x, first, position)
             put(x, bonds, position)
-        done += 1
         inside = 0
         for j in range(bonds):
             r = entry(x, j + one) - entry(x, j)
             inside += within(r, least, most)
         if inside < bonds:
             break
+        done += 1
     for j in range(bonds):
         put(x, j, entry(x, j) - first_drift * entry(p, j))
     put(x, bonds, entry(x, first))

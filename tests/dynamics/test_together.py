@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.motion import FEWEST, parted
+from symfpu.dynamics.motion import FEWEST, Motion, parted
 from symfpu.dynamics.orbits import integrate
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.dynamics.starts import random_state
-from symfpu.dynamics.stopping import EscapedOrbit, UnstableStep
+from symfpu.dynamics.stopping import EscapedOrbit
 from symfpu.errors import InputError
 from symfpu.numbers.lanes import LANES
 from tests.tolerances import ENERGY_WALK
@@ -103,12 +103,12 @@ def test_every_orbit_has_its_energy_error():
     assert (fine.energy_errors < ENERGY_WALK).all()
 
 
-@pytest.mark.parametrize("averages", [False, True])
-def test_an_orbit_that_escapes_is_named_as_it_is_alone(averages):
+@pytest.mark.parametrize(("averages", "step"), [(False, 0.01), (True, 0.01), (True, 0.5)])
+def test_an_orbit_that_escapes_is_named_as_it_is_alone(averages, step):
     """The first to go over, at the step at which it does so alone; the lanes beside it stay where they are."""
     chain = Chain(8, alpha=1)
     momenta = np.linspace(0.1, 1.3, LANES)[:, None] * np.eye(7)[4]
-    run = {"step": 0.01, "samples": 3, "averages": averages}
+    run = {"step": step, "samples": 3, "averages": averages}
     stops = {}
     for place, P in enumerate(momenta):
         try:
@@ -125,18 +125,24 @@ def test_an_orbit_that_escapes_is_named_as_it_is_alone(averages):
     assert caught.value.energy == alone.energy
 
 
-def test_each_orbit_has_the_bounds_of_its_own_energy():
-    """A coarse step loses the energy of the fastest of eight, which stops there as alone; the bounds of the others are narrower."""
-    chain = Chain(4, beta=1)
-    Q, P = np.zeros((LANES, 3)), np.zeros((LANES, 3))
-    Q[:, 1] = 0.01
-    Q[5, 1] = 8.0
-    with pytest.raises(UnstableStep) as alone:
-        integrate(chain, Q[5], P[5], 1000.0, step=0.4, samples=2)
-    with pytest.raises(UnstableStep) as caught:
-        integrate(chain, Q, P, 1000.0, step=0.4, samples=2)
-    assert caught.value.orbit == (5,)
-    assert caught.value.time == alone.value.time
+@pytest.mark.parametrize("place", [0, 3, LANES - 1])
+@pytest.mark.parametrize("side", [0, 1])
+def test_each_orbit_stops_at_its_own_bounds(place, side):
+    """One of them after some steps, as it does alone, and the others not at all."""
+    chain, steps = Chain(7, alpha="0.3"), 200
+    bounds = np.tile([-9.0, 9.0], (LANES, 1))
+    motion = Motion(chain, SCHEMES["kahan_li8"], 0.1, bounds)
+    state = motion.coordinates(*states(chain, LANES))
+    row = state[place].copy()
+    motion.move(row, bounds[place], 40)
+    bounds[place, side] = (1.0 - 1e-9) * (np.diff(row[0]).min() if side == 0 else np.diff(row[0]).max())
+    alone = [motion.move(row.copy(), limits, steps) for row, limits in zip(state, bounds, strict=True)]
+    assert alone[place] < 40
+    assert alone == [alone[place] if i == place else steps for i in range(LANES)]
+    moved = state.copy()
+    assert motion.advance(moved, steps, map) == alone
+    done, _, _ = motion.look(state, steps, 1, map)
+    assert done == alone
 
 
 class Stopped(Exception):
