@@ -19,7 +19,8 @@ from symfpu.dynamics.wells import beyond_walls
 from symfpu.numbers.arithmetic import Numbers
 
 Floats = NDArray[np.float64]
-FEWEST = 4  # orbits moved as lanes: as long as two to three of them alone
+# orbits moved as lanes: all take as long as two to three alone, six of a closed law
+FEWEST, FEWEST_CLOSED = 4, 6
 CLOSED = 16  # a tension by exponentials and logarithms, in those of a polynomial, about
 
 
@@ -27,7 +28,7 @@ class Motion:
     """Coordinates of M orbits, shape (M, 2, length), and how they move.
 
     bounds : of the bond stretches, for each orbit, (M, 2). parts : orbits that go together, as
-    lanes where they are FEWEST or more; products of modes are vectors already and go alone.
+    lanes where they are `fewest` or more; products of modes are vectors already and go alone.
     """
 
     def __init__(
@@ -38,6 +39,7 @@ class Motion:
 
         self.chain, self.scheme, self.bounds = chain, scheme, bounds
         together = 1 if scheme.in_modes else LANES
+        self.fewest = FEWEST if self.polynomial else FEWEST_CLOSED
         self.parts = parted(len(bounds), together, workers)
         self.entry, self.kicks, self.drifts = scheme.merged(step)
         self.law = chain.law()
@@ -68,20 +70,22 @@ class Motion:
         return Q, P
 
     @property
+    def polynomial(self) -> bool:
+        return isinstance(self.chain.potential, Polynomial)
+
+    @property
     def moves_a_kick(self) -> int:
         """The work of a kick: particles moved, or products of two modes."""
         chain = self.chain
         if self.scheme.in_modes:
             terms = [place for place, c in enumerate(self.law, 1) if c]
             return int(chain.N**2 * terms[-1])
-        polynomial = isinstance(chain.potential, Polynomial)
-        return chain.N if polynomial else CLOSED * chain.N
+        return chain.N if self.polynomial else CLOSED * chain.N
 
     def beyond_wall(self, row: Floats) -> bool:
         """Whether the coordinates of one orbit have a bond beyond a wall of its potential."""
         law = self.chain.potential
-        closed = not isinstance(law, Polynomial)
-        return closed and bool(beyond_walls(law, np.diff(row[0])).any())
+        return not self.polynomial and bool(beyond_walls(law, np.diff(row[0])).any())
 
     def advance(self, state: Floats, steps: int, each: Callable[..., Any]) -> list[int]:
         """Moves all orbits; returns the steps of each of them before it had to stop.
@@ -104,7 +108,7 @@ class Motion:
 
         Lanes stop together: where one does, each orbit is moved alone, to where it stops.
         """
-        if len(rows) >= FEWEST:
+        if len(rows) >= self.fewest:
             lanes = _in_lanes(rows)
             if self.move(lanes, _in_lanes(bounds), steps) == steps:
                 rows[...] = _out_of_lanes(lanes, len(rows))
@@ -131,7 +135,7 @@ class Motion:
     def _looked(self, rows: Floats, bounds: Floats, stride: int, seen: Floats) -> list[int]:
         """Looks at orbits of one part; seen (orbits, looks, 2, length)."""
         steps = seen.shape[1] * stride
-        if len(rows) >= FEWEST:
+        if len(rows) >= self.fewest:
             lanes, seen_lanes = _in_lanes(rows), _in_lanes(seen)
             if self._look(lanes, _in_lanes(bounds), stride, seen_lanes) == steps:
                 rows[...] = _out_of_lanes(lanes, len(rows))
