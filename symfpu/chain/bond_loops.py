@@ -3,7 +3,9 @@
 Importing this module imports numba, whose overloads have no annotations. A loop that calls
 `tension(law, r)` is compiled for the type of its law: the coefficients of a polynomial, or the
 class of a closed law with its own functions; where those are not for the compiler, the class has
-others named after them, `tension_loop`, that make one from the decorator of its parts.
+others named after them, `tension_loop`, that make one from the decorator of its parts. r is a
+number or lanes of numbers (symfpu.numbers.lanes): a polynomial takes all lanes at once, a closed
+law one after the other, since its exponentials are calls.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from symfpu.chain import bonds
 from symfpu.chain.bonds import stiffness, tension
 from symfpu.compiled import compiled
 from symfpu.numbers import functions
+from symfpu.numbers.lanes import LANES, LanesType, lane, with_lane
 
 __all__ = ["stiffness", "tension"]
 
@@ -34,6 +37,14 @@ def _law_by_type(function: Function, of_polynomials: Function) -> None:
         own = getattr(kind, function.__name__, None)
         of_parts = getattr(kind, f"{function.__name__}_loop", None)
         loop = of_parts(_inlined) if of_parts else _inlined(own or of_polynomials)
+
+        def of_every_lane(law, r):  # type: ignore[no-untyped-def]
+            for place in range(LANES):
+                r = with_lane(r, place, loop(law, lane(r, place)))
+            return r
+
+        if kind is not None and isinstance(r, LanesType):
+            return of_every_lane
         return lambda law, r: loop(law, r)
 
     overload(function)(choose)

@@ -2,10 +2,11 @@
 
 Importing this module imports numba.
 
-No fast-math: what comes out does not depend on how loops are cut into vectors. Indices are
-unsigned, since an index that may be negative costs a comparison. Every step ends with a look at
-the state: a loop stops after the first one with a bond stretch out of bounds or not a number, and
-returns the number of steps done.
+No fast-math: what comes out does not depend on how loops are cut into vectors, nor on how many
+orbits go together as lanes (symfpu.numbers.lanes). Indices are unsigned, since an index that may
+be negative costs a comparison. Every step ends with a look at the state: a loop stops after the
+first one with a bond stretch out of bounds or not a number, and returns the number of steps
+before it.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 
 from symfpu.chain import bond_loops
 from symfpu.compiled import compiled
+from symfpu.numbers.lanes import entry, put, within
 
 _ONE = np.uint64(1)
 _compiled = compiled(error_model="numpy")
@@ -27,44 +29,45 @@ def move_particles(
     p: Any,
     law: Any,
     steps: int,
-    entry: float,
+    first_drift: float,
     kicks: Any,
     drifts: Any,
-    least: float,
-    most: float,
+    bounds: Any,
 ) -> int:
     """Particles of a chain between walls, moved by kicks of all springs.
 
-    Displacements and momenta have shape (N+1,), zero at the walls.
+    Displacements and momenta have shape (N+1,), zero at the walls; of several chains at once
+    (N+1, LANES), which stop together. bounds : of the stretches, (2,) or (2, LANES).
 
     Kick and drift are one pass: the tension of a bond needs both its ends before they move, and
     is carried to the next particle.
     """
     one, bonds = _ONE, np.uint64(x.shape[0] - 1)
+    least, most = entry(bounds, 0), entry(bounds, 1)
     done = 0
     for j in range(one, bonds):
-        x[j] += entry * p[j]
+        put(x, j, entry(x, j) + first_drift * entry(p, j))
     while done < steps:
         for i in range(kicks.shape[0]):
             kick, drift = kicks[i], drifts[i]
-            r = x[one]
+            r = entry(x, one)
             left = bond_loops.tension(law, r)
             for j in range(one, bonds):
-                r = x[j + one] - x[j]
+                r = entry(x, j + one) - entry(x, j)
                 right = bond_loops.tension(law, r)
-                momentum = p[j] + kick * (right - left)
-                p[j] = momentum
-                x[j] += drift * momentum
+                momentum = entry(p, j) + kick * (right - left)
+                put(p, j, momentum)
+                put(x, j, entry(x, j) + drift * momentum)
                 left = right
-        done += 1
         inside = 0
         for j in range(bonds):
-            r = x[j + one] - x[j]
-            inside += (r >= least) & (r <= most)
+            r = entry(x, j + one) - entry(x, j)
+            inside += within(r, least, most)
         if inside < bonds:
             break
+        done += 1
     for j in range(one, bonds):
-        x[j] -= entry * p[j]
+        put(x, j, entry(x, j) - first_drift * entry(p, j))
     return done
 
 
@@ -74,19 +77,18 @@ def look_at_particles(
     p: Any,
     law: Any,
     stride: int,
-    entry: float,
+    first_drift: float,
     kicks: Any,
     drifts: Any,
-    least: float,
-    most: float,
+    bounds: Any,
     seen: Any,
 ) -> int:
     """Moves by `stride` steps as often as `seen` has rows, and copies the state there.
 
-    seen : shape (looks, 2, N+1).
+    seen : shape (looks, 2, N+1), or (looks, 2, N+1, LANES).
     """
     for i in range(seen.shape[0]):
-        done = move_particles(x, p, law, stride, entry, kicks, drifts, least, most)
+        done = move_particles(x, p, law, stride, first_drift, kicks, drifts, bounds)
         seen[i, 0] = x
         seen[i, 1] = p
         if done < stride:
@@ -195,12 +197,12 @@ def move_modes(
             for q in range(1, N):
                 w[q] -= kicks[i] * Omega[q] * pull[q]
             _rotate(v, w, halves[i], sines[i])
-        done += 1
         total = 0.0
         for q in range(1, N):
             total += v[q] * v[q]
         if not total <= most:
             break
+        done += 1
     _rotate(v, w, -halves[stages], -sines[stages])
     return done
 

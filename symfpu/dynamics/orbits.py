@@ -114,10 +114,15 @@ class Orbit(Shown, Gridded):
 
         Absolute for orbits at rest.
         """
+        return float(np.max(self.energy_errors))
+
+    @property
+    def energy_errors(self) -> Floats:
+        """The same of each orbit; shape (...)."""
         first = self.energies[0]
         scale = np.where(first == 0, 1.0, np.abs(first))
         deviations = np.abs(self.energies - first) / scale
-        return float(np.max(deviations))
+        return np.asarray(np.max(deviations, axis=0))
 
     def harmonic_energies(self) -> Floats:
         """E_q of every sample; shape (S, ..., N-1)."""
@@ -174,8 +179,9 @@ def integrate(
     It is sampled at multiples of the step.
 
     chain : the model, with either ends; Q, P, T and step are dimensionless.
-    Q, P : shapes (..., N-1), many orbits at once; on a ring complex, Q_(-q) = conj Q_q, of total
-        momentum 0, which particles keep to rounding.
+    Q, P : shapes (..., N-1), many orbits at once: eight go together as one vector of the processor,
+        each in the bits that it has alone; those of aba864_modes go one by one. On a ring complex,
+        Q_(-q) = conj Q_q, of total momentum 0, which particles keep to rounding.
     T : a time, negative for the past.
     step : its length is cut to a whole number of steps.
     scheme : of symfpu.dynamics.schemes; aba864_modes splits harmonic + anharmonic and is for
@@ -191,7 +197,7 @@ def integrate(
         the old are taken; times are taken as they are, and where they have the old end among them
         the bits are those of a run to this T from the start.
     every : those seconds.
-    workers : threads, among which orbits are shared out.
+    workers : threads, among which orbits are shared out; for more than eight orbits.
     progress : called as (label, fraction done).
 
     Solves Eq. eqmo, in particles or in modes. Section 3.2 averages P^2 + Omega^2 Q^2 without the
@@ -210,9 +216,8 @@ def integrate(
         raise InputError("averages", averages, "True or False", "leave it out")
     stride = steps_between_looks(step) if averages else 1
     looks = _whole_steps(T, step * stride)
-    run = _Run(
-        chain, found, T, looks * stride, stride * _sample_steps(T, looks, samples), Q, P
-    )
+    marks = stride * _sample_steps(T, looks, samples)
+    run = _Run(chain, found, T, looks * stride, marks, Q, P, workers)
     if averages:
         run.take_averages(stride)
     seconds = seconds_between(every)
@@ -238,6 +243,7 @@ class _Run:
         sampled: Ints,
         Q: Numbers,
         P: Numbers,
+        workers: int,
     ) -> None:
         self.chain, self.scheme = chain, scheme
         self.T, self.steps, self.step = T, steps, T / steps
@@ -257,7 +263,7 @@ class _Run:
         ]
         self.start = chain.harmonic_energies(Q, P)
         bounds = np.array([limit[:2] for limit in limits]).reshape(-1, 2)
-        self.motion = Motion(chain, scheme, self.step, bounds)
+        self.motion = Motion(chain, scheme, self.step, bounds, workers)
         self._sample_at(sampled)
         self.Q[0], self.P[0] = Q, P
         self.state = self.motion.coordinates(Q, P)
@@ -369,12 +375,12 @@ class _Run:
     def _move_to(self, end: int, each: Callable[..., Any]) -> None:
         before = self.state.copy()
         steps = end - self.done
-        done = self._moved(steps, each)
+        done = np.array(self._moved(steps, each))
         finite = np.isfinite(self.state).all(axis=(1, 2))
-        well = finite & (np.array(done) == steps)
-        if not well.all():
-            first = int(np.argmin(np.where(well, self.steps, done)))
-            self._stopped_in_block(before, first, done)
+        well = np.where(finite, done, np.minimum(done, steps - 1))
+        if well.min() < steps:
+            row = int(well.argmin())
+            self._stopped_in_block(before, row, int(well[row]))
         self.done = end
         place = int(np.searchsorted(self.sampled, end))
         if self.sampled[place] == end:
@@ -387,7 +393,7 @@ class _Run:
         write_checkpoint(self.path, self.parameters, self.done, self._kept())
 
     def _moved(self, steps: int, each: Callable[..., Any]) -> list[int]:
-        """The steps done by each orbit."""
+        """The steps of each orbit at which all was well."""
         if not self.stride:
             return self.motion.advance(self.state, steps, each)
         done, Q, P = self.motion.look(self.state, steps // self.stride, self.stride, each)
@@ -395,13 +401,12 @@ class _Run:
             self.running.add(Q, P)
         return done
 
-    def _stopped_in_block(self, before: Floats, row: int, done: list[int]) -> None:
+    def _stopped_in_block(self, before: Floats, row: int, well: int) -> None:
         """Goes to the last step at which all was well, where the numbers are finite, and raises."""
         crossed = self.motion.beyond_wall(self.state[row])
         self.state[row] = before[row]
-        if done[row] > 1:
-            self.motion.move(self.state[row], self.motion.bounds[row], done[row] - 1)
-        steps = self.done + done[row] - 1
+        self.motion.move(self.state[row], self.motion.bounds[row], well)
+        steps = self.done + well
         self._stop(row, steps, escaped=self.escapes[row], crossed=crossed)
 
     def _stop(self, row: int, steps: int, *, escaped: bool, crossed: bool = False) -> None:

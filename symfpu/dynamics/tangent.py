@@ -238,10 +238,11 @@ def _particles(
 
 def _in_lanes(chain: Chain, rows: Floats) -> Floats:
     """Deviations of particles, a row each, as blocks of lanes at the sites."""
-    from symfpu.dynamics.tangent_loops import LANES
+    # lazy: numba takes longer to import than all the rest
+    from symfpu.numbers.lanes import LANES, zeros
 
     blocks = -(-len(rows) // LANES)
-    lanes = np.zeros((blocks, chain.N + 1, LANES))
+    lanes = zeros((blocks, chain.N + 1, LANES))
     for i, row in enumerate(chain.kind_of_ends.sites(rows)):
         lanes[i // LANES, :, i % LANES] = row
     return lanes

@@ -2,8 +2,7 @@
 
 Importing this module imports numba. x, p : displacements and momenta of one orbit at the sites 0
 .. N, (N+1,), zero at the walls. dx, dp : deviations from it, blocks of LANES vectors, (blocks,
-N+1, LANES), zero at the walls and in lanes that are not used. The lanes are the last axis and
-their number is fixed, so that the loop over them is one or two machine instructions. ring : whether
+N+1, LANES), zero at the walls and in lanes that are not used (symfpu.numbers.lanes). ring : whether
 site N is site 0 again, and moves.
 """
 
@@ -15,88 +14,73 @@ import numpy as np
 
 from symfpu.chain import bond_loops
 from symfpu.compiled import compiled
+from symfpu.numbers.lanes import LANES, entry, put, total
 
-LANES = 8  # deviation vectors moved by one instruction stream
 # least ratio of a diagonal entry of R to its column, above and below which the block changes
 LONGER_BLOCK, SHORTER_BLOCK = 1e-3, 1e-5
 
+_ZERO, _ONE = np.uint64(0), np.uint64(1)
 _compiled = compiled(error_model="numpy")
-# a call at every kick costs some per cent of a short chain; so does asking there for the ends,
-# which a literal inlined with the loops decides when they are compiled
+# a call at every kick costs some per cent of a short chain
 _always_inlined = compiled(error_model="numpy", forceinline=True)
 
 
 @_always_inlined
 def move_lanes(
-    dx: Any,
-    dp: Any,
-    stiffness: Any,
-    drift: float,
-    pull: Any,
-    slope: Any,
-    ring: bool,
+    dx: Any, dp: Any, begin: Any, stiffness: Any, drift: float, ring: bool
 ) -> None:
-    """A kick of all deviations by bonds of this stiffness times the kick, (N,), and a drift.
+    """A kick of one block of deviations by bonds of this stiffness times the kick, and a drift.
 
-    dx, dp, pull, slope : as for `kick_and_drift`.
+    dx, dp : all blocks, one site after the other, (blocks (N+1), LANES). begin : site 0 of this
+    block. stiffness : (N,).
+
+    Kick and drift are one pass, as for particles: every site is read once and written once.
     """
-    bonds = len(stiffness)
-    last = (bonds - 1) * LANES
-    for j in range(bonds):
-        for c in range(LANES):
-            slope[j * LANES + c] = stiffness[j]
-    for b in range(dx.shape[0]):
-        here, right = dx[b], dx[b, LANES:]
-        for i in range(len(pull)):
-            pull[i] = slope[i] * (right[i] - here[i])
-        momenta, positions, behind = dp[b, LANES:], dx[b, LANES:], pull[LANES:]
-        for i in range(last):
-            momenta[i] += behind[i] - pull[i]
-            positions[i] += drift * momenta[i]
-        if ring:
-            for c in range(LANES):
-                dp[b, c] += pull[c] - pull[last + c]
-                dx[b, c] += drift * dp[b, c]
-                dp[b, last + LANES + c] = dp[b, c]
-                dx[b, last + LANES + c] = dx[b, c]
+    bonds = np.uint64(len(stiffness))
+    first, end = entry(dx, begin), begin + bonds
+    here = entry(dx, begin + _ONE)
+    opening = stiffness[_ZERO] * (here - first)
+    left = opening
+    for j in range(_ONE, bonds):
+        ahead = entry(dx, begin + j + _ONE)
+        right = stiffness[j] * (ahead - here)
+        momenta = entry(dp, begin + j) + (right - left)
+        put(dp, begin + j, momenta)
+        put(dx, begin + j, here + drift * momenta)
+        here, left = ahead, right
+    if ring:
+        momenta = entry(dp, begin) + (opening - left)
+        positions = first + drift * momenta
+        put(dp, begin, momenta)
+        put(dp, end, momenta)
+        put(dx, begin, positions)
+        put(dx, end, positions)
 
 
 @_always_inlined
-def kick_and_drift(
-    x: Any,
-    p: Any,
-    dx: Any,
-    dp: Any,
-    law: Any,
-    kick: float,
-    drift: float,
-    forces: Any,
-    ring: bool,
+def move_orbit(
+    x: Any, p: Any, law: Any, kick: float, drift: float, forces: Any, ring: bool
 ) -> None:
-    """One kick, one drift, and their derivatives.
+    """A kick and a drift of the orbit, and the slopes of its impulses before them.
 
-    Bond j has the tension V'(r), its slope is V''(r). dx, dp : flat blocks, (blocks, (N+1) LANES).
-    forces : room for the impulses of the bonds on the orbit (N,) and on the lanes (N LANES,), for
-    slopes (N,) and (N LANES,). Every loop runs along one flat axis and writes to an array that it
-    reads in the same place only, so that the compiler can vectorise it.
+    Bond j has the tension V'(r), its slope is V''(r). forces : room for the impulses of the bonds
+    and for their slopes, (N,) each. Two loops, which the compiler can vectorise: neither reads what
+    it has just written beside it.
     """
-    tension, pull, stiffness, slope = forces
-    bonds = len(tension)
-    ahead = x[1:]
+    tension, stiffness = forces
+    bonds = np.uint64(len(tension))
     for j in range(bonds):
-        r = ahead[j] - x[j]
+        r = x[j + _ONE] - x[j]
         tension[j] = kick * bond_loops.tension(law, r)
         stiffness[j] = kick * bond_loops.stiffness(law, r)
-    inner_x, inner_p, after = x[1:], p[1:], tension[1:]
-    for j in range(bonds - 1):
-        inner_p[j] += after[j] - tension[j]
-        inner_x[j] += drift * inner_p[j]
+    for j in range(_ONE, bonds):
+        p[j] += tension[j] - tension[j - _ONE]
+        x[j] += drift * p[j]
     if ring:
-        p[0] += tension[0] - tension[bonds - 1]
-        x[0] += drift * p[0]
-        p[bonds] = p[0]
-        x[bonds] = x[0]
-    move_lanes(dx, dp, stiffness, drift, pull, slope, ring)
+        p[_ZERO] += tension[_ZERO] - tension[bonds - _ONE]
+        x[_ZERO] += drift * p[_ZERO]
+        p[bonds] = p[_ZERO]
+        x[bonds] = x[_ZERO]
 
 
 @_compiled
@@ -117,27 +101,22 @@ def advance(
     """
     if steps == 0:
         return
-    bonds, blocks = len(x) - 1, dx.shape[0]
-    on_orbit = np.empty(bonds), np.empty(bonds)
-    on_lanes = np.empty(bonds * LANES), np.empty(bonds * LANES)
-    forces = (on_orbit[0], on_lanes[0], on_orbit[1], on_lanes[1])
-    # a reshape is a call: once, not at every kick
-    flat_dx = dx.reshape(blocks, (bonds + 1) * LANES)
-    flat_dp = dp.reshape(blocks, (bonds + 1) * LANES)
-    for j in range(bonds + 1):
+    sites = np.uint64(len(x))
+    forces = np.empty(len(x) - 1), np.empty(len(x) - 1)
+    # rows once: a view of a block at every kick would be counted as a reference
+    rows_x, rows_p = dx.reshape(-1, LANES), dp.reshape(-1, LANES)
+    for j in range(sites):
         x[j] += drifts[0] * p[j]
-    for b in range(blocks):
-        for i in range((bonds + 1) * LANES):
-            flat_dx[b, i] += drifts[0] * flat_dp[b, i]
+    for j in range(len(rows_x)):
+        put(rows_x, j, entry(rows_x, j) + drifts[0] * entry(rows_p, j))
     for step in range(steps):
         for i in range(len(kicks)):
             drift = drifts[i + 1]
             if i == len(kicks) - 1 and step < steps - 1:
                 drift += drifts[0]
-            if ring:
-                kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces, True)
-            else:
-                kick_and_drift(x, p, flat_dx, flat_dp, law, kicks[i], drift, forces, False)
+            move_orbit(x, p, law, kicks[i], drift, forces, ring)
+            for b in range(np.uint64(len(dx))):
+                move_lanes(rows_x, rows_p, b * sites, forces[1], drift, ring)
 
 
 @_compiled
@@ -146,14 +125,13 @@ def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any, ring: bo
 
     kicks : of one step, drifts : after each of them, as lengths of time.
     """
-    blocks, bonds = dx.shape[0], dx.shape[1] - 1
-    pull, slope = np.empty(bonds * LANES), np.empty(bonds * LANES)
-    flat_dx = dx.reshape(blocks, (bonds + 1) * LANES)
-    flat_dp = dp.reshape(blocks, (bonds + 1) * LANES)
+    sites = np.uint64(dx.shape[1])
+    rows_x, rows_p = dx.reshape(-1, LANES), dp.reshape(-1, LANES)
     for i in range(slopes.shape[0]):
         stage = i % len(kicks)
         stiffness, drift = kicks[stage] * slopes[i], drifts[stage]
-        move_lanes(flat_dx, flat_dp, stiffness, drift, pull, slope, ring)
+        for b in range(np.uint64(len(dx))):
+            move_lanes(rows_x, rows_p, b * sites, stiffness, drift, ring)
 
 
 # loops, not expressions of arrays: those take seconds each to compile
@@ -174,38 +152,47 @@ def _without_mean(v: Any) -> None:
         v[k] -= total / len(v)
 
 
+@_always_inlined
+def _overlap(u: Any, v: Any) -> float:
+    """Product of two vectors in lanes: eight sums, so that no addition waits for the one before."""
+    sums = entry(u, 0) * entry(v, 0)
+    for g in range(1, len(u)):
+        sums = sums + entry(u, g) * entry(v, g)
+    return total(sums)
+
+
 @_compiled
 def orthonormalise(dx: Any, dp: Any, rows: Any, R: Any, ring: bool) -> float:
     """Replace the first m vectors by their orthonormal basis, V = basis R.
 
     Returns the least R_jj / |column j of R|.
 
-    rows : room for the vectors, (m, 2n), n = N-1, or N on a ring. R : upper triangular, positive
-    diagonal, (m, m). Gram-Schmidt with a second pass, after which the basis is orthonormal to
-    rounding. On a ring the mean is taken out first: it does not shrink where a vector does, so
-    that its rounding would grow.
+    rows : room for the 2n numbers of each vector, n = N-1, or N on a ring, filled up with zeros to
+    lanes, (m, groups, LANES). R : upper triangular, positive diagonal, (m, m).
+    Gram-Schmidt with a second pass, after which the basis is orthonormal to rounding. On a ring
+    the mean is taken out first: it does not shrink where a vector does, so that its rounding
+    would grow.
     """
-    n, least = rows.shape[1] // 2, 1.0
     first = 0 if ring else 1
+    n, least = dx.shape[1] - 1 - first, 1.0
+    flat = rows.reshape(len(rows), rows.shape[1] * LANES)
     for j in range(len(rows)):
-        v = rows[j]
+        v, row = flat[j], rows[j]
         for k in range(n):
             v[k] = dx[j // LANES, k + first, j % LANES]
             v[n + k] = dp[j // LANES, k + first, j % LANES]
         if ring:
             _without_mean(v[:n])
-            _without_mean(v[n:])
+            _without_mean(v[n : 2 * n])
         for i in range(len(rows)):
             R[i, j] = 0.0
         for _ in range(2):
             for i in range(j):
-                overlap = 0.0
-                for k in range(2 * n):
-                    overlap += rows[i, k] * v[k]
+                overlap = _overlap(rows[i], row)
                 R[i, j] += overlap
-                for k in range(2 * n):
-                    v[k] -= overlap * rows[i, k]
-        R[j, j] = _length(v)
+                for g in range(len(row)):
+                    put(row, g, entry(row, g) - overlap * entry(rows[i], g))
+        R[j, j] = np.sqrt(_overlap(row, row))
         least = min(least, R[j, j] / _length(R[: j + 1, j]))
         for k in range(2 * n):
             v[k] /= R[j, j]
@@ -265,7 +252,7 @@ def carry_frame(
     """
     m = len(diagonal)
     moving = len(x) - 1 if ring else len(x) - 2
-    rows, R = np.empty((m, 2 * moving)), np.zeros((m, m))
+    rows, R = np.zeros((m, -(-2 * moving // LANES), LANES)), np.zeros((m, m))
     while steps > 0:
         now = min(block, steps)
         advance(x, p, dx, dp, law, kicks, drifts, ring, now)

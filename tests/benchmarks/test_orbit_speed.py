@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import integrate
 from symfpu.dynamics.schemes import SCHEMES
+from symfpu.dynamics.starts import random_state
 from symfpu.paper.printed import APPENDIX_F
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -123,3 +124,49 @@ def test_cost_of_a_step(N, benchmark, record):
     orbit = benchmark.pedantic(integrate, (chain, Q, 0 * Q, 0.1 * steps), {"step": 0.1, "samples": 1}, rounds=5, iterations=1)
     cost = benchmark.stats.stats.min / steps
     record(f"kahan_li8, N = {N}, a step", note=f"{1e6 * cost:.2f} us, {1e9 * cost / N / orbit.scheme.stages:.2f} ns a particle and kick")
+
+
+TOGETHER = 64
+ROUNDS = 5
+
+
+def processor_seconds(run):
+    start = time.process_time()
+    run()
+    return time.process_time() - start
+
+
+@pytest.mark.parametrize("averages", [False, True])
+@pytest.mark.parametrize(
+    ("chain", "T", "scheme"),
+    [
+        (Chain(32, alpha="0.33"), 2e3, "kahan_li8"),
+        (Chain(32, alpha="0.33", ends="periodic"), 2e3, "kahan_li8"),
+        (Chain(128, alpha="0.33"), 500.0, "kahan_li8"),
+        (Chain(512, alpha="0.33"), 200.0, "kahan_li8"),
+        (Chain(32, potential="toda:0.33"), 500.0, "kahan_li8"),
+        (Chain(32, potential="lj"), 200.0, "kahan_li8"),
+        (Chain(32, alpha="0.33"), 500.0, "aba864_modes"),
+    ],
+    ids=["32", "ring", "128", "512", "toda", "lj", "modes"],
+)
+def test_many_orbits_at_once(chain, T, scheme, averages, benchmark, record):
+    """Allowed half of the time of as many orbits one by one, N = 32; both in turns."""
+    drawn = [random_state(chain, "0.01", seed) for seed in range(TOGETHER)]
+    Q, P = (np.array(part) for part in zip(*drawn, strict=True))
+    run = {"step": 0.25, "scheme": scheme, "averages": averages}
+
+    def alone():
+        integrate(chain, Q[0], P[0], T, **run)
+
+    def together():
+        integrate(chain, Q, P, T, **run)
+
+    alone(), together()
+    pairs = [(processor_seconds(alone), processor_seconds(together)) for _ in range(ROUNDS)]
+    one, many = map(min, zip(*pairs, strict=True))
+    benchmark.pedantic(together, rounds=1, iterations=1)
+    record(
+        f"{TOGETHER} orbits, {chain}, {scheme}, T = {T:g}{', averages' if averages else ''}",
+        note=f"{TOGETHER * one / many:.2f} times the rate of one",
+    )

@@ -211,7 +211,7 @@ def test_particles_move_alike():
         x, p = np.zeros(9), np.zeros(9)
         p[1:-1] = np.sin(np.arange(1, 8) * np.pi / 8)
         law, step = V.law(DOUBLES), np.array([0.1])
-        orbit_loops.move_particles(x, p, law, 200, 0.05, step, step, -5.0, 5.0)
+        orbit_loops.move_particles(x, p, law, 200, 0.05, step, step, np.array([-5.0, 5.0]))
         ends.append(x)
     assert np.allclose(*ends, rtol=0, atol=100 * ROUNDING)
 

@@ -201,6 +201,18 @@ def test_an_orbit_over_the_barrier_is_stopped_at_once(name):
     assert stopped.energy == pytest.approx(float(chain.energy(Q, P)), rel=ESCAPE_ENERGY)
 
 
+@pytest.mark.parametrize("name", ["kahan_li8", "aba864_modes"])
+def test_averages_stop_at_the_step_at_which_the_orbit_does(name):
+    """Where every step is looked at, too: the last good state is one of finite numbers."""
+    chain, P, stops = Chain(8, alpha=1), 1.2 * np.eye(7)[4], []
+    for averages in (False, True):
+        with pytest.raises(EscapedOrbit) as caught:
+            integrate(chain, 0 * P, P, 600.0, step=0.5, scheme=name, samples=3, averages=averages)
+        stops.append((caught.value.time, caught.value.bond, caught.value.energy))
+    assert stops[0][:2] == stops[1][:2]
+    assert stops[1][2] == pytest.approx(stops[0][2], rel=THOUSAND_ROUNDINGS)
+
+
 def test_an_orbit_that_starts_beyond_the_barrier_is_not_begun():
     with pytest.raises(EscapedOrbit, match="at time 0 in mode 1,"):
         integrate(Chain(2, alpha=1), [-3.0], [0.0], 1.0, step=0.01)

@@ -18,7 +18,7 @@ from symfpu.dynamics.wells import FACTOR, potential, sides, stretch_bounds
 from symfpu.errors import InputError
 from symfpu.refinement.tori import refine
 from symfpu.tori.frequencies import torus_at_amplitudes
-from tests.tolerances import ENERGY_WALK, HUNDRED_ROUNDINGS, OBSERVED_ORDER, STEP_ERROR
+from tests.tolerances import ENERGY_WALK, HUNDRED_ROUNDINGS, LAST_DIGIT, OBSERVED_ORDER, STEP_ERROR
 
 # laws with the size of a state at which they are far from harmonic
 LAWS = {"toda:1/2": 0.1, "lj:12,6": 0.02, "poly:1/3,0,1/5,-1/4": 0.1, "poly:0,1/2,0,1/3": 0.1}
@@ -113,13 +113,16 @@ def test_a_broken_bond_is_bounded_by_the_length_of_the_chain():
     assert broken.energy_error < STEP_ERROR
 
 
-@pytest.mark.long
-def test_an_odd_polynomial_is_escaped_from():
+@pytest.mark.parametrize("samples", [1, 200])
+def test_an_odd_polynomial_is_escaped_from(samples):
+    """Bond 2 is pressed together, beyond r = -1.93 between 0.5 and 0.55, whether or not each step is sampled."""
     chain = Chain(6, potential="poly:1/3,0,1/5")
-    with pytest.raises(EscapedOrbit, match=r"bond 1 passes the barrier of its potential at time") as caught:
-        integrate(chain, *kicked(chain, 2.0), 100.0, step=0.05)
-    assert caught.value.bond == 1
-    assert 0 < caught.value.time < 3
+    Q, P = kicked(chain, 2.0)
+    with pytest.raises(EscapedOrbit, match=r"bond 2 passes the barrier of its potential at time") as caught:
+        integrate(chain, Q, P, 100.0, step=0.05, samples=samples)
+    assert caught.value.bond == 2
+    assert caught.value.time == pytest.approx(0.5, rel=LAST_DIGIT)
+    assert caught.value.energy == pytest.approx(float(chain.energy(Q, P)), rel=STEP_ERROR)
 
 
 @pytest.mark.parametrize("run", [integrate, alignment_indices])
