@@ -60,8 +60,11 @@ class TorusEquation(Protocol):
         """The derivative of the force between m chosen unknowns; (m, m)."""
         ...
 
-    def sparse_derivative(self, slopes: Floats) -> Any:
-        """The largest part of it between all unknowns, sparse, in the order of the mask."""
+    def sparse_rows(self, slopes: Floats, rows: Ints, columns: Ints) -> Any:
+        """The rows of m chosen unknowns in it, their largest part, sparse; (m, unknowns).
+
+        Those are in the order of the mask.
+        """
         ...
 
     def energy(

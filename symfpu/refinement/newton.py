@@ -79,44 +79,56 @@ class _System:
         cosines: Floats,
         shifts: Floats,
     ) -> None:
-        self.equation, self.mask = equation, equation.mask
-        self.divisors = equation.divisors(shifts)
-        imbalance = self.divisors * cosines - equation.force(cosines)
-        self.imbalance = np.where(self.mask, imbalance, 0)
-        values = [condition.value(equation, cosines, shifts) for condition in conditions]
-        self.values = np.array(values, dtype=np.longdouble)
+        self.equation, self.mask, self.s = equation, equation.mask, len(shifts)
+        self._set_equations(cosines, shifts)
+        self._set_conditions(conditions, cosines, shifts)
         self.slopes = equation.slopes(cosines)
-        rates = equation.rates(shifts)
-        self.by_shift = []
-        for nu in equation.harmonics.T:
-            slope = (2 * rates * nu)[:, None] * cosines
-            self.by_shift.append(slope.astype(float)[self.mask])
-        gradients = [
-            condition.gradient(equation, cosines, shifts) for condition in conditions
-        ]
-        by_cosine, by_shift = zip(*gradients, strict=True)
-        self.by_cosine = np.array([slope[self.mask] for slope in by_cosine])
-        self.corner = np.array(by_shift)
-        self.diagonal = self.divisors.astype(float)
+        self.cosines = cosines.astype(float)
+
+    def _set_equations(self, cosines: Floats, shifts: Floats) -> None:
+        divisors = self.equation.divisors(shifts)
+        self.diagonal = divisors.astype(float)
+        imbalance = divisors * cosines - self.equation.force(cosines)
+        self.imbalance = imbalance[self.mask].astype(float)
+        rates = self.equation.rates(shifts)
         accelerations = np.abs((rates**2)[:, None] * cosines).sum(axis=0)
         self.acceleration = float(accelerations.max())
+        self.rates = rates.astype(float)
+
+    def _set_conditions(
+        self, conditions: Sequence[Condition], cosines: Floats, shifts: Floats
+    ) -> None:
+        from scipy import sparse
+
+        at = self.equation, cosines, shifts
+        values = [condition.value(*at) for condition in conditions]
+        self.values = np.array(values, dtype=np.longdouble)
+        by_cosine, by_shift = [], []
+        for condition in conditions:
+            slope, self_slope = condition.gradient(*at)
+            by_cosine.append(sparse.csr_matrix(slope[self.mask]))
+            by_shift.append(self_slope)
+        self.by_cosine = sparse.vstack(by_cosine, format="csr")
+        self.corner = np.array(by_shift)
+
+    def along_shifts(self, change: Floats) -> Floats:
+        """What a change of the shifts adds to the equations; shape (unknowns,)."""
+        moved = 2 * self.rates * (self.equation.harmonics @ change)
+        return np.asarray((moved[:, None] * self.cosines)[self.mask])
 
     def product(self, vector: Floats) -> Floats:
-        s = len(self.by_shift)
-        coefficients, shifts = vector[:-s], vector[-s:]
+        coefficients, shifts = vector[: -self.s], vector[-self.s :]
         change = np.zeros(self.mask.shape)
         change[self.mask] = coefficients
-        moved = self.diagonal * change - self.equation.force_change(self.slopes, change)
-        equations = moved[self.mask]
-        for column, x in zip(self.by_shift, shifts, strict=True):
-            equations += column * x
+        moved = self.diagonal * change
+        moved -= self.equation.force_change(self.slopes, change)
+        equations = moved[self.mask] + self.along_shifts(shifts)
         conditions = self.by_cosine @ coefficients + self.corner @ shifts
         return np.concatenate([equations, conditions])
 
     @property
     def right(self) -> Floats:
-        left = np.concatenate([self.imbalance[self.mask], self.values])
-        return -left.astype(float)
+        return -np.concatenate([self.imbalance, self.values.astype(float)])
 
 
 class _Preconditioner:
@@ -126,20 +138,20 @@ class _Preconditioner:
     """
 
     def __init__(self, system: _System) -> None:
-        mask = system.mask
-        total, s = int(mask.sum()), len(system.by_shift)
+        mask, s = system.mask, system.s
+        total = int(mask.sum())
         chosen = self._block(system, total)
         inside = (np.cumsum(mask, axis=None) - 1)[chosen]
-        outside = np.setdiff1d(np.arange(total), inside)
+        rows, columns = np.unravel_index(chosen, mask.shape)
+        self.system, self.whole = system, len(inside) == total
         self.inside = np.append(inside, np.arange(total, total + s))
-        self.outside = outside
-        by_shift = np.array(system.by_shift).reshape(s, total).T
-        matrix = self._matrix(system, chosen, inside, by_shift)
-        divisors = system.diagonal[mask]
-        self.inverse = 1 / np.where(divisors == 0, 1, divisors)[outside]
-        self.whole = len(outside) == 0
+        matrix = self._matrix(system, rows, columns, inside)
         if not self.whole:
-            matrix -= self._couplings(system, inside, by_shift)
+            divisors = system.diagonal[mask]
+            self.inverse = 1 / np.where(divisors == 0, 1, divisors)
+            self.inverse[inside] = 0
+            self._set_couplings(rows, columns)
+            self._subtract_outside(matrix)
         self.factors = _factors(matrix)
 
     def _block(self, system: _System, total: int) -> Ints:
@@ -154,44 +166,63 @@ class _Preconditioner:
         return np.sort(smallest)
 
     @staticmethod
-    def _matrix(system: _System, chosen: Ints, inside: Ints, by_shift: Floats) -> Floats:
+    def _matrix(system: _System, rows: Ints, columns: Ints, inside: Ints) -> Floats:
         """The system within the block, with shifts and conditions."""
-        count, s = len(chosen), by_shift.shape[1]
-        rows, columns = np.unravel_index(chosen, system.mask.shape)
-        coupling = system.equation.block(system.slopes, rows, columns)
+        count, s = len(rows), system.s
         matrix = np.zeros((count + s, count + s))
-        matrix[:count, :count] = np.diag(system.diagonal[rows, columns]) - coupling
-        matrix[:count, count:] = by_shift[inside]
-        matrix[count:, :count] = system.by_cosine[:, inside]
+        matrix[:count, :count] = -system.equation.block(system.slopes, rows, columns)
+        matrix[np.arange(count), np.arange(count)] += system.diagonal[rows, columns]
+        for k, unit in enumerate(np.eye(s)):
+            matrix[:count, count + k] = system.along_shifts(unit)[inside]
+        matrix[count:, :count] = system.by_cosine[:, inside].toarray()
         matrix[count:, count:] = system.corner
         return matrix
 
-    def _couplings(self, system: _System, inside: Ints, by_shift: Floats) -> Floats:
-        """What the unknowns outside add to the block; keeps the couplings into and out of it."""
+    def _set_couplings(self, rows: Ints, columns: Ints) -> None:
+        """The largest couplings into the block and out of it, sparse.
+
+        The force derives from a potential: its derivative is symmetric with the norms of the
+        cosines as weights, 1 of a constant and 1/2 of the others.
+        """
         from scipy import sparse
 
-        outside = self.outside
-        coupling = -system.equation.sparse_derivative(system.slopes)
-        conditions = sparse.csr_matrix(system.by_cosine[:, outside])
-        shifts = sparse.csr_matrix(by_shift[outside])
-        self.into = sparse.bmat([[coupling[inside][:, outside]], [conditions]]).tocsr()
-        self.out = sparse.bmat([[coupling[outside][:, inside], shifts]]).tocsr()
-        through = self.into @ sparse.diags(self.inverse) @ self.out
-        return np.asarray(through.toarray())
+        system = self.system
+        self.into = -system.equation.sparse_rows(system.slopes, rows, columns)
+        still = (system.equation.harmonics == 0).all(axis=1)
+        norms = np.where(still, 1.0, 0.5)
+        of_all = np.broadcast_to(norms[:, None], system.mask.shape)[system.mask]
+        scaled = sparse.diags(norms[rows]) @ self.into @ sparse.diags(1 / of_all)
+        self.out = scaled.T.tocsr()
+
+    def _subtract_outside(self, matrix: Floats) -> None:
+        """What the unknowns outside add to the block."""
+        from scipy import sparse
+
+        system, count = self.system, self.into.shape[0]
+        far = sparse.diags(self.inverse) @ self.out
+        added = (self.into @ far).tocoo()
+        matrix[added.row, added.col] -= added.data
+        matrix[count:, :count] -= (system.by_cosine @ far).toarray()
+        for k, unit in enumerate(np.eye(system.s)):
+            moved = self.inverse * system.along_shifts(unit)
+            matrix[:count, count + k] -= self.into @ moved
+            matrix[count:, count + k] -= system.by_cosine @ moved
 
     def __call__(self, vector: Floats) -> Floats:
         from scipy import linalg
 
         result = np.empty_like(vector)
-        block = vector[self.inside]
+        right, s = vector[self.inside], self.system.s
         if self.whole:
-            result[self.inside] = linalg.lu_solve(self.factors, block, check_finite=False)
+            result[self.inside] = linalg.lu_solve(self.factors, right, check_finite=False)
             return result
-        far = self.inverse * vector[self.outside]
-        right = block - self.into @ far
+        far = self.inverse * vector[:-s]
+        right[:-s] -= self.into @ far
+        right[-s:] -= self.system.by_cosine @ far
         near = linalg.lu_solve(self.factors, right, check_finite=False)
+        driven = self.out @ near[:-s] + self.system.along_shifts(near[-s:])
+        result[:-s] = far - self.inverse * driven
         result[self.inside] = near
-        result[self.outside] = far - self.inverse * (self.out @ near)
         return result
 
 
@@ -313,7 +344,7 @@ def responses(
     """
     system = _System(equation, conditions, cosines, shifts)
     preconditioner = _Preconditioner(system)
-    count, s = int(system.mask.sum()), len(shifts)
+    count, s = len(system.imbalance), len(shifts)
     by_cosine, by_shift = np.zeros((s, *system.mask.shape)), np.zeros((s, s))
     for place in range(s):
         right = np.zeros(count + s)
@@ -360,7 +391,7 @@ class Correction:
 
         The conditions stay met. The last result: products with the derivative.
         """
-        mask, s = self._system.mask, len(self._system.by_shift)
+        mask, s = self._system.mask, self._system.s
         right = np.concatenate([-imbalance[mask], np.zeros(s)])
         change, products = _solved(self._system, self._preconditioner, right, accuracy)
         by_cosine = np.zeros(mask.shape)
