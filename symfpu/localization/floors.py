@@ -165,7 +165,7 @@ def _of_newton(torus: QuasiPeriodic) -> _Errors:
     shifts, cosines = shifts_of(torus), _on(torus, equation.harmonics)
     divisors = np.where(equation.mask, equation.divisors(shifts), 1)
     left = np.where(equation.mask, divisors * cosines - equation.force(cosines), 0)
-    rounding = equation.rounding(cosines)
+    rounding = equation.rounding(cosines, np.longdouble)
     with np.errstate(divide="ignore"):
         inverse = np.where(equation.mask, 1 / np.abs(divisors), 0)
         first = left / divisors

@@ -45,7 +45,11 @@ class TorusEquation(Protocol):
         ...
 
     def force(self, cosines: Floats) -> Floats:
-        """Of the anharmonic part of V; (H, C)."""
+        """Of the anharmonic part of V, in the precision of the cosines; (H, C)."""
+        ...
+
+    def rounding(self, cosines: Floats, kind: type) -> Floats:
+        """What rounding in numbers of a kind makes of the force, about; broadcast with (H, C)."""
         ...
 
     def slopes(self, cosines: Floats) -> Floats:

@@ -181,20 +181,18 @@ class InvarianceEquation:
             total += self.grid.coefficients_at(tension, harmonics) @ self._back[:, part].T
         return np.asarray(total * self.allowed(harmonics))
 
-    def rounding(self, cosines: Floats) -> Floats:
-        """What rounding in long doubles makes of the force of each mode, about; shape (N-1,).
+    def rounding(self, cosines: Floats, kind: type) -> Floats:
+        """What rounding in numbers of a kind makes of the force of each mode, about; (N-1,).
 
         Every bond rounds at random at every point, and a force is a sum over bonds and points.
         """
-        tension = np.zeros(self._stretch.shape[1])
+        law, (stretch, back) = self.chain.law(), self.stretches_of_half()
+        c, tension = cosines.astype(float), np.zeros(stretch.shape[1])
         for part in self._portions():
-            r = self.grid.values(cosines @ self._stretch[:, part])
-            tension[part] = np.mean(bonds.anharmonic_tension(self._law, r) ** 2, axis=1)
-        sizes = np.sqrt(self._back**2 @ tension)
-        points = self.grid.points
-        return np.asarray(
-            np.finfo(np.longdouble).eps * np.sqrt(np.log2(points) / points) * sizes
-        )
+            r = self.grid.values(c @ stretch[:, part])
+            tension[part] = np.mean(bonds.anharmonic_tension(law, r) ** 2, axis=1)
+        sizes = np.sqrt(back**2 @ tension)
+        return np.asarray(np.finfo(kind).eps * self.grid.averaged_rounding * sizes)
 
     def potential(self, Q: Floats) -> np.longdouble:
         """The potential energy of mode coordinates (N-1,), by all bonds."""
@@ -233,11 +231,10 @@ class InvarianceEquation:
 
     def slopes(self, cosines: Floats) -> Floats:
         """V''(r) - 1 on the lattice, in doubles; shape (bonds, points)."""
-        law = self.chain.law()
-        result = np.empty((self._stretch.shape[1], self.grid.points))
+        law, (stretch, _) = self.chain.law(), self.stretches_of_half()
+        c, result = cosines.astype(float), np.empty((stretch.shape[1], self.grid.points))
         for part in self._portions():
-            stretches = np.asarray(cosines @ self._stretch[:, part])
-            r = self.grid.values(stretches.astype(float))
+            r = self.grid.values(c @ stretch[:, part])
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
 
@@ -258,28 +255,26 @@ class InvarianceEquation:
         """The derivative of the force between chosen unknowns; shape (m, m).
 
         rows, columns : of harmonic and mode. Of a unit of cos(nu'.theta) the coefficient at nu is
-        slope[nu - nu'] + slope[nu + nu'], without the second for nu = 0; of the modes q and q' by
-        a slope of the bonds it is Omega_q Omega_q' times the sum of what the slope has of the
-        modes |q - q'| and q + q'.
+        slope[nu - nu'] + slope[nu + nu'], half of it for nu = 0; of the modes q and q' a slope of
+        the bonds makes Omega_q Omega_q' times what it has of the modes |q - q'| and q + q'.
         """
         N, modes = self.chain.N, columns + 1
         table = self._spectrum(slopes).T @ self._products_of_modes()
         flat, width = table.ravel(), table.shape[1]
         nu, linear = self.harmonics[rows], self.linear[columns].astype(float)
-        still = (nu == 0).all(axis=1)
         along = nu @ self.grid.generator
         matrix = np.empty((len(rows), len(rows)))
-        for a in range(len(rows)):
-            total = modes[a] + modes
-            apart, beyond = np.abs(modes[a] - modes), total > N
-            near = np.where(beyond, 2 * N - total, total)
-            sign = np.where(beyond, -1.0, 1.0)
-            place = self.grid.folded(along[a] - along) * width
-            both = flat[place + apart] + sign * flat[place + near]
-            if not still[a]:
-                place = self.grid.folded(along[a] + along) * width
-                both += flat[place + apart] + sign * flat[place + near]
-            matrix[a] = linear[a] * linear * both
+        for a, mode in enumerate(modes):
+            apart, total = np.abs(mode - modes[a:]), mode + modes[a:]
+            nearer = np.minimum(total, 2 * N - total)
+            sign = np.where(total > N, -1.0, 1.0)
+            found = np.zeros(len(rows) - a)
+            for turned in (-along[a:], along[a:]):
+                place = self.grid.folded(along[a] + turned) * width
+                found += flat[place + apart] + sign * flat[place + nearer]
+            matrix[a, a:] = linear[a] * linear[a:] * found
+            matrix[a:, a] = matrix[a, a:]
+        matrix[(nu == 0).all(axis=1)] /= 2
         return matrix
 
     def _products_of_modes(self) -> Floats:

@@ -44,6 +44,11 @@ class Lattice:
         self._place = self.entries(harmonics)
         self._weight = halves_of_pairs(harmonics)
 
+    @property
+    def averaged_rounding(self) -> float:
+        """Of a coefficient, in that of one value: of a transform, and the mean over all points."""
+        return float(np.sqrt(np.log2(self.points) / self.points))
+
     def entries(self, harmonics: Ints) -> Ints:
         """Places of any harmonics in the spectrum; shape (...) of (..., s)."""
         return self.folded(harmonics @ self.generator)

@@ -27,6 +27,9 @@ NEARNESS = (
 )
 KRYLOV, RESTARTS = 60, 4
 ACCURACY = 1e-8  # of a Krylov solution
+# errors by rounding up to which a force is taken in doubles: of an amplitude, relative, and of
+# other coefficients, relative to the largest
+AMPLITUDES, COEFFICIENTS = 1e-14, 1e-13
 # relative change to come that ends the iteration, and the one that does when it no longer shrinks
 STEP, ROUNDING_STEP = 1e-16, 1e-9
 ITERATIONS = 15
@@ -80,34 +83,22 @@ class _System:
         shifts: Floats,
     ) -> None:
         self.equation, self.mask, self.s = equation, equation.mask, len(shifts)
-        self._set_equations(cosines, shifts)
-        self._set_conditions(conditions, cosines, shifts)
+        self.diagonal = equation.divisors(shifts).astype(float)
         self.slopes = equation.slopes(cosines)
         self.cosines = cosines.astype(float)
-
-    def _set_equations(self, cosines: Floats, shifts: Floats) -> None:
-        divisors = self.equation.divisors(shifts)
-        self.diagonal = divisors.astype(float)
-        imbalance = divisors * cosines - self.equation.force(cosines)
-        self.imbalance = imbalance[self.mask].astype(float)
-        rates = self.equation.rates(shifts)
-        accelerations = np.abs((rates**2)[:, None] * cosines).sum(axis=0)
-        self.acceleration = float(accelerations.max())
-        self.rates = rates.astype(float)
+        self.rates = equation.rates(shifts).astype(float)
+        self._set_conditions(conditions, cosines, shifts)
 
     def _set_conditions(
         self, conditions: Sequence[Condition], cosines: Floats, shifts: Floats
     ) -> None:
         from scipy import sparse
 
-        at = self.equation, cosines, shifts
-        values = [condition.value(*at) for condition in conditions]
-        self.values = np.array(values, dtype=np.longdouble)
         by_cosine, by_shift = [], []
         for condition in conditions:
-            slope, self_slope = condition.gradient(*at)
-            by_cosine.append(sparse.csr_matrix(slope[self.mask]))
-            by_shift.append(self_slope)
+            of_cosines, of_shifts = condition.gradient(self.equation, cosines, shifts)
+            by_cosine.append(sparse.csr_matrix(of_cosines[self.mask]))
+            by_shift.append(of_shifts)
         self.by_cosine = sparse.vstack(by_cosine, format="csr")
         self.corner = np.array(by_shift)
 
@@ -125,10 +116,6 @@ class _System:
         equations = moved[self.mask] + self.along_shifts(shifts)
         conditions = self.by_cosine @ coefficients + self.corner @ shifts
         return np.concatenate([equations, conditions])
-
-    @property
-    def right(self) -> Floats:
-        return -np.concatenate([self.imbalance, self.values.astype(float)])
 
 
 class _Preconditioner:
@@ -239,6 +226,36 @@ def _factors(matrix: Floats) -> tuple[Floats, Ints]:
     return lower_and_upper, pivots
 
 
+@np.errstate(divide="ignore", invalid="ignore")
+def force_precision(equation: TorusEquation, cosines: Floats, shifts: Floats) -> type:
+    """Doubles for the force where what they round shows in no coefficient, else long doubles.
+
+    A rounded force is divided by the divisor: that of a seed is its shift, which falls with the
+    square of the amplitude, and with it how much of alpha's force it is.
+    """
+    divisors = np.abs(equation.divisors(shifts)).astype(float)
+    errors = equation.rounding(cosines, np.float64) / divisors
+    seeds = equation.seed_rows, equation.seed_columns
+    allowed = np.full(cosines.shape, COEFFICIENTS * float(np.abs(cosines).max()))
+    allowed[seeds] = AMPLITUDES * np.abs(cosines[seeds])
+    enough = (errors <= allowed)[equation.mask].all()
+    return np.float64 if enough else np.longdouble
+
+
+def _imbalance(
+    equation: TorusEquation, cosines: Floats, shifts: Floats, precision: type
+) -> tuple[Floats, float]:
+    """Of the equations of all unknowns, (U,), and the same relative to the largest acceleration.
+
+    Divisors times coefficients in long doubles: near a torus the force cancels them.
+    """
+    force = equation.force(cosines.astype(precision))
+    left = (equation.divisors(shifts) * cosines - force)[equation.mask].astype(float)
+    rates = equation.rates(shifts).astype(float)
+    accelerations = rates**2 @ np.abs(cosines).astype(float)
+    return left, float(np.abs(left).max() / accelerations.max())
+
+
 # iterates that run away are refused by their size
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def newton(
@@ -255,21 +272,25 @@ def newton(
     steps: list[NewtonStep] = []
     best = (np.inf, cosines, shifts)
     sizes = _sizes(equation, cosines)
+    precision = force_precision(equation, cosines, shifts)
 
     def failed(reason: str) -> Iterate:
         return Iterate(best[1], best[2], tuple(steps), reason)
 
     for _ in range(ITERATIONS):
-        system = _System(equation, conditions, cosines, shifts)
-        residual = float(np.abs(system.imbalance).max()) / system.acceleration
-        violation = float(np.abs(system.values).max())
+        imbalance, residual = _imbalance(equation, cosines, shifts, precision)
+        given = [condition.value(equation, cosines, shifts) for condition in conditions]
+        values = np.array(given).astype(float)
+        violation = float(np.abs(values).max())
         if not np.isfinite(residual + violation):
             return failed("the equations or conditions leave the range of numbers")
         error = residual + violation
         if error < best[0]:
             best = (error, cosines, shifts)
+        system = _System(equation, conditions, cosines, shifts)
+        right = -np.concatenate([imbalance, values])
         try:
-            change, products = _solved(system, _Preconditioner(system), system.right)
+            change, products = _solved(system, _Preconditioner(system), right)
         except (np.linalg.LinAlgError, ValueError) as failure:
             return failed(f"the matrix of Newton's method is singular ({failure})")
         moved = np.zeros(cosines.shape)
@@ -344,7 +365,7 @@ def responses(
     """
     system = _System(equation, conditions, cosines, shifts)
     preconditioner = _Preconditioner(system)
-    count, s = len(system.imbalance), len(shifts)
+    count, s = int(system.mask.sum()), len(shifts)
     by_cosine, by_shift = np.zeros((s, *system.mask.shape)), np.zeros((s, s))
     for place in range(s):
         right = np.zeros(count + s)

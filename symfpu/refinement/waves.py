@@ -100,6 +100,12 @@ class WaveEquation:
         law = bonds.cast(self._law, cosines.dtype)
         return self._projected(bonds.anharmonic_tension(law, self._stretches(cosines)))
 
+    def rounding(self, cosines: Floats, kind: type) -> Floats:
+        """What rounding in numbers of a kind makes of the force, about; shape (H, 1)."""
+        tension = bonds.anharmonic_tension(self.chain.law(), self._stretches(cosines.astype(float)))
+        size = np.finfo(kind).eps * self.grid.averaged_rounding * np.sqrt(np.mean(tension**2))
+        return np.asarray(size * self._back.astype(float))
+
     def slopes(self, cosines: Floats) -> Floats:
         """V''(r) - 1 at the points, in doubles; shape (1, points)."""
         r = self._stretches(cosines.astype(float))
