@@ -145,7 +145,8 @@ class _Preconditioner:
         """Places of the unknowns with the smallest divisors, those of the seeds first of all."""
         equation = system.equation
         linear = equation.linear.astype(float)
-        weights = np.where(system.mask, np.abs(system.diagonal) / linear**2, np.inf)
+        weights = np.full(system.mask.shape, np.inf)
+        np.divide(np.abs(system.diagonal), linear**2, out=weights, where=system.mask)
         weights[equation.seed_rows, equation.seed_columns] = 0
         resonant = weights < NEARNESS * np.abs(system.slopes).max()
         count = min(max(int(resonant.sum()), SMALLEST_BLOCK), LARGEST_BLOCK, total)
