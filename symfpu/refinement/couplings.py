@@ -53,7 +53,10 @@ def shifted(harmonics: Ints, rows: Ints, kappa: Ints) -> tuple[Ints, Ints]:
 
 
 def sparse_rows(
-    mask: Any, kappas: Ints, coupled: Callable[[Ints], tuple[Floats, Ints, Ints]], count: int
+    mask: Any,
+    kappas: Ints,
+    coupled: Callable[[Ints], tuple[Floats, Ints, Ints]],
+    count: int,
 ) -> Any:
     """A sparse matrix (count, unknowns) from what every harmonic of the slopes couples.
 

@@ -26,7 +26,9 @@ from symfpu.refinement.equation import Floats, Ints, Slopes
 from symfpu.refinement.lattice import Lattice, halves_of_pairs
 
 PORTION = 4_000_000  # values of all bonds transformed at once
-LEAST_COUPLING = 1e-3  # of two modes by one harmonic of the slopes, relative, in sparse rows
+LEAST_COUPLING = (
+    1e-3  # of two modes by one harmonic of the slopes, relative, in sparse rows
+)
 DIGITS = 30  # of the numbers that long doubles are made of
 
 

@@ -2,15 +2,13 @@
 
 One Krylov solution a step, preconditioned by the exact linear part.
 
-A step solves for the changes of all coefficients and shifts at once. The preconditioner is exact
-on a block, the unknowns with the smallest divisors (seeds and near resonances) with shifts and
-conditions, and divides by the divisors elsewhere. Small systems fit into the block as a whole:
-they are solved directly.
+A step solves for the changes of all coefficients and shifts at once
+(`symfpu.refinement.linear_system`). Forces are taken in doubles where what those round shows in no
+coefficient, else in long doubles.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -19,12 +17,9 @@ import numpy as np
 
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
+from symfpu.refinement.equation import Floats, TorusEquation
+from symfpu.refinement.linear_system import LinearSystem, Preconditioner
 
-LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
-NEARNESS = (
-    3.0  # divisors up to so many times what the coupling adds to them belong to the block
-)
 KRYLOV, RESTARTS = 60, 4
 ACCURACY = 1e-8  # of a Krylov solution
 # errors by rounding up to which a force is taken in doubles: of an amplitude, relative, and of
@@ -69,170 +64,12 @@ class Iterate:
         return self.steps[-1].residual if self.steps else np.inf
 
 
-class _System:
-    """One linear system of Newton's method.
-
-    Vectors hold the masked coefficients, then the shifts.
-    """
-
-    def __init__(
-        self,
-        equation: TorusEquation,
-        conditions: Sequence[Condition],
-        cosines: Floats,
-        shifts: Floats,
-    ) -> None:
-        self.equation, self.mask, self.s = equation, equation.mask, len(shifts)
-        self.diagonal = equation.divisors(shifts).astype(float)
-        self.slopes = equation.slopes(cosines)
-        self.cosines = cosines.astype(float)
-        self.rates = equation.rates(shifts).astype(float)
-        self._set_conditions(conditions, cosines, shifts)
-
-    def _set_conditions(
-        self, conditions: Sequence[Condition], cosines: Floats, shifts: Floats
-    ) -> None:
-        from scipy import sparse
-
-        by_cosine, by_shift = [], []
-        for condition in conditions:
-            of_cosines, of_shifts = condition.gradient(self.equation, cosines, shifts)
-            by_cosine.append(sparse.csr_matrix(of_cosines[self.mask]))
-            by_shift.append(of_shifts)
-        self.by_cosine = sparse.vstack(by_cosine, format="csr")
-        self.corner = np.array(by_shift)
-
-    def along_shifts(self, change: Floats) -> Floats:
-        """What a change of the shifts adds to the equations; shape (unknowns,)."""
-        moved = 2 * self.rates * (self.equation.harmonics @ change)
-        return np.asarray((moved[:, None] * self.cosines)[self.mask])
-
-    def product(self, vector: Floats) -> Floats:
-        coefficients, shifts = vector[: -self.s], vector[-self.s :]
-        change = np.zeros(self.mask.shape)
-        change[self.mask] = coefficients
-        moved = self.diagonal * change
-        moved -= self.equation.force_change(self.slopes, change)
-        equations = moved[self.mask] + self.along_shifts(shifts)
-        conditions = self.by_cosine @ coefficients + self.corner @ shifts
-        return np.concatenate([equations, conditions])
-
-
-class _Preconditioner:
-    """The inverse of the system with divisors alone outside its block.
-
-    The largest couplings to and from the block are kept.
-    """
-
-    def __init__(self, system: _System) -> None:
-        mask, s = system.mask, system.s
-        total = int(mask.sum())
-        chosen = self._block(system, total)
-        inside = (np.cumsum(mask, axis=None) - 1)[chosen]
-        rows, columns = np.unravel_index(chosen, mask.shape)
-        self.system, self.whole = system, len(inside) == total
-        self.inside = np.append(inside, np.arange(total, total + s))
-        matrix = self._matrix(system, rows, columns, inside)
-        if not self.whole:
-            divisors = system.diagonal[mask]
-            self.inverse = 1 / np.where(divisors == 0, 1, divisors)
-            self.inverse[inside] = 0
-            self._set_couplings(rows, columns)
-            self._subtract_outside(matrix)
-        self.factors = _factors(matrix)
-
-    def _block(self, system: _System, total: int) -> Ints:
-        """Places of the unknowns with the smallest divisors, those of the seeds first of all."""
-        equation = system.equation
-        linear = equation.linear.astype(float)
-        weights = np.full(system.mask.shape, np.inf)
-        np.divide(np.abs(system.diagonal), linear**2, out=weights, where=system.mask)
-        weights[equation.seed_rows, equation.seed_columns] = 0
-        resonant = weights < NEARNESS * np.abs(system.slopes).max()
-        count = min(max(int(resonant.sum()), SMALLEST_BLOCK), LARGEST_BLOCK, total)
-        smallest = np.argpartition(weights, count - 1, axis=None)[:count]
-        return np.sort(smallest)
-
-    @staticmethod
-    def _matrix(system: _System, rows: Ints, columns: Ints, inside: Ints) -> Floats:
-        """The system within the block, with shifts and conditions."""
-        count, s = len(rows), system.s
-        matrix = np.zeros((count + s, count + s))
-        matrix[:count, :count] = -system.equation.block(system.slopes, rows, columns)
-        matrix[np.arange(count), np.arange(count)] += system.diagonal[rows, columns]
-        for k, unit in enumerate(np.eye(s)):
-            matrix[:count, count + k] = system.along_shifts(unit)[inside]
-        matrix[count:, :count] = system.by_cosine[:, inside].toarray()
-        matrix[count:, count:] = system.corner
-        return matrix
-
-    def _set_couplings(self, rows: Ints, columns: Ints) -> None:
-        """The largest couplings into the block and out of it, sparse.
-
-        The force derives from a potential: its derivative is symmetric with the norms of the
-        cosines as weights, 1 of a constant and 1/2 of the others.
-        """
-        from scipy import sparse
-
-        system = self.system
-        self.into = -system.equation.sparse_rows(system.slopes, rows, columns)
-        still = (system.equation.harmonics == 0).all(axis=1)
-        norms = np.where(still, 1.0, 0.5)
-        of_all = np.broadcast_to(norms[:, None], system.mask.shape)[system.mask]
-        scaled = sparse.diags(norms[rows]) @ self.into @ sparse.diags(1 / of_all)
-        self.out = scaled.T.tocsr()
-
-    def _subtract_outside(self, matrix: Floats) -> None:
-        """What the unknowns outside add to the block."""
-        from scipy import sparse
-
-        system, count = self.system, self.into.shape[0]
-        far = sparse.diags(self.inverse) @ self.out
-        added = (self.into @ far).tocoo()
-        matrix[added.row, added.col] -= added.data
-        matrix[count:, :count] -= (system.by_cosine @ far).toarray()
-        for k, unit in enumerate(np.eye(system.s)):
-            moved = self.inverse * system.along_shifts(unit)
-            matrix[:count, count + k] -= self.into @ moved
-            matrix[count:, count + k] -= system.by_cosine @ moved
-
-    def __call__(self, vector: Floats) -> Floats:
-        from scipy import linalg
-
-        result = np.empty_like(vector)
-        right, s = vector[self.inside], self.system.s
-        if self.whole:
-            result[self.inside] = linalg.lu_solve(self.factors, right, check_finite=False)
-            return result
-        far = self.inverse * vector[:-s]
-        right[:-s] -= self.into @ far
-        right[-s:] -= self.system.by_cosine @ far
-        near = linalg.lu_solve(self.factors, right, check_finite=False)
-        driven = self.out @ near[:-s] + self.system.along_shifts(near[-s:])
-        result[:-s] = far - self.inverse * driven
-        result[self.inside] = near
-        return result
-
-
-def _factors(matrix: Floats) -> tuple[Floats, Ints]:
-    """L and U of a matrix, overwritten; LinAlgError for an exact zero among the pivots."""
-    from scipy import linalg
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", linalg.LinAlgWarning)
-        factors = linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
-    if not factors[0].diagonal().all():
-        raise np.linalg.LinAlgError("a pivot is zero")
-    lower_and_upper, pivots = factors
-    return lower_and_upper, pivots
-
-
 @np.errstate(divide="ignore", invalid="ignore")
 def force_precision(equation: TorusEquation, cosines: Floats, shifts: Floats) -> type:
     """Doubles for the force where what they round shows in no coefficient, else long doubles.
 
-    A rounded force is divided by the divisor: that of a seed is its shift, which falls with the
-    square of the amplitude, and with it how much of alpha's force it is.
+    An error of the force is divided by the divisor. At small amplitudes those of the seeds, their
+    shifts, fall with the square of the amplitude, the force of alpha relative to it as the first.
     """
     divisors = np.abs(equation.divisors(shifts)).astype(float)
     errors = equation.rounding(cosines, np.float64) / divisors
@@ -288,10 +125,10 @@ def newton(
         error = residual + violation
         if error < best[0]:
             best = (error, cosines, shifts)
-        system = _System(equation, conditions, cosines, shifts)
+        system = LinearSystem(equation, conditions, cosines, shifts)
         right = -np.concatenate([imbalance, values])
         try:
-            change, products = _solved(system, _Preconditioner(system), right)
+            change, products = _solved(system, Preconditioner(system), right)
         except (np.linalg.LinAlgError, ValueError) as failure:
             return failed(f"the matrix of Newton's method is singular ({failure})")
         moved = np.zeros(cosines.shape)
@@ -325,8 +162,8 @@ def _names(equation: TorusEquation) -> list[str]:
 
 
 def _solved(
-    system: _System,
-    preconditioner: _Preconditioner,
+    system: LinearSystem,
+    preconditioner: Preconditioner,
     right: Floats,
     accuracy: float = ACCURACY,
 ) -> tuple[Floats, int]:
@@ -364,8 +201,8 @@ def responses(
     Shapes (s, H, N-1) and (s, s), the condition first: Newton's matrix solved for each of them,
     with corrections until they no longer shrink. Raises LinAlgError where it is singular.
     """
-    system = _System(equation, conditions, cosines, shifts)
-    preconditioner = _Preconditioner(system)
+    system = LinearSystem(equation, conditions, cosines, shifts)
+    preconditioner = Preconditioner(system)
     count, s = int(system.mask.sum()), len(shifts)
     by_cosine, by_shift = np.zeros((s, *system.mask.shape)), np.zeros((s, s))
     for place in range(s):
@@ -377,7 +214,9 @@ def responses(
     return by_cosine, by_shift
 
 
-def _corrected(system: _System, preconditioner: _Preconditioner, right: Floats) -> Floats:
+def _corrected(
+    system: LinearSystem, preconditioner: Preconditioner, right: Floats
+) -> Floats:
     """The solution to rounding."""
     total, left, before = np.zeros(len(right)), right, np.inf
     for _ in range(CORRECTIONS):
@@ -405,8 +244,8 @@ class Correction:
         cosines: Floats,
         shifts: Floats,
     ) -> None:
-        self._system = _System(equation, conditions, cosines, shifts)
-        self._preconditioner = _Preconditioner(self._system)
+        self._system = LinearSystem(equation, conditions, cosines, shifts)
+        self._preconditioner = Preconditioner(self._system)
 
     def __call__(self, imbalance: Floats, accuracy: float) -> tuple[Floats, Floats, int]:
         """Changes of coefficients (H, C) and shifts (s,) that take an imbalance (H, C) away.

@@ -102,8 +102,12 @@ class WaveEquation:
 
     def rounding(self, cosines: Floats, kind: type) -> Floats:
         """What rounding in numbers of a kind makes of the force, about; shape (H, 1)."""
-        tension = bonds.anharmonic_tension(self.chain.law(), self._stretches(cosines.astype(float)))
-        size = np.finfo(kind).eps * self.grid.averaged_rounding * np.sqrt(np.mean(tension**2))
+        tension = bonds.anharmonic_tension(
+            self.chain.law(), self._stretches(cosines.astype(float))
+        )
+        size = (
+            np.finfo(kind).eps * self.grid.averaged_rounding * np.sqrt(np.mean(tension**2))
+        )
         return np.asarray(size * self._back.astype(float))
 
     def slopes(self, cosines: Floats) -> Floats:

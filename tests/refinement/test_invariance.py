@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.refinement import couplings, lattice
+from symfpu.refinement import couplings
 from symfpu.refinement.invariance import InvarianceEquation, rational
-from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated, generated_lattice
+from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated
 from tests.tolerances import EPS, LAST_DIGIT, ROUNDING
 
 LONG_EPS = float(np.finfo(np.longdouble).eps)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.refinement import couplings, invariance, lattice, newton
+from symfpu.refinement import couplings, invariance, lattice, linear_system
 from symfpu.refinement.conditions import Amplitude, FrequencyShift
 from symfpu.refinement.waves import WaveEquation
 from tests.refinement.test_invariance import ball, equation_and_coefficients
@@ -29,14 +29,14 @@ def travelling():
 @pytest.fixture(params=[standing, travelling], ids=["standing", "travelling"])
 def system(request, monkeypatch):
     """Of coefficients of short harmonics, with all couplings to a small block."""
-    monkeypatch.setattr(newton, "SMALLEST_BLOCK", BLOCK)
-    monkeypatch.setattr(newton, "LARGEST_BLOCK", BLOCK)
+    monkeypatch.setattr(linear_system, "SMALLEST_BLOCK", BLOCK)
+    monkeypatch.setattr(linear_system, "LARGEST_BLOCK", BLOCK)
     monkeypatch.setattr(couplings, "SHARE", 0.0)
     monkeypatch.setattr(couplings, "MOST_SLOPES", 1000)
     monkeypatch.setattr(invariance, "LEAST_COUPLING", 0.0)
     equation, c = request.param()
     conditions = [FrequencyShift(0, SHIFTS[0]), Amplitude(1, np.longdouble(0.2))]
-    return newton._System(equation, conditions, c.astype(np.longdouble), SHIFTS)
+    return linear_system.LinearSystem(equation, conditions, c.astype(np.longdouble), SHIFTS)
 
 
 def whole_matrix(system):
@@ -46,7 +46,7 @@ def whole_matrix(system):
 
 def test_couplings_into_and_out_of_the_block_are_those_of_the_system(system):
     """Of harmonics so short that their products do not fold; out of the block by symmetry, the harmonic zero with another weight."""
-    preconditioner = newton._Preconditioner(system)
+    preconditioner = linear_system.Preconditioner(system)
     assert not preconditioner.whole
     count, block = int(system.mask.sum()), preconditioner.inside[: -system.s]
     coupling = whole_matrix(system)[:count, :count] - np.diag(system.diagonal[system.mask])
@@ -64,7 +64,7 @@ def test_couplings_into_and_out_of_the_block_are_those_of_the_system(system):
 
 def test_the_preconditioner_is_the_inverse_of_its_parts(system):
     """Of the block, the couplings it holds, the shifts and conditions, and divisors elsewhere."""
-    preconditioner = newton._Preconditioner(system)
+    preconditioner = linear_system.Preconditioner(system)
     matrix, inside = whole_matrix(system), preconditioner.inside
     count, block = int(system.mask.sum()), inside[:-2]
     outside = np.setdiff1d(np.arange(count), block)
