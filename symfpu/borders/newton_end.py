@@ -1,0 +1,254 @@
+"""How far Newton's method follows the tori of a ray, and where they lose their stability."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from symfpu.borders.fold import sheet_of
+from symfpu.borders.point import ENERGY, Ray
+from symfpu.breathers.floquet import floquet
+from symfpu.normal.modes import NoNormalModes
+from symfpu.normal.search import normal_modes
+from symfpu.refinement.tori import (
+    NoTorus,
+    RefinedTorus,
+    refine_at_amplitudes,
+    refine_at_energy,
+)
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import QTorus
+from symfpu.tori.verdict import short
+
+FACTOR = 1.25  # of the place, at most, from one torus to the next
+LOSS_WIDTH = 1.01  # ratio of the places between which something is lost
+LEAST_FACTOR = 1.01  # a step below which the torus before is the last
+TOLERANCE = 1e-9  # of the residual, as of what `normal_modes` takes
+Json = dict[str, Any]
+Test = Callable[[RefinedTorus], Json]
+
+MOST_HARMONICS = 400
+NEWTON, FOLD, STABILITY = "newton", "fold", "stability"
+TOO_MANY = "more harmonics than allowed"
+NOT_FOLLOWED = "followed as far as asked"
+SEARCH_ENDS = (TOO_MANY, NOT_FOLLOWED)
+
+
+@dataclass(frozen=True, eq=False)
+class RefinedPoint:
+    """A torus of Newton's method on a ray."""
+
+    place: float
+    torus: RefinedTorus
+
+    def record(self) -> dict[str, Any]:
+        """As JSON holds it."""
+        return {
+            "place": short(self.place),
+            "energy": short(float(self.torus.energy())),
+            "amplitudes": [short(float(A)) for A in self.torus.amplitudes.values()],
+            "frequencies": [round(float(w), 12) for w in self.torus.frequencies],
+            "harmonics": len(self.torus.harmonics),
+            "residual": short(float(self.torus.residual())),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Loss:
+    """What tori lose on their way: stability, or the sheet of their series.
+
+    below, above : the last with it and the first without; below is None where the first torus has
+    lost it. found : of the latter, as JSON holds it.
+    """
+
+    below: RefinedPoint | None
+    above: RefinedPoint
+    found: Json
+
+    def record(self) -> Json:
+        """As JSON holds it."""
+        low = self.below or self.above
+        energies = [float(point.torus.energy()) for point in (low, self.above)]
+        return {
+            "place": short(math.sqrt(low.place * self.above.place)),
+            "energy": short(math.sqrt(energies[0] * energies[1])),
+            "between": [
+                short(self.below.place if self.below else 0.0),
+                short(self.above.place),
+            ],
+            **self.found,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class NewtonEnd:
+    """The last torus of a ray, and what stands in the way of the next.
+
+    reason : of Newton's method; SEARCH_ENDS are limits of the search, not of the tori. above : the
+    place at which there was none. points : of all tori. losses : by name, FOLD or STABILITY.
+    """
+
+    reason: str
+    above: float
+    points: tuple[RefinedPoint, ...] = field(repr=False)
+    losses: Mapping[str, Loss]
+
+    @property
+    def last(self) -> RefinedPoint:
+        """The torus at the largest place."""
+        return self.points[-1]
+
+    def record(self, border: str) -> Json:
+        """The border asked for, NEWTON, FOLD or STABILITY, as JSON holds it."""
+        if border == NEWTON:
+            return self._newton()
+        if border in self.losses:
+            return self.losses[border].record()
+        return {"none": f"kept up to {self.last.place:.6g}: {self.reason}"}
+
+    def _newton(self) -> Json:
+        near = self.last.torus.near_resonances[:1]
+        return {
+            "place": short(self.last.place),
+            "energy": short(float(self.last.torus.energy())),
+            "between": [short(self.last.place), short(self.above)],
+            "failure": self.reason,
+            "mode": near[0].mode if near else None,
+            "harmonic": list(map(int, near[0].harmonic)) if near else None,
+            "divisor": short(float(near[0].divisor)) if near else None,
+            "slopes": [short(x) for x in _slopes(self.points)],
+        }
+
+
+def newton_end(
+    ray: Ray,
+    guess: QTorus,
+    begin: float,
+    end: float,
+    *,
+    most_harmonics: int = MOST_HARMONICS,
+    losses: Sequence[str] = (),
+) -> NewtonEnd:
+    """The tori of a ray from one of the series on, each from the one before.
+
+    guess : a torus of the series; begin : its place; end : where the tori are left. losses : of
+    FOLD and STABILITY, what is looked for on the way.
+
+    Raises what `refine_at_energy` raises at the first of them.
+    """
+    points: list[RefinedPoint] = []
+    lost: dict[str, Loss] = {}
+    for found in _followed(ray, guess, begin, end, most_harmonics):
+        if isinstance(found, _Stop):
+            stop = found
+            break
+        for name in losses:
+            if name not in lost and (change := TESTS[name](found.torus)):
+                before = points[-1] if points else None
+                lost[name] = _located(ray, TESTS[name], Loss(before, found, change))
+        points.append(found)
+    return NewtonEnd(stop.reason, stop.above, tuple(points), lost)
+
+
+def _located(ray: Ray, test: Test, loss: Loss) -> Loss:
+    """The same between nearer places, by halving, as far as tori are found."""
+    below, above, found = loss.below, loss.above, loss.found
+    if below is None:
+        return loss
+    while above.place > LOSS_WIDTH * below.place:
+        place = math.sqrt(below.place * above.place)
+        try:
+            middle = RefinedPoint(place, _refined(ray, below.torus, place))
+        except NoTorus:
+            break
+        if change := test(middle.torus):
+            above, found = middle, change
+        else:
+            below = middle
+    return Loss(below, above, found)
+
+
+def _growth(torus: RefinedTorus) -> Json:
+    """The rate of the fastest normal mode; empty where none is unstable beyond doubt."""
+    if len(torus.seeds) == 1:
+        found = floquet(torus)
+        if found.stable:
+            return {}
+        period = 2 * math.pi / float(torus.frequencies[0])
+        rate = math.log(np.abs(found.multipliers).max()) / period
+        return {"growth": short(rate)}
+    try:
+        modes = normal_modes(torus)
+    except NoNormalModes:
+        return {}
+    return {"growth": short(float(modes.growth))} if modes.stable is False else {}
+
+
+def _other_sheet(torus: RefinedTorus) -> Json:
+    """The coefficient that folds, where the torus is not on the sheet of its series; else empty."""
+    sheet = sheet_of(torus)
+    if sheet is None or sheet.sign > 0:
+        return {}
+    return {"mode": sheet.mode, "harmonic": list(sheet.harmonic)}
+
+
+TESTS: Mapping[str, Test] = {FOLD: _other_sheet, STABILITY: _growth}
+
+
+@dataclass(frozen=True)
+class _Stop:
+    reason: str
+    above: float
+
+
+def _followed(
+    ray: Ray, guess: QuasiPeriodic, place: float, end: float, most: int
+) -> Iterator[RefinedPoint | _Stop]:
+    """The tori as they come, then why there is no further one."""
+    torus = _refined(ray, guess, place)
+    yield RefinedPoint(place, torus)
+    factor = FACTOR
+    while place < end:
+        following = min(place * factor, end)
+        try:
+            torus = _refined(ray, torus, following)
+        except NoTorus as failure:
+            if factor < LEAST_FACTOR:
+                yield _Stop(failure.reason, following)
+                return
+            factor = math.sqrt(factor)
+            continue
+        if len(torus.harmonics) > most:
+            yield _Stop(TOO_MANY, following)
+            return
+        place = following
+        factor = min(FACTOR, factor**1.5)
+        yield RefinedPoint(place, torus)
+    yield _Stop(NOT_FOLLOWED, math.inf)
+
+
+def _refined(ray: Ray, guess: QuasiPeriodic, place: float) -> RefinedTorus:
+    name = f"{place:.8g}"
+    if ray.by == ENERGY:
+        equal = dict.fromkeys(ray.seeds, 1)
+        return refine_at_energy(
+            guess, name, harmonic=False, energy_ratio=equal, tolerance=TOLERANCE
+        )
+    amplitudes = dict.fromkeys(ray.seeds, name)
+    return refine_at_amplitudes(guess, amplitudes, tolerance=TOLERANCE)
+
+
+def _slopes(points: tuple[RefinedPoint, ...]) -> list[float]:
+    """d ln A / d ln place of each seed between the last two tori: large before a fold."""
+    if len(points) < 2:
+        return []
+    before, last = points[-2:]
+    sizes = [
+        np.log([float(abs(A)) for A in p.torus.amplitudes.values()]) for p in (before, last)
+    ]
+    slopes = (sizes[1] - sizes[0]) / math.log(last.place / before.place)
+    return [float(x) for x in slopes]
