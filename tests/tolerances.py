@@ -168,6 +168,12 @@ ALLOWANCE = 2e-11
 # amplitudes by frequencies: omega over its shift, some 1e4.
 REFINED_COEFFICIENT = 1e-13
 
+# What forces in doubles change of amplitudes and coefficients, where `refine` takes them: they are expected to be off by 1e-14 at most.
+FORCES_IN_DOUBLES = 2e-14
+
+# What they would lose of a torus with amplitudes of 1e-4: 1e-12 were met.
+LOST_IN_DOUBLES = 1e-13
+
 # The longest of the harmonics that are left out are below 1e-3 of the tolerance; those and small divisors, some 1e-2, leave this.
 BREATHER_HARMONICS = 1e-12
 

@@ -27,7 +27,8 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.chain.tension_terms import highest_product
 from symfpu.refinement.digits import PreciseTorus
-from symfpu.refinement.invariance import OVERSAMPLING, InvarianceEquation, dilated
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import OVERSAMPLING, dilated
 from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.torus import QTorus
@@ -164,7 +165,7 @@ def _of_newton(torus: QuasiPeriodic) -> _Errors:
     shifts, cosines = shifts_of(torus), _on(torus, equation.harmonics)
     divisors = np.where(equation.mask, equation.divisors(shifts), 1)
     left = np.where(equation.mask, divisors * cosines - equation.force(cosines), 0)
-    rounding = equation.rounding(cosines)
+    rounding = equation.rounding(cosines, np.longdouble)
     with np.errstate(divide="ignore"):
         inverse = np.where(equation.mask, 1 / np.abs(divisors), 0)
         first = left / divisors

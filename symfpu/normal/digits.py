@@ -39,8 +39,8 @@ from symfpu.refinement.digits import (
 )
 from symfpu.refinement.equation import Ints
 from symfpu.refinement.harmonics import within_reach
-from symfpu.refinement.invariance import dilated
 from symfpu.refinement.kronecker import Integers
+from symfpu.refinement.lattice import dilated
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 SWEEPS = 200

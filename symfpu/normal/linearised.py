@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.refinement.equation import Floats, Ints
-from symfpu.refinement.invariance import WORKERS, InvarianceEquation, Lattice
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import WORKERS, Lattice
 from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.refinement.equation import Ints
-from symfpu.refinement.invariance import dilated
+from symfpu.refinement.lattice import dilated
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 

@@ -45,7 +45,11 @@ class TorusEquation(Protocol):
         ...
 
     def force(self, cosines: Floats) -> Floats:
-        """Of the anharmonic part of V; (H, C)."""
+        """Of the anharmonic part of V, in the precision of the cosines; (H, C)."""
+        ...
+
+    def rounding(self, cosines: Floats, kind: type) -> Floats:
+        """What rounding in numbers of a kind makes of the force, about; broadcast with (H, C)."""
         ...
 
     def slopes(self, cosines: Floats) -> Floats:
@@ -60,8 +64,11 @@ class TorusEquation(Protocol):
         """The derivative of the force between m chosen unknowns; (m, m)."""
         ...
 
-    def sparse_derivative(self, slopes: Floats) -> Any:
-        """The largest part of it between all unknowns, sparse, in the order of the mask."""
+    def sparse_rows(self, slopes: Floats, rows: Ints, columns: Ints) -> Any:
+        """The rows of m chosen unknowns in it, their largest part, sparse; (m, unknowns).
+
+        Those are in the order of the mask.
+        """
         ...
 
     def energy(

@@ -12,25 +12,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
 import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.algebra.dense import threads_of_a_computation
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.numbers.arithmetic import Arithmetic, mpf
+from symfpu.refinement.couplings import largest_slopes, shifted, sparse_rows
 from symfpu.refinement.equation import Floats, Ints, Slopes
+from symfpu.refinement.lattice import Lattice, halves_of_pairs
 
-# size, in that of the largest chosen harmonics, up to which harmonics are told apart
-OVERSAMPLING = 2.5
 PORTION = 4_000_000  # values of all bonds transformed at once
-# harmonics of the slopes that a sparse derivative holds, and their least height, relative
-MOST_SLOPES, SHARE = 12, 0.1
-MOST_ENTRIES = 40_000_000  # of a sparse derivative; 16 bytes each
+LEAST_COUPLING = (
+    1e-3  # of two modes by one harmonic of the slopes, relative, in sparse rows
+)
 DIGITS = 30  # of the numbers that long doubles are made of
 
 
@@ -65,175 +63,6 @@ def halves(value: Any) -> tuple[np.longdouble, np.longdouble]:
         exact = rational(high)
         low = value - mpmath.mpf(exact.numerator) / exact.denominator
         return high, long(low)
-
-
-def _halves_of_pairs(harmonics: Ints) -> Floats:
-    """The coefficient of exp(i nu.theta) for one of cos(nu.theta); shape (H,)."""
-    return np.where((harmonics != 0).any(axis=1), 0.5, 1.0)
-
-
-class Lattice:
-    """Even functions of s angles: coefficients at chosen harmonics, values on a line of points.
-
-    The points are theta_k = 2 pi k g / M: of the harmonic nu they see nu.g modulo M only, so that
-    one transform of one variable serves any number of angles (a rank-1 lattice). M and g are such
-    that no two harmonics up to OVERSAMPLING / 2 times as large as the chosen ones coincide: of a
-    product, harmonics fold onto chosen ones only if both together are OVERSAMPLING times as
-    large, as small as what the choice leaves out. Even functions need half of the points, M/2 +
-    1.
-    """
-
-    def __init__(self, harmonics: Ints) -> None:
-        self.harmonics = harmonics
-        self.period, self.generator = generated_lattice(
-            dilated(harmonics, OVERSAMPLING / 2)
-        )
-        self.points = self.period // 2 + 1
-        self._place = self.entries(harmonics)
-        self._weight = _halves_of_pairs(harmonics)
-
-    def entries(self, harmonics: Ints) -> Ints:
-        """Places of any harmonics in the spectrum; shape (...) of (..., s)."""
-        return self.folded(harmonics @ self.generator)
-
-    def folded(self, numbers: Ints) -> Ints:
-        """Places of nu.g."""
-        place = numbers % self.period
-        return np.asarray(np.minimum(place, self.period - place))
-
-    def values(self, coefficients: Floats) -> Floats:
-        """Values (m, points) of m functions given by coefficients (H, m) of cosines."""
-        from scipy import fft
-
-        spectrum = np.zeros((coefficients.shape[1], self.points), dtype=coefficients.dtype)
-        halved = coefficients * self._weight[:, None]
-        spectrum[:, self._place] = halved.T
-        return np.asarray(fft.dct(spectrum, type=1, workers=WORKERS, overwrite_x=True))
-
-    def coefficients(self, values: Floats) -> Floats:
-        """Coefficients (H, m) of cosines of even functions given by values (m, points)."""
-        chosen = self.spectrum(values)[:, self._place]
-        return np.asarray(chosen.T / self._weight[:, None])
-
-    def coefficients_at(self, values: Floats, harmonics: Ints) -> Floats:
-        """The same at other harmonics (M, s), up to OVERSAMPLING / 2 times as large as these."""
-        found = self.spectrum(values)[:, self.entries(harmonics)]
-        return np.asarray(found.T / _halves_of_pairs(harmonics)[:, None])
-
-    def spectrum(self, values: Floats) -> Floats:
-        """Coefficients of exp(i nu.theta), by place; shape (m, points)."""
-        from scipy import fft
-
-        sums = fft.dct(values, type=1, workers=WORKERS)
-        return np.asarray(sums / self.period)
-
-
-def dilated(harmonics: Ints, factor: float) -> Ints:
-    """All harmonics, of both signs, in an enlarged cross-polytope about the given ones.
-
-    The smallest one that holds them, times the factor.
-    """
-    sizes = np.abs(harmonics)
-    highest = np.maximum(sizes.max(axis=0), 1)
-    reach = factor * float((sizes / highest).sum(axis=1).max())
-    rows, left = np.zeros((1, 0), dtype=np.int64), np.array([reach])
-    for k in highest.tolist():
-        tops = np.floor(left * k + 1e-9).astype(np.int64)
-        counts = 2 * tops + 1
-        at = np.repeat(np.arange(len(rows)), counts)
-        before = np.repeat(np.cumsum(counts) - counts, counts)
-        numbers = np.arange(len(at)) - before - tops[at]
-        rows = np.column_stack([rows[at], numbers])
-        left = left[at] - np.abs(numbers) / k
-    return np.asarray(rows)
-
-
-def without_opposites(harmonics: Ints) -> Ints:
-    """Those whose first number that is not 0 is positive, and 0, of harmonics of both signs."""
-    first = np.argmax(harmonics != 0, axis=1)
-    lead = harmonics[np.arange(len(harmonics)), first]
-    return np.asarray(harmonics[lead >= 0])
-
-
-@lru_cache(maxsize=8)
-def _known_lattice(content: bytes, s: int) -> tuple[int, tuple[int, ...]]:
-    from scipy import fft
-
-    harmonics = np.frombuffer(content, dtype=np.int64).reshape(-1, s)
-    draw = np.random.default_rng(0)  # any will do; the same every time
-    few = harmonics[draw.permutation(len(harmonics))[:FIRST_TRIED]]
-    size = float(len(harmonics))
-    while True:
-        half = fft.next_fast_len(max(1, int(np.ceil(size / 2))), real=True)
-        period = 2 * half
-        factors = draw.integers(1, period, TRIALS) if s > 1 else [1]
-        for factor in factors:
-            generator = np.array([pow(int(factor), k, period) for k in range(s)])
-            if _distinct(few, generator, period) and _distinct(
-                harmonics, generator, period
-            ):
-                return period, tuple(generator.tolist())
-        size *= 1.1
-
-
-def _distinct(harmonics: Ints, generator: Ints, period: int) -> bool:
-    """Whether nu.g modulo the period differs for all harmonics."""
-    taken = np.zeros(period, dtype=np.bool_)
-    taken[harmonics @ generator % period] = True
-    return int(np.count_nonzero(taken)) == len(harmonics)
-
-
-def generated_lattice(harmonics: Ints) -> tuple[int, Ints]:
-    """A short period M and a generator g = (1, a, a^2, ...) that tell all given harmonics apart.
-
-    nu.g modulo M differs for all of them.
-    """
-    content = np.ascontiguousarray(harmonics).tobytes()
-    period, generator = _known_lattice(content, harmonics.shape[1])
-    return period, np.array(generator)
-
-
-def largest_slopes(grid: Lattice, spectrum: Floats, entries: int) -> Ints:
-    """The harmonics of the slopes that a sparse derivative holds, one of each pair.
-
-    spectrum : of the slopes, (bonds, points). entries : that one harmonic makes.
-
-    They are among all harmonics as large as the chosen ones: where V is even the slopes have even
-    harmonics alone, and the torus odd ones.
-    """
-    heights = np.abs(spectrum).max(axis=0)
-    nu = without_opposites(dilated(grid.harmonics, 1))
-    height = heights[grid.entries(nu)]
-    most = min(MOST_SLOPES, max(1, MOST_ENTRIES // entries))
-    order = np.argsort(-height, kind="stable")
-    chosen = nu[order[:most]]
-    tall = heights[grid.entries(chosen)] > SHARE * heights.max()
-    return np.asarray(chosen[tall])
-
-
-def shifted(harmonics: Ints, kappa: Ints) -> tuple[Ints, Ints]:
-    """Rows of harmonics nu and of nu - kappa (or its negative), where both are chosen."""
-    highest = np.abs(harmonics).max(axis=0)
-    base = 4 * highest + 3
-    weights = np.cumprod(np.append(base[1:], 1)[::-1])[::-1]
-    moved = harmonics - kappa
-    first_nonzero = np.argmax(moved != 0, axis=1)
-    lead = moved[np.arange(len(moved)), first_nonzero]
-    sign = np.where(lead < 0, -1, 1)
-    keys, wanted = harmonics @ weights, sign * (moved @ weights)
-    order = np.argsort(keys)
-    nearest = np.searchsorted(keys[order], wanted)
-    place = order[np.clip(nearest, 0, len(keys) - 1)]
-    within = (np.abs(moved) <= highest).all(axis=1)
-    rows = np.flatnonzero((keys[place] == wanted) & within)
-    return rows, place[rows]
-
-
-WORKERS = threads_of_a_computation()
-FIRST_TRIED, TRIALS = (
-    500,
-    60,
-)  # harmonics that are tried first, and generators of one period
 
 
 class InvarianceEquation:
@@ -354,20 +183,18 @@ class InvarianceEquation:
             total += self.grid.coefficients_at(tension, harmonics) @ self._back[:, part].T
         return np.asarray(total * self.allowed(harmonics))
 
-    def rounding(self, cosines: Floats) -> Floats:
-        """What rounding in long doubles makes of the force of each mode, about; shape (N-1,).
+    def rounding(self, cosines: Floats, kind: type) -> Floats:
+        """What rounding in numbers of a kind makes of the force of each mode, about; (N-1,).
 
         Every bond rounds at random at every point, and a force is a sum over bonds and points.
         """
-        tension = np.zeros(self._stretch.shape[1])
+        law, (stretch, back) = self.chain.law(), self.stretches_of_half()
+        c, tension = cosines.astype(float), np.zeros(stretch.shape[1])
         for part in self._portions():
-            r = self.grid.values(cosines @ self._stretch[:, part])
-            tension[part] = np.mean(bonds.anharmonic_tension(self._law, r) ** 2, axis=1)
-        sizes = np.sqrt(self._back**2 @ tension)
-        points = self.grid.points
-        return np.asarray(
-            np.finfo(np.longdouble).eps * np.sqrt(np.log2(points) / points) * sizes
-        )
+            r = self.grid.values(c @ stretch[:, part])
+            tension[part] = np.mean(bonds.anharmonic_tension(law, r) ** 2, axis=1)
+        sizes = np.sqrt(back**2 @ tension)
+        return np.asarray(np.finfo(kind).eps * self.grid.averaged_rounding * sizes)
 
     def potential(self, Q: Floats) -> np.longdouble:
         """The potential energy of mode coordinates (N-1,), by all bonds."""
@@ -406,11 +233,10 @@ class InvarianceEquation:
 
     def slopes(self, cosines: Floats) -> Floats:
         """V''(r) - 1 on the lattice, in doubles; shape (bonds, points)."""
-        law = self.chain.law()
-        result = np.empty((self._stretch.shape[1], self.grid.points))
+        law, (stretch, _) = self.chain.law(), self.stretches_of_half()
+        c, result = cosines.astype(float), np.empty((stretch.shape[1], self.grid.points))
         for part in self._portions():
-            stretches = np.asarray(cosines @ self._stretch[:, part])
-            r = self.grid.values(stretches.astype(float))
+            r = self.grid.values(c @ stretch[:, part])
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
 
@@ -431,61 +257,61 @@ class InvarianceEquation:
         """The derivative of the force between chosen unknowns; shape (m, m).
 
         rows, columns : of harmonic and mode. Of a unit of cos(nu'.theta) the coefficient at nu is
-        slope[nu - nu'] + slope[nu + nu'], without the second for nu = 0.
+        slope[nu - nu'] + slope[nu + nu'], half of it for nu = 0; of the modes q and q' a slope of
+        the bonds makes Omega_q Omega_q' times what it has of the modes |q - q'| and q + q'.
         """
-        spectrum = self._spectrum(slopes).T.copy()
-        nu = self.harmonics[rows]
-        still = (nu == 0).all(axis=1)
-        out = self._stretch.astype(float)[columns]
-        back = self._back.astype(float)[columns]
+        N, modes = self.chain.N, columns + 1
+        table = self._spectrum(slopes).T @ self._products_of_modes()
+        flat, width = table.ravel(), table.shape[1]
+        nu, linear = self.harmonics[rows], self.linear[columns].astype(float)
         along = nu @ self.grid.generator
         matrix = np.empty((len(rows), len(rows)))
-        for a in range(len(rows)):
-            both = spectrum[self.grid.folded(along[a] - along)]
-            if not still[a]:
-                both += spectrum[self.grid.folded(along[a] + along)]
-            both *= out
-            matrix[a] = both @ back[a]
+        for a, mode in enumerate(modes):
+            apart, total = np.abs(mode - modes[a:]), mode + modes[a:]
+            nearer = np.minimum(total, 2 * N - total)
+            sign = np.where(total > N, -1.0, 1.0)
+            found = np.zeros(len(rows) - a)
+            for turned in (-along[a:], along[a:]):
+                place = self.grid.folded(along[a] + turned) * width
+                found += flat[place + apart] + sign * flat[place + nearer]
+            matrix[a, a:] = linear[a] * linear[a:] * found
+            matrix[a:, a] = matrix[a, a:]
+        matrix[(nu == 0).all(axis=1)] /= 2
         return matrix
+
+    def _products_of_modes(self) -> Floats:
+        """cos(pi m (j + 1/2)/N) / N of half of the bonds with their images; (bonds, N + 1)."""
+        N, bonds_of_half = self.chain.N, np.arange(self._stretch.shape[1])
+        images = np.where(2 * bonds_of_half + 1 == N, 1, 2)
+        angles = np.outer(2 * bonds_of_half + 1, np.arange(N + 1)) % (4 * N)
+        cosines = np.cos(np.pi / (2 * N) * angles)
+        return np.asarray(cosines * images[:, None] / N)
 
     def _spectrum(self, slopes: Floats) -> Floats:
         """Coefficients of the slopes of all bonds, by place; shape (bonds, points)."""
-        return np.concatenate(
-            [self.grid.spectrum(slopes[part]) for part in self._portions()]
-        )
+        spectrum = np.empty_like(slopes)
+        for part in self._portions():
+            spectrum[part] = self.grid.spectrum(slopes[part])
+        return spectrum
 
-    def sparse_derivative(self, slopes: Floats) -> Any:
-        """The derivative of the force by the largest harmonics of the slopes alone.
+    def sparse_rows(self, slopes: Floats, rows: Ints, columns: Ints) -> Any:
+        """The derivative of the force on chosen unknowns, by the largest harmonics of the slopes.
 
-        A sparse matrix between all unknowns, in the order of the mask.
+        rows, columns : of harmonic and mode. A sparse matrix (m, unknowns), those in the order of
+        the mask.
         """
-        from scipy import sparse
-
         spectrum = self._spectrum(slopes)
-        unknowns = int(self.mask.sum())
-        # two modes a row and sign
-        chosen = largest_slopes(self.grid, spectrum, 4 * unknowns)
-        number = np.full(self.mask.shape, -1, dtype=np.int32)
-        number[self.mask] = np.arange(unknowns)
-        both_signs = np.unique(np.concatenate([chosen, -chosen]), axis=0)
-        parts = [self._coupled_by(kappa, spectrum, number) for kappa in both_signs]
-        values, i, j = (np.concatenate(x) for x in zip(*parts, strict=True))
-        return sparse.csr_matrix((values, (i, j)), shape=(unknowns, unknowns))
+        kappas = largest_slopes(self.grid, spectrum)
+        stretch, back = self.stretches_of_half()
+        weights = halves_of_pairs(self.harmonics)
 
-    def _coupled_by(
-        self, kappa: Ints, spectrum: Floats, number: NDArray[np.int32]
-    ) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
-        """Entries of the derivative by one harmonic of the slopes: values, rows, columns."""
-        nu = self.harmonics
-        slope = spectrum[:, self.grid.entries(kappa)]
-        coupling = (self._back.astype(float) * slope) @ self._stretch.astype(float).T
-        sizes = np.abs(coupling)
-        at, to = np.nonzero(sizes > 1e-3 * sizes.max())
-        rows, columns = shifted(self.harmonics, kappa)
-        still_row = (nu[rows] == 0).all(axis=1)
-        still_column = (nu[columns] == 0).all(axis=1)
-        weight = np.where(still_row, 0.5, 1.0) * np.where(still_column, 2.0, 1.0)
-        values = weight[:, None] * coupling[at, to]
-        i, j = number[rows[:, None], at], number[columns[:, None], to]
-        inside = (i >= 0) & (j >= 0)
-        return values[inside], i[inside], j[inside]
+        def coupled(kappa: Ints) -> tuple[Floats, Ints, Ints]:
+            slope = spectrum[:, self.grid.entries(kappa)]
+            coupling = (back * slope) @ stretch.T
+            sizes = np.abs(coupling)
+            coupling[sizes <= LEAST_COUPLING * sizes.max()] = 0
+            at, to = shifted(self.harmonics, rows, kappa)
+            weight = weights[to] / weights[rows[at]]
+            return weight[:, None] * coupling[columns[at]], at, to
+
+        return sparse_rows(self.mask, kappas, coupled, len(rows))

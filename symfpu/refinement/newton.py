@@ -2,15 +2,13 @@
 
 One Krylov solution a step, preconditioned by the exact linear part.
 
-A step solves for the changes of all coefficients and shifts at once. The preconditioner is exact
-on a block, the unknowns with the smallest divisors (seeds and near resonances) with shifts and
-conditions, and divides by the divisors elsewhere. Small systems fit into the block as a whole:
-they are solved directly.
+A step solves for the changes of all coefficients and shifts at once
+(`symfpu.refinement.linear_system`). Forces are taken in doubles where what those round shows in no
+coefficient, else in long doubles.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -19,14 +17,14 @@ import numpy as np
 
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
+from symfpu.refinement.equation import Floats, TorusEquation
+from symfpu.refinement.linear_system import LinearSystem, Preconditioner
 
-LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
-NEARNESS = (
-    3.0  # divisors up to so many times what the coupling adds to them belong to the block
-)
 KRYLOV, RESTARTS = 60, 4
 ACCURACY = 1e-8  # of a Krylov solution
+# errors by rounding up to which a force is taken in doubles: of an amplitude, relative, and of
+# other coefficients, relative to the largest
+AMPLITUDES, COEFFICIENTS = 1e-14, 1e-13
 # relative change to come that ends the iteration, and the one that does when it no longer shrinks
 STEP, ROUNDING_STEP = 1e-16, 1e-9
 ITERATIONS = 15
@@ -66,146 +64,34 @@ class Iterate:
         return self.steps[-1].residual if self.steps else np.inf
 
 
-class _System:
-    """One linear system of Newton's method.
+@np.errstate(divide="ignore", invalid="ignore")
+def force_precision(equation: TorusEquation, cosines: Floats, shifts: Floats) -> type:
+    """Doubles for the force where what they round shows in no coefficient, else long doubles.
 
-    Vectors hold the masked coefficients, then the shifts.
+    An error of the force is divided by the divisor. At small amplitudes those of the seeds, their
+    shifts, fall with the square of the amplitude, the force of alpha relative to it as the first.
     """
-
-    def __init__(
-        self,
-        equation: TorusEquation,
-        conditions: Sequence[Condition],
-        cosines: Floats,
-        shifts: Floats,
-    ) -> None:
-        self.equation, self.mask = equation, equation.mask
-        self.divisors = equation.divisors(shifts)
-        imbalance = self.divisors * cosines - equation.force(cosines)
-        self.imbalance = np.where(self.mask, imbalance, 0)
-        values = [condition.value(equation, cosines, shifts) for condition in conditions]
-        self.values = np.array(values, dtype=np.longdouble)
-        self.slopes = equation.slopes(cosines)
-        rates = equation.rates(shifts)
-        self.by_shift = []
-        for nu in equation.harmonics.T:
-            slope = (2 * rates * nu)[:, None] * cosines
-            self.by_shift.append(slope.astype(float)[self.mask])
-        gradients = [
-            condition.gradient(equation, cosines, shifts) for condition in conditions
-        ]
-        by_cosine, by_shift = zip(*gradients, strict=True)
-        self.by_cosine = np.array([slope[self.mask] for slope in by_cosine])
-        self.corner = np.array(by_shift)
-        self.diagonal = self.divisors.astype(float)
-        accelerations = np.abs((rates**2)[:, None] * cosines).sum(axis=0)
-        self.acceleration = float(accelerations.max())
-
-    def product(self, vector: Floats) -> Floats:
-        s = len(self.by_shift)
-        coefficients, shifts = vector[:-s], vector[-s:]
-        change = np.zeros(self.mask.shape)
-        change[self.mask] = coefficients
-        moved = self.diagonal * change - self.equation.force_change(self.slopes, change)
-        equations = moved[self.mask]
-        for column, x in zip(self.by_shift, shifts, strict=True):
-            equations += column * x
-        conditions = self.by_cosine @ coefficients + self.corner @ shifts
-        return np.concatenate([equations, conditions])
-
-    @property
-    def right(self) -> Floats:
-        left = np.concatenate([self.imbalance[self.mask], self.values])
-        return -left.astype(float)
+    divisors = np.abs(equation.divisors(shifts)).astype(float)
+    errors = equation.rounding(cosines, np.float64) / divisors
+    seeds = equation.seed_rows, equation.seed_columns
+    allowed = np.full(cosines.shape, COEFFICIENTS * float(np.abs(cosines).max()))
+    allowed[seeds] = AMPLITUDES * np.abs(cosines[seeds])
+    enough = (errors <= allowed)[equation.mask].all()
+    return np.float64 if enough else np.longdouble
 
 
-class _Preconditioner:
-    """The inverse of the system with divisors alone outside its block.
+def _imbalance(
+    equation: TorusEquation, cosines: Floats, shifts: Floats, precision: type
+) -> tuple[Floats, float]:
+    """Of the equations of all unknowns, (U,), and the same relative to the largest acceleration.
 
-    The largest couplings to and from the block are kept.
+    Divisors times coefficients in long doubles: near a torus the force cancels them.
     """
-
-    def __init__(self, system: _System) -> None:
-        mask = system.mask
-        total, s = int(mask.sum()), len(system.by_shift)
-        chosen = self._block(system, total)
-        inside = (np.cumsum(mask, axis=None) - 1)[chosen]
-        outside = np.setdiff1d(np.arange(total), inside)
-        self.inside = np.append(inside, np.arange(total, total + s))
-        self.outside = outside
-        by_shift = np.array(system.by_shift).reshape(s, total).T
-        matrix = self._matrix(system, chosen, inside, by_shift)
-        divisors = system.diagonal[mask]
-        self.inverse = 1 / np.where(divisors == 0, 1, divisors)[outside]
-        self.whole = len(outside) == 0
-        if not self.whole:
-            matrix -= self._couplings(system, inside, by_shift)
-        self.factors = _factors(matrix)
-
-    def _block(self, system: _System, total: int) -> Ints:
-        """Places of the unknowns with the smallest divisors, those of the seeds first of all."""
-        equation = system.equation
-        linear = equation.linear.astype(float)
-        weights = np.where(system.mask, np.abs(system.diagonal) / linear**2, np.inf)
-        weights[equation.seed_rows, equation.seed_columns] = 0
-        resonant = weights < NEARNESS * np.abs(system.slopes).max()
-        count = min(max(int(resonant.sum()), SMALLEST_BLOCK), LARGEST_BLOCK, total)
-        smallest = np.argpartition(weights, count - 1, axis=None)[:count]
-        return np.sort(smallest)
-
-    @staticmethod
-    def _matrix(system: _System, chosen: Ints, inside: Ints, by_shift: Floats) -> Floats:
-        """The system within the block, with shifts and conditions."""
-        count, s = len(chosen), by_shift.shape[1]
-        rows, columns = np.unravel_index(chosen, system.mask.shape)
-        coupling = system.equation.block(system.slopes, rows, columns)
-        matrix = np.zeros((count + s, count + s))
-        matrix[:count, :count] = np.diag(system.diagonal[rows, columns]) - coupling
-        matrix[:count, count:] = by_shift[inside]
-        matrix[count:, :count] = system.by_cosine[:, inside]
-        matrix[count:, count:] = system.corner
-        return matrix
-
-    def _couplings(self, system: _System, inside: Ints, by_shift: Floats) -> Floats:
-        """What the unknowns outside add to the block; keeps the couplings into and out of it."""
-        from scipy import sparse
-
-        outside = self.outside
-        coupling = -system.equation.sparse_derivative(system.slopes)
-        conditions = sparse.csr_matrix(system.by_cosine[:, outside])
-        shifts = sparse.csr_matrix(by_shift[outside])
-        self.into = sparse.bmat([[coupling[inside][:, outside]], [conditions]]).tocsr()
-        self.out = sparse.bmat([[coupling[outside][:, inside], shifts]]).tocsr()
-        through = self.into @ sparse.diags(self.inverse) @ self.out
-        return np.asarray(through.toarray())
-
-    def __call__(self, vector: Floats) -> Floats:
-        from scipy import linalg
-
-        result = np.empty_like(vector)
-        block = vector[self.inside]
-        if self.whole:
-            result[self.inside] = linalg.lu_solve(self.factors, block, check_finite=False)
-            return result
-        far = self.inverse * vector[self.outside]
-        right = block - self.into @ far
-        near = linalg.lu_solve(self.factors, right, check_finite=False)
-        result[self.inside] = near
-        result[self.outside] = far - self.inverse * (self.out @ near)
-        return result
-
-
-def _factors(matrix: Floats) -> tuple[Floats, Ints]:
-    """L and U of a matrix, overwritten; LinAlgError for an exact zero among the pivots."""
-    from scipy import linalg
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", linalg.LinAlgWarning)
-        factors = linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
-    if not factors[0].diagonal().all():
-        raise np.linalg.LinAlgError("a pivot is zero")
-    lower_and_upper, pivots = factors
-    return lower_and_upper, pivots
+    force = equation.force(cosines.astype(precision))
+    left = (equation.divisors(shifts) * cosines - force)[equation.mask].astype(float)
+    rates = equation.rates(shifts).astype(float)
+    accelerations = rates**2 @ np.abs(cosines).astype(float)
+    return left, float(np.abs(left).max() / accelerations.max())
 
 
 # iterates that run away are refused by their size
@@ -224,21 +110,25 @@ def newton(
     steps: list[NewtonStep] = []
     best = (np.inf, cosines, shifts)
     sizes = _sizes(equation, cosines)
+    precision = force_precision(equation, cosines, shifts)
 
     def failed(reason: str) -> Iterate:
         return Iterate(best[1], best[2], tuple(steps), reason)
 
     for _ in range(ITERATIONS):
-        system = _System(equation, conditions, cosines, shifts)
-        residual = float(np.abs(system.imbalance).max()) / system.acceleration
-        violation = float(np.abs(system.values).max())
+        imbalance, residual = _imbalance(equation, cosines, shifts, precision)
+        given = [condition.value(equation, cosines, shifts) for condition in conditions]
+        values = np.array(given).astype(float)
+        violation = float(np.abs(values).max())
         if not np.isfinite(residual + violation):
             return failed("the equations or conditions leave the range of numbers")
         error = residual + violation
         if error < best[0]:
             best = (error, cosines, shifts)
+        system = LinearSystem(equation, conditions, cosines, shifts)
+        right = -np.concatenate([imbalance, values])
         try:
-            change, products = _solved(system, _Preconditioner(system), system.right)
+            change, products = _solved(system, Preconditioner(system), right)
         except (np.linalg.LinAlgError, ValueError) as failure:
             return failed(f"the matrix of Newton's method is singular ({failure})")
         moved = np.zeros(cosines.shape)
@@ -272,8 +162,8 @@ def _names(equation: TorusEquation) -> list[str]:
 
 
 def _solved(
-    system: _System,
-    preconditioner: _Preconditioner,
+    system: LinearSystem,
+    preconditioner: Preconditioner,
     right: Floats,
     accuracy: float = ACCURACY,
 ) -> tuple[Floats, int]:
@@ -311,8 +201,8 @@ def responses(
     Shapes (s, H, N-1) and (s, s), the condition first: Newton's matrix solved for each of them,
     with corrections until they no longer shrink. Raises LinAlgError where it is singular.
     """
-    system = _System(equation, conditions, cosines, shifts)
-    preconditioner = _Preconditioner(system)
+    system = LinearSystem(equation, conditions, cosines, shifts)
+    preconditioner = Preconditioner(system)
     count, s = int(system.mask.sum()), len(shifts)
     by_cosine, by_shift = np.zeros((s, *system.mask.shape)), np.zeros((s, s))
     for place in range(s):
@@ -324,7 +214,9 @@ def responses(
     return by_cosine, by_shift
 
 
-def _corrected(system: _System, preconditioner: _Preconditioner, right: Floats) -> Floats:
+def _corrected(
+    system: LinearSystem, preconditioner: Preconditioner, right: Floats
+) -> Floats:
     """The solution to rounding."""
     total, left, before = np.zeros(len(right)), right, np.inf
     for _ in range(CORRECTIONS):
@@ -352,15 +244,15 @@ class Correction:
         cosines: Floats,
         shifts: Floats,
     ) -> None:
-        self._system = _System(equation, conditions, cosines, shifts)
-        self._preconditioner = _Preconditioner(self._system)
+        self._system = LinearSystem(equation, conditions, cosines, shifts)
+        self._preconditioner = Preconditioner(self._system)
 
     def __call__(self, imbalance: Floats, accuracy: float) -> tuple[Floats, Floats, int]:
         """Changes of coefficients (H, C) and shifts (s,) that take an imbalance (H, C) away.
 
         The conditions stay met. The last result: products with the derivative.
         """
-        mask, s = self._system.mask, len(self._system.by_shift)
+        mask, s = self._system.mask, self._system.s
         right = np.concatenate([-imbalance[mask], np.zeros(s)])
         change, products = _solved(self._system, self._preconditioner, right, accuracy)
         by_cosine = np.zeros(mask.shape)

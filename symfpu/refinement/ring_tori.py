@@ -12,7 +12,7 @@ from symfpu.errors import InputError
 from symfpu.numbers.counted import counted
 from symfpu.refinement.conditions import seed_amplitudes
 from symfpu.refinement.equation import Floats, Ints
-from symfpu.refinement.invariance import dilated
+from symfpu.refinement.lattice import dilated
 from symfpu.refinement.newton import Iterate, NewtonStep
 from symfpu.refinement.resonances import NearResonance, near_resonances
 from symfpu.refinement.waves import WaveEquation

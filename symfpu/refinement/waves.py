@@ -21,15 +21,10 @@ from numpy.typing import NDArray
 
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
+from symfpu.refinement.couplings import largest_slopes, shifted, sparse_rows
 from symfpu.refinement.equation import Floats, Ints, Slopes
-from symfpu.refinement.invariance import (
-    DIGITS,
-    LONG_DOUBLES,
-    Lattice,
-    largest_slopes,
-    long,
-    shifted,
-)
+from symfpu.refinement.invariance import DIGITS, LONG_DOUBLES, long
+from symfpu.refinement.lattice import Lattice
 
 
 class WaveEquation:
@@ -105,6 +100,16 @@ class WaveEquation:
         law = bonds.cast(self._law, cosines.dtype)
         return self._projected(bonds.anharmonic_tension(law, self._stretches(cosines)))
 
+    def rounding(self, cosines: Floats, kind: type) -> Floats:
+        """What rounding in numbers of a kind makes of the force, about; shape (H, 1)."""
+        tension = bonds.anharmonic_tension(
+            self.chain.law(), self._stretches(cosines.astype(float))
+        )
+        size = (
+            np.finfo(kind).eps * self.grid.averaged_rounding * np.sqrt(np.mean(tension**2))
+        )
+        return np.asarray(size * self._back.astype(float))
+
     def slopes(self, cosines: Floats) -> Floats:
         """V''(r) - 1 at the points, in doubles; shape (1, points)."""
         r = self._stretches(cosines.astype(float))
@@ -130,34 +135,22 @@ class WaveEquation:
             matrix[a] = back[a] * both * there
         return matrix
 
-    def sparse_derivative(self, slopes: Floats) -> Any:
-        """The derivative of the force by the largest harmonics of the slopes alone.
+    def sparse_rows(self, slopes: Floats, rows: Ints, columns: Ints) -> Any:
+        """The derivative of the force on chosen unknowns, by the largest harmonics of the slopes.
 
-        A sparse matrix between all unknowns, in the order of the mask.
+        rows, columns : of harmonic and mode. A sparse matrix (m, unknowns), those in the order of
+        the mask.
         """
-        from scipy import sparse
-
         spectrum = self.grid.spectrum(slopes)
-        unknowns = int(self.mask.sum())
-        chosen = largest_slopes(self.grid, spectrum, 2 * unknowns)
-        number = np.full(len(self.harmonics), -1, dtype=np.int32)
-        number[self.mask[:, 0]] = np.arange(unknowns)
-        both_signs = np.unique(np.concatenate([chosen, -chosen]), axis=0)
-        parts = [self._coupled_by(kappa, spectrum[0], number) for kappa in both_signs]
-        values, i, j = (np.concatenate(x) for x in zip(*parts, strict=True))
-        return sparse.csr_matrix((values, (i, j)), shape=(unknowns, unknowns))
 
-    def _coupled_by(
-        self, kappa: Ints, spectrum: Floats, number: NDArray[np.int32]
-    ) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
-        """Entries of the derivative by one harmonic of the slopes: values, rows, columns."""
-        rows, columns = shifted(self.harmonics, kappa)
-        slope = spectrum[self.grid.entries(kappa)]
-        out, back = self._stretch[columns, 0], self._back[rows, 0]
-        values = (back * out).astype(float) * slope
-        i, j = number[rows], number[columns]
-        inside = (i >= 0) & (j >= 0)
-        return values[inside], i[inside], j[inside]
+        def coupled(kappa: Ints) -> tuple[Floats, Ints, Ints]:
+            at, to = shifted(self.harmonics, rows, kappa)
+            slope = spectrum[0, self.grid.entries(kappa)]
+            values = (self._back[rows[at]] * self._stretch[to]).astype(float) * slope
+            return values, at, to
+
+        kappas = largest_slopes(self.grid, spectrum)
+        return sparse_rows(self.mask, kappas, coupled, len(rows))
 
     def energy(
         self, cosines: Floats, shifts: Floats, *, harmonic: bool

@@ -22,7 +22,7 @@ from symfpu import (
 )
 from symfpu.action_angle import precise_twist
 from symfpu.action_angle.newton_twist import NoTwist
-from symfpu.refinement.newton import SMALLEST_BLOCK
+from symfpu.refinement.linear_system import SMALLEST_BLOCK
 from tests.action_angle.test_actions import SEEDS, refined_toda
 from tests.tolerances import NEWTON_TWIST, PRECISE_TWIST, ROUNDING, SLOPE, TWIST_DIFFERENCE
 

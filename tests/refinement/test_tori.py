@@ -14,9 +14,9 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError
 from symfpu.paper.printed import TWO_TORUS
+from symfpu.refinement import newton
 from symfpu.refinement.conditions import FrequencyShift
 from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.newton import newton
 from symfpu.refinement.tori import NoTorus, refine, refine_at_amplitudes, refine_at_energy, shifts_of
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -135,13 +135,17 @@ def test_harmonics_are_as_many_as_the_tolerance_needs():
 
 
 @pytest.mark.parametrize("case", ["alpha, breather", TWO, "beta, two"])
-def test_newtons_method_converges_quadratically(case):
-    """From a disturbed torus: logarithms of the changes double from step to step, until the accuracy of Krylov solutions is seen."""
+def test_newtons_method_converges_quadratically(case, monkeypatch):
+    """From a disturbed torus: logarithms of the changes double from step to step, until the accuracy of Krylov solutions is seen.
+
+    With forces in long doubles, whose rounding is not seen before it.
+    """
     torus = refined(case)
+    monkeypatch.setattr(newton, "force_precision", lambda *_: np.longdouble)
     equation = InvarianceEquation(torus.chain, torus.seeds, torus.harmonics)
     shifts = shifts_of(torus)
     disturbed = torus.cosines * (1 + 0.01 * np.random.default_rng(1).normal(size=torus.cosines.shape)) * equation.mask
-    found = newton(equation, [FrequencyShift(i, x) for i, x in enumerate(shifts)], disturbed.astype(np.longdouble), shifts)
+    found = newton.newton(equation, [FrequencyShift(i, x) for i, x in enumerate(shifts)], disturbed.astype(np.longdouble), shifts)
     assert not found.failure
     changes = np.array([step.change for step in found.steps])
     assert changes[0] > 1e-3

@@ -1,0 +1,179 @@
+"""The linear system of a step of Newton's method on a torus, and its preconditioner.
+
+The preconditioner is exact on a block, the unknowns with the smallest divisors (seeds and near
+resonances) with shifts and conditions, and divides by the divisors elsewhere. Small systems fit
+into the block as a whole: they are solved directly.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+
+from symfpu.refinement.conditions import Condition
+from symfpu.refinement.equation import Floats, Ints, TorusEquation
+
+LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
+# divisors up to so many times what the coupling adds to them belong to the block
+NEARNESS = 3.0
+
+
+class LinearSystem:
+    """One linear system of Newton's method.
+
+    Vectors hold the masked coefficients, then the shifts.
+    """
+
+    def __init__(
+        self,
+        equation: TorusEquation,
+        conditions: Sequence[Condition],
+        cosines: Floats,
+        shifts: Floats,
+    ) -> None:
+        self.equation, self.mask, self.s = equation, equation.mask, len(shifts)
+        self.diagonal = equation.divisors(shifts).astype(float)
+        self.slopes = equation.slopes(cosines)
+        self.cosines = cosines.astype(float)
+        self.rates = equation.rates(shifts).astype(float)
+        self._set_conditions(conditions, cosines, shifts)
+
+    def _set_conditions(
+        self, conditions: Sequence[Condition], cosines: Floats, shifts: Floats
+    ) -> None:
+        from scipy import sparse
+
+        by_cosine, by_shift = [], []
+        for condition in conditions:
+            of_cosines, of_shifts = condition.gradient(self.equation, cosines, shifts)
+            by_cosine.append(sparse.csr_matrix(of_cosines[self.mask]))
+            by_shift.append(of_shifts)
+        self.by_cosine = sparse.vstack(by_cosine, format="csr")
+        self.corner = np.array(by_shift)
+
+    def along_shifts(self, change: Floats) -> Floats:
+        """What a change of the shifts adds to the equations; shape (unknowns,)."""
+        moved = 2 * self.rates * (self.equation.harmonics @ change)
+        return np.asarray((moved[:, None] * self.cosines)[self.mask])
+
+    def product(self, vector: Floats) -> Floats:
+        coefficients, shifts = vector[: -self.s], vector[-self.s :]
+        change = np.zeros(self.mask.shape)
+        change[self.mask] = coefficients
+        moved = self.diagonal * change
+        moved -= self.equation.force_change(self.slopes, change)
+        equations = moved[self.mask] + self.along_shifts(shifts)
+        conditions = self.by_cosine @ coefficients + self.corner @ shifts
+        return np.concatenate([equations, conditions])
+
+
+class Preconditioner:
+    """The inverse of the system with divisors alone outside its block.
+
+    The largest couplings to and from the block are kept.
+    """
+
+    def __init__(self, system: LinearSystem) -> None:
+        mask, s = system.mask, system.s
+        total = int(mask.sum())
+        chosen = self._block(system, total)
+        inside = (np.cumsum(mask, axis=None) - 1)[chosen]
+        rows, columns = np.unravel_index(chosen, mask.shape)
+        self.system, self.whole = system, len(inside) == total
+        self.inside = np.append(inside, np.arange(total, total + s))
+        matrix = self._matrix(system, rows, columns, inside)
+        if not self.whole:
+            divisors = system.diagonal[mask]
+            self.inverse = 1 / np.where(divisors == 0, 1, divisors)
+            self.inverse[inside] = 0
+            self._set_couplings(rows, columns)
+            self._subtract_outside(matrix)
+        self.factors = _factors(matrix)
+
+    def _block(self, system: LinearSystem, total: int) -> Ints:
+        """Places of the unknowns with the smallest divisors, those of the seeds first of all."""
+        equation = system.equation
+        linear = equation.linear.astype(float)
+        weights = np.full(system.mask.shape, np.inf)
+        np.divide(np.abs(system.diagonal), linear**2, out=weights, where=system.mask)
+        weights[equation.seed_rows, equation.seed_columns] = 0
+        resonant = weights < NEARNESS * np.abs(system.slopes).max()
+        count = min(max(int(resonant.sum()), SMALLEST_BLOCK), LARGEST_BLOCK, total)
+        smallest = np.argpartition(weights, count - 1, axis=None)[:count]
+        return np.sort(smallest)
+
+    @staticmethod
+    def _matrix(system: LinearSystem, rows: Ints, columns: Ints, inside: Ints) -> Floats:
+        """The system within the block, with shifts and conditions."""
+        count, s = len(rows), system.s
+        matrix = np.zeros((count + s, count + s))
+        coupling = system.equation.block(system.slopes, rows, columns)
+        np.negative(coupling, out=matrix[:count, :count])
+        matrix[np.arange(count), np.arange(count)] += system.diagonal[rows, columns]
+        for k, unit in enumerate(np.eye(s)):
+            matrix[:count, count + k] = system.along_shifts(unit)[inside]
+        matrix[count:, :count] = system.by_cosine[:, inside].toarray()
+        matrix[count:, count:] = system.corner
+        return matrix
+
+    def _set_couplings(self, rows: Ints, columns: Ints) -> None:
+        """The largest couplings into the block and out of it, sparse.
+
+        The force derives from a potential: its derivative is symmetric with the norms of the
+        cosines as weights, 1 of a constant and 1/2 of the others.
+        """
+        from scipy import sparse
+
+        system = self.system
+        self.into = -system.equation.sparse_rows(system.slopes, rows, columns)
+        still = (system.equation.harmonics == 0).all(axis=1)
+        norms = np.where(still, 1.0, 0.5)
+        of_all = np.broadcast_to(norms[:, None], system.mask.shape)[system.mask]
+        scaled = sparse.diags(norms[rows]) @ self.into @ sparse.diags(1 / of_all)
+        self.out = scaled.T.tocsr()
+
+    def _subtract_outside(self, matrix: Floats) -> None:
+        """What the unknowns outside add to the block."""
+        from scipy import sparse
+
+        system, count = self.system, self.into.shape[0]
+        far = sparse.diags(self.inverse) @ self.out
+        added = (self.into @ far).tocoo()
+        matrix[added.row, added.col] -= added.data
+        matrix[count:, :count] -= (system.by_cosine @ far).toarray()
+        for k, unit in enumerate(np.eye(system.s)):
+            moved = self.inverse * system.along_shifts(unit)
+            matrix[:count, count + k] -= self.into @ moved
+            matrix[count:, count + k] -= system.by_cosine @ moved
+
+    def __call__(self, vector: Floats) -> Floats:
+        from scipy import linalg
+
+        result = np.empty_like(vector)
+        right, s = vector[self.inside], self.system.s
+        if self.whole:
+            result[self.inside] = linalg.lu_solve(self.factors, right, check_finite=False)
+            return result
+        far = self.inverse * vector[:-s]
+        right[:-s] -= self.into @ far
+        right[-s:] -= self.system.by_cosine @ far
+        near = linalg.lu_solve(self.factors, right, check_finite=False)
+        driven = self.out @ near[:-s] + self.system.along_shifts(near[-s:])
+        result[:-s] = far - self.inverse * driven
+        result[self.inside] = near
+        return result
+
+
+def _factors(matrix: Floats) -> tuple[Floats, Ints]:
+    """L and U of a matrix, overwritten; LinAlgError for an exact zero among the pivots."""
+    from scipy import linalg
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", linalg.LinAlgWarning)
+        factors = linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
+    if not factors[0].diagonal().all():
+        raise np.linalg.LinAlgError("a pivot is zero")
+    lower_and_upper, pivots = factors
+    return lower_and_upper, pivots
