@@ -717,3 +717,9 @@ COARSE_STAY, DOUBLES_STAY, DIGITS_STAY = 1e-7, 1e-3, 1e-18
 
 # The first step of a KAM iteration for N = 3, as a part of what it may be: 0.07 in doubles, 8e-20 with 30 digits.
 KAM_DOUBLES, KAM_DIGITS = 1e-3, 1e-15
+
+# Numbers in the rows of an atlas are rounded to six digits.
+SIX_DIGITS = 5e-6
+
+# Two borders that are the same: each lies between points whose logarithms differ by at most 0.01, and is located within.
+LOCATED = 0.01

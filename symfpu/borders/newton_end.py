@@ -58,8 +58,8 @@ class NewtonEnd:
     """The last torus of a ray, and what stands in the way of the next.
 
     reason : of Newton's method; TOO_MANY and NOT_FOLLOWED are limits of the search, not of the
-    tori. turns : the amplitude or frequency that grows fastest there, as d ln / d ln place.
-    points : of all tori. first_unstable : the places of the last stable and first unstable one.
+    tori. above : the place at which there is none. points : of all tori. first_unstable : the
+    places of the last stable and first unstable one; growth : its rate. degree : of the ray.
     """
 
     reason: str
