@@ -132,6 +132,16 @@ class Case:
     ) -> Any:
         return symfpu.lindstedt(self.chain, seeds, frequencies, order, **how)
 
+    def atlas(self) -> None:
+        """One column, whose failure is a row."""
+        with ThreadPoolExecutor(1) as pool:
+            how = {"borders": (), "places": (1e-2 * self.size**2,), "executor": pool}
+            found = symfpu.atlas([self.chain], ["low:1"], 2, **how)
+        for row in found.rows.failures:
+            if row.failure.kind != "InputError":
+                raise SystemExit(f"atlas of {self.chain}: {row.failure}")
+            raise InputError("atlas", row.failure.message, "", "")
+
     @property
     def rule(self) -> dict[str, Any]:
         """The law for functions that take N and not a chain."""
@@ -275,6 +285,7 @@ SERIES: dict[str, Door] = {
 NEWTON: dict[str, Door] = {
     "actions": lambda c: symfpu.actions(c.solution),
     "appendix_a": lambda c: appendix_a(c.chain, SEEDS, c.amplitudes, 3, members=2),
+    "atlas": lambda c: c.atlas(),
     "breather_at_amplitude": lambda c: c.breather,
     "breather_at_energy": lambda c: symfpu.breather_at_energy(c.chain, 1, c.size**2 / 20),
     "family": lambda c: c.family,
@@ -410,6 +421,22 @@ FILES: dict[str, Door] = {
 }
 VERBS: dict[str, Door] = {
     "symfpu actions": lambda c: c.verb("actions", c.file),
+    "symfpu atlas": lambda c: c.verb(
+        "atlas",
+        "--lengths",
+        4,
+        "--packets",
+        "low:1",
+        "--order",
+        2,
+        "--borders",
+        "newton",
+        "--places",
+        1e-2 * c.size**2,
+        "--reach",
+        1,
+        *c.words,
+    ),
     "symfpu breather": lambda c: c.verb(
         "breather", "-N", N, "--seed", 1, "--amplitude", c.size, *c.words
     ),
@@ -480,6 +507,7 @@ OTHERS = {
     ),
     *(
         "profile_distance",
+        "read_atlas",
         "read_sweep",
         "recurrence",
         "substitute_multipliers",

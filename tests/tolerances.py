@@ -730,3 +730,8 @@ FOLD_RADIUS = 1e-3
 
 # ln of a determinant of some 100 rows by differences with a step of 1e-6: each entry to 1e-9, times the inverse near the fold.
 SHEET_DETERMINANT = 1e-5
+# Numbers in the rows of an atlas are rounded to six digits.
+SIX_DIGITS = 5e-6
+
+# Two borders that are the same: each lies between points whose logarithms differ by at most 0.01, and is located within.
+LOCATED = 0.01

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from symfpu.borders.column import BORDERS, REACH, atlas_column
-from symfpu.borders.laws import BorderLaw, power_law
+from symfpu.borders.laws import LEAST_LENGTHS, BorderLaw, power_law
 from symfpu.borders.newton_end import MOST_HARMONICS, NEWTON, SEARCH_ENDS
 from symfpu.borders.packets import packet_modes
 from symfpu.borders.point import AMPLITUDE, ENERGY, ESTIMATES
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
@@ -31,12 +31,16 @@ FUNCTION = "symfpu.borders.column.atlas_column"
 
 @dataclass(frozen=True)
 class AtlasBorder:
-    """One border of an atlas, dimensionless.
+    """One border of an atlas. Made by `Atlas`; ours, dimensionless.
 
     chain : as it is typed. packet : as it was named; modes : its modes. order : of the series.
     border : "ratio", "sums", "poles", "fold", "newton" or
         "stability". energy : H there; None if there is
         none. details : its record.
+
+    >>> chain = {"N": 8, "alpha": "0", "beta": "1"}
+    >>> AtlasBorder(chain, "low:1", (1,), 8, "poles", 1.02, {"mode": 5}).model
+    'beta=1'
     """
 
     chain: Json
@@ -139,18 +143,26 @@ class Atlas(Shown, Tabled):
             if (b.packet, b.border) == (packet, border)
             and model in (None, b.model)
             and order in (None, b.order)
-            and b.energy is not None
-            and not b.limited
         ]
         models = {b.model for b in found}
         if len(models) > 1:
             allowed = f"one of {sorted(models)}"
             raise InputError("model", model, allowed, "name one")
-        best: dict[int, AtlasBorder] = {}
-        for b in sorted(found, key=lambda b: b.order):
-            best[b.N] = b
-        lengths = sorted(best)
-        return power_law(lengths, [float(best[N].energy or 0.0) for N in lengths])
+        energies = _by_length(found)
+        return power_law(list(energies), list(energies.values()))
+
+    @property
+    def laws(self) -> dict[tuple[str, str, str], BorderLaw]:
+        """By model, packet and border, where there are three lengths or more."""
+        groups: dict[tuple[str, str, str], list[AtlasBorder]] = {}
+        for b in self.borders:
+            groups.setdefault((b.model, b.packet, b.border), []).append(b)
+        energies = {key: _by_length(group) for key, group in groups.items()}
+        return {
+            key: power_law(list(found), list(found.values()))
+            for key, found in energies.items()
+            if len(found) >= LEAST_LENGTHS
+        }
 
     def _table(self) -> Table:
         """One row for each border, with what ends the torus there."""
@@ -172,6 +184,15 @@ class Atlas(Shown, Tabled):
             "reason": [b.reason for b in borders],
         }
         return Table(columns, attributes(self, function=self.rows.function))
+
+
+def _by_length(borders: Iterable[AtlasBorder]) -> dict[int, float]:
+    """Energies by rising N, each at the largest order; without those that only the search ended."""
+    best = {}
+    for b in sorted(borders, key=lambda b: (b.N, b.order)):
+        if b.energy is not None and not b.limited:
+            best[b.N] = b.energy
+    return best
 
 
 def _number(value: Any) -> float:
@@ -202,6 +223,15 @@ def read_atlas(file: Path | str) -> Atlas:
     """The atlas in a file that `atlas` wrote; also while it is still written.
 
     file : JSON lines. Raises InputError for a file of anything else. Dimensionless. Ours.
+
+    >>> import tempfile
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> from symfpu import Chain, atlas
+    >>> with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(1) as pool:
+    ...     how = {"borders": ["ratio"], "executor": pool, "file": f"{folder}/atlas.jsonl"}
+    ...     found = atlas([Chain(4, beta=1)], ["low:1"], 4, **how)
+    ...     read_atlas(how["file"]) == found
+    True
     """
     rows = read_sweep(file)
     if rows.function != FUNCTION:
@@ -267,18 +297,17 @@ def atlas(
     }
     wanted = tuple(_one_of("borders", name, BORDERS) for name in borders)
     series = tuple(name for name in wanted if name in ESTIMATES)
-    orders = (order,) if isinstance(order, int) else tuple(order)
-    if not orders:
-        raise InputError("order", order, "an order, or several", "take 12")
+    orders = _orders(order)
+    names = _packets(packets)
     cases = [
         {
             "chain": chain,
-            "packet": _packet(packet),
-            "order": integer(K, "order", 1),
+            "packet": packet,
+            "order": K,
             "borders": wanted if max(orders) == K else series,
         }
         for chain in chains
-        for packet in packets
+        for packet in names
         for K in orders
     ]
     rows = sweep(
@@ -300,6 +329,7 @@ def column_bytes(chain: Chain, packet: str, order: int) -> int:
     >>> column_bytes(Chain(32, beta=1), "low:2", 6) > 0
     True
     """
+    require_fixed_ends(chain)
     return series_bytes(chain, packet_modes(chain, packet), order)
 
 
@@ -309,8 +339,29 @@ def _one_of(name: str, value: str, allowed: Sequence[str]) -> str:
     return value
 
 
+def _orders(order: int | Sequence[int]) -> tuple[int, ...]:
+    orders = tuple(order) if isinstance(order, Iterable) else (order,)
+    if not orders or isinstance(order, str):
+        raise InputError("order", order, "a whole number, or several", "take 12")
+    return tuple(integer(K, "order", 1) for K in orders)
+
+
+def _packets(packets: Iterable[str | Sequence[int]]) -> tuple[str, ...]:
+    """The packets by name; InputError for one that is not in a list."""
+    if isinstance(packets, str):
+        raise InputError("packets", packets, "several packets", f"pass [{packets!r}]")
+    names = tuple(map(_packet, packets))
+    if not names:
+        raise InputError("packets", names, "at least one packet", "pass some")
+    return names
+
+
 def _packet(packet: str | Sequence[int]) -> str:
-    return packet if isinstance(packet, str) else ",".join(map(str, packet))
+    if isinstance(packet, str):
+        return packet
+    if not isinstance(packet, Iterable):
+        raise InputError("packets", packet, "names, or modes such as (1, 2)", "pass (1,)")
+    return joined(packet)
 
 
 def _places(places: Sequence[Number]) -> tuple[str, ...]:

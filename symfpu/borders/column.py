@@ -14,8 +14,8 @@ from symfpu.borders.newton_end import (
     newton_end,
 )
 from symfpu.borders.packets import packet_modes
-from symfpu.borders.point import ENERGY, ESTIMATES, Ray
-from symfpu.borders.search import FIRST_PLACE, NoBorder, Points, series_border
+from symfpu.borders.point import ENERGY, ESTIMATES, POLES, Ray
+from symfpu.borders.search import NoBorder, Points, series_border
 from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError, SymfpuError
 from symfpu.tori.torus import QTorus
@@ -97,10 +97,11 @@ def _newton_borders(
 def _beginning(points: Points) -> tuple[QTorus, float]:
     """The torus from which Newton's method begins: the largest whose series is good enough.
 
-    And its place. Raises InputError where the series has none.
+    And its place. Where no point was asked for, those on the way to the nearest pole are looked
+    at. Raises InputError where the series has none.
     """
     if not len(points):
-        points.at(FIRST_PLACE)
+        _series_border(points, POLES)
     known = [(p.torus, p.place, p.residual) for p in points if p.torus is not None]
     if not known:
         allowed = "a chain and packet with a torus at small energy"

@@ -9,13 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from symfpu.errors import InputError
+from symfpu.frames.recorded import Recorded
 
 LEAST_LENGTHS = 3  # that a slope and its error need
 
 
 @dataclass(frozen=True)
-class BorderLaw:
-    """H of a border = factor * N^exponent, by least squares of the logarithms; dimensionless.
+class BorderLaw(Recorded):
+    """H of a border = factor * N^exponent, by least squares of logarithms; ours, dimensionless.
 
     error : of the exponent, one standard deviation from the scatter about the line. local :
         exponents between neighbouring lengths, which show whether there is a law at all. lengths,

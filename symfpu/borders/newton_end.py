@@ -89,7 +89,7 @@ class NewtonEnd:
     """The last torus of a ray, and what stands in the way of the next.
 
     reason : of Newton's method; SEARCH_ENDS are limits of the search, not of the tori. above : the
-    place at which there was none. points : of all tori. losses : by name, FOLD or STABILITY.
+    place at which there is none. points : of all tori. losses : by name, FOLD or STABILITY.
     """
 
     reason: str

@@ -26,6 +26,7 @@ VERBS = {
     "breather": "breather",
     "refine": "families",
     "family": "families",
+    "atlas": "atlas",
     "actions": "actions",
     "stability": "stability",
     "certify": "certify",

@@ -11,6 +11,8 @@ import mpmath
 import numpy as np
 
 from symfpu.action_angle.twist import Twist
+from symfpu.borders.atlas import Atlas
+from symfpu.borders.laws import BorderLaw
 from symfpu.breathers.floquet import Floquet
 from symfpu.bundles.bundle import Bundle
 from symfpu.certified.existence import ExistenceProof
@@ -37,6 +39,7 @@ from symfpu.proofs.theorem import RuleForAllN
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.action_angle import twist_record
+from symfpu.reports.borders import atlas_record, law_record
 from symfpu.reports.certified import residual_proof_record, stay_record
 from symfpu.reports.dynamics import alignment_record, orbit_record
 from symfpu.reports.existence import existence_record
@@ -194,4 +197,6 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (ProfileLine, _line_record),
     (ProfileDistance, _distance_record),
     (Bundle, _bundle_record),
+    (Atlas, atlas_record),
+    (BorderLaw, law_record),
 )

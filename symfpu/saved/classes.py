@@ -6,6 +6,8 @@ from typing import Any
 
 from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.action_angle.twist import Twist
+from symfpu.borders.atlas import Atlas
+from symfpu.borders.laws import BorderLaw
 from symfpu.breathers.floquet import Floquet
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
@@ -50,6 +52,8 @@ RESULTS: tuple[type[Any], ...] = (
     AlignmentIndices,
     AmplitudeHistory,
     Assessment,
+    Atlas,
+    BorderLaw,
     EnergyChanges,
     Event,
     Family,

@@ -29,6 +29,7 @@ ARGUMENTS = {
 # results: the functions that make them are tested instead
 RESULTS = {
     "AlignmentIndices",
+    "AtlasBorder",
     "BirkhoffForm",
     "ExistenceProof",
     "Family",

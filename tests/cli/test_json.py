@@ -53,6 +53,7 @@ LONG = {
     "frequencies, a map": ["frequencies", *CHAIN, "--energies", "0.01,0.1", "--time", "200", "--step", "0.1"],
     "gali": ["gali", "TORUS", "--time", "1000", "--vectors", "3"],
     "gali, estimate": ["gali", "TORUS", "--time", "1000", "--vectors", "3", "--estimate"],
+    "atlas": ["atlas", "--beta", "1", "--lengths", "4", "--packets", "low:1", "--order", "4", "--borders", "poles"],
     "reproduce": ["reproduce", "fig6", "-o", "out"],
 }
 EVERY = {name: pytest.param(words, id=name) for name, words in CASES.items()}

@@ -13,6 +13,8 @@ from tests.test_pickle import RESULTS, public_classes
 
 # single numbers, arguments, programs, and what holds results that have tables
 WITHOUT = {
+    "AtlasBorder": "a row of Atlas",
+    "BorderLaw": "numbers of one line",
     "Bundle": "holds a series and a torus",
     "Chain": "an argument",
     "Evaluator": "a program",

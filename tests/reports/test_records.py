@@ -15,10 +15,11 @@ from tests.test_pickle import RESULTS, public_classes
 from tests.tolerances import THIRTY_DIGITS
 
 WITHOUT = {"Chain": "an argument", "Evaluator": "a program", "ExpandableTerm": "an expression", "NamedParts": "an expression"}
-WITHOUT |= dict.fromkeys(("NormalFrequencies", "NormalMode", "ParametricResonance", "SpectralLine"), "a row of a table")
+WITHOUT |= dict.fromkeys(("AtlasBorder", "NormalFrequencies", "NormalMode", "ParametricResonance", "SpectralLine"), "a row of a table")
 CASES = {name: make for name, (make, _) in RESULTS.items() if hasattr(getattr(symfpu, name.partition(",")[0], object), "record")}
 CASES = {name: make for name, make in CASES.items() if name != "Bundle"}  # that of what it holds: below
 QUICK = {"QTorus", "Event", "Sweep", "ProfileLine", "ProfileDistance", "PropagationProof", "RuleForAllN", "Recurrence", "LeadingTerm"}
+QUICK |= {"Atlas", "BorderLaw"}
 FORMS = {
     "frequencies": str,
     "amplitudes": str,

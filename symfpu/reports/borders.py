@@ -1,0 +1,106 @@
+"""Borders of q-tori: as lines for a reader, and as records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from symfpu.borders.atlas import Atlas, AtlasBorder
+from symfpu.borders.laws import BorderLaw
+from symfpu.reports.tables import fifteen_digits, number_text, text_table
+
+Json = dict[str, Any]
+
+BORDER_HEAD = ("N", "packet", "order", "border", "H", "H/N", "what ends it")
+LAW_HEAD = ("packet", "border", "H goes as", "N", "between neighbours")
+
+
+def atlas_record(found: Atlas) -> Json:
+    """What all columns share, every border, the power laws, and the columns that failed."""
+    laws = found.laws.items()
+    return {
+        "fixed": dict(found.rows.fixed),
+        "cases": len(found.rows.rows),
+        "points": found.points,
+        "borders": [_border_record(border) for border in found.borders],
+        "laws": [_named_law(*key, law) for key, law in laws],
+        "failures": [
+            {"case": row.case, "reason": str(row.failure)} for row in found.rows.failures
+        ],
+    }
+
+
+def law_record(law: BorderLaw) -> Json:
+    """The exponent with its error and what was fitted."""
+    return {
+        "factor": fifteen_digits(law.factor),
+        "exponent": fifteen_digits(law.exponent),
+        "error": fifteen_digits(law.error),
+        "local": [fifteen_digits(x) for x in law.local],
+        "lengths": list(law.lengths),
+        "energies": [number_text(H, None) for H in law.energies],
+    }
+
+
+def _border_record(border: AtlasBorder) -> Json:
+    return {
+        "chain": dict(border.chain),
+        "packet": border.packet,
+        "modes": list(border.modes),
+        "order": border.order,
+        "border": border.border,
+        "energy": None if border.energy is None else number_text(border.energy, None),
+        "details": dict(border.details),
+    }
+
+
+def _named_law(model: str, packet: str, border: str, law: BorderLaw) -> Json:
+    return {"model": model, "packet": packet, "border": border} | law_record(law)
+
+
+def atlas_text(found: Atlas) -> Iterator[str]:
+    """The table of borders, that of the laws where there are three lengths, and what failed."""
+    borders = [_border_row(border) for border in found.borders]
+    if borders:
+        yield from text_table(BORDER_HEAD, borders)
+    laws = [
+        _law_row(packet, border, law) for (_, packet, border), law in found.laws.items()
+    ]
+    if laws:
+        yield ""
+        yield from text_table(LAW_HEAD, laws)
+    for row in found.rows.failures:
+        yield f"N = {row.case['chain'].get('N')}, packet {row.case['packet']}: {row.failure}"
+
+
+def _border_row(border: AtlasBorder) -> list[str]:
+    known = border.energy is not None
+    H = float(border.energy or 0.0)
+    return [
+        str(border.N),
+        border.packet,
+        str(border.order),
+        border.border,
+        f"{H:.4g}" if known else "none",
+        f"{H / border.N:.4g}" if known else "",
+        _ended(border),
+    ]
+
+
+def _ended(border: AtlasBorder) -> str:
+    """The reason in words; else the term of the series, or the rate of growth."""
+    details = border.details
+    words = [border.reason] if border.reason else []
+    if details.get("mode") is not None:
+        nu = ",".join(map(str, details["harmonic"]))
+        words.append(f"mode {details['mode']}, harmonic {nu}")
+    if details.get("growth") is not None:
+        words.append(f"growth {details['growth']:.3g}")
+    return "; ".join(words)
+
+
+def _law_row(packet: str, border: str, law: BorderLaw) -> list[str]:
+    lengths = ",".join(map(str, law.lengths))
+    between = ", ".join(f"{x:.2f}" for x in law.local)
+    power = f"N^({law.exponent:.3f} +- {law.error:.2g})"
+    return [packet, border, power, lengths, between]
