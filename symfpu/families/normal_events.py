@@ -6,21 +6,24 @@ resonance. The frequencies have a root there; the discriminant has none,
 
     D = (sigma_q + sigma_q' - nu.omega)^2 before, -4 (Im sigma_q)^2 beyond,
 
-the square of the difference of the two that meet. It passes through zero as a smooth function of
-the place does, and so its zero is found as one of any such function, to the last digits. A
-resonance that is crossed between real frequencies is a zero of its own distance.
+the square of the difference of the two that meet, which passes through zero as a smooth function
+of the place does. A resonance that is crossed between real frequencies is a zero of its own
+distance. The torus of either is found by Newton's method, with D or the distance among its
+conditions (`symfpu.normal.meeting`), from where a line between the two tori has the zero; where
+that does not lead between them, by values of D on tori ever nearer to it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from symfpu.frames.recorded import Recorded
 from symfpu.normal.frequencies import LOCKED, NormalFrequencies, frequencies_of
+from symfpu.normal.meeting import EPS, Crossed, Lost, Meeting, NormalCondition
 from symfpu.normal.modes import NoNormalModes, NormalModes
 from symfpu.normal.resonances import (
     PARAMETRIC,
@@ -29,6 +32,7 @@ from symfpu.normal.resonances import (
     crossed_resonances,
 )
 from symfpu.normal.search import followed_modes
+from symfpu.refinement.conditions import Condition
 from symfpu.refinement.tori import NoTorus
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
@@ -47,6 +51,7 @@ NODES = (-1.0, -0.6, -0.3, 0.3, 0.6, 1.0)  # of the last estimate, in units of t
 NARROWED = 1e-7  # of the way, to which it is halved where D is too small to interpolate
 NOISE = 1e-10  # of D, below which its sign says nothing
 
+Solution = QuasiPeriodic | RingTorus
 Failed = (NoTorus, NoNormalModes)
 
 
@@ -64,7 +69,8 @@ class NormalEvent(Recorded):
         0 to 1 from its first member to the last, in a `family` from the member `after` to the
         next. amplitudes : by seed there. energy : H there.
     begins : whether the directions are hyperbolic beyond it; False for a resonance. error : of
-        `part`, estimated; the whole step where no torus in between could be judged.
+        `part`, estimated; rounding where Newton's method found the torus, the whole step where no
+        torus in between could be judged.
 
     >>> met = ParametricResonance("sum", (4, 6), (0, 2), 0.0)
     >>> NormalEvent("stability", met, 3, 0.5, {1: 0.1, 5: 0.4}, 0.25, begins=True)
@@ -101,21 +107,40 @@ class Known(NamedTuple):
     modes: NormalModes
 
 
+class _Bracket(NamedTuple):
+    """Two places and the values of a condition there."""
+
+    low: float
+    high: float
+    values: tuple[float, float]
+
+    def error(self, place: float, of_value: float) -> float:
+        """Of the place of a zero between them, from the flatter side."""
+        before, after = map(abs, self.values)
+        slope = min(before / (place - self.low), after / (self.high - place))
+        return max(of_value / slope, EPS) if slope else self.high - self.low
+
+
+class Curve(Protocol):
+    """Tori by their place on a curve; NoTorus where there is none."""
+
+    def torus(self, place: float) -> Solution:
+        """The one at a place."""
+        ...
+
+    def met(self, condition: Condition, place: float) -> tuple[float, Solution]:
+        """The one that meets a condition, by Newton's method from a place; with its own."""
+        ...
+
+
 class Stretch:
     """A curve of tori between two of them, whose normal frequencies are known.
 
-    torus : of the place on the curve, from that of the first to that of the second; NoTorus where
-    there is none. after : the number of the first.
+    after : the number of the first.
     """
 
-    def __init__(
-        self,
-        torus: Callable[[float], QuasiPeriodic],
-        first: Known,
-        second: Known,
-        after: int,
-    ) -> None:
-        self._torus, self._after = torus, after
+    def __init__(self, curve: Curve, first: Known, second: Known, after: int) -> None:
+        self._curve, self._after = curve, after
         self._first, self._second = first, second
 
     def events(self, length: int) -> list[NormalEvent]:
@@ -135,32 +160,83 @@ class Stretch:
         """Normal modes of the torus there, continued from the nearer end."""
         ends = self._first, self._second
         near = min(ends, key=lambda end: abs(end.place - place))
-        found, missing = followed_modes(self._torus(place), near.modes, modes=modes)
+        torus = self._curve.torus(place)
+        found, missing = followed_modes(torus, near.modes, modes=modes)
         for none in missing.values():
             raise none
         return Known(place, frequencies_of(found, missing), found)
 
     def _onset(
-        self, resonance: ParametricResonance, low: Known, high: Known
+        self,
+        resonance: ParametricResonance,
+        low: Known,
+        high: Known,
+        *,
+        crossed: bool = False,
     ) -> NormalEvent:
-        """Where the discriminant is zero."""
+        """Where the discriminant is zero; crossed : beside a distance of zero at one of the two."""
         values = tuple(discriminant(end.normal, resonance) for end in (low, high))
+        begins = values[1] < 0
+        calm = low if begins else high
+        between = _beside if crossed else _between
+        place = between(low, high, values)
+        near = min((low, high), key=lambda end: abs(end.place - place))
+        size = (2 * _real(low.normal)[resonance.modes[0]]) ** 2
+        bracket = _Bracket(low.place, high.place, (values[0] / size, values[1] / size))
+        for start, known in ((place, near), (calm.place, calm)):
+            if met := self._met(Meeting(known.modes, resonance), start, bracket):
+                return self._event(STABILITY, resonance, *met, begins=begins)
+        place, error = self._halved(resonance, low, high, values)
+        return self._event(STABILITY, resonance, place, error, begins=begins)
+
+    def _met(
+        self, condition: NormalCondition, start: float, bracket: _Bracket
+    ) -> tuple[float, float, Solution] | None:
+        """Place, error and torus of a condition by Newton's method, or None."""
+        try:
+            place, torus = self._curve.met(condition, start)
+        except (*Failed, Lost):
+            return None
+        if not bracket.low < place < bracket.high:
+            return None
+        return place, bracket.error(place, condition.error(torus)), torus
+
+    def _halved(
+        self,
+        resonance: ParametricResonance,
+        low: Known,
+        high: Known,
+        values: tuple[float, ...],
+    ) -> tuple[float, float]:
+        """The place of an onset by values of D, and its error."""
 
         def of(place: float) -> float:
             return discriminant(self._known(place, resonance.modes).normal, resonance)
 
         gap = 2 * LEAST_GAP * abs(resonance.left_of(_real(low.normal)))
-        begins = values[1] < 0
         try:
-            place, error = located(of, low.place, high.place, values, gap**2)
+            return located(of, low.place, high.place, values, gap**2)
         except Failed:
-            place, error = _between(low, high, values), high.place - low.place
-        return self._event(STABILITY, resonance, place, begins=begins, error=error)
+            return _between(low, high, values), high.place - low.place
 
     def _crossing(self, resonance: ParametricResonance) -> Iterator[NormalEvent]:
         """Where the distance is zero: two onsets if both are hyperbolic there, none if it jumps."""
         low, high = self._first, self._second
         values = tuple(resonance.distance_of(end.normal) for end in (low, high))
+        start = _between(low, high, values)
+        near = min((low, high), key=lambda end: abs(end.place - start))
+        size = _real(low.normal)[resonance.modes[0]]
+        bracket = _Bracket(low.place, high.place, (values[0] / size, values[1] / size))
+        if met := self._met(Crossed(near.modes, resonance), start, bracket):
+            yield self._event(RESONANCE, resonance, *met)
+            return
+        yield from self._crossed_by_secants(resonance, values)
+
+    def _crossed_by_secants(
+        self, resonance: ParametricResonance, values: tuple[float, ...]
+    ) -> Iterator[NormalEvent]:
+        """The same where Newton's method leads to no torus with real frequencies."""
+        low, high = self._first, self._second
 
         def of(place: float) -> float:
             return resonance.distance_of(self._known(place, resonance.modes).normal)
@@ -173,10 +249,10 @@ class Stretch:
             return
         distance = resonance.distance_of(there.normal)
         if there.normal.growth:
-            yield self._onset(resonance, low, there)
-            yield self._onset(resonance, there, high)
+            yield self._onset(resonance, low, there, crossed=True)
+            yield self._onset(resonance, there, high, crossed=True)
         elif abs(distance) < MET:
-            yield self._event(RESONANCE, resonance, place, distance, error=PLACE)
+            yield self._event(RESONANCE, resonance, place, PLACE, distance=distance)
 
     def _crossed_apart(
         self,
@@ -191,29 +267,30 @@ class Stretch:
             place, error = collision(of, low.place, high.place, values, gap)
         except (*Failed, Outside):
             place, error = _between(low, high, values), high.place - low.place
-        return self._event(RESONANCE, resonance, place, error=error)
+        return self._event(RESONANCE, resonance, place, error)
 
     def _event(
         self,
         kind: str,
         resonance: ParametricResonance,
         place: float,
-        distance: float = 0.0,
-        *,
-        begins: bool = False,
         error: float,
+        torus: Solution | None = None,
+        *,
+        distance: float = 0.0,
+        begins: bool = False,
     ) -> NormalEvent:
-        """At a place, with what its torus has there."""
+        """At a place, with what its torus has there; it is sought where none is given."""
         q, modes, harmonic = resonance.kind, resonance.modes, resonance.harmonic
         met = ParametricResonance(q, modes, harmonic, distance)
-        amplitudes, energy = self._where(place)
+        amplitudes, energy = _measured(torus) if torus else self._where(place)
         after = self._after
         return NormalEvent(kind, met, after, place, amplitudes, energy, begins, error)
 
     def _where(self, place: float) -> tuple[dict[int, float], float]:
         """Amplitudes and energy, interpolated where there is no torus."""
         try:
-            return _measured(self._torus(place))
+            return _measured(self._curve.torus(place))
         except NoTorus:
             ends = [_measured(end.normal.torus) for end in (self._first, self._second)]
         (A, low), (B, high) = ends
@@ -223,7 +300,7 @@ class Stretch:
         return between, (1 - part) * low + part * high
 
 
-def _measured(torus: QuasiPeriodic | RingTorus) -> tuple[dict[int, float], float]:
+def _measured(torus: Solution) -> tuple[dict[int, float], float]:
     amplitudes = {q: float(a) for q, a in amplitudes_by_seed(torus).items()}
     return amplitudes, float(torus.energy())
 
@@ -265,6 +342,15 @@ def _between(low: Known, high: Known, ends: tuple[float, ...]) -> float:
     """Where a function has its zero if it is linear."""
     a, b = ends
     return low.place + (high.place - low.place) * a / (a - b)
+
+
+def _beside(low: Known, high: Known, ends: tuple[float, ...]) -> float:
+    """Where a function has its zero that is least at the end where it is negative: a parabola."""
+    a, b = ends
+    width = high.place - low.place
+    if a > b:
+        return high.place - width * float(np.sqrt(-b / (a - b)))
+    return low.place + width * float(np.sqrt(-a / (b - a)))
 
 
 def _zero(

@@ -28,7 +28,13 @@ from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import checked_modes, followed_modes
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import Number, exact, integer
-from symfpu.refinement.tori import NoTorus, RefinedTorus, refine_at_amplitudes
+from symfpu.refinement.conditions import AmplitudeLine, Condition
+from symfpu.refinement.tori import (
+    NoTorus,
+    RefinedTorus,
+    refine_at_amplitudes,
+    refined_torus,
+)
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.ring_torus import amplitudes_by_seed
 
@@ -177,7 +183,7 @@ def _events(
     if len(known) < 2:
         return []
     first, second = known
-    return Stretch(line.torus, first, second, n - 1).events(length)
+    return Stretch(line, first, second, n - 1).events(length)
 
 
 class _Line:
@@ -222,6 +228,24 @@ class _Line:
         if part not in self._last:
             self._last[part] = self._reached(part, HALVINGS)
         return self._last[part]
+
+    def met(self, condition: Condition, part: float) -> tuple[float, RefinedTorus]:
+        """The one that meets a condition, by Newton's method from a part; with its own."""
+        found = refined_torus(self.torus(part), [condition, *self._on_the_line()])
+        if found.warnings:
+            raise NoTorus("it is doubtful", found, found.residual())
+        seed = max(self.end, key=lambda q: abs(self.end[q] - self.start[q]))
+        start, end = self.start[seed], self.end[seed]
+        return (found.amplitudes[seed] - start) / (end - start), found
+
+    def _on_the_line(self) -> list[Condition]:
+        """As many as there are seeds, less one."""
+        steps = np.array([self.end[q] - self.start[q] for q in self.start])
+        size = np.abs(steps).max()
+        start = np.array([np.longdouble(a) for a in self.start.values()])
+        first = int(np.argmax(np.abs(steps)))
+        others = [i for i in range(len(steps)) if i != first]
+        return [AmplitudeLine((first, i), start, steps / size) for i in others]
 
     def _reached(self, part: float, halvings: int) -> RefinedTorus:
         nearest = min(self._known, key=lambda p: abs(p - part))

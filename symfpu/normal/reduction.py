@@ -317,8 +317,8 @@ def _iterated(system: Bordered, guess: complex, like: Values) -> Reduced | None:
         fine = accuracy == FINE
         X, images = system.improved(X, accuracy)
         slope = -2 * (sigma + system.rates)
-        steps, vectors = _steps(X.T @ images, X.T @ (slope[:, None] * X))
-        shares = _shares(X, vectors, like)
+        steps, vectors = steps_of(X.T @ images, X.T @ (slope[:, None] * X))
+        shares = shares_of(X, vectors, like)
         at = _nearest(steps, shares, first=step == 0)
         change, v = steps[at], vectors[:, at]
         if not np.isfinite(change) or abs(change) > LARGEST_STEP * size:
@@ -335,7 +335,7 @@ def _iterated(system: Bordered, guess: complex, like: Values) -> Reduced | None:
     return None
 
 
-def _steps(E: Values, slope: Values) -> tuple[Values, Values]:
+def steps_of(E: Values, slope: Values) -> tuple[Values, Values]:
     """All d and v with (E + d E') v = 0, v of norm 1."""
     from scipy import linalg
 
@@ -343,7 +343,7 @@ def _steps(E: Values, slope: Values) -> tuple[Values, Values]:
     return steps, vectors / np.linalg.norm(vectors, axis=0)
 
 
-def _shares(X: Values, vectors: Values, like: Values) -> Floats:
+def shares_of(X: Values, vectors: Values, like: Values) -> Floats:
     """How much of a vector is in p = X v, for each v."""
     gram = X.conj().T @ X
     norms = np.sqrt(np.einsum("ri,rs,si->i", vectors.conj(), gram, vectors).real)

@@ -223,18 +223,13 @@ class _Search:
     def __init__(
         self, torus: Solution, length: int, before: NormalModes | None = None
     ) -> None:
-        known = _rows(torus)
-        largest = max(float(np.abs(row).max()) for row in known.values())
-        least = SMALLEST_KEPT * largest
-        self._known = {nu: row for nu, row in known.items() if np.abs(row).max() > least}
+        self._known = kept_rows(torus)
         self._torus, self._length = torus, length
         self._guesses = second_order(torus)
         earlier = before.modes if before else ()
         self._before = {mode.mode: mode.in_doubles() for mode in earlier}
         self._earlier = second_order(before.torus) if before else {}
         self._travels = isinstance(torus, RingTorus) and not is_standing(torus)
-        bonds = len(next(iter(known.values()))) + 1
-        self._functions = 1 if self._travels else (bonds + 1) // 2
         self._flows: list[Linearised] = []
 
     def each(self, modes: tuple[int, ...], tell: Progress) -> Found:
@@ -321,7 +316,7 @@ class _Search:
             return None
         known = self._before[q]
         moved = self._guesses[q] - self._earlier[q]
-        like = flow.table(_at_harmonics(known, flow.harmonics))
+        like = flow.table(at_harmonics(known, flow.harmonics))
         return followed(flow, q, known.sigma + moved, like)
 
     def _sought(
@@ -340,10 +335,8 @@ class _Search:
 
     def _flow(self, place: int) -> Linearised:
         if place == len(self._flows):
-            torus, height = self._torus, HEIGHTS[place]
-            s = len(torus.seeds)
-            chosen, _ = chosen_harmonics(self._known, self._functions, s, height)
-            self._flows.append(_linearised(torus, chosen))
+            harmonics = harmonics_of(self._torus, self._known, HEIGHTS[place])
+            self._flows.append(linearised(self._torus, harmonics))
         return self._flows[place]
 
     def _twin(self, found: NormalMode, others: Iterable[NormalMode]) -> NormalMode | None:
@@ -372,6 +365,25 @@ class _Search:
         return False
 
 
+def kept_rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
+    """Coefficients of a torus by harmonic, without those that are rounding."""
+    known = _rows(torus)
+    largest = max(float(np.abs(row).max()) for row in known.values())
+    least = SMALLEST_KEPT * largest
+    return {nu: row for nu, row in known.items() if np.abs(row).max() > least}
+
+
+def harmonics_of(
+    torus: Solution, known: Mapping[tuple[int, ...], Floats], height: float
+) -> Ints:
+    """Those of coefficients above a part of the largest, (H, s); known : of `kept_rows`."""
+    columns = len(next(iter(known.values())))
+    travels = isinstance(torus, RingTorus) and not is_standing(torus)
+    functions = 1 if travels else (columns + 2) // 2
+    chosen, _ = chosen_harmonics(known, functions, len(torus.seeds), height)
+    return chosen
+
+
 def _rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
     """Coefficients of a torus by harmonic."""
     if not isinstance(torus, RingTorus):
@@ -381,7 +393,7 @@ def _rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
     return wave_rows(torus)
 
 
-def _linearised(torus: Solution, harmonics: Ints) -> Linearised:
+def linearised(torus: Solution, harmonics: Ints) -> Linearised:
     """The linearised flow in these harmonics and their negatives."""
     if not isinstance(torus, RingTorus):
         return LinearisedFlow(torus, harmonics)
@@ -390,7 +402,7 @@ def _linearised(torus: Solution, harmonics: Ints) -> Linearised:
     return LinearisedWaves(torus, harmonics)
 
 
-def _at_harmonics(mode: NormalMode, harmonics: Ints) -> Values:
+def at_harmonics(mode: NormalMode, harmonics: Ints) -> Values:
     """The eigenfunction at other harmonics, 0 where it has none, of norm 1; shape (F, N-1)."""
     rows = {tuple(nu): row for row, nu in enumerate(mode.harmonics.tolist())}
     places = np.array([rows.get(tuple(nu), -1) for nu in harmonics.tolist()])

@@ -30,6 +30,7 @@ OVERSAMPLING = 2.5
 PORTION = 4_000_000  # values of all bonds transformed at once
 # harmonics of the slopes that a sparse derivative holds, and their least height, relative
 MOST_SLOPES, SHARE = 12, 0.1
+APART = 1e-5  # of stretches, for a derivative by differences
 MOST_ENTRIES = 40_000_000  # of a sparse derivative; 16 bytes each
 DIGITS = 30  # of the numbers that long doubles are made of
 
@@ -235,6 +236,12 @@ FIRST_TRIED, TRIALS = (
 )  # harmonics that are tried first, and generators of one period
 
 
+def curvature(law: bonds.Law, r: Floats) -> Floats:
+    """The third derivative of V by central differences of the second."""
+    above, below = (bonds.anharmonic_stiffness(law, r + h) for h in (APART, -APART))
+    return np.asarray((above - below) / (2 * APART))
+
+
 class InvarianceEquation:
     """The equations of one torus: divisors and forces of coefficients, all (H, N-1).
 
@@ -412,6 +419,14 @@ class InvarianceEquation:
             r = self.grid.values(stretches.astype(float))
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
+
+    def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
+        """Derivatives of the mean of weights times slopes, (H, N-1); weights (bonds, points)."""
+        there = self._stretch.astype(float)
+        r = self.grid.values(np.asarray(cosines.astype(float) @ there))
+        bent = weights * curvature(self.chain.law(), r)
+        spectrum = self.grid.spectrum(bent)[:, self.grid.entries(self.harmonics)]
+        return np.asarray((spectrum.T @ there.T) * self.mask)
 
     def force_change(self, slopes: Floats, change: Floats) -> Floats:
         """The derivative of the force along a change of the coefficients, in doubles.

@@ -26,6 +26,7 @@ from symfpu.refinement.invariance import (
     DIGITS,
     LONG_DOUBLES,
     Lattice,
+    curvature,
     largest_slopes,
     long,
     shifted,
@@ -109,6 +110,13 @@ class WaveEquation:
         """V''(r) - 1 at the points, in doubles; shape (1, points)."""
         r = self._stretches(cosines.astype(float))
         return np.asarray(bonds.anharmonic_stiffness(self.chain.law(), r))
+
+    def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
+        """Derivatives of the mean of weights times slopes, (H, 1); weights (1, points)."""
+        r = self._stretches(cosines.astype(float))
+        bent = weights * curvature(self.chain.law(), r)
+        spectrum = self.grid.spectrum(bent)[:, self.grid.entries(self.harmonics)]
+        return np.asarray(spectrum.T * self._stretch.astype(float) * self.mask)
 
     def force_change(self, slopes: Floats, change: Floats) -> Floats:
         """The derivative of the force along a change of the coefficients, in doubles; (H, 1)."""
