@@ -685,6 +685,9 @@ EVENT = 2e-15
 # with the amplitude, 0.05 in a narrow tongue.
 EVENT_BY_DIGITS = 5e-14
 
+# Between two routes to an end of a narrow tongue, each with tori whose residual is below 1e-13: that over 0.05.
+NARROW_EVENT = 2e-12
+
 # Central differences with steps of 1e-4 of a discriminant of 1e-4, known to 1e-17: 1e-9, and the step's square.
 CENTRAL_GRADIENT = 1e-6
 

@@ -22,14 +22,13 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from symfpu.frames.recorded import Recorded
-from symfpu.normal.frequencies import LOCKED, NormalFrequencies, frequencies_of
+from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
 from symfpu.normal.meeting import EPS, Crossed, Lost, Meeting, NormalCondition
 from symfpu.normal.modes import NoNormalModes, NormalModes
 from symfpu.normal.resonances import (
-    PARAMETRIC,
-    SUM,
     ParametricResonance,
     crossed_resonances,
+    locked_resonances,
 )
 from symfpu.normal.search import followed_modes
 from symfpu.refinement.conditions import Condition
@@ -177,13 +176,14 @@ class Stretch:
         """Where the discriminant is zero; crossed : beside a distance of zero at one of the two."""
         values = tuple(discriminant(end.normal, resonance) for end in (low, high))
         begins = values[1] < 0
-        calm = low if begins else high
         between = _beside if crossed else _between
         place = between(low, high, values)
-        near = min((low, high), key=lambda end: abs(end.place - place))
+        wild = high if begins else low
+        near, far = sorted((low, high), key=lambda end: abs(end.place - place))
         size = (2 * _real(low.normal)[resonance.modes[0]]) ** 2
         bracket = _Bracket(low.place, high.place, (values[0] / size, values[1] / size))
-        for start, known in ((place, near), (calm.place, calm)):
+        calm = far if near is wild else near
+        for start, known in ((place, near), (place, far), (calm.place, calm)):
             if met := self._met(Meeting(known.modes, resonance), start, bracket):
                 return self._event(STABILITY, resonance, *met, begins=begins)
         place, error = self._halved(resonance, low, high, values)
@@ -320,13 +320,13 @@ def _changed(
     common = set(first.frequencies) & set(second.frequencies)
     before, after = (_unstable(found) & common for found in (first, second))
     changed = before ^ after
-    found = []
+    found: list[ParametricResonance] = []
     for side, modes in ((first, before & changed), (second, after & changed)):
-        for resonance in side.resonances:
-            meets = resonance.kind in (PARAMETRIC, SUM)
-            locked = abs(resonance.distance) < LOCKED
-            if meets and locked and modes.issuperset(resonance.modes):
+        left = set(modes)
+        for resonance in locked_resonances(side, modes):
+            if left.issuperset(resonance.modes):
                 found.append(resonance)
+                left -= set(resonance.modes)
     return found
 
 

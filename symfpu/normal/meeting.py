@@ -154,8 +154,8 @@ class Meeting(NormalCondition):
         super().__init__(near, resonance)
         self._flow = self._flow.of(self._q)
         self._tables = _both(self._flow, near, resonance)
-        own, other = (_real(near, q) for q in (self._q, self._other))
-        self._sigma = (own + self._rate - other) / 2
+        other = self._rate + _sign(resonance) * -_real(near, self._other)
+        self._sigma = (_real(near, self._q) + other) / 2
         self._size = 0.0
 
     def _of(self, flow: Linearised) -> _Found:
@@ -192,8 +192,8 @@ class Crossed(NormalCondition):
     def __init__(self, near: NormalModes, resonance: ParametricResonance) -> None:
         super().__init__(near, resonance)
         self._weights = {self._q: 1.0}
-        sign = -1.0 if resonance.kind == DIFFERENCE else 1.0
-        self._weights[self._other] = self._weights.get(self._other, 0.0) + sign
+        before = self._weights.get(self._other, 0.0)
+        self._weights[self._other] = before + _sign(resonance)
         self._sigma = {q: _real(near, q) for q in self._weights}
         self._size = self._sigma[self._q]
         flows = {q: self._flow.of(q) for q in self._weights}
@@ -265,6 +265,11 @@ def _adjugate(G: Floats) -> Floats:
     return np.array([[G[1, 1], -G[0, 1]], [-G[1, 0], G[0, 0]]])
 
 
+def _sign(resonance: ParametricResonance) -> int:
+    """Of the second frequency of a resonance."""
+    return -1 if resonance.kind == DIFFERENCE else 1
+
+
 def _real(near: NormalModes, q: int) -> float:
     return float(complex(near.mode(q).sigma).real)
 
@@ -279,9 +284,9 @@ def _both(
 ) -> list[Floats]:
     """Tables of two directions that meet; of hyperbolic ones the real and imaginary part."""
     q, other = resonance.modes[0], resonance.modes[-1]
-    reflected = -np.array(resonance.harmonic) - flow.harmonics
+    moved = -np.array(resonance.harmonic) - flow.harmonics
     partner = near.mode(other).in_doubles()
-    pair = [_own(flow, near, q), at_harmonics(partner, reflected)]
+    pair = [_own(flow, near, q), at_harmonics(partner, _sign(resonance) * moved)]
     for p in map(flow.table, pair):
         if np.iscomplexobj(p):
             return [p.real, p.imag]

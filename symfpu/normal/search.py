@@ -24,6 +24,7 @@ from symfpu.normal.linearised import (
 )
 from symfpu.normal.linearised_standing import (
     LinearisedStanding,
+    coupled_groups,
     folded,
     is_sine,
     is_standing,
@@ -90,7 +91,7 @@ def normal_modes(
     >>> round(normal_modes(refine_at_amplitudes(guess, amplitudes)).frequencies[3], 9)
     1.847...
     """
-    torus = _checked(solution)
+    torus = checked_solution(solution)
     chosen = checked_modes(torus, modes)
     length = integer(resonance_length, "resonance_length", 1)
     search, tell = _Search(torus, length), progress or unheard
@@ -132,7 +133,7 @@ def _in_digits(
             precise[q] = search.refined(mode, tell)
         except Failure as failure:
             real = complex(mode.sigma).real
-            nearest = _resonances(torus, {q: real}, length)
+            nearest = resonances_near(torus, {q: real}, length)
             reason = f"no {torus.digits} digits of its frequency: {failure}"
             missing[q] = NoNormalModes(q, real, nearest[0] if nearest else None, reason)
     return precise, missing
@@ -152,14 +153,14 @@ def followed_modes(
 
     Returns what was found, and by mode why one was not; in doubles.
     """
-    torus = _checked(solution)
+    torus = checked_solution(solution)
     chosen = checked_modes(torus, modes)
     search = _Search(torus, LENGTH, before)
     found, missing = search.each(chosen, progress or unheard)
     return search.result(solution, found, missing), missing
 
 
-def _checked(solution: object) -> Solution:
+def checked_solution(solution: object) -> Solution:
     """The solution in doubles; InputError for what is no refined torus."""
     if isinstance(solution, RingTorus):
         if is_standing(solution):
@@ -256,7 +257,7 @@ class _Search:
             torus=solution,
             modes=tuple(found.values()),
             guesses={q: self._guesses[q] for q in found},
-            resonances=tuple(_resonances(solution, real, self._length)),
+            resonances=tuple(resonances_near(solution, real, self._length)),
             undecided=undecided_modes(solution, tuple(found.values())),
             missing={q: str(none) for q, none in missing.items()},
         )
@@ -266,7 +267,7 @@ class _Search:
         guess = self._guesses[q]
         found = self.mode(q, guess, others)
         if found is None:
-            nearest = _resonances(self._torus, {q: guess}, self._length)
+            nearest = resonances_near(self._torus, {q: guess}, self._length)
             raise NoNormalModes(q, guess, nearest[0] if nearest else None)
         self._require_resolved(found)
         return found
@@ -281,7 +282,7 @@ class _Search:
         standing = isinstance(torus, RingTorus) and not self._travels
         if not standing or is_sine(torus.chain, found.mode):
             return
-        nearest = _resonances(torus, {found.mode: sigma.real}, self._length)
+        nearest = resonances_near(torus, {found.mode: sigma.real}, self._length)
         for one in nearest:
             if one.kind == OWN and abs(complex(one.distance, sigma.imag)) < UNRESOLVED:
                 raise NoNormalModes(found.mode, self._guesses[found.mode], one)
@@ -443,25 +444,17 @@ def _smallest_divisors(flow: Linearised, found: Reduced) -> tuple[NormalDivisor,
     return tuple(nearest)
 
 
-def _resonances(
+def resonances_near(
     torus: Solution, sigma: Mapping[int, Any], length: int
 ) -> list[ParametricResonance]:
     """Those of real parts in doubles or in digits; a distance has all its digits."""
     omega = tuple(float(w) for w in torus.frequencies)
     doubles = {q: float(w) for q, w in sigma.items()}
-    if isinstance(torus, RingTorus) and is_standing(torus):
-        found = []
-        for sine in (True, False):
-            part = {q: w for q, w in doubles.items() if is_sine(torus.chain, q) == sine}
-            fixed = folded(torus).chain
-            found += resonances_of(fixed, torus.seeds, omega, part, length)
-    else:
-        found = resonances_of(torus.chain, torus.seeds, omega, doubles, length)
-        if (
-            isinstance(torus, PRECISE)
-            and arithmetic_of(list(sigma.values())) is not DOUBLES
-        ):
-            found = _in_all_digits(torus, found, sigma)
+    found: list[ParametricResonance] = []
+    for chain, part in coupled_groups(torus, doubles):
+        found += resonances_of(chain, torus.seeds, omega, part, length)
+    if isinstance(torus, PRECISE) and arithmetic_of(list(sigma.values())) is not DOUBLES:
+        found = _in_all_digits(torus, found, sigma)
     return sorted(found, key=lambda r: abs(r.distance))
 
 

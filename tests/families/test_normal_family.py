@@ -17,7 +17,7 @@ from symfpu.normal.search import normal_modes
 from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.normal.test_meeting import EDGES
-from tests.tolerances import BESIDE_A_CROSSING, BESIDE_AN_ONSET, EVENT_BY_DIGITS, NORMAL_CONVERGED, ONSET
+from tests.tolerances import BESIDE_A_CROSSING, BESIDE_AN_ONSET, NARROW_EVENT, NORMAL_CONVERGED, ONSET
 
 HYPERBOLIC = Chain(8, beta=1)
 
@@ -82,14 +82,14 @@ def test_the_onset_of_a_torus_is_the_same_from_both_sides():
 
 @pytest.mark.long
 def test_a_narrow_tongue_of_a_torus_has_both_ends():
-    """2 sigma_4 = (3,1).omega, 2e-5 of an amplitude wide, between two tori 0.15 apart; the ends as of digits."""
+    """2 sigma_4 = (3,1).omega, 2e-5 of an amplitude wide, between two tori 0.15 apart; the ends as those that digits judge."""
     start = {1: "0.1", 5: "0.1"}
     solution = refine_at_amplitudes(torus_at_amplitudes(HYPERBOLIC, start, order=6), start)
     begins, ends = normal_family(solution, {1: "0.1", 5: "0.25"}, members=2, modes=[4], resonance_length=4).events
     assert (begins.begins, ends.begins) == (True, False)
     for event, edge in zip((begins, ends), EDGES, strict=True):
         assert (event.resonance.kind, event.resonance.harmonic) == (PARAMETRIC, (3, 1))
-        assert event.amplitudes[5] == pytest.approx(edge, abs=EVENT_BY_DIGITS)
+        assert event.amplitudes[5] == pytest.approx(edge, abs=NARROW_EVENT)
         assert abs(event.amplitudes[5] - edge) < 0.15 * event.error
 
 
