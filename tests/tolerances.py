@@ -688,6 +688,9 @@ EVENT_BY_DIGITS = 5e-14
 # Between two routes to an end of a narrow tongue, each with tori whose residual is below 1e-13: that over 0.05.
 NARROW_EVENT = 2e-12
 
+# A growth of 1e-3 by a multiplier of orbits of a residual of 1e-10, whose square root at 1 is rounded.
+GROWTH_BY_FLOQUET = 1e-3
+
 # Central differences with steps of 1e-4 of a discriminant of 1e-4, known to 1e-17: 1e-9, and the step's square.
 CENTRAL_GRADIENT = 1e-6
 

@@ -165,7 +165,6 @@ def _line(
     output: str | None,
 ) -> NormalFamily:
     """The line from a torus to other amplitudes."""
-    plain = _of_fixed_ends(torus)
     end = by_seed(TO_AMPLITUDES, amplitudes, torus.seeds)
     folder = None if output is None else output_folder(path_named("output", output))
     note = f"tori found so far are kept in {folder}; the same command goes on from them"
@@ -175,7 +174,7 @@ def _line(
 
     with progress_bar("first torus", kept) as advance:
         return normal_family(
-            plain,
+            torus,
             end,
             members=MEMBERS if members is None else whole("members", members),
             modes=chosen,

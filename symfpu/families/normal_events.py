@@ -26,6 +26,8 @@ from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
 from symfpu.normal.meeting import EPS, Crossed, Lost, Meeting, NormalCondition
 from symfpu.normal.modes import NoNormalModes, NormalModes
 from symfpu.normal.resonances import (
+    OWN,
+    PARAMETRIC,
     ParametricResonance,
     crossed_resonances,
     locked_resonances,
@@ -43,6 +45,7 @@ PLACE = 1e-12  # of the way, to which the crossing of a resonance is located
 ROUGH = 1e-6  # of the way, from which an event is said to be interpolated
 # where two frequencies are nearer than this, relative, D is not computed but interpolated
 LEAST_GAP = 5e-4
+OWN_GAP = 5e-5  # the same, where they meet at a frequency of the torus
 SHARE = 0.2  # of the bracket, that the points about an estimate reach out to
 ROUNDS = 6  # of estimates, each with a point on either side
 NODES = (-1.0, -0.6, -0.3, 0.3, 0.6, 1.0)  # of the last estimate, in units of the gap
@@ -183,7 +186,8 @@ class Stretch:
         size = (2 * _real(low.normal)[resonance.modes[0]]) ** 2
         bracket = _Bracket(low.place, high.place, (values[0] / size, values[1] / size))
         calm = far if near is wild else near
-        for start, known in ((place, near), (place, far), (calm.place, calm)):
+        starts = ((place, near), (place, far), (calm.place, calm))
+        for start, known in () if _own(resonance, wild.normal) else starts:
             if met := self._met(Meeting(known.modes, resonance), start, bracket):
                 return self._event(STABILITY, resonance, *met, begins=begins)
         place, error = self._halved(resonance, low, high, values)
@@ -213,7 +217,9 @@ class Stretch:
         def of(place: float) -> float:
             return discriminant(self._known(place, resonance.modes).normal, resonance)
 
-        gap = 2 * LEAST_GAP * abs(resonance.left_of(_real(low.normal)))
+        wild = max(low, high, key=lambda end: end.normal.growth)
+        least = OWN_GAP if _own(resonance, wild.normal) else 2 * LEAST_GAP
+        gap = least * abs(resonance.left_of(_real(low.normal)))
         try:
             return located(of, low.place, high.place, values, gap**2)
         except Failed:
@@ -328,6 +334,21 @@ def _changed(
                 found.append(resonance)
                 left -= set(resonance.modes)
     return found
+
+
+def _own(resonance: ParametricResonance, wild: NormalFrequencies) -> bool:
+    """Whether a hyperbolic direction is locked to a frequency of the torus: sigma = nu.omega.
+
+    There shifts of the angles are solutions, too, which no determinant leaves out.
+    """
+    if resonance.kind != PARAMETRIC:
+        return False
+    return any(
+        one.kind == OWN
+        and one.modes == resonance.modes
+        and np.array_equal(2 * np.array(one.harmonic), resonance.harmonic)
+        for one in wild.resonances
+    )
 
 
 def _unstable(found: NormalFrequencies) -> set[int]:

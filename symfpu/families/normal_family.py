@@ -122,9 +122,10 @@ def normal_family(
     Dimensionless. Each mode is continued from one member to the next. Events are located by
     Newton's method on the torus, which has among its conditions that the discriminant of two
     frequencies that meet is zero, or the distance of a resonance that is crossed. A resonance of
-    two directions that turn out to be hyperbolic where it is met has an event at both ends. Instabilities that begin and end between
-    two members without such a crossing are not seen. `family` with normal=True follows tori of one
-    ratio, through folds, and locates the same events. Ours.
+    two directions that turn out to be hyperbolic where it is met has an event at both ends.
+    Instabilities that begin and end between two members without such a crossing are not seen.
+    `family` with normal=True follows tori of one ratio, through folds, and locates the same events.
+    Ours.
     Raises InputError, also for a folder that holds another line; NoTorus and NoNormalModes where a
     member has none; RunInterrupted, a KeyboardInterrupt, where there is a folder.
 

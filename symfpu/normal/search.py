@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any, TypeAlias
 
 import mpmath
@@ -31,7 +32,7 @@ from symfpu.normal.linearised_standing import (
 )
 from symfpu.normal.linearised_waves import LinearisedWaves, wave_rows
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
-from symfpu.normal.reduction import Reduced, continued, followed, reduced
+from symfpu.normal.reduction import Reduced, continued, followed, hyperbolic, reduced
 from symfpu.normal.resonances import OWN, ParametricResonance, resonances_of
 from symfpu.numbers.arithmetic import DOUBLES, arithmetic_of
 from symfpu.numbers.typed import integer
@@ -52,6 +53,10 @@ SMALLEST_KEPT = (
 SHOWN_DIVISORS = 5
 LENGTH = 12  # sum |nu_i| of the resonances that are listed
 UNRESOLVED = 1e-7  # difference from a frequency of the torus that a double root may have
+SPREAD = 10.0  # times rounding: what is nearer to nu.omega turns as the torus does
+STILL = 1e-2  # of sigma: the action of a direction that may turn as the torus does
+GROWTHS = (1e-3, 1e-4, 1e-2)  # over nu.omega, tried where a direction is locked to it
+RESOLVED = 1e-7  # residual of such a direction
 SAME = 1e-9  # difference of two frequencies that are one
 
 
@@ -266,26 +271,61 @@ class _Search:
         """The one that continues q; NoNormalModes where there is none."""
         guess = self._guesses[q]
         found = self.mode(q, guess, others)
-        if found is None:
-            nearest = resonances_near(self._torus, {q: guess}, self._length)
-            raise NoNormalModes(q, guess, nearest[0] if nearest else None)
-        self._require_resolved(found)
-        return found
+        turning = found and self._turning(found)
+        if found and not turning:
+            return found
+        nearest = resonances_near(self._torus, {q: guess}, self._length)
+        own = turning or next((one for one in nearest if one.kind == OWN), None)
+        beside = own and self._beside(q, own, others)
+        if beside:
+            return beside
+        raise NoNormalModes(q, guess, turning or (nearest[0] if nearest else None))
 
-    def _require_resolved(self, found: NormalMode) -> None:
-        """NoNormalModes for a cosine about standing waves that turns as the torus does.
+    def _turning(self, found: NormalMode) -> ParametricResonance | None:
+        """The resonance of a direction that turns as the torus does, if this is none but that.
 
-        To displace standing waves costs nothing but by Umklapp of high order: then the two
-        frequencies of that direction are one to more digits than a double root has.
+        Shifts of the angles are solutions, too, with all nu.omega. To displace standing waves
+        costs nothing but by Umklapp of high order: then the two frequencies of that direction, a
+        cosine, are one to more digits than a double root has.
         """
         torus, sigma = self._torus, complex(found.sigma)
         standing = isinstance(torus, RingTorus) and not self._travels
-        if not standing or is_sine(torus.chain, found.mode):
-            return
+        cosine = standing and not is_sine(torus.chain, found.mode)
+        if not cosine and abs(found.action) > STILL * abs(sigma):
+            return None
+        unresolved = UNRESOLVED if cosine else max(UNRESOLVED, SPREAD * found.rounding)
         nearest = resonances_near(torus, {found.mode: sigma.real}, self._length)
         for one in nearest:
-            if one.kind == OWN and abs(complex(one.distance, sigma.imag)) < UNRESOLVED:
-                raise NoNormalModes(found.mode, self._guesses[found.mode], one)
+            if one.kind == OWN and abs(complex(one.distance, sigma.imag)) < unresolved:
+                return one
+        return None
+
+    def _beside(
+        self, q: int, own: ParametricResonance, others: dict[int, NormalMode]
+    ) -> NormalMode | None:
+        """A hyperbolic direction that is locked to a frequency of the torus: sigma = nu.omega."""
+        omega = np.array([float(w) for w in self._torus.frequencies])
+        rate = float(np.array(own.harmonic) @ omega)
+        for growth in GROWTHS:
+            sigma = complex(rate, growth * rate)
+            found = self._sought(q, partial(self._hyperbolic, q=q, sigma=sigma))
+            if found and self._locked(found, rate, others):
+                return found
+        return None
+
+    @staticmethod
+    def _locked(found: NormalMode, rate: float, others: dict[int, NormalMode]) -> bool:
+        """Whether a direction is hyperbolic about a frequency, and none of the others."""
+        known = [other.growth for other in others.values() if other.growth]
+        alone = all(abs(found.growth / growth - 1) > UNRESOLVED for growth in known)
+        near = abs(found.sigma.real - rate) < UNRESOLVED
+        grows = found.growth > max(found.rounding, UNRESOLVED)
+        return near and alone and grows and found.residual < RESOLVED
+
+    def _hyperbolic(self, flow: Linearised, q: int, sigma: complex) -> Reduced | None:
+        known = self._before.get(q)
+        like = None if known is None else flow.table(at_harmonics(known, flow.harmonics))
+        return hyperbolic(flow, q, sigma, like)
 
     def mode(
         self, q: int, guess: float, others: dict[int, NormalMode]

@@ -140,7 +140,7 @@ def test_the_verb_takes_a_ring(tmp_path, capsys):
     assert main(["stability", file, "--plot", str(picture)]) == 0
     assert "-1" in capsys.readouterr().out
     assert picture.exists()
-    assert main(["stability", file, "--to-amplitudes", "0.4"]) == 2
+    assert main(["stability", file, "--series", "4"]) == 2
     assert "fixed" in capsys.readouterr().err
 
 
