@@ -45,7 +45,6 @@ PLACE = 1e-12  # of the way, to which the crossing of a resonance is located
 ROUGH = 1e-6  # of the way, from which an event is said to be interpolated
 # where two frequencies are nearer than this, relative, D is not computed but interpolated
 LEAST_GAP = 5e-4
-OWN_GAP = 5e-5  # the same, where they meet at a frequency of the torus
 SHARE = 0.2  # of the bracket, that the points about an estimate reach out to
 ROUNDS = 6  # of estimates, each with a point on either side
 NODES = (-1.0, -0.6, -0.3, 0.3, 0.6, 1.0)  # of the last estimate, in units of the gap
@@ -186,8 +185,10 @@ class Stretch:
         size = (2 * _real(low.normal)[resonance.modes[0]]) ** 2
         bracket = _Bracket(low.place, high.place, (values[0] / size, values[1] / size))
         calm = far if near is wild else near
-        starts = ((place, near), (place, far), (calm.place, calm))
-        for start, known in () if _own(resonance, wild.normal) else starts:
+        if _own(resonance, wild.normal):
+            width = high.place - low.place
+            return self._event(STABILITY, resonance, place, width, begins=begins)
+        for start, known in ((place, near), (place, far), (calm.place, calm)):
             if met := self._met(Meeting(known.modes, resonance), start, bracket):
                 return self._event(STABILITY, resonance, *met, begins=begins)
         place, error = self._halved(resonance, low, high, values)
@@ -217,9 +218,7 @@ class Stretch:
         def of(place: float) -> float:
             return discriminant(self._known(place, resonance.modes).normal, resonance)
 
-        wild = max(low, high, key=lambda end: end.normal.growth)
-        least = OWN_GAP if _own(resonance, wild.normal) else 2 * LEAST_GAP
-        gap = least * abs(resonance.left_of(_real(low.normal)))
+        gap = 2 * LEAST_GAP * abs(resonance.left_of(_real(low.normal)))
         try:
             return located(of, low.place, high.place, values, gap**2)
         except Failed:
@@ -339,7 +338,8 @@ def _changed(
 def _own(resonance: ParametricResonance, wild: NormalFrequencies) -> bool:
     """Whether a hyperbolic direction is locked to a frequency of the torus: sigma = nu.omega.
 
-    There shifts of the angles are solutions, too, which no determinant leaves out.
+    There shifts of the angles are solutions, too: directions next to them cannot be told from
+    these, no determinant leaves them out, and the onset is interpolated.
     """
     if resonance.kind != PARAMETRIC:
         return False
