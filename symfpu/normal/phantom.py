@@ -239,7 +239,7 @@ def normal_frequency_series(
         allowed = "none where digits are given"
         raise InputError("ring", ring, allowed, "leave one of them out")
     if chain.periodic:
-        _require_doubles(chosen, ring, digits)
+        _require_doubles(chain, chosen, ring, digits)
     if digits is not None:
         digits = digits_of(digits)
     series = phantom_series(
@@ -249,13 +249,17 @@ def normal_frequency_series(
 
 
 def _require_doubles(
-    frequencies: tuple[Fraction, ...] | None, ring: str | None, digits: int | None
+    chain: Chain,
+    frequencies: tuple[Fraction, ...] | None,
+    ring: str | None,
+    digits: int | None,
 ) -> None:
     """InputError for what series of travelling waves do not have."""
     advice = "take fixed ends: standing waves of the ring are theirs"
     if frequencies is None:
-        allowed = "a number for the mode and for each seed of a ring"
-        raise InputError("frequencies", None, allowed, f"give them, or {advice}")
+        allowed = "fixed ends for a series in universal form"
+        given = "on a ring give frequencies=, a number for the mode and for each seed"
+        raise InputError("chain", chain, allowed, f"{given}; or {advice}")
     if digits is not None:
         raise InputError("digits", digits, "none on a ring: doubles", advice)
     if ring not in (None, "float64"):
