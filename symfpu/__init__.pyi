@@ -132,6 +132,13 @@ from symfpu.dynamics.starts import particle_state as particle_state
 from symfpu.dynamics.starts import random_state as random_state
 from symfpu.dynamics.state_files import read_state as read_state
 
+# where tori end
+from symfpu.borders.atlas import Atlas as Atlas
+from symfpu.borders.atlas import AtlasBorder as AtlasBorder
+from symfpu.borders.atlas import atlas as atlas
+from symfpu.borders.atlas import read_atlas as read_atlas
+from symfpu.borders.laws import BorderLaw as BorderLaw
+
 # frequency analysis of orbits
 from symfpu.spectral.analysis import FrequencyAnalysis as FrequencyAnalysis
 from symfpu.spectral.analysis import SpectralLine as SpectralLine

@@ -1,0 +1,1 @@
+"""Where q-tori end as the energy grows: borders of series and of Newton's method, as an atlas."""

@@ -1,0 +1,324 @@
+"""An atlas: the borders of q-tori over lengths, packets and energies of a chain."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from symfpu.borders.column import BORDERS, REACH, atlas_column
+from symfpu.borders.laws import BorderLaw, power_law
+from symfpu.borders.newton_end import MOST_HARMONICS, NEWTON, SEARCH_ENDS
+from symfpu.borders.packets import packet_modes
+from symfpu.borders.point import AMPLITUDE, ENERGY, ESTIMATES
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from symfpu.files.progress import Progress
+from symfpu.frames.attributes import attributes
+from symfpu.frames.table import Column, Table, joined
+from symfpu.frames.tabled import Tabled
+from symfpu.notebook import Shown
+from symfpu.numbers.typed import Number, decimal, exact, integer
+from symfpu.series.memory import series_bytes
+from symfpu.sweeps.rows import SweepRows
+from symfpu.sweeps.sweep import read_sweep, sweep
+
+Json = dict[str, Any]
+FUNCTION = "symfpu.borders.column.atlas_column"
+
+
+@dataclass(frozen=True)
+class AtlasBorder:
+    """One border of an atlas, dimensionless.
+
+    chain : as it is typed. packet : as it was named; modes : its modes. order : of the series.
+    border : "ratio", "sums", "poles", "newton" or "stability". energy : H there; None if there is
+        none. details : its record.
+    """
+
+    chain: Json
+    packet: str
+    modes: tuple[int, ...]
+    order: int
+    border: str
+    energy: float | None
+    details: Json = field(repr=False)
+
+    @property
+    def N(self) -> int:
+        """Number of bonds."""
+        return int(self.chain["N"])
+
+    @property
+    def model(self) -> str:
+        """The couplings, without the length."""
+        others = [f"{k}={v}" for k, v in self.chain.items() if k != "N" and v != "0"]
+        return ", ".join(others)
+
+    @property
+    def limited(self) -> bool:
+        """Whether the search ended and not the tori: the border lies above."""
+        return self.border == NEWTON and self.reason in SEARCH_ENDS
+
+    @property
+    def reason(self) -> str:
+        """Why there is no torus beyond, or no border; empty where a radius says it."""
+        found = self.details.get("none") or self.details.get("failure") or ""
+        return str(found)
+
+
+@dataclass(frozen=True)
+class Atlas(Shown, Tabled):
+    """Borders of q-tori by chain and packet. Made by `atlas` and `read_atlas`; ours.
+
+    rows : a row for each chain, packet and order, with its points and borders, or its failure.
+    Everything is dimensionless.
+
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> from symfpu import Chain, atlas
+    >>> with ThreadPoolExecutor(1) as pool:
+    ...     found = atlas([Chain(4, beta=1)], ["low:1"], 6, borders=["ratio"], executor=pool)
+    >>> found
+    Atlas(1 column, N = 4 .. 4, ... points, borders: 1 ratio)
+    >>> found.to_frame()[["N", "packet", "border", "order"]]
+       N packet border  order
+    0  4  low:1  ratio      6
+    """
+
+    rows: SweepRows = field(repr=False)
+
+    def __repr__(self) -> str:
+        done = [row for row in self.rows.rows if row.failure is None]
+        lengths = sorted({int(row.case["chain"]["N"]) for row in done})
+        count = _counted(len(self.rows.rows), "column")
+        if not done:
+            return f"Atlas({count}, none with a result)"
+        points = _counted(self.points, "point")
+        names = [border.border for border in self.borders if border.energy is not None]
+        counts = [f"{names.count(name)} {name}" for name in BORDERS if name in names]
+        failed = f", {len(self.rows.failures)} failed" if self.rows.failures else ""
+        span = f"N = {lengths[0]} .. {lengths[-1]}"
+        listed = ", ".join(counts) or "none"
+        return f"Atlas({count}{failed}, {span}, {points}, borders: {listed})"
+
+    @property
+    def points(self) -> int:
+        """How many tori were looked at, of the series and of Newton's method."""
+        done = [row.result for row in self.rows.rows if row.failure is None]
+        return sum(len(found["points"]) + len(found["newton"]) for found in done)
+
+    @property
+    def borders(self) -> tuple[AtlasBorder, ...]:
+        """Of all columns, in their order."""
+        return tuple(_borders(self.rows))
+
+    def law(
+        self,
+        packet: str,
+        border: str,
+        *,
+        model: str | None = None,
+        order: int | None = None,
+    ) -> BorderLaw:
+        """The power of N with which this border of a packet goes.
+
+        packet : as it was named. border : "ratio", "sums", "poles", "newton" or "stability".
+        model : the couplings, such as "alpha=1"; needed if there are several. order : of the
+        series; default for each length the largest.
+
+        Borders that only the search ended are left out. Raises InputError if there are fewer
+        than three lengths, or several models and none is named.
+        """
+        found = [
+            b
+            for b in self.borders
+            if (b.packet, b.border) == (packet, border)
+            and model in (None, b.model)
+            and order in (None, b.order)
+            and b.energy is not None
+            and not b.limited
+        ]
+        models = {b.model for b in found}
+        if len(models) > 1:
+            allowed = f"one of {sorted(models)}"
+            raise InputError("model", model, allowed, "name one")
+        best: dict[int, AtlasBorder] = {}
+        for b in sorted(found, key=lambda b: b.order):
+            best[b.N] = b
+        lengths = sorted(best)
+        return power_law(lengths, [float(best[N].energy or 0.0) for N in lengths])
+
+    def _table(self) -> Table:
+        """One row for each border, with what ends the torus there."""
+        borders = self.borders
+        columns: dict[str, Column] = {
+            "N": [b.N for b in borders],
+            "model": [b.model for b in borders],
+            "packet": [b.packet for b in borders],
+            "seeds": [joined(b.modes) for b in borders],
+            "order": [b.order for b in borders],
+            "border": [b.border for b in borders],
+            "energy": [_number(b.energy) for b in borders],
+            "energy_per_particle": [_number(b.energy) / b.N for b in borders],
+            "mode": [b.details.get("mode") for b in borders],
+            "harmonic": [joined(b.details.get("harmonic") or ()) for b in borders],
+            "divisor": [_number(b.details.get("divisor")) for b in borders],
+            "pole": [_number(b.details.get("pole")) for b in borders],
+            "growth": [_number(b.details.get("growth")) for b in borders],
+            "reason": [b.reason for b in borders],
+        }
+        return Table(columns, attributes(self, function=self.rows.function))
+
+
+def _number(value: Any) -> float:
+    return math.nan if value is None else float(value)
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" + "s" * (count != 1)
+
+
+def _borders(rows: SweepRows) -> Iterator[AtlasBorder]:
+    for row in rows.rows:
+        if row.failure is not None:
+            continue
+        for name, found in row.result["borders"].items():
+            yield AtlasBorder(
+                chain=row.case["chain"],
+                packet=row.case["packet"],
+                modes=tuple(row.result["modes"]),
+                order=row.case["order"],
+                border=name,
+                energy=found.get("energy"),
+                details=found,
+            )
+
+
+def read_atlas(file: Path | str) -> Atlas:
+    """The atlas in a file that `atlas` wrote; also while it is still written.
+
+    file : JSON lines. Raises InputError for a file of anything else. Dimensionless. Ours.
+    """
+    rows = read_sweep(file)
+    if rows.function != FUNCTION:
+        raise InputError(
+            "file", str(file), "the file of an atlas", f"it is of {rows.function}"
+        )
+    return Atlas(rows)
+
+
+def atlas(
+    chains: Iterable[Chain | Mapping[str, Any]],
+    packets: Iterable[str | Sequence[int]],
+    order: int | Sequence[int],
+    *,
+    borders: Sequence[str] = ESTIMATES,
+    places: Sequence[Number] = (),
+    by: str = ENERGY,
+    per_particle: bool = False,
+    most_harmonics: int = MOST_HARMONICS,
+    reach: float = REACH,
+    executor: Any = None,
+    file: Path | str | None = None,
+    retry: bool = False,
+    progress: Progress | None = None,
+) -> Atlas:
+    """Where q-tori end as their energy grows, for each chain and packet.
+
+    chains : of fixed ends and any potential; mappings of the arguments of `Chain` may be
+        impossible, and are rows with their error then.
+    packets : seed sets as "1,2" or (1, 2), or by name: "low:s", "middle:s", "high:s", of s modes
+        or, s below 1, of the part s of all N.
+    order : of the series; several, to see what the borders owe to it.
+    borders : of "ratio", "sums", "poles" (where the radius of convergence falls to the torus' own
+        amplitudes: by the largest term of each order, by the sums of all terms, by the nearest
+        pole of Pade approximants to the frequencies), "newton" (where Newton's method finds no
+        further torus) and "stability" (the first unstable torus on its way).
+    places : energies H > 0 (`per_particle` H/N; with by="amplitude" the A_q of all seeds) at which
+        a point is wanted in any case. Each border is located to 1 % between points of its own.
+    by : "energy", with equal mode energies, or "amplitude", with equal amplitudes.
+    most_harmonics : of a torus of Newton's method, beyond which it is not followed; its residual
+        is 1e-9. reach : energies up to so many times that of the series' last point.
+    executor, file, retry, progress : as for `sweep`: a file is gone on with.
+
+    Everything is dimensionless. Eq. omeser at every point, judged as by `assess`; ours. Tori in
+    narrow resonances between two points are not seen. Raises InputError for arguments out of
+    range, and what `sweep` raises.
+
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> from symfpu import Chain, atlas
+    >>> chains = [Chain(N, beta=1) for N in (8, 16, 32)]
+    >>> with ThreadPoolExecutor(1) as pool:
+    ...     found = atlas(chains, ["high:1"], 6, borders=["poles"], executor=pool)
+    >>> round(found.law("high:1", "poles").exponent, 1)
+    -2.6
+    """
+    shared = {
+        "places": _places(places),
+        "by": _one_of("by", by, (ENERGY, AMPLITUDE)),
+        "per_particle": bool(per_particle),
+        "most_harmonics": integer(most_harmonics, "most_harmonics", 1),
+        "reach": _reach(reach),
+    }
+    wanted = tuple(_one_of("borders", name, BORDERS) for name in borders)
+    series = tuple(name for name in wanted if name in ESTIMATES)
+    orders = (order,) if isinstance(order, int) else tuple(order)
+    if not orders:
+        raise InputError("order", order, "an order, or several", "take 12")
+    cases = [
+        {
+            "chain": chain,
+            "packet": _packet(packet),
+            "order": integer(K, "order", 1),
+            "borders": wanted if max(orders) == K else series,
+        }
+        for chain in chains
+        for packet in packets
+        for K in orders
+    ]
+    rows = sweep(
+        atlas_column,
+        cases,
+        fixed=shared,
+        executor=executor,
+        file=file,
+        memory=column_bytes,
+        retry=retry,
+        progress=progress,
+    )
+    return Atlas(rows)
+
+
+def column_bytes(chain: Chain, packet: str, order: int) -> int:
+    """The bytes that the series of a column need, for `sweep`.
+
+    >>> column_bytes(Chain(32, beta=1), "low:2", 6) > 0
+    True
+    """
+    return series_bytes(chain, packet_modes(chain, packet), order)
+
+
+def _one_of(name: str, value: str, allowed: Sequence[str]) -> str:
+    if value not in allowed:
+        raise InputError(name, value, f"one of {', '.join(allowed)}", "name one of these")
+    return value
+
+
+def _packet(packet: str | Sequence[int]) -> str:
+    return packet if isinstance(packet, str) else ",".join(map(str, packet))
+
+
+def _places(places: Sequence[Number]) -> tuple[str, ...]:
+    found = {exact(place, "places") for place in places}
+    if found and min(found) <= 0:
+        raise InputError("places", tuple(places), "positive numbers", "leave out others")
+    return tuple(decimal(place) for place in sorted(found))
+
+
+def _reach(reach: float) -> float:
+    value = float(exact(reach, "reach"))
+    if value < 1:
+        raise InputError("reach", reach, "a number of at least 1", "take 30")
+    return value
