@@ -10,8 +10,9 @@ from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.families.normal_events import RESONANCE, STABILITY, collision, discriminant
+from symfpu.families.normal_events import RESONANCE, STABILITY, discriminant
 from symfpu.families.normal_family import normal_family
+from symfpu.families.normal_zeros import collision
 from symfpu.normal.resonances import PARAMETRIC, SUM, ParametricResonance
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.tori import refine_at_amplitudes

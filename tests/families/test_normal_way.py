@@ -11,8 +11,9 @@ from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, RunInterrupted
 from symfpu.families.family import family, member_at_energy
-from symfpu.families.normal_events import NormalEvent, located
+from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_family import normal_family
+from symfpu.families.normal_zeros import located
 from symfpu.files.archive import BundleError
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.tori import refine_at_amplitudes
