@@ -72,9 +72,9 @@ from symfpu.normal.search import normal_modes
 from symfpu.paper.corrected import TimeIsUp
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.proofs.leading import leading_terms
+from symfpu.proofs.reading import CertificateError
 from symfpu.proofs.sweeps import Sweep, SweepCase, SweepIncomplete
 from symfpu.proofs.theorem import prove_for_all_N
-from symfpu.proofs.verify import CertificateError
 from symfpu.refinement.tori import NoTorus, refine, refine_at_amplitudes
 from symfpu.series.expandable import expandable_term
 from symfpu.series.lindstedt import lindstedt

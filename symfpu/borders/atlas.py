@@ -34,7 +34,8 @@ class AtlasBorder:
     """One border of an atlas, dimensionless.
 
     chain : as it is typed. packet : as it was named; modes : its modes. order : of the series.
-    border : "ratio", "sums", "poles", "newton" or "stability". energy : H there; None if there is
+    border : "ratio", "sums", "poles", "fold", "newton" or
+        "stability". energy : H there; None if there is
         none. details : its record.
     """
 
@@ -124,7 +125,8 @@ class Atlas(Shown, Tabled):
     ) -> BorderLaw:
         """The power of N with which this border of a packet goes.
 
-        packet : as it was named. border : "ratio", "sums", "poles", "newton" or "stability".
+        packet : as it was named. border : "ratio", "sums", "poles", "fold", "newton" or
+        "stability".
         model : the couplings, such as "alpha=1"; needed if there are several. order : of the
         series; default for each length the largest.
 
@@ -235,7 +237,8 @@ def atlas(
     borders : of "ratio", "sums", "poles" (where the radius of convergence falls to the torus' own
         amplitudes: by the largest term of each order, by the sums of all terms, by the nearest
         pole of Pade approximants to the frequencies), "newton" (where Newton's method finds no
-        further torus) and "stability" (the first unstable torus on its way).
+        further torus), "fold" (the first torus on its way that is on another sheet of the series)
+        and "stability" (the first unstable one).
     places : energies H > 0 (`per_particle` H/N; with by="amplitude" the A_q of all seeds) at which
         a point is wanted in any case. Each border is located to 1 % between points of its own.
     by : "energy", with equal mode energies, or "amplitude", with equal amplitudes.
@@ -320,5 +323,5 @@ def _places(places: Sequence[Number]) -> tuple[str, ...]:
 def _reach(reach: float) -> float:
     value = float(exact(reach, "reach"))
     if value < 1:
-        raise InputError("reach", reach, "a number of at least 1", "take 30")
+        raise InputError("reach", reach, "a number of at least 1", "take 3")
     return value

@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from symfpu.bundles.bundle import load
 from symfpu.cli.chains import solution_of
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
@@ -39,6 +38,7 @@ from symfpu.reports.normal import (
     series_records,
     series_text,
 )
+from symfpu.saved.results import load
 
 MEMBERS = 9
 TO_AMPLITUDES = "to-amplitudes"
@@ -72,7 +72,9 @@ def stability(
     ] = None,
     members: Annotated[
         str | None,
-        typer.Option(help=f"With --to-amplitudes: number of tori.  Default: {MEMBERS}."),
+        typer.Option(
+            help=f"With --to-amplitudes: number of tori.  Default: {MEMBERS}.", metavar="M"
+        ),
     ] = None,
     output: Annotated[
         str | None,

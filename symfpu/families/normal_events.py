@@ -24,6 +24,7 @@ import numpy as np
 from symfpu.families.normal_zeros import (
     PLACE,
     SHARE,
+    Bracket,
     Failed,
     Outside,
     collision,
@@ -32,7 +33,7 @@ from symfpu.families.normal_zeros import (
 )
 from symfpu.frames.recorded import Recorded
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
-from symfpu.normal.meeting import EPS, Crossed, Lost, Meeting, NormalCondition
+from symfpu.normal.meeting import Crossed, Lost, Meeting, NormalCondition
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.resonances import (
     OWN,
@@ -106,20 +107,6 @@ class Known(NamedTuple):
     modes: NormalModes
 
 
-class _Bracket(NamedTuple):
-    """Two places and the values of a condition there."""
-
-    low: float
-    high: float
-    values: tuple[float, float]
-
-    def error(self, place: float, of_value: float) -> float:
-        """Of the place of a zero between them, from the flatter side."""
-        before, after = map(abs, self.values)
-        slope = min(before / (place - self.low), after / (self.high - place))
-        return max(of_value / slope, EPS) if slope else self.high - self.low
-
-
 class Curve(Protocol):
     """Tori by their place on a curve; NoTorus where there is none."""
 
@@ -174,42 +161,38 @@ class Stretch:
         crossed: bool = False,
     ) -> NormalEvent:
         """Where the discriminant is zero; crossed : beside a distance of zero at one of the two."""
-        values = tuple(discriminant(end.normal, resonance) for end in (low, high))
-        begins = values[1] < 0
-        between = _beside if crossed else _between
-        place = between(low, high, values)
-        wild = high if begins else low
+        values = [discriminant(end.normal, resonance) for end in (low, high)]
+        bracket = Bracket(low.place, high.place, *values)
+        begins, wild = (True, high) if bracket.at_high < 0 else (False, low)
+        place = bracket.beside() if crossed else bracket.secant()
         near, far = sorted((low, high), key=lambda end: abs(end.place - place))
-        size = (2 * _real(low.normal)[resonance.modes[0]]) ** 2
-        bracket = _Bracket(low.place, high.place, (values[0] / size, values[1] / size))
         calm = far if near is wild else near
         if _own(resonance, wild.normal):
-            width = high.place - low.place
-            return self._event(STABILITY, resonance, place, width, begins=begins)
+            return self._event(STABILITY, resonance, place, bracket.width, begins=begins)
+        size = (2 * _real(low.normal)[resonance.modes[0]]) ** 2
         for start, known in ((place, near), (place, far), (calm.place, calm)):
-            if met := self._met(Meeting(known.modes, resonance), start, bracket):
+            if met := self._met(Meeting(known.modes, resonance), start, bracket, size):
                 return self._event(STABILITY, resonance, *met, begins=begins)
-        place, error = self._halved(resonance, low, high, values)
+        place, error = self._halved(resonance, bracket, low)
         return self._event(STABILITY, resonance, place, error, begins=begins)
 
     def _met(
-        self, condition: NormalCondition, start: float, bracket: _Bracket
+        self, condition: NormalCondition, start: float, bracket: Bracket, size: float
     ) -> tuple[float, float, Solution] | None:
-        """Place, error and torus of a condition by Newton's method, or None."""
+        """Place, error and torus of a condition by Newton's method, or None.
+
+        size : that the condition's value is relative to.
+        """
         try:
             place, torus = self._curve.met(condition, start)
         except (*Failed, Lost):
             return None
         if not bracket.low < place < bracket.high:
             return None
-        return place, bracket.error(place, condition.error(torus)), torus
+        return place, bracket.error(place, size * condition.error(torus)), torus
 
     def _halved(
-        self,
-        resonance: ParametricResonance,
-        low: Known,
-        high: Known,
-        values: tuple[float, ...],
+        self, resonance: ParametricResonance, bracket: Bracket, low: Known
     ) -> tuple[float, float]:
         """The place of an onset by values of D, and its error."""
 
@@ -218,25 +201,25 @@ class Stretch:
 
         gap = 2 * LEAST_GAP * abs(resonance.left_of(_real(low.normal)))
         try:
-            return located(of, low.place, high.place, values, gap**2)
+            return located(of, bracket, gap**2)
         except Failed:
-            return _between(low, high, values), high.place - low.place
+            return bracket.secant(), bracket.width
 
     def _crossing(self, resonance: ParametricResonance) -> Iterator[NormalEvent]:
         """Where the distance is zero: two onsets if both are hyperbolic there, none if it jumps."""
         low, high = self._first, self._second
-        values = tuple(resonance.distance_of(end.normal) for end in (low, high))
-        start = _between(low, high, values)
+        values = [resonance.distance_of(end.normal) for end in (low, high)]
+        bracket = Bracket(low.place, high.place, *values)
+        start = bracket.secant()
         near = min((low, high), key=lambda end: abs(end.place - start))
         size = _real(low.normal)[resonance.modes[0]]
-        bracket = _Bracket(low.place, high.place, (values[0] / size, values[1] / size))
-        if met := self._met(Crossed(near.modes, resonance), start, bracket):
+        if met := self._met(Crossed(near.modes, resonance), start, bracket, size):
             yield self._event(RESONANCE, resonance, *met)
             return
-        yield from self._crossed_by_secants(resonance, values)
+        yield from self._crossed_by_secants(resonance, bracket)
 
     def _crossed_by_secants(
-        self, resonance: ParametricResonance, values: tuple[float, ...]
+        self, resonance: ParametricResonance, bracket: Bracket
     ) -> Iterator[NormalEvent]:
         """The same where Newton's method leads to no torus with real frequencies."""
         low, high = self._first, self._second
@@ -245,10 +228,10 @@ class Stretch:
             return resonance.distance_of(self._known(place, resonance.modes).normal)
 
         try:
-            place = zero_of(of, low.place, high.place, values)
+            place = zero_of(of, bracket)
             there = self._known(place, resonance.modes)
         except Failed:
-            yield self._crossed_apart(resonance, of, values)
+            yield self._crossed_apart(resonance, of, bracket)
             return
         distance = resonance.distance_of(there.normal)
         if there.normal.growth:
@@ -261,15 +244,14 @@ class Stretch:
         self,
         resonance: ParametricResonance,
         of: Callable[[float], float],
-        values: tuple[float, ...],
+        bracket: Bracket,
     ) -> NormalEvent:
         """Where modes that do not couple have one frequency they cannot be told apart."""
-        low, high = self._first, self._second
-        gap = LEAST_GAP * max(map(abs, values)) / SHARE
+        gap = LEAST_GAP * bracket.largest / SHARE
         try:
-            place, error = collision(of, low.place, high.place, values, gap)
+            place, error = collision(of, bracket, gap)
         except (*Failed, Outside):
-            place, error = _between(low, high, values), high.place - low.place
+            place, error = bracket.secant(), bracket.width
         return self._event(RESONANCE, resonance, place, error)
 
     def _event(
@@ -355,18 +337,3 @@ def _unstable(found: NormalFrequencies) -> set[int]:
 
 def _real(found: NormalFrequencies) -> dict[int, float]:
     return {q: complex(w).real for q, w in found.frequencies.items()}
-
-
-def _between(low: Known, high: Known, ends: tuple[float, ...]) -> float:
-    """Where a function has its zero if it is linear."""
-    a, b = ends
-    return low.place + (high.place - low.place) * a / (a - b)
-
-
-def _beside(low: Known, high: Known, ends: tuple[float, ...]) -> float:
-    """Where a function has its zero that is least at the end where it is negative: a parabola."""
-    a, b = ends
-    width = high.place - low.place
-    if a > b:
-        return high.place - width * float(np.sqrt(-b / (a - b)))
-    return low.place + width * float(np.sqrt(-a / (b - a)))

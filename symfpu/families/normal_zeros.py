@@ -7,12 +7,14 @@ from both sides, or the way is halved.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from symfpu.normal.modes import NoNormalModes
 from symfpu.refinement.tori import NoTorus
 
+EPS = float(np.finfo(float).eps)
 PLACE = 1e-12  # of the way, to which the crossing of a resonance is located
 SHARE = 0.2  # of the bracket, that the points about an estimate reach out to
 ROUNDS = 6  # of estimates, each with a point on either side
@@ -27,13 +29,60 @@ class Outside(Exception):
     """An estimate of a zero leaves the places between which it is."""
 
 
-def zero_of(
-    function: Callable[[float], float], low: float, high: float, ends: tuple[float, ...]
-) -> float:
+class Bracket(NamedTuple):
+    """Two places of a curve, and what a function is there, of opposite signs."""
+
+    low: float
+    high: float
+    at_low: float
+    at_high: float
+
+    @property
+    def width(self) -> float:
+        return self.high - self.low
+
+    @property
+    def least(self) -> float:
+        """The smaller size of the two values."""
+        return min(abs(self.at_low), abs(self.at_high))
+
+    @property
+    def largest(self) -> float:
+        """The larger one."""
+        return max(abs(self.at_low), abs(self.at_high))
+
+    def secant(self) -> float:
+        """Where the function is zero if it is linear."""
+        return self.low + self.width * self.at_low / (self.at_low - self.at_high)
+
+    def half(self, middle: float, value: float) -> Bracket:
+        """The half in which the sign changes."""
+        if (value < 0) == (self.at_low < 0):
+            return self._replace(low=middle, at_low=value)
+        return self._replace(high=middle, at_high=value)
+
+    def beside(self) -> float:
+        """Where it is zero if it is a parabola that is least at the end where it is negative."""
+        below, above = sorted((self.at_low, self.at_high))
+        part = float(np.sqrt(below / (below - above)))
+        if self.at_high < 0:
+            return self.high - self.width * part
+        return self.low + self.width * part
+
+    def error(self, place: float, of_value: float) -> float:
+        """Of the place of a zero between the two, from the flatter side."""
+        before = abs(self.at_low) / (place - self.low)
+        after = abs(self.at_high) / (self.high - place)
+        slope = min(before, after)
+        return max(of_value / slope, EPS) if slope else self.width
+
+
+def zero_of(function: Callable[[float], float], bracket: Bracket) -> float:
     """Where a function changes its sign, by Brent's secants."""
     from scipy.optimize import brentq
 
-    known = dict(zip((low, high), ends, strict=True))
+    low, high = bracket.low, bracket.high
+    known = {low: bracket.at_low, high: bracket.at_high}
 
     def value(part: float) -> float:
         if part not in known:
@@ -44,41 +93,29 @@ def zero_of(
 
 
 def located(
-    D: Callable[[float], float],
-    low: float,
-    high: float,
-    ends: tuple[float, ...],
-    least: float,
+    D: Callable[[float], float], bracket: Bracket, least: float
 ) -> tuple[float, float]:
     """As `collision`, between halves of the way where it leads out of it or D is too small.
 
     So are the ends of a narrow tongue, and of a short piece; then the error is what is left.
     """
-    width = NARROWED * (high - low)
-    while high - low > width:
+    width = NARROWED * bracket.width
+    while bracket.width > width:
         try:
-            if min(map(abs, ends)) > least:
-                return collision(D, low, high, ends, least)
+            if bracket.least > least:
+                return collision(D, bracket, least)
         except (*Failed, Outside):
             pass
-        middle = (low + high) / 2
+        middle = (bracket.low + bracket.high) / 2
         value = D(middle)
         if abs(value) < NOISE:
-            return middle, high - low
-        first, second = ends
-        if (value < 0) == (first < 0):
-            low, ends = middle, (value, second)
-        else:
-            high, ends = middle, (first, value)
-    return (low + high) / 2, high - low
+            return middle, bracket.width
+        bracket = bracket.half(middle, value)
+    return (bracket.low + bracket.high) / 2, bracket.width
 
 
 def collision(
-    D: Callable[[float], float],
-    low: float,
-    high: float,
-    ends: tuple[float, ...],
-    least: float,
+    D: Callable[[float], float], bracket: Bracket, least: float
 ) -> tuple[float, float]:
     """The zero of a smooth function that cannot be computed where |D| < least, and its error.
 
@@ -86,7 +123,8 @@ def collision(
     together until they stand at the least |D|. The error is what two points fewer change. Raises
     Outside.
     """
-    known = dict(zip((low, high), ends, strict=True))
+    low, high = bracket.low, bracket.high
+    known = {low: bracket.at_low, high: bracket.at_high}
     best = _inverse(known)
     for _ in range(ROUNDS):
         if not low < best < high:

@@ -11,7 +11,7 @@ from functools import partial
 from html import escape
 from typing import Any, NamedTuple
 
-from symfpu.action_angle.foretold import ForetoldIndices
+from symfpu.action_angle.foretold import ForetoldIndices, settled_text
 from symfpu.breathers.floquet import Floquet
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
@@ -21,6 +21,7 @@ from symfpu.families.normal_family import NormalFamily
 from symfpu.integrable.invariants import TodaInvariants
 from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import decimal
 from symfpu.plots.families import family_frequencies
 from symfpu.plots.frequency_map import frequency_map
@@ -127,7 +128,7 @@ def _torus_rows(result: Any) -> Rows:
 
 
 def _series_verdict(series: LindstedtSeries) -> str:
-    return f"order {series.order}, {series.coefficient_count:,} coefficients"
+    return f"order {series.order}, {counted(series.coefficient_count, 'coefficient')}"
 
 
 def _series_rows(series: LindstedtSeries) -> Rows:
@@ -182,7 +183,7 @@ def _foretold_rows(found: ForetoldIndices) -> Rows:
     yield "seeds", _listed(found.torus.seeds)
     for k, time in found.settling().items():
         slope = found.asymptotic_slopes[k]
-        yield f"G_{k}", f"slope {slope}, from t = {time:.2g} on"
+        yield f"G_{k}", f"slope {slope}, {settled_text(time, found.times[-1])}"
     yield "rates of growth", ", ".join(f"{rate:.2g}" for rate in found.rates)
 
 
@@ -265,7 +266,10 @@ def _map_rows(found: FrequencyMap) -> Rows:
     yield "to t", f"{found.T:.10g}"
     by_energy = zip(found.energies, found.counts, found.drifts, strict=True)
     for energy, count, drift in by_energy:
-        yield f"H = {energy:.6g}", f"{count} frequencies, drift {drift:.2g}"
+        yield (
+            f"H = {energy:.6g}",
+            f"{counted(count, 'frequency', 'frequencies')}, drift {drift:.2g}",
+        )
 
 
 def _energy_series(orbit: Orbit, ax: Axes | None = None) -> Axes:
@@ -321,7 +325,9 @@ USUAL = (
     Usual(
         FrequencyAnalysis,
         lines,
-        lambda found: f"{len(found.seeds)} independent frequencies",
+        lambda found: counted(
+            len(found.seeds), "independent frequency", "independent frequencies"
+        ),
         _line_rows,
     ),
     Usual(

@@ -12,7 +12,7 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.normal_events import RESONANCE, STABILITY, discriminant
 from symfpu.families.normal_family import normal_family
-from symfpu.families.normal_zeros import collision
+from symfpu.families.normal_zeros import Bracket, collision
 from symfpu.normal.resonances import PARAMETRIC, SUM, ParametricResonance
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.tori import refine_at_amplitudes
@@ -36,8 +36,7 @@ def test_a_collision_is_found_without_looking_near_it():
         asked.append(x)
         return math.expm1(0.43 - x) * (1 + x)
 
-    ends = D(0.38), D(0.46)
-    part, error = collision(D, 0.38, 0.46, ends, 1e-3)
+    part, error = collision(D, Bracket(0.38, 0.46, D(0.38), D(0.46)), 1e-3)
     assert part == pytest.approx(0.43, abs=NORMAL_CONVERGED)
     assert error < NORMAL_CONVERGED
     assert min(abs(x - 0.43) for x in asked) > 1e-4

@@ -13,7 +13,7 @@ from symfpu.errors import InputError, RunInterrupted
 from symfpu.families.family import family, member_at_energy
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_family import normal_family
-from symfpu.families.normal_zeros import located
+from symfpu.families.normal_zeros import Bracket, located
 from symfpu.files.archive import BundleError
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.tori import refine_at_amplitudes
@@ -129,7 +129,7 @@ def test_a_narrow_tongue_has_both_ends():
 
 
 def test_a_zero_of_what_is_too_small_to_interpolate_is_halved():
-    found, error = located(lambda x: 1e-6 * (0.3 - x), 0.0, 1.0, (0.3e-6, -0.7e-6), 1e-3)
+    found, error = located(lambda x: 1e-6 * (0.3 - x), Bracket(0.0, 1.0, 0.3e-6, -0.7e-6), 1e-3)
     assert abs(found - 0.3) <= error < 1e-3
 
 
