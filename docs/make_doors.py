@@ -261,6 +261,9 @@ SERIES: dict[str, Door] = {
     "lindstedt, N='N'": lambda c: c.for_all_lengths,
     "lindstedt, ring='nested'": lambda c: c.lindstedt((1,), order=2, ring="nested"),
     "normal_frequency_series": lambda c: symfpu.normal_frequency_series(
+        c.chain, (1,), 3, 2, {1: "0.6", 3: "1.6"}
+    ),
+    "normal_frequency_series, no frequencies": lambda c: symfpu.normal_frequency_series(
         c.chain, SEEDS, 4, 2
     ),
     "pade_amplitudes": lambda c: symfpu.pade_amplitudes(c.series, c.solved.amplitudes),
@@ -299,10 +302,10 @@ NEWTON: dict[str, Door] = {
     "prove_residual": lambda c: symfpu.prove_residual(c.solution),
     "prove_stay": lambda c: symfpu.prove_stay(c.refined, time=1),
     "normal_family": lambda c: symfpu.normal_family(
-        c.breather, {1: 1.1 * c.size}, members=2, modes=[2], resonance_length=0
+        c.periodic, {1: 1.1 * c.size}, members=2, modes=[2], resonance_length=0
     ),
     "normal_modes": lambda c: symfpu.normal_modes(c.periodic),
-    "solve_normal_frequency": lambda c: symfpu.solve_normal_frequency(c.breather, 2, 2),
+    "solve_normal_frequency": lambda c: symfpu.solve_normal_frequency(c.periodic, 2, 2),
     "member_at_energy": lambda c: symfpu.member_at_energy(
         c.family, c.family.members[1].torus.energy(), harmonic=False
     ),

@@ -684,6 +684,22 @@ SAME_DERIVATIVE = 1e-12
 # An onset by inverse interpolation of its discriminant: 1e-14 of D over its slope, some 0.02 an amplitude.
 ONSET = 1e-10
 
+# An event by Newton's method from several starts: some roundings of an amplitude of 0.4.
+EVENT = 2e-15
+
+# The same against tori of 30 digits: what a residual of 2e-15 makes of the frequencies, over the change of their distance
+# with the amplitude, 0.05 in a narrow tongue.
+EVENT_BY_DIGITS = 5e-14
+
+# Between two routes to an end of a narrow tongue, each with tori whose residual is below 1e-13: that over 0.05.
+NARROW_EVENT = 2e-12
+
+# A growth of 1e-3 by a multiplier of orbits of a residual of 1e-10, whose square root at 1 is rounded.
+GROWTH_BY_FLOQUET = 1e-3
+
+# Central differences with steps of 1e-4 of a discriminant of 1e-4, known to 1e-17: 1e-9, and the step's square.
+CENTRAL_GRADIENT = 1e-6
+
 # An amplitude beside an onset at which Floquet's multipliers, whose own threshold is some 1e-8 of the square, have decided.
 BESIDE_AN_ONSET = 1e-6
 

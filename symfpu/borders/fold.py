@@ -29,7 +29,8 @@ class Sheet:
     """The derivative of the equations of the other coefficients, at one torus.
 
     sign, logarithm : of its determinant divided by that of the linear chain at these frequencies,
-    the product of the divisors; the sign changes where the series is singular. mode, harmonic : the coefficient that moves most in its weakest direction.
+        the product of the divisors; the sign changes where the series is singular.
+    mode, harmonic : the coefficient that moves most in its weakest direction.
     """
 
     sign: int

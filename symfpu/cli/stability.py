@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import solution_of
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
@@ -40,7 +39,6 @@ from symfpu.reports.normal import (
     series_text,
 )
 from symfpu.saved.results import load
-from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 MEMBERS = 9
 TO_AMPLITUDES = "to-amplitudes"
@@ -131,13 +129,6 @@ def _refuse(option: str, given: str | None, allowed: str) -> None:
         raise InputError(option, given, allowed, "leave it out")
 
 
-def _of_fixed_ends(torus: Solution) -> QuasiPeriodic:
-    """The solution; InputError for one of a ring."""
-    require_fixed_ends(torus.chain)
-    assert isinstance(torus, QuasiPeriodic)
-    return torus
-
-
 def _modes(
     torus: Solution, chosen: list[int] | None, length: int, order: int | None
 ) -> tuple[NormalModes, list[BySeries]]:
@@ -146,12 +137,11 @@ def _modes(
         found = normal_modes(torus, modes=chosen, resonance_length=length, progress=advance)
         if order is None:
             return found, []
-        plain = _of_fixed_ends(torus)
         records = [
             by_series(
                 mode,
-                lambda q: solve_normal_frequency(plain, q, order, progress=advance),
-                plain,
+                lambda q: solve_normal_frequency(torus, q, order, progress=advance),
+                torus,
             )
             for mode in found.modes
         ]
@@ -167,7 +157,6 @@ def _line(
     output: str | None,
 ) -> NormalFamily:
     """The line from a torus to other amplitudes."""
-    plain = _of_fixed_ends(torus)
     end = by_seed(TO_AMPLITUDES, amplitudes, torus.seeds)
     folder = None if output is None else output_folder(path_named("output", output))
     note = f"tori found so far are kept in {folder}; the same command goes on from them"
@@ -177,7 +166,7 @@ def _line(
 
     with progress_bar("first torus", kept) as advance:
         return normal_family(
-            plain,
+            torus,
             end,
             members=MEMBERS if members is None else whole("members", members),
             modes=chosen,

@@ -452,6 +452,20 @@ class Way:
             raise NoTorus(f"{torus} is not between two neighbours", found, found.residual())
         return found
 
+    def meeting(self, condition: Condition, guess: QuasiPeriodic) -> RefinedTorus:
+        """The torus of a condition between the last two, from a guess.
+
+        Raises NoTorus, also for one that is elsewhere or doubtful.
+        """
+        conditions = self._conditions(condition)
+        found = refined_torus(
+            guess, conditions, tolerance=self.tolerance, progress=self.progress
+        )
+        along, astray = self.place(found)
+        if astray > DISTANCE_LIMIT or not 0 <= along <= 1 or found.warnings:
+            raise NoTorus("it is not between two neighbours", found, found.residual())
+        return found
+
     def place(self, torus: RefinedTorus) -> tuple[float, float]:
         """How far along the way between the last two tori another one is, and how far off it.
 

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from symfpu.breathers.floquet import floquet
 from symfpu.families.continuation import (
-    DISTANCE_LIMIT,
     Event,
     Level,
     Member,
@@ -25,10 +24,10 @@ from symfpu.families.continuation import (
 )
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_way import NormalWay
-from symfpu.refinement.conditions import Crossing, ratio_conditions
+from symfpu.refinement.conditions import Crossing
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.invariance import DIGITS, long
-from symfpu.refinement.tori import NoTorus, RefinedTorus, refined_torus, shifts_of
+from symfpu.refinement.tori import NoTorus, RefinedTorus, shifts_of
 
 # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
 LEAST_COEFFICIENT = 1e-11
@@ -151,18 +150,11 @@ def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
         Omega = chain.linear_frequency(sign.mode)
         wanted = Omega if twice > 0 else -Omega
         crossing = Crossing(harmonic, long(wanted - linear), float(Omega))
-    ratio = ratio_conditions(tuple(way.ratio), way.ratio, energies=way.energies)
-    guess = extrapolated(first, second, sign.part - 1)
     try:
-        found = refined_torus(
-            guess, [crossing, *ratio], tolerance=way.tolerance, progress=way.progress
-        )
+        found = way.meeting(crossing, extrapolated(first, second, sign.part - 1))
     except NoTorus:
         return None
-    along, astray = way.local(first, second).place(found)
-    between = astray <= DISTANCE_LIMIT and 0 <= along <= 1
-    known = list(harmonic) in found.harmonics.tolist()
-    return found if between and known and not found.warnings else None
+    return found if list(harmonic) in found.harmonics.tolist() else None
 
 
 def folds(way: Way, after: int) -> Iterator[Event]:

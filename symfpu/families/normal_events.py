@@ -6,29 +6,44 @@ resonance. The frequencies have a root there; the discriminant has none,
 
     D = (sigma_q + sigma_q' - nu.omega)^2 before, -4 (Im sigma_q)^2 beyond,
 
-the square of the difference of the two that meet. It passes through zero as a smooth function of
-the place does, and so its zero is found as one of any such function, to the last digits. A
-resonance that is crossed between real frequencies is a zero of its own distance.
+the square of the difference of the two that meet, which passes through zero as a smooth function
+of the place does. A resonance that is crossed between real frequencies is a zero of its own
+distance. The torus of either is found by Newton's method, with D or the distance among its
+conditions (`symfpu.normal.meeting`), from where a line between the two tori has the zero; where
+that does not lead between them, by values of D on tori ever nearer to it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from symfpu.families.normal_zeros import (
+    PLACE,
+    SHARE,
+    Bracket,
+    Failed,
+    Outside,
+    collision,
+    located,
+    zero_of,
+)
 from symfpu.frames.recorded import Recorded
-from symfpu.normal.frequencies import LOCKED, NormalFrequencies, frequencies_of
-from symfpu.normal.modes import NoNormalModes, NormalModes
+from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
+from symfpu.normal.meeting import Crossed, Lost, Meeting, NormalCondition
+from symfpu.normal.modes import NormalModes
 from symfpu.normal.resonances import (
+    OWN,
     PARAMETRIC,
-    SUM,
     ParametricResonance,
     crossed_resonances,
+    locked_resonances,
 )
 from symfpu.normal.search import followed_modes
+from symfpu.refinement.conditions import Condition
 from symfpu.refinement.tori import NoTorus
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
@@ -36,22 +51,12 @@ from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 STABILITY, RESONANCE = "stability", "resonance"
 RESONANCE_LENGTH = 4  # sum |nu_i| up to which a resonance that is crossed is an event
 MET = 1e-8  # distance up to which a resonance was crossed, and not jumped over
-PLACE = 1e-12  # of the way, to which the crossing of a resonance is located
 ROUGH = 1e-6  # of the way, from which an event is said to be interpolated
 # where two frequencies are nearer than this, relative, D is not computed but interpolated
 LEAST_GAP = 5e-4
-SHARE = 0.2  # of the bracket, that the points about an estimate reach out to
-ROUNDS = 6  # of estimates, each with a point on either side
-NODES = (-1.0, -0.6, -0.3, 0.3, 0.6, 1.0)  # of the last estimate, in units of the gap
-
-NARROWED = 1e-7  # of the way, to which it is halved where D is too small to interpolate
-NOISE = 1e-10  # of D, below which its sign says nothing
-
-Failed = (NoTorus, NoNormalModes)
 
 
-class Outside(Exception):
-    """An estimate of a zero leaves the places between which it is."""
+Solution = QuasiPeriodic | RingTorus
 
 
 @dataclass(frozen=True)
@@ -64,7 +69,8 @@ class NormalEvent(Recorded):
         0 to 1 from its first member to the last, in a `family` from the member `after` to the
         next. amplitudes : by seed there. energy : H there.
     begins : whether the directions are hyperbolic beyond it; False for a resonance. error : of
-        `part`, estimated; the whole step where no torus in between could be judged.
+        `part`, estimated; rounding where Newton's method found the torus, the whole step where no
+        torus in between could be judged.
 
     >>> met = ParametricResonance("sum", (4, 6), (0, 2), 0.0)
     >>> NormalEvent("stability", met, 3, 0.5, {1: 0.1, 5: 0.4}, 0.25, begins=True)
@@ -93,39 +99,6 @@ class NormalEvent(Recorded):
         return f"{what}, hyperbolic up to {where}{note}"
 
 
-class Bracket(NamedTuple):
-    """Two places of a curve, and what a function is there, of opposite signs."""
-
-    low: float
-    high: float
-    at_low: float
-    at_high: float
-
-    @property
-    def width(self) -> float:
-        return self.high - self.low
-
-    @property
-    def least(self) -> float:
-        """The smaller size of the two values."""
-        return min(abs(self.at_low), abs(self.at_high))
-
-    @property
-    def largest(self) -> float:
-        """The larger one."""
-        return max(abs(self.at_low), abs(self.at_high))
-
-    def secant(self) -> float:
-        """Where the function is zero if it is linear."""
-        return self.low + self.width * self.at_low / (self.at_low - self.at_high)
-
-    def half(self, middle: float, value: float) -> Bracket:
-        """The half in which the sign changes."""
-        if (value < 0) == (self.at_low < 0):
-            return self._replace(low=middle, at_low=value)
-        return self._replace(high=middle, at_high=value)
-
-
 class Known(NamedTuple):
     """What is known at a place of a curve; modes : the eigenfunctions to begin with nearby."""
 
@@ -134,21 +107,26 @@ class Known(NamedTuple):
     modes: NormalModes
 
 
+class Curve(Protocol):
+    """Tori by their place on a curve; NoTorus where there is none."""
+
+    def torus(self, place: float) -> Solution:
+        """The one at a place."""
+        ...
+
+    def met(self, condition: Condition, place: float) -> tuple[float, Solution]:
+        """The one that meets a condition, by Newton's method from a place; with its own."""
+        ...
+
+
 class Stretch:
     """A curve of tori between two of them, whose normal frequencies are known.
 
-    torus : of the place on the curve, from that of the first to that of the second; NoTorus where
-    there is none. after : the number of the first.
+    after : the number of the first.
     """
 
-    def __init__(
-        self,
-        torus: Callable[[float], QuasiPeriodic],
-        first: Known,
-        second: Known,
-        after: int,
-    ) -> None:
-        self._torus, self._after = torus, after
+    def __init__(self, curve: Curve, first: Known, second: Known, after: int) -> None:
+        self._curve, self._after = curve, after
         self._first, self._second = first, second
 
     def events(self, length: int) -> list[NormalEvent]:
@@ -168,50 +146,99 @@ class Stretch:
         """Normal modes of the torus there, continued from the nearer end."""
         ends = self._first, self._second
         near = min(ends, key=lambda end: abs(end.place - place))
-        found, missing = followed_modes(self._torus(place), near.modes, modes=modes)
+        torus = self._curve.torus(place)
+        found, missing = followed_modes(torus, near.modes, modes=modes)
         for none in missing.values():
             raise none
         return Known(place, frequencies_of(found, missing), found)
 
     def _onset(
-        self, resonance: ParametricResonance, low: Known, high: Known
+        self,
+        resonance: ParametricResonance,
+        low: Known,
+        high: Known,
+        *,
+        crossed: bool = False,
     ) -> NormalEvent:
-        """Where the discriminant is zero."""
+        """Where the discriminant is zero; crossed : beside a distance of zero at one of the two."""
         values = [discriminant(end.normal, resonance) for end in (low, high)]
         bracket = Bracket(low.place, high.place, *values)
+        begins, wild = (True, high) if bracket.at_high < 0 else (False, low)
+        place = bracket.beside() if crossed else bracket.secant()
+        near, far = sorted((low, high), key=lambda end: abs(end.place - place))
+        calm = far if near is wild else near
+        if _own(resonance, wild.normal):
+            return self._event(STABILITY, resonance, place, bracket.width, begins=begins)
+        size = (2 * _real(low.normal)[resonance.modes[0]]) ** 2
+        for start, known in ((place, near), (place, far), (calm.place, calm)):
+            if met := self._met(Meeting(known.modes, resonance), start, bracket, size):
+                return self._event(STABILITY, resonance, *met, begins=begins)
+        place, error = self._halved(resonance, bracket, low)
+        return self._event(STABILITY, resonance, place, error, begins=begins)
+
+    def _met(
+        self, condition: NormalCondition, start: float, bracket: Bracket, size: float
+    ) -> tuple[float, float, Solution] | None:
+        """Place, error and torus of a condition by Newton's method, or None.
+
+        size : that the condition's value is relative to.
+        """
+        try:
+            place, torus = self._curve.met(condition, start)
+        except (*Failed, Lost):
+            return None
+        if not bracket.low < place < bracket.high:
+            return None
+        return place, bracket.error(place, size * condition.error(torus)), torus
+
+    def _halved(
+        self, resonance: ParametricResonance, bracket: Bracket, low: Known
+    ) -> tuple[float, float]:
+        """The place of an onset by values of D, and its error."""
 
         def of(place: float) -> float:
             return discriminant(self._known(place, resonance.modes).normal, resonance)
 
         gap = 2 * LEAST_GAP * abs(resonance.left_of(_real(low.normal)))
-        begins = bracket.at_high < 0
         try:
-            place, error = located(of, bracket, gap**2)
+            return located(of, bracket, gap**2)
         except Failed:
-            place, error = bracket.secant(), bracket.width
-        return self._event(STABILITY, resonance, place, begins=begins, error=error)
+            return bracket.secant(), bracket.width
 
     def _crossing(self, resonance: ParametricResonance) -> Iterator[NormalEvent]:
         """Where the distance is zero: two onsets if both are hyperbolic there, none if it jumps."""
         low, high = self._first, self._second
         values = [resonance.distance_of(end.normal) for end in (low, high)]
         bracket = Bracket(low.place, high.place, *values)
+        start = bracket.secant()
+        near = min((low, high), key=lambda end: abs(end.place - start))
+        size = _real(low.normal)[resonance.modes[0]]
+        if met := self._met(Crossed(near.modes, resonance), start, bracket, size):
+            yield self._event(RESONANCE, resonance, *met)
+            return
+        yield from self._crossed_by_secants(resonance, bracket)
+
+    def _crossed_by_secants(
+        self, resonance: ParametricResonance, bracket: Bracket
+    ) -> Iterator[NormalEvent]:
+        """The same where Newton's method leads to no torus with real frequencies."""
+        low, high = self._first, self._second
 
         def of(place: float) -> float:
             return resonance.distance_of(self._known(place, resonance.modes).normal)
 
         try:
-            place = _zero(of, bracket)
+            place = zero_of(of, bracket)
             there = self._known(place, resonance.modes)
         except Failed:
             yield self._crossed_apart(resonance, of, bracket)
             return
         distance = resonance.distance_of(there.normal)
         if there.normal.growth:
-            yield self._onset(resonance, low, there)
-            yield self._onset(resonance, there, high)
+            yield self._onset(resonance, low, there, crossed=True)
+            yield self._onset(resonance, there, high, crossed=True)
         elif abs(distance) < MET:
-            yield self._event(RESONANCE, resonance, place, distance, error=PLACE)
+            yield self._event(RESONANCE, resonance, place, PLACE, distance=distance)
 
     def _crossed_apart(
         self,
@@ -225,29 +252,30 @@ class Stretch:
             place, error = collision(of, bracket, gap)
         except (*Failed, Outside):
             place, error = bracket.secant(), bracket.width
-        return self._event(RESONANCE, resonance, place, error=error)
+        return self._event(RESONANCE, resonance, place, error)
 
     def _event(
         self,
         kind: str,
         resonance: ParametricResonance,
         place: float,
-        distance: float = 0.0,
-        *,
-        begins: bool = False,
         error: float,
+        torus: Solution | None = None,
+        *,
+        distance: float = 0.0,
+        begins: bool = False,
     ) -> NormalEvent:
-        """At a place, with what its torus has there."""
+        """At a place, with what its torus has there; it is sought where none is given."""
         q, modes, harmonic = resonance.kind, resonance.modes, resonance.harmonic
         met = ParametricResonance(q, modes, harmonic, distance)
-        amplitudes, energy = self._where(place)
+        amplitudes, energy = _measured(torus) if torus else self._where(place)
         after = self._after
         return NormalEvent(kind, met, after, place, amplitudes, energy, begins, error)
 
     def _where(self, place: float) -> tuple[dict[int, float], float]:
         """Amplitudes and energy, interpolated where there is no torus."""
         try:
-            return _measured(self._torus(place))
+            return _measured(self._curve.torus(place))
         except NoTorus:
             ends = [_measured(end.normal.torus) for end in (self._first, self._second)]
         (A, low), (B, high) = ends
@@ -257,7 +285,7 @@ class Stretch:
         return between, (1 - part) * low + part * high
 
 
-def _measured(torus: QuasiPeriodic | RingTorus) -> tuple[dict[int, float], float]:
+def _measured(torus: Solution) -> tuple[dict[int, float], float]:
     amplitudes = {q: float(a) for q, a in amplitudes_by_seed(torus).items()}
     return amplitudes, float(torus.energy())
 
@@ -277,14 +305,30 @@ def _changed(
     common = set(first.frequencies) & set(second.frequencies)
     before, after = (_unstable(found) & common for found in (first, second))
     changed = before ^ after
-    found = []
+    found: list[ParametricResonance] = []
     for side, modes in ((first, before & changed), (second, after & changed)):
-        for resonance in side.resonances:
-            meets = resonance.kind in (PARAMETRIC, SUM)
-            locked = abs(resonance.distance) < LOCKED
-            if meets and locked and modes.issuperset(resonance.modes):
+        left = set(modes)
+        for resonance in locked_resonances(side, modes):
+            if left.issuperset(resonance.modes):
                 found.append(resonance)
+                left -= set(resonance.modes)
     return found
+
+
+def _own(resonance: ParametricResonance, wild: NormalFrequencies) -> bool:
+    """Whether a hyperbolic direction is locked to a frequency of the torus: sigma = nu.omega.
+
+    There shifts of the angles are solutions, too: directions next to them cannot be told from
+    these, no determinant leaves them out, and the onset is interpolated.
+    """
+    if resonance.kind != PARAMETRIC:
+        return False
+    return any(
+        one.kind == OWN
+        and one.modes == resonance.modes
+        and np.array_equal(2 * np.array(one.harmonic), resonance.harmonic)
+        for one in wild.resonances
+    )
 
 
 def _unstable(found: NormalFrequencies) -> set[int]:
@@ -293,94 +337,3 @@ def _unstable(found: NormalFrequencies) -> set[int]:
 
 def _real(found: NormalFrequencies) -> dict[int, float]:
     return {q: complex(w).real for q, w in found.frequencies.items()}
-
-
-def _zero(function: Callable[[float], float], bracket: Bracket) -> float:
-    """Where a function changes its sign, by Brent's secants."""
-    from scipy.optimize import brentq
-
-    low, high = bracket.low, bracket.high
-    known = {low: bracket.at_low, high: bracket.at_high}
-
-    def value(part: float) -> float:
-        if part not in known:
-            known[part] = function(part)
-        return known[part]
-
-    return float(brentq(value, low, high, xtol=PLACE))
-
-
-def located(
-    D: Callable[[float], float], bracket: Bracket, least: float
-) -> tuple[float, float]:
-    """As `collision`, between halves of the way where it leads out of it or D is too small.
-
-    So are the ends of a narrow tongue, and of a short piece; then the error is what is left.
-    """
-    width = NARROWED * bracket.width
-    while bracket.width > width:
-        try:
-            if bracket.least > least:
-                return collision(D, bracket, least)
-        except (*Failed, Outside):
-            pass
-        middle = (bracket.low + bracket.high) / 2
-        value = D(middle)
-        if abs(value) < NOISE:
-            return middle, bracket.width
-        bracket = bracket.half(middle, value)
-    return (bracket.low + bracket.high) / 2, bracket.width
-
-
-def collision(
-    D: Callable[[float], float], bracket: Bracket, least: float
-) -> tuple[float, float]:
-    """The zero of a smooth function that cannot be computed where |D| < least, and its error.
-
-    By secants of higher order: the inverse interpolation through points on both sides, drawn
-    together until they stand at the least |D|. The error is what two points fewer change. Raises
-    Outside.
-    """
-    low, high = bracket.low, bracket.high
-    known = {low: bracket.at_low, high: bracket.at_high}
-    best = _inverse(known)
-    for _ in range(ROUNDS):
-        if not low < best < high:
-            raise Outside
-        slope = _slope(known, best)
-        room = SHARE * min(best - low, high - best, key=abs)
-        nearest = min(least / slope, room)
-        reach = max(nearest, min(room, SHARE * _spread(known, best)))
-        for part in (best - reach, best + reach):
-            known[part] = D(part)
-        before, best = best, _inverse(_closest(known, best, 4))
-        if reach <= nearest and abs(best - before) < reach / 2:
-            break
-    known = {best + x * reach / min(map(abs, NODES)) / 3: 0.0 for x in NODES}
-    known = {part: D(part) for part in known}
-    fewer = _inverse(_closest(known, best, len(NODES) - 2))
-    best = _inverse(known)
-    return best, abs(best - fewer)
-
-
-def _inverse(known: Mapping[float, float]) -> float:
-    """The place as a polynomial of the value, at the value 0 (Lagrange)."""
-    total = 0.0
-    for part, value in known.items():
-        others = [other for other in known.values() if other != value]
-        total += part * float(np.prod([b / (b - value) for b in others]))
-    return total
-
-
-def _closest(known: Mapping[float, float], best: float, count: int) -> dict[float, float]:
-    near = sorted(known, key=lambda part: abs(part - best))[:count]
-    return {part: known[part] for part in near}
-
-
-def _slope(known: Mapping[float, float], best: float) -> float:
-    (a, x), (b, y) = _closest(known, best, 2).items()
-    return abs((y - x) / (b - a))
-
-
-def _spread(known: Mapping[float, float], best: float) -> float:
-    return max(abs(part - best) for part in _closest(known, best, 2))

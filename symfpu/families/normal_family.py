@@ -9,9 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.chain.chain import require_fixed_ends
 from symfpu.errors import InputError, RunInterrupted
-from symfpu.families.continuation import extrapolated
 from symfpu.families.normal_events import (
     RESONANCE_LENGTH,
     Known,
@@ -19,21 +17,19 @@ from symfpu.families.normal_events import (
     Stretch,
 )
 from symfpu.families.normal_folder import KeptLine
+from symfpu.families.normal_line import Line
 from symfpu.files.progress import Progress, unheard
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.normal.frequencies import frequencies_of
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.search import checked_modes, followed_modes
+from symfpu.normal.search import checked_modes, checked_solution
 from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, exact, integer
-from symfpu.refinement.tori import NoTorus, RefinedTorus, refine_at_amplitudes
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
-from symfpu.tori.ring_torus import amplitudes_by_seed
-
-HALVINGS = 6  # of a step to a torus that Newton's method does not reach at once
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +100,7 @@ class NormalFamily(Shown, Gridded):
 
 
 def normal_family(
-    solution: QuasiPeriodic,
+    solution: QuasiPeriodic | RingTorus,
     amplitudes: Mapping[int, Number],
     *,
     members: int = 9,
@@ -115,20 +111,22 @@ def normal_family(
 ) -> NormalFamily:
     """Normal frequencies of the tori on the line from one to other amplitudes, with events.
 
-    solution : the first torus or breather, refined, with fixed ends. amplitudes : of the last
-        one, by seed, exact numbers.
+    solution : the first torus or breather, refined, with fixed ends or of a ring as `normal_modes`
+        takes it: standing waves stay what `unfold` makes. amplitudes : of the last one, by seed,
+        exact numbers.
     members : how many tori, 2 or more, at equal steps. modes : which normal modes; default all.
     resonance_length : largest sum |nu_i| of the resonances whose crossing is an event; 0 for none.
-        The onset of instability is found whatever its nu, up to 12.
+        The onset of instability is found whatever its nu, up to 24.
     folder : every member is kept there as a file at once, and an interrupted line goes on from
         it. progress : called as (label, fraction), once a torus.
 
-    Dimensionless. Each mode is continued from one member to the next. Events are located by the
-    zero of a smooth function of the amplitudes: the discriminant of two frequencies that meet, the
-    distance of a resonance that is crossed. A resonance of two directions that turn out to be
-    hyperbolic where it is met has an event at both ends. Instabilities that begin and end between
-    two members without such a crossing are not seen. `family` with normal=True follows tori of one
-    ratio, through folds, and locates the same events. Ours.
+    Dimensionless. Each mode is continued from one member to the next. Events are located by
+    Newton's method on the torus, which has among its conditions that the discriminant of two
+    frequencies that meet is zero, or the distance of a resonance that is crossed. A resonance of
+    two directions that turn out to be hyperbolic where it is met has an event at both ends.
+    Instabilities that begin and end between two members without such a crossing are not seen.
+    `family` with normal=True follows tori of one ratio, through folds, and locates the same events.
+    Ours.
     Raises InputError, also for a folder that holds another line; NoTorus and NoNormalModes where a
     member has none; RunInterrupted, a KeyboardInterrupt, where there is a folder.
 
@@ -137,12 +135,11 @@ def normal_family(
     >>> normal_family(breather, {2: "1"}, members=2, modes=[1])
     NormalFamily(N=4, alpha=0.5, 2 members, A_2=0.5 .. 1, ...)
     """
-    require_solution(solution, "solution")
-    require_fixed_ends(solution.chain)
+    checked_solution(solution)
     count = integer(members, "members", 2)
     length = integer(resonance_length, "resonance_length", 0)
     chosen = checked_modes(solution, modes)
-    line = _Line(solution, _end(solution, amplitudes), count)
+    line = Line(solution, _end(solution, amplitudes), count)
     kept = KeptLine(
         line.described(chosen, length), None if folder is None else Path(folder)
     )
@@ -161,7 +158,9 @@ def normal_family(
     return NormalFamily(tuple(kept.members), line.parts, tuple(kept.events))
 
 
-def _end(solution: QuasiPeriodic, amplitudes: Mapping[int, Number]) -> dict[int, float]:
+def _end(
+    solution: QuasiPeriodic | RingTorus, amplitudes: Mapping[int, Number]
+) -> dict[int, float]:
     given: object = amplitudes
     if not isinstance(given, Mapping) or set(given) != set(solution.seeds):
         allowed = f"an amplitude for each of the seeds {solution.seeds}"
@@ -170,7 +169,7 @@ def _end(solution: QuasiPeriodic, amplitudes: Mapping[int, Number]) -> dict[int,
 
 
 def _events(
-    line: _Line, before: list[NormalModes], found: NormalModes, n: int, length: int
+    line: Line, before: list[NormalModes], found: NormalModes, n: int, length: int
 ) -> list[NormalEvent]:
     """Between the last member and the one found; none before the second."""
     ends = zip(line.parts[n - len(before) : n + 1], [*before, found], strict=True)
@@ -178,82 +177,4 @@ def _events(
     if len(known) < 2:
         return []
     first, second = known
-    return Stretch(line.torus, first, second, n - 1).events(length)
-
-
-class _Line:
-    """Tori between two sets of amplitudes, by the part of the way."""
-
-    def __init__(
-        self, first: QuasiPeriodic, end: Mapping[int, float], members: int
-    ) -> None:
-        self.start = {q: float(a) for q, a in amplitudes_by_seed(first).items()}
-        self.end = dict(end)
-        self.parts = tuple(n / (members - 1) for n in range(members))
-        self._chain = first.chain
-        self._known: dict[float, QuasiPeriodic] = {0.0: first}
-        self._last: dict[float, QuasiPeriodic] = {}
-
-    def described(self, modes: tuple[int, ...], length: int) -> dict[str, Any]:
-        """What two runs of one line have in common."""
-        ends = (self.start, self.end)
-        return {
-            "N": self._chain.N,
-            **self._chain.typed_law,
-            "amplitudes": [{str(q): repr(a) for q, a in end.items()} for end in ends],
-            "members": len(self.parts),
-            "modes": list(modes),
-            "resonance_length": length,
-        }
-
-    def take(self, members: list[NormalModes]) -> None:
-        """Members of a run that was interrupted."""
-        pairs = zip(self.parts, members, strict=False)
-        known = {part: found.torus for part, found in pairs}
-        self._known |= {x: t for x, t in known.items() if isinstance(t, QuasiPeriodic)}
-
-    def amplitudes(self, part: float) -> dict[int, float]:
-        """A_q by seed."""
-        return {q: (1 - part) * a + part * self.end[q] for q, a in self.start.items()}
-
-    def torus(self, part: float) -> QuasiPeriodic:
-        """From the nearest one that is known, or by halves of the way to it."""
-        if part in self._known:
-            return self._known[part]
-        if part not in self._last:
-            self._last[part] = self._reached(part, HALVINGS)
-        return self._last[part]
-
-    def _reached(self, part: float, halvings: int) -> RefinedTorus:
-        nearest = min(self._known, key=lambda p: abs(p - part))
-        try:
-            return refine_at_amplitudes(self._guess(part), self.amplitudes(part))
-        except NoTorus:
-            if not halvings:
-                raise
-        middle = (nearest + part) / 2
-        self._known[middle] = self._reached(middle, halvings - 1)
-        return self._reached(part, halvings - 1)
-
-    def _guess(self, part: float) -> QuasiPeriodic:
-        """On the line through the two nearest, or the nearest."""
-        near = sorted(self._known, key=lambda p: abs(p - part))[:2]
-        if len(near) == 1:
-            return self._known[near[0]].in_doubles()
-        last, before = near
-        ratio = (part - last) / (last - before)
-        earlier, later = (self._known[p].in_doubles() for p in (before, last))
-        return extrapolated(earlier, later, ratio)
-
-    def modes_at(
-        self, n: int, modes: tuple[int, ...], before: list[NormalModes]
-    ) -> NormalModes:
-        """Normal modes of a member, continued from those of the one before."""
-        part = self.parts[n]
-        self._known[part] = self.torus(part)
-        self._last.clear()
-        near = before[0] if before else None
-        found, missing = followed_modes(self._known[part], near, modes=modes)
-        for none in missing.values():
-            raise none
-        return found
+    return Stretch(line, first, second, n - 1).events(length)

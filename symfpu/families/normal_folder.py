@@ -123,7 +123,8 @@ class KeptLine:
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             advice = f"{RECORD} is damaged; choose another folder"
             raise InputError("folder", str(folder), "a line of tori", advice) from error
-        if different := [key for key in self._plan if plan.get(key) != self._plan[key]]:
+        keys = dict.fromkeys([*self._plan, *plan])
+        if different := [key for key in keys if plan.get(key) != self._plan.get(key)]:
             allowed = f"the same line of tori (its {different[0]} differs)"
             raise InputError("folder", str(folder), allowed, "choose another folder")
         self.members = [read_modes(folder, n) for n in range(count)]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from symfpu.families.continuation import Member, Way
@@ -12,6 +10,8 @@ from symfpu.files.progress import Progress
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import REFINED, followed_modes
+from symfpu.refinement.conditions import Condition
+from symfpu.refinement.equation import Floats
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
@@ -44,19 +44,31 @@ class NormalWay:
         self.progress("events of the normal frequencies", 1.0)
         before, last = self.known[-2:]
         start, end = Known(0.0, first.normal, before), Known(1.0, second.normal, last)
-        return Stretch(_between(way), start, end, after).events(self.length)
+        return Stretch(_Between(way), start, end, after).events(self.length)
 
 
-def _between(way: Way) -> Callable[[float], RefinedTorus]:
+class _Between:
     """The tori of a family between the last two, by the part of the way along their secant."""
-    before, last = way.tori[-2:]
-    local = way.local(last, before)
-    scales = local.scales()
-    difference = local.variables(last, scales) - local.variables(before, scales)
-    length = float(np.linalg.norm(difference.astype(float)))
-    ends = {0.0: before, 1.0: last}
 
-    def torus(part: float) -> RefinedTorus:
-        return ends[part] if part in ends else local.at(-part * length)
+    def __init__(self, way: Way) -> None:
+        self._way, self._ends = way, way.tori[-2:]
+        before, last = self._ends
+        self._local = way.local(last, before)
+        self._scales = self._local.scales()
+        self._secant = self._variables(last) - self._variables(before)
+        self._length = float(np.linalg.norm(self._secant))
 
-    return torus
+    def torus(self, part: float) -> RefinedTorus:
+        """The one at a part."""
+        if part in (0.0, 1.0):
+            return self._ends[int(part)]
+        return self._local.at(-part * self._length)
+
+    def met(self, condition: Condition, part: float) -> tuple[float, RefinedTorus]:
+        """The one that meets a condition, by Newton's method from a part; with its own."""
+        found = self._way.meeting(condition, self.torus(part))
+        gone = self._variables(found) - self._variables(self._ends[0])
+        return float(gone @ self._secant) / self._length**2, found
+
+    def _variables(self, torus: RefinedTorus) -> Floats:
+        return self._local.variables(torus, self._scales).astype(float)

@@ -7,13 +7,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from symfpu.normal.modes import NoNormalModes, NormalModes
-from symfpu.normal.resonances import ParametricResonance, resonances_of
-from symfpu.normal.search import LENGTH
+from symfpu.normal.resonances import LOCKED, ParametricResonance
+from symfpu.normal.search import LENGTH, resonances_near
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
 KEPT_RESONANCES = 10  # the nearest
-LOCKED = 1e-8  # distance up to which a hyperbolic direction is locked to a resonance
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,13 +84,11 @@ def frequencies_of(
 
 
 def frequencies_again(
-    torus: QuasiPeriodic, frequencies: Mapping[int, complex], **known: Any
+    torus: QuasiPeriodic | RingTorus, frequencies: Mapping[int, complex], **known: Any
 ) -> NormalFrequencies:
     """Those of a record, whose resonances follow from them."""
     real = {q: complex(w).real for q, w in frequencies.items()}
-    omega = tuple(float(w) for w in torus.frequencies)
-    resonances = resonances_of(torus.chain, torus.seeds, omega, real, LENGTH)
-    nearest = _nearest(resonances)
+    nearest = _nearest(resonances_near(torus, real, LENGTH))
     return NormalFrequencies(torus, frequencies, resonances=nearest, **known)
 
 

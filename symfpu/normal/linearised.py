@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
-from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import WORKERS, Lattice
 from symfpu.refinement.tori import shifts_of
@@ -46,6 +46,7 @@ class Linearised(ABC):
     linear: Floats
     slopes: Floats
     means: Floats  # the diagonal of K, (C,) or (F, C)
+    equation: TorusEquation  # of the torus, at the harmonics chosen
     _grid: Lattice
     _place: Ints
 
@@ -53,6 +54,15 @@ class Linearised(ABC):
         """With K times a factor: what a solution is continued in, from 0 to 1."""
         result = copy(self)
         result.slopes = factor * self.slopes
+        for name in ("_spectrum", "means"):
+            result.__dict__.pop(name, None)
+        return result
+
+    def moved(self, coefficients: Floats, shifts: Floats) -> Self:
+        """About another torus nearby, by its coefficients at the harmonics chosen and shifts."""
+        result = copy(self)
+        result.rates = self.harmonics @ (self.equation.seed_frequencies + shifts)
+        result.slopes = self.equation.slopes(coefficients)
         for name in ("_spectrum", "means"):
             result.__dict__.pop(name, None)
         return result
@@ -94,6 +104,10 @@ class Linearised(ABC):
         """What a table stretches, by bond and harmonic; shape (bonds, F)."""
 
     @abstractmethod
+    def _images(self) -> Floats:
+        """How many bonds each of those held stands for; shape (bonds, 1)."""
+
+    @abstractmethod
     def _driven(self, sums: Floats) -> Floats:
         """What tensions (bonds, F) drive, as a table."""
 
@@ -106,6 +120,10 @@ class Linearised(ABC):
         if np.iscomplexobj(p):
             return self.coupling(p.real) + 1j * self.coupling(p.imag)
         return self._driven(self._products(p)[:, self._place])
+
+    def squares(self, p: Floats) -> Floats:
+        """What slopes are multiplied by to make p^T K p, in the mean; (bonds, points)."""
+        return np.asarray(self._images() * np.abs(self._values(p)) ** 2)
 
     def left_out(self, p: Values) -> float:
         """The norm of K p at all harmonics of the lattice that are not chosen."""
@@ -122,13 +140,19 @@ class Linearised(ABC):
         """
         from scipy import fft
 
-        stretched = self._stretched(p)
-        spectrum = np.zeros((len(stretched), self._grid.period))
-        spectrum[:, self._place] = stretched
-        values = fft.rfft(spectrum, workers=WORKERS)
+        values = self._values(p)
         values *= self.slopes
         sums = fft.irfft(values, n=self._grid.period, workers=WORKERS, overwrite_x=True)
         return np.asarray(sums)
+
+    def _values(self, p: Floats) -> Values:
+        """Stretches at half of the points; shape (bonds, points)."""
+        from scipy import fft
+
+        stretched = self._stretched(p)
+        spectrum = np.zeros((len(stretched), self._grid.period))
+        spectrum[:, self._place] = stretched
+        return np.asarray(fft.rfft(spectrum, workers=WORKERS))
 
     @cached_property
     def _spectrum(self) -> Floats:
@@ -160,14 +184,13 @@ class LinearisedFlow(Linearised):
 
     def __init__(self, torus: QuasiPeriodic, harmonics: Ints) -> None:
         self.chain, self.seeds = torus.chain, torus.seeds
-        self._equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
-        self._grid = self._equation.grid
+        equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
+        self.equation, self._grid = equation, equation.grid
         self.harmonics = of_both_signs(harmonics)
-        self.linear = self._equation.linear
-        self.omega = self.linear[self._equation.seed_columns] + shifts_of(torus)
-        self.rates = self.harmonics @ self.omega
-        self._stretch, self._back = self._equation.stretches_of_half()
-        self.slopes = self._equation.slopes(_coefficients(torus, harmonics))
+        self.linear = equation.linear
+        self.rates = self.harmonics @ (equation.seed_frequencies + shifts_of(torus))
+        self._stretch, self._back = equation.stretches_of_half()
+        self.slopes = equation.slopes(_coefficients(torus, harmonics))
         self._place = self.harmonics @ self._grid.generator % self._grid.period
 
     def of(self, q: int) -> LinearisedFlow:
@@ -203,6 +226,10 @@ class LinearisedFlow(Linearised):
 
     def _stretched(self, p: Floats) -> Floats:
         return np.asarray((p @ self._stretch).T)
+
+    def _images(self) -> Floats:
+        bonds = np.arange((self.chain.N + 1) // 2)
+        return np.where(2 * bonds + 1 == self.chain.N, 1.0, 2.0)[:, None]
 
     def _driven(self, sums: Floats) -> Floats:
         return np.asarray(sums.T @ self._back.T)

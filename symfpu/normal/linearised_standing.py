@@ -13,6 +13,7 @@ uniform motion, is left out: nothing couples to it. Ours.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from copy import copy
 
 import mpmath
@@ -23,7 +24,7 @@ from symfpu.errors import InputError
 from symfpu.normal.linearised import LinearisedFlow, Mask, Values
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.invariance import DIGITS, long
-from symfpu.tori.quasiperiodic import FourierTorus
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus, unfold
 
 TIMES = (0.0, 0.7, 1.9)  # at which a torus is compared with the one that is unfolded again
@@ -100,6 +101,22 @@ class LinearisedStanding(LinearisedFlow):
 def is_sine(ring: Chain, q: int) -> bool:
     """Whether a mode stands for odd deviations about standing waves."""
     return 0 < 2 * q < ring.N
+
+
+def coupled_groups(
+    torus: QuasiPeriodic | RingTorus, sigma: Mapping[int, float]
+) -> list[tuple[Chain, dict[int, float]]]:
+    """Frequencies that may couple, by mode, with the chain whose selection rules they have.
+
+    All of them, but about standing waves sines and cosines apart, by the rules of fixed ends.
+    """
+    ring = torus.chain
+    if not (isinstance(torus, RingTorus) and is_standing(torus)):
+        return [(ring, dict(sigma))]
+    fixed = Chain(ring.N // 2, potential=ring.potential)
+    sines = {q: w for q, w in sigma.items() if is_sine(ring, q)}
+    cosines = {q: w for q, w in sigma.items() if q not in sines}
+    return [(fixed, sines), (fixed, cosines)]
 
 
 def is_standing(torus: RingTorus) -> bool:

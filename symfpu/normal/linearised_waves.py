@@ -40,7 +40,7 @@ class LinearisedWaves(Linearised):
     def __init__(self, torus: RingTorus, harmonics: Ints) -> None:
         self.chain, self.seeds = torus.chain, torus.seeds
         equation = WaveEquation(torus.chain, torus.seeds, harmonics)
-        self._grid = equation.grid
+        self.equation, self._grid = equation, equation.grid
         self.harmonics = of_both_signs(harmonics)
         self.rates = self.harmonics @ (equation.seed_frequencies + shifts_of(torus))
         self.slopes = equation.slopes(_coefficients(torus, harmonics))
@@ -97,6 +97,9 @@ class LinearisedWaves(Linearised):
 
     def _stretched(self, p: Floats) -> Floats:
         return np.asarray((p[:, 0] * self._stretch)[None, :])
+
+    def _images(self) -> Floats:
+        return np.ones((1, 1))
 
     def _driven(self, sums: Floats) -> Floats:
         return np.asarray((sums[0] * self._stretch)[:, None])

@@ -18,7 +18,7 @@ import mpmath
 import numpy as np
 import symengine as se
 
-from symfpu.chain.chain import Chain, require_chain
+from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.chain.frequency_shift import frequency_shift_formula
 from symfpu.chain.symbols import amplitude_symbol
 from symfpu.errors import InputError
@@ -28,7 +28,7 @@ from symfpu.frames.table import Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, with_digits
 from symfpu.numbers.counted import counted
-from symfpu.numbers.typed import Number, exact, integer, seed_modes
+from symfpu.numbers.typed import Number, exact, integer
 from symfpu.series.arguments import digits_of
 from symfpu.series.divisors import SmallDivisor
 from symfpu.series.fixed_point import fixed_point_series
@@ -37,6 +37,7 @@ from symfpu.series.monomials import monomial_space
 from symfpu.series.recursion import named_series
 from symfpu.series.rings import BY_NAME, RINGS
 from symfpu.series.series import LindstedtSeries
+from symfpu.series.travelling import TravellingSeries, series_of_waves
 
 Exponents = tuple[int, ...]
 
@@ -125,7 +126,7 @@ class NormalFrequencySeries(Tabled):
         """Its lowest terms, sigma_q - Omega_q with linear frequencies in the divisors, closed.
 
         A SymEngine expression in A{n} and Omega_{n}, mu included: `frequency_shift_formula` of
-        the seeds and q at A_q = 0.
+        the seeds and q at A_q = 0. Raises InputError on a ring, which has none.
         """
         formula = frequency_shift_formula(self.chain, (*self.seeds, self.mode))[self.mode]
         return se.expand(formula.subs({amplitude_symbol(self.mode): 0}))
@@ -205,10 +206,12 @@ def normal_frequency_series(
 ) -> NormalFrequencySeries:
     """The series of a normal frequency in the amplitudes of a torus, by a phantom seed.
 
-    chain : of any potential, fixed ends, N a number. seeds : distinct modes D_0 of the torus.
-    mode : q, none of them. order : K of the series, from 0 up.
+    chain : of any potential, N a number; with fixed ends, or a ring, whose seeds are travelling
+        waves. seeds : distinct modes D_0 of the torus. mode : q, none of them. order : K of the
+        series, from 0 up.
     frequencies : omega of every seed and sigma of `mode`, by mode, exact numbers: those in the
         divisors; None gives the universal form with symbols L_p(nu), nu of q first, then of D_0.
+        On a ring they have to be given, and coefficients are doubles.
     ring : 'float64', or in universal form 'symbolic' (expanded) or 'nested'. digits : of every
         coefficient, proved as in `lindstedt`; None for doubles.
     progress : called as (label, fraction done).
@@ -225,17 +228,19 @@ def normal_frequency_series(
     >>> found.at({1: 0.1})
     0.765...
     """
-    require_chain(chain)
+    require_any_chain(chain)
     if chain.symbolic:
         advice = "put a number for N: chain.at(N=32); for all N see frequency_shift_formula"
         raise InputError("chain", "N a symbol", "a chain whose N is a number", advice)
-    torus = tuple(sorted(seed_modes(seeds, chain.N)))
+    torus = tuple(sorted(chain.seeds_of(seeds)))
     phantom = _phantom(chain, torus, mode)
     top = integer(order, "order", 0)
     chosen = None if frequencies is None else _chosen(frequencies, (phantom, *torus))
     if digits is not None and ring is not None:
         allowed = "none where digits are given"
         raise InputError("ring", ring, allowed, "leave one of them out")
+    if chain.periodic:
+        _require_doubles(chain, chosen, ring, digits)
     if digits is not None:
         digits = digits_of(digits)
     series = phantom_series(
@@ -244,9 +249,27 @@ def normal_frequency_series(
     return of_phantom(series)
 
 
+def _require_doubles(
+    chain: Chain,
+    frequencies: tuple[Fraction, ...] | None,
+    ring: str | None,
+    digits: int | None,
+) -> None:
+    """InputError for what series of travelling waves do not have."""
+    advice = "take fixed ends: standing waves of the ring are theirs"
+    if frequencies is None:
+        allowed = "fixed ends for a series in universal form"
+        given = "on a ring give frequencies=, a number for the mode and for each seed"
+        raise InputError("chain", chain, allowed, f"{given}; or {advice}")
+    if digits is not None:
+        raise InputError("digits", digits, "none on a ring: doubles", advice)
+    if ring not in (None, "float64"):
+        raise InputError("ring", ring, "'float64' for waves of a ring", advice)
+
+
 def _phantom(chain: Chain, seeds: tuple[int, ...], mode: object) -> int:
     normal = [q for q in chain.mode_numbers if q not in seeds]
-    number = integer(mode, "mode", 1)
+    number = integer(mode, "mode", min(chain.mode_numbers))
     if number not in normal:
         allowed = f"a mode that is no seed, one of {normal}"
         raise InputError("mode", mode, allowed, "the seeds' own are frequency corrections")
@@ -278,12 +301,14 @@ def phantom_series(
     ring: str | None = None,
     digits: int | None = None,
     progress: Progress | None = None,
-) -> LindstedtSeries:
+) -> LindstedtSeries | TravellingSeries:
     """The series of (mode, *seeds) cut at the first power of the mode's amplitude.
 
     frequencies : in the order (mode, *seeds).
     """
     modes = (mode, *seeds)
+    if chain.periodic and frequencies is not None:
+        return series_of_waves(chain, modes, frequencies, order, progress, phantom=True)
     if digits is not None:
         return fixed_point_series(
             chain, modes, frequencies, order, digits, progress, phantom=True
@@ -297,7 +322,7 @@ def phantom_series(
     return named_series(RINGS[name], chain, space, frequencies, order, progress)
 
 
-def of_phantom(series: LindstedtSeries) -> NormalFrequencySeries:
+def of_phantom(series: LindstedtSeries | TravellingSeries) -> NormalFrequencySeries:
     """What a cut series says of the frequency of its first seed."""
     mode, *seeds = series.seeds
     parts = []

@@ -252,6 +252,17 @@ def followed(flow: Linearised, q: int, sigma: complex, like: Values) -> Reduced 
     return None
 
 
+def hyperbolic(
+    flow: Linearised, q: int, sigma: complex, like: Values | None
+) -> Reduced | None:
+    """One near a complex sigma, the likest to a function, or to the mode q; None without any."""
+    for part in DEFLATED[1:]:
+        found = _found(flow, _Aim(q, sigma, flow.column(q), like), part)
+        if found and complex(found.sigma).imag:
+            return found
+    return None
+
+
 def continued(flow: Linearised, q: int) -> Reduced | None:
     """The same from no coupling to the whole one, step by step; each begins with the last."""
     aim = _Aim(q, flow.frequency(q), flow.column(q))
@@ -317,8 +328,8 @@ def _iterated(system: Bordered, guess: complex, like: Values) -> Reduced | None:
         fine = accuracy == FINE
         X, images = system.improved(X, accuracy)
         slope = -2 * (sigma + system.rates)
-        steps, vectors = _steps(X.T @ images, X.T @ (slope[:, None] * X))
-        shares = _shares(X, vectors, like)
+        steps, vectors = steps_of(X.T @ images, X.T @ (slope[:, None] * X))
+        shares = shares_of(X, vectors, like)
         at = _nearest(steps, shares, first=step == 0)
         change, v = steps[at], vectors[:, at]
         if not np.isfinite(change) or abs(change) > LARGEST_STEP * size:
@@ -335,7 +346,7 @@ def _iterated(system: Bordered, guess: complex, like: Values) -> Reduced | None:
     return None
 
 
-def _steps(E: Values, slope: Values) -> tuple[Values, Values]:
+def steps_of(E: Values, slope: Values) -> tuple[Values, Values]:
     """All d and v with (E + d E') v = 0, v of norm 1."""
     from scipy import linalg
 
@@ -343,7 +354,7 @@ def _steps(E: Values, slope: Values) -> tuple[Values, Values]:
     return steps, vectors / np.linalg.norm(vectors, axis=0)
 
 
-def _shares(X: Values, vectors: Values, like: Values) -> Floats:
+def shares_of(X: Values, vectors: Values, like: Values) -> Floats:
     """How much of a vector is in p = X v, for each v."""
     gram = X.conj().T @ X
     norms = np.sqrt(np.einsum("ri,rs,si->i", vectors.conj(), gram, vectors).real)

@@ -7,14 +7,16 @@ sigma_q = nu.omega makes reduction to constant coefficients impossible.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from math import comb
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
+from symfpu.normal.linearised_standing import coupled_groups
 from symfpu.refinement.equation import Ints
 from symfpu.refinement.lattice import dilated
 from symfpu.tori.quasiperiodic import QuasiPeriodic
@@ -33,6 +35,9 @@ class Frequencies(Protocol):
 
 PARAMETRIC, SUM, DIFFERENCE, OWN = "parametric", "sum", "difference", "own"
 KINDS = (PARAMETRIC, SUM, DIFFERENCE, OWN)
+LOCKED = 1e-8  # distance up to which a hyperbolic direction is locked to a resonance
+LONGEST = 24  # sum |nu_i| up to which it is looked for
+MOST = 300_000  # harmonics that are looked through
 
 
 @dataclass(frozen=True)
@@ -127,27 +132,66 @@ def crossed_resonances(
     """
     if not length:
         return []
-    chain, seeds = first.torus.chain, first.torus.seeds
+    seeds = first.torus.seeds
     harmonics = harmonics_up_to(len(seeds), length)
     harmonics = harmonics[(harmonics != 0).any(axis=1)]
-    waves = harmonics @ np.array(seeds)
-    even = harmonics.sum(axis=1) % 2 == 0
     before, after = (_sides(found, harmonics) for found in (first, second))
     common = {q: w for q, w in before.sigma.items() if q in after.sigma}
     found = []
-    for kind, modes, value, wave in _combinations(common):
-        if kind == OWN:
-            continue
-        allowed = (waves - wave) % _turn(chain) == 0
-        if chain.potential.even:
-            allowed &= even
-        resonance = ParametricResonance(kind, modes, (), 0.0)
-        distances = value - before.rates
-        later = resonance.left_of(after.sigma) - after.rates
-        for at in np.flatnonzero(allowed & (distances * later < 0)):
-            harmonic = tuple(harmonics[at].tolist())
-            found.append(ParametricResonance(kind, modes, harmonic, float(distances[at])))
+    for chain, group in coupled_groups(first.torus, common):
+        for kind, modes, value, wave in _combinations(group):
+            if kind == OWN:
+                continue
+            resonance = ParametricResonance(kind, modes, (), 0.0)
+            distances = value - before.rates
+            later = resonance.left_of(after.sigma) - after.rates
+            crossed = _coupled(chain, seeds, harmonics, wave) & (distances * later < 0)
+            for at in np.flatnonzero(crossed):
+                harmonic, distance = tuple(harmonics[at].tolist()), float(distances[at])
+                found.append(ParametricResonance(kind, modes, harmonic, distance))
     return found
+
+
+def locked_resonances(
+    found: Frequencies, modes: Collection[int]
+) -> list[ParametricResonance]:
+    """Those of a torus to which hyperbolic modes are locked, the shortest first.
+
+    Of modes whose names changed on the way the one that they meet by may be a difference.
+    """
+    omega = np.array([float(w) for w in found.torus.frequencies])
+    sigma = {q: complex(found.frequencies[q]).real for q in modes}
+    seeds = found.torus.seeds
+    length = _longest(len(seeds))
+    harmonics = harmonics_up_to(len(seeds), length)
+    rates = harmonics @ omega
+    known = []
+    for chain, group in coupled_groups(found.torus, sigma):
+        for kind, pair, value, wave in _combinations(group):
+            near = _coupled(chain, seeds, harmonics, wave) & (abs(value - rates) < LOCKED)
+            for at in np.flatnonzero(near if kind != OWN else []):
+                harmonic, distance = tuple(harmonics[at].tolist()), float(value - rates[at])
+                known.append(ParametricResonance(kind, pair, harmonic, distance))
+    return sorted(known, key=lambda r: (r.kind == DIFFERENCE, sum(map(abs, r.harmonic))))
+
+
+def _longest(s: int) -> int:
+    """Up to which sum |nu_i| all harmonics are not too many."""
+
+    def count(length: int) -> int:
+        return sum(2**k * comb(s, k) * comb(length, k) for k in range(s + 1))
+
+    return next(n for n in range(LONGEST, 0, -1) if count(n) <= MOST)
+
+
+def _coupled(
+    chain: Chain, seeds: tuple[int, ...], harmonics: Ints, wave: int
+) -> NDArray[np.bool_]:
+    """Harmonics that the selection rules let couple two directions, by their wave; (H,)."""
+    allowed = (harmonics @ np.array(seeds) - wave) % _turn(chain) == 0
+    if chain.potential.even:
+        allowed &= harmonics.sum(axis=1) % 2 == 0
+    return np.asarray(allowed)
 
 
 class _Sides(NamedTuple):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any, TypeAlias
 
 import mpmath
@@ -24,13 +25,14 @@ from symfpu.normal.linearised import (
 )
 from symfpu.normal.linearised_standing import (
     LinearisedStanding,
+    coupled_groups,
     folded,
     is_sine,
     is_standing,
 )
 from symfpu.normal.linearised_waves import LinearisedWaves, wave_rows
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
-from symfpu.normal.reduction import Reduced, continued, followed, reduced
+from symfpu.normal.reduction import Reduced, continued, followed, hyperbolic, reduced
 from symfpu.normal.resonances import OWN, ParametricResonance, resonances_of
 from symfpu.numbers.arithmetic import DOUBLES, arithmetic_of
 from symfpu.numbers.typed import integer
@@ -51,6 +53,10 @@ SMALLEST_KEPT = (
 SHOWN_DIVISORS = 5
 LENGTH = 12  # sum |nu_i| of the resonances that are listed
 UNRESOLVED = 1e-7  # difference from a frequency of the torus that a double root may have
+SPREAD = 10.0  # times rounding: what is nearer to nu.omega turns as the torus does
+STILL = 1e-2  # of sigma: the action of a direction that may turn as the torus does
+GROWTHS = (1e-3, 1e-4, 1e-2)  # over nu.omega, tried where a direction is locked to it
+RESOLVED = 1e-7  # residual of such a direction
 SAME = 1e-9  # difference of two frequencies that are one
 
 
@@ -90,7 +96,7 @@ def normal_modes(
     >>> round(normal_modes(refine_at_amplitudes(guess, amplitudes)).frequencies[3], 9)
     1.847...
     """
-    torus = _checked(solution)
+    torus = checked_solution(solution)
     chosen = checked_modes(torus, modes)
     length = integer(resonance_length, "resonance_length", 1)
     search, tell = _Search(torus, length), progress or unheard
@@ -132,7 +138,7 @@ def _in_digits(
             precise[q] = search.refined(mode, tell)
         except Failure as failure:
             real = complex(mode.sigma).real
-            nearest = _resonances(torus, {q: real}, length)
+            nearest = resonances_near(torus, {q: real}, length)
             reason = f"no {torus.digits} digits of its frequency: {failure}"
             missing[q] = NoNormalModes(q, real, nearest[0] if nearest else None, reason)
     return precise, missing
@@ -152,14 +158,14 @@ def followed_modes(
 
     Returns what was found, and by mode why one was not; in doubles.
     """
-    torus = _checked(solution)
+    torus = checked_solution(solution)
     chosen = checked_modes(torus, modes)
     search = _Search(torus, LENGTH, before)
     found, missing = search.each(chosen, progress or unheard)
     return search.result(solution, found, missing), missing
 
 
-def _checked(solution: object) -> Solution:
+def checked_solution(solution: object) -> Solution:
     """The solution in doubles; InputError for what is no refined torus."""
     if isinstance(solution, RingTorus):
         if is_standing(solution):
@@ -223,18 +229,13 @@ class _Search:
     def __init__(
         self, torus: Solution, length: int, before: NormalModes | None = None
     ) -> None:
-        known = _rows(torus)
-        largest = max(float(np.abs(row).max()) for row in known.values())
-        least = SMALLEST_KEPT * largest
-        self._known = {nu: row for nu, row in known.items() if np.abs(row).max() > least}
+        self._known = kept_rows(torus)
         self._torus, self._length = torus, length
         self._guesses = second_order(torus)
         earlier = before.modes if before else ()
         self._before = {mode.mode: mode.in_doubles() for mode in earlier}
         self._earlier = second_order(before.torus) if before else {}
         self._travels = isinstance(torus, RingTorus) and not is_standing(torus)
-        bonds = len(next(iter(known.values()))) + 1
-        self._functions = 1 if self._travels else (bonds + 1) // 2
         self._flows: list[Linearised] = []
 
     def each(self, modes: tuple[int, ...], tell: Progress) -> Found:
@@ -261,7 +262,7 @@ class _Search:
             torus=solution,
             modes=tuple(found.values()),
             guesses={q: self._guesses[q] for q in found},
-            resonances=tuple(_resonances(solution, real, self._length)),
+            resonances=tuple(resonances_near(solution, real, self._length)),
             undecided=undecided_modes(solution, tuple(found.values())),
             missing={q: str(none) for q, none in missing.items()},
         )
@@ -270,26 +271,61 @@ class _Search:
         """The one that continues q; NoNormalModes where there is none."""
         guess = self._guesses[q]
         found = self.mode(q, guess, others)
-        if found is None:
-            nearest = _resonances(self._torus, {q: guess}, self._length)
-            raise NoNormalModes(q, guess, nearest[0] if nearest else None)
-        self._require_resolved(found)
-        return found
+        turning = found and self._turning(found)
+        if found and not turning:
+            return found
+        nearest = resonances_near(self._torus, {q: guess}, self._length)
+        own = turning or next((one for one in nearest if one.kind == OWN), None)
+        beside = own and self._beside(q, own, others)
+        if beside:
+            return beside
+        raise NoNormalModes(q, guess, turning or (nearest[0] if nearest else None))
 
-    def _require_resolved(self, found: NormalMode) -> None:
-        """NoNormalModes for a cosine about standing waves that turns as the torus does.
+    def _turning(self, found: NormalMode) -> ParametricResonance | None:
+        """The resonance of a direction that turns as the torus does, if this is none but that.
 
-        To displace standing waves costs nothing but by Umklapp of high order: then the two
-        frequencies of that direction are one to more digits than a double root has.
+        Shifts of the angles are solutions, too, with all nu.omega. To displace standing waves
+        costs nothing but by Umklapp of high order: then the two frequencies of that direction, a
+        cosine, are one to more digits than a double root has.
         """
         torus, sigma = self._torus, complex(found.sigma)
         standing = isinstance(torus, RingTorus) and not self._travels
-        if not standing or is_sine(torus.chain, found.mode):
-            return
-        nearest = _resonances(torus, {found.mode: sigma.real}, self._length)
+        cosine = standing and not is_sine(torus.chain, found.mode)
+        if not cosine and abs(found.action) > STILL * abs(sigma):
+            return None
+        unresolved = UNRESOLVED if cosine else max(UNRESOLVED, SPREAD * found.rounding)
+        nearest = resonances_near(torus, {found.mode: sigma.real}, self._length)
         for one in nearest:
-            if one.kind == OWN and abs(complex(one.distance, sigma.imag)) < UNRESOLVED:
-                raise NoNormalModes(found.mode, self._guesses[found.mode], one)
+            if one.kind == OWN and abs(complex(one.distance, sigma.imag)) < unresolved:
+                return one
+        return None
+
+    def _beside(
+        self, q: int, own: ParametricResonance, others: dict[int, NormalMode]
+    ) -> NormalMode | None:
+        """A hyperbolic direction that is locked to a frequency of the torus: sigma = nu.omega."""
+        omega = np.array([float(w) for w in self._torus.frequencies])
+        rate = float(np.array(own.harmonic) @ omega)
+        for growth in GROWTHS:
+            sigma = complex(rate, growth * rate)
+            found = self._sought(q, partial(self._hyperbolic, q=q, sigma=sigma))
+            if found and self._locked(found, rate, others):
+                return found
+        return None
+
+    @staticmethod
+    def _locked(found: NormalMode, rate: float, others: dict[int, NormalMode]) -> bool:
+        """Whether a direction is hyperbolic about a frequency, and none of the others."""
+        known = [other.growth for other in others.values() if other.growth]
+        alone = all(abs(found.growth / growth - 1) > UNRESOLVED for growth in known)
+        near = abs(found.sigma.real - rate) < UNRESOLVED
+        grows = found.growth > max(found.rounding, UNRESOLVED)
+        return near and alone and grows and found.residual < RESOLVED
+
+    def _hyperbolic(self, flow: Linearised, q: int, sigma: complex) -> Reduced | None:
+        known = self._before.get(q)
+        like = None if known is None else flow.table(at_harmonics(known, flow.harmonics))
+        return hyperbolic(flow, q, sigma, like)
 
     def mode(
         self, q: int, guess: float, others: dict[int, NormalMode]
@@ -321,7 +357,7 @@ class _Search:
             return None
         known = self._before[q]
         moved = self._guesses[q] - self._earlier[q]
-        like = flow.table(_at_harmonics(known, flow.harmonics))
+        like = flow.table(at_harmonics(known, flow.harmonics))
         return followed(flow, q, known.sigma + moved, like)
 
     def _sought(
@@ -340,10 +376,8 @@ class _Search:
 
     def _flow(self, place: int) -> Linearised:
         if place == len(self._flows):
-            torus, height = self._torus, HEIGHTS[place]
-            s = len(torus.seeds)
-            chosen, _ = chosen_harmonics(self._known, self._functions, s, height)
-            self._flows.append(_linearised(torus, chosen))
+            harmonics = harmonics_of(self._torus, self._known, HEIGHTS[place])
+            self._flows.append(linearised(self._torus, harmonics))
         return self._flows[place]
 
     def _twin(self, found: NormalMode, others: Iterable[NormalMode]) -> NormalMode | None:
@@ -372,6 +406,25 @@ class _Search:
         return False
 
 
+def kept_rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
+    """Coefficients of a torus by harmonic, without those that are rounding."""
+    known = _rows(torus)
+    largest = max(float(np.abs(row).max()) for row in known.values())
+    least = SMALLEST_KEPT * largest
+    return {nu: row for nu, row in known.items() if np.abs(row).max() > least}
+
+
+def harmonics_of(
+    torus: Solution, known: Mapping[tuple[int, ...], Floats], height: float
+) -> Ints:
+    """Those of coefficients above a part of the largest, (H, s); known : of `kept_rows`."""
+    columns = len(next(iter(known.values())))
+    travels = isinstance(torus, RingTorus) and not is_standing(torus)
+    functions = 1 if travels else (columns + 2) // 2
+    chosen, _ = chosen_harmonics(known, functions, len(torus.seeds), height)
+    return chosen
+
+
 def _rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
     """Coefficients of a torus by harmonic."""
     if not isinstance(torus, RingTorus):
@@ -381,7 +434,7 @@ def _rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
     return wave_rows(torus)
 
 
-def _linearised(torus: Solution, harmonics: Ints) -> Linearised:
+def linearised(torus: Solution, harmonics: Ints) -> Linearised:
     """The linearised flow in these harmonics and their negatives."""
     if not isinstance(torus, RingTorus):
         return LinearisedFlow(torus, harmonics)
@@ -390,7 +443,7 @@ def _linearised(torus: Solution, harmonics: Ints) -> Linearised:
     return LinearisedWaves(torus, harmonics)
 
 
-def _at_harmonics(mode: NormalMode, harmonics: Ints) -> Values:
+def at_harmonics(mode: NormalMode, harmonics: Ints) -> Values:
     """The eigenfunction at other harmonics, 0 where it has none, of norm 1; shape (F, N-1)."""
     rows = {tuple(nu): row for row, nu in enumerate(mode.harmonics.tolist())}
     places = np.array([rows.get(tuple(nu), -1) for nu in harmonics.tolist()])
@@ -431,25 +484,17 @@ def _smallest_divisors(flow: Linearised, found: Reduced) -> tuple[NormalDivisor,
     return tuple(nearest)
 
 
-def _resonances(
+def resonances_near(
     torus: Solution, sigma: Mapping[int, Any], length: int
 ) -> list[ParametricResonance]:
     """Those of real parts in doubles or in digits; a distance has all its digits."""
     omega = tuple(float(w) for w in torus.frequencies)
     doubles = {q: float(w) for q, w in sigma.items()}
-    if isinstance(torus, RingTorus) and is_standing(torus):
-        found = []
-        for sine in (True, False):
-            part = {q: w for q, w in doubles.items() if is_sine(torus.chain, q) == sine}
-            fixed = folded(torus).chain
-            found += resonances_of(fixed, torus.seeds, omega, part, length)
-    else:
-        found = resonances_of(torus.chain, torus.seeds, omega, doubles, length)
-        if (
-            isinstance(torus, PRECISE)
-            and arithmetic_of(list(sigma.values())) is not DOUBLES
-        ):
-            found = _in_all_digits(torus, found, sigma)
+    found: list[ParametricResonance] = []
+    for chain, part in coupled_groups(torus, doubles):
+        found += resonances_of(chain, torus.seeds, omega, part, length)
+    if isinstance(torus, PRECISE) and arithmetic_of(list(sigma.values())) is not DOUBLES:
+        found = _in_all_digits(torus, found, sigma)
     return sorted(found, key=lambda r: abs(r.distance))
 
 

@@ -13,7 +13,6 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from symfpu.chain.chain import require_fixed_ends
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.normal.modes import NoNormalModes
@@ -26,9 +25,12 @@ from symfpu.normal.resonances import resonances_of
 from symfpu.normal.search import LENGTH, second_order
 from symfpu.numbers.arithmetic import DOUBLES, GUARD_DIGITS, MULTIPRECISION
 from symfpu.numbers.typed import integer
+from symfpu.refinement.ring_tori import require_travelling
 from symfpu.series.arguments import digits_of
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
+from symfpu.series.travelling import TravellingSeries
+from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 
 STEPS, STEPS_DIGITS = 30, 60  # with doubles, with digits
 LARGEST_MOVE = 0.1  # of sigma, relative, away from the guess
@@ -39,7 +41,7 @@ DECIMALS = 25  # of trials in doubles: those of their shifts
 
 
 def solve_normal_frequency(
-    solution: QuasiPeriodic,
+    solution: QuasiPeriodic | RingTorus,
     mode: int,
     order: int,
     *,
@@ -48,10 +50,11 @@ def solve_normal_frequency(
 ) -> NormalFrequencySeries:
     """The normal frequency of a torus by its series, solved at its amplitudes.
 
-    solution : a torus or breather, of any potential with fixed ends: its amplitudes and
-        frequencies are taken, and nothing else of it. mode : q, none of its seeds.
+    solution : a torus or breather, of any potential, with fixed ends, or travelling waves of a
+        ring: its amplitudes and frequencies are taken, and nothing else of it. mode : q, none of
+        its seeds; of a ring signed.
     order : K of the series of sigma, from that of the first correction up. digits : of the
-        result; None for doubles.
+        result; None for doubles, which a ring has alone.
     progress : called as (label, fraction), once a trial.
 
     Dimensionless. Solves sigma = Omega_q + sum mu^k sigma^(k)(A; omega, sigma) (Eq. omeser of the
@@ -69,9 +72,13 @@ def solve_normal_frequency(
     >>> abs(found.sigma - normal_modes(breather).frequencies[3]) < 1e-12
     True
     """
-    require_solution(solution, "solution")
-    require_fixed_ends(solution.chain)
-    q = integer(mode, "mode", 1)
+    if isinstance(solution, RingTorus):
+        require_travelling(solution)
+        if digits is not None:
+            raise InputError("digits", digits, "none on a ring: doubles", "leave it out")
+    else:
+        require_solution(solution, "solution")
+    q = integer(mode, "mode", min(solution.chain.mode_numbers))
     normal = [n for n in solution.chain.mode_numbers if n not in solution.seeds]
     if q not in normal:
         allowed = f"a mode that is no seed, one of {normal}"
@@ -92,7 +99,7 @@ class _Search:
 
     def __init__(
         self,
-        solution: QuasiPeriodic,
+        solution: QuasiPeriodic | RingTorus,
         q: int,
         order: int,
         digits: int | None,
@@ -105,22 +112,31 @@ class _Search:
         pairs = zip(solution.seeds, solution.frequencies, strict=True)
         self.omega = dict(sorted(pairs))
         with self.numbers.context(digits):
-            A = amplitudes_of(solution)
+            A = amplitudes_by_seed(solution)
             squares = [0, *(A[n] ** 2 for n in self.omega)]
             self.squares = self.numbers.array(squares)
 
-    def solved(self) -> LindstedtSeries:
+    @property
+    def _linear(self) -> float:
+        return float(self.chain.linear_frequency(self.q % self.chain.N))
+
+    def solved(self) -> LindstedtSeries | TravellingSeries:
         """The series at the solution."""
         guesses = second_order(self.solution)
-        linear = float(self.chain.frequencies()[self.q - 1])
-        start = guesses[self.q] - linear
-        step = DIFFERENCE * (start or LEAST_SHIFT * linear)
-        found = self._secant(start, start + step, LARGEST_MOVE * linear)
+        start = guesses[self.q] - self._linear
+        step = DIFFERENCE * (start or LEAST_SHIFT * self._linear)
+        if (
+            not start and self.chain.periodic
+        ):  # no closed shift: to what the series itself says
+            step, _ = self._at(start)
+        found = self._secant(start, start + step, LARGEST_MOVE * self._linear)
         if found is None:
             raise NoNormalModes(self.q, guesses[self.q], self._nearest(guesses))
         return found
 
-    def _secant(self, x: Any, y: Any, most: float) -> LindstedtSeries | None:
+    def _secant(
+        self, x: Any, y: Any, most: float
+    ) -> LindstedtSeries | TravellingSeries | None:
         """From two trials; None where it runs away or finds no end."""
         x, y = self.numbers.array([x, y])
         start, (left, _) = x, self._at(x)
@@ -139,12 +155,12 @@ class _Search:
 
     @property
     def _rounding(self) -> Any:
-        linear = float(self.chain.frequencies()[self.q - 1])
+        linear = self._linear
         if self.digits is None:
             return ROUNDING * linear
         return mpmath.mpf(10) ** -self.digits * linear
 
-    def _at(self, shift: Any) -> tuple[Any, LindstedtSeries]:
+    def _at(self, shift: Any) -> tuple[Any, LindstedtSeries | TravellingSeries]:
         """Series - shift at a trial shift, and the series."""
         self.trials += 1
         self.tell(f"sigma_{self.q}, trial {self.trials}", self.trials / self._steps)
@@ -162,7 +178,7 @@ class _Search:
         """Omega_q + shift as an exact decimal in which the shift has all its digits."""
         places = DECIMALS if self.digits is None else self.digits + GUARD_DIGITS
         with mpmath.workdps(2 * places):
-            value = self.chain.linear_frequency(self.q) + mpmath.mpf(shift)
+            value = self.chain.linear_frequency(self.q % self.chain.N) + mpmath.mpf(shift)
             whole = int(mpmath.nint(value * mpmath.mpf(10) ** places))
         return Fraction(whole, 10**places)
 

@@ -46,14 +46,15 @@ def family_normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     '2 tori, stable'
     """
     rows, events = _rows(result)
-    linear = rows[0].torus.chain.frequencies()
+    chain = rows[0].torus.chain
+    linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
     seed, x = _axis(rows)
     unstable = sum(not row.stable for row in rows)
     verdict = f"{unstable} of them unstable" if unstable else "stable"
     with axes_for(ax) as axes:
         for i, q in enumerate(rows[0].sigma):
             sigma = np.array([complex(row.sigma.get(q, np.nan)) for row in rows])
-            _line(axes, x, sigma - linear[q - 1], look(i), f"$q={q}$")
+            _line(axes, x, sigma - linear[q], look(i), f"$q={q}$")
         for event in events:
             style = "--" if event.kind == STABILITY else ":"
             axes.axvline(event.amplitudes[seed], color=QUIET, ls=style, lw=1, zorder=0)

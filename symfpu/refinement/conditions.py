@@ -126,6 +126,33 @@ class AmplitudeRatio:
         return by_cosine, np.zeros(len(shifts))
 
 
+@dataclass(frozen=True, eq=False)
+class AmplitudeLine:
+    """The amplitudes of two seeds are on a line: (A - start) of the one to steps as of the other.
+
+    places : of the two among the seeds, the first with a step. start, steps : of all seeds, (s,).
+    """
+
+    places: tuple[int, int]
+    start: Floats
+    steps: Floats
+
+    def value(
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
+        (i, j), gone = self.places, seed_amplitudes(equation, cosines) - self.start
+        return np.longdouble(self.steps[i] * gone[j] - self.steps[j] * gone[i])
+
+    def gradient(
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
+        (i, j), by_cosine = self.places, np.zeros(cosines.shape)
+        rows, columns = equation.seed_rows, equation.seed_columns
+        by_cosine[rows[j], columns[j]] = self.steps[i]
+        by_cosine[rows[i], columns[i]] = -self.steps[j]
+        return by_cosine, np.zeros(len(shifts))
+
+
 @dataclass(frozen=True)
 class EnergyRatio:
     """The averaged harmonic energy of a seed mode is a multiple of that of the first one."""

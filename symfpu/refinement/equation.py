@@ -56,6 +56,13 @@ class TorusEquation(Protocol):
         """V''(r) - 1 at the points, in doubles."""
         ...
 
+    def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
+        """Derivatives of the mean of weights times slopes, (H, C); weights as the slopes are.
+
+        By differences, good to some ten digits: for Newton's matrix.
+        """
+        ...
+
     def force_change(self, slopes: Floats, change: Floats) -> Floats:
         """The derivative of the force along a change of the coefficients; (H, C)."""
         ...

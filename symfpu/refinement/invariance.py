@@ -29,6 +29,7 @@ PORTION = 4_000_000  # values of all bonds transformed at once
 LEAST_COUPLING = (
     1e-3  # of two modes by one harmonic of the slopes, relative, in sparse rows
 )
+APART = 1e-5  # of stretches, for a derivative by differences
 DIGITS = 30  # of the numbers that long doubles are made of
 
 
@@ -63,6 +64,12 @@ def halves(value: Any) -> tuple[np.longdouble, np.longdouble]:
         exact = rational(high)
         low = value - mpmath.mpf(exact.numerator) / exact.denominator
         return high, long(low)
+
+
+def curvature(law: bonds.Law, r: Floats) -> Floats:
+    """The third derivative of V by central differences of the second."""
+    above, below = (bonds.anharmonic_stiffness(law, r + h) for h in (APART, -APART))
+    return np.asarray((above - below) / (2 * APART))
 
 
 class InvarianceEquation:
@@ -239,6 +246,14 @@ class InvarianceEquation:
             r = self.grid.values(c @ stretch[:, part])
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
+
+    def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
+        """Derivatives of the mean of weights times slopes, (H, N-1); weights (bonds, points)."""
+        there = self._stretch.astype(float)
+        r = self.grid.values(np.asarray(cosines.astype(float) @ there))
+        bent = weights * curvature(self.chain.law(), r)
+        spectrum = self.grid.spectrum(bent)[:, self.grid.entries(self.harmonics)]
+        return np.asarray((spectrum.T @ there.T) * self.mask)
 
     def force_change(self, slopes: Floats, change: Floats) -> Floats:
         """The derivative of the force along a change of the coefficients, in doubles.

@@ -23,7 +23,7 @@ from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.refinement.couplings import largest_slopes, shifted, sparse_rows
 from symfpu.refinement.equation import Floats, Ints, Slopes
-from symfpu.refinement.invariance import DIGITS, LONG_DOUBLES, long
+from symfpu.refinement.invariance import DIGITS, LONG_DOUBLES, curvature, long
 from symfpu.refinement.lattice import Lattice
 
 
@@ -114,6 +114,13 @@ class WaveEquation:
         """V''(r) - 1 at the points, in doubles; shape (1, points)."""
         r = self._stretches(cosines.astype(float))
         return np.asarray(bonds.anharmonic_stiffness(self.chain.law(), r))
+
+    def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
+        """Derivatives of the mean of weights times slopes, (H, 1); weights (1, points)."""
+        r = self._stretches(cosines.astype(float))
+        bent = weights * curvature(self.chain.law(), r)
+        spectrum = self.grid.spectrum(bent)[:, self.grid.entries(self.harmonics)]
+        return np.asarray(spectrum.T * self._stretch.astype(float) * self.mask)
 
     def force_change(self, slopes: Floats, change: Floats) -> Floats:
         """The derivative of the force along a change of the coefficients, in doubles; (H, 1)."""

@@ -146,7 +146,7 @@ def _series_record(one: BySeries) -> dict[str, Any]:
         "order": one.series.order,
         "sigma": repr(float(one.series.sigma)),
         "terms": list(map(repr, one.terms)),
-        "closed_shift": str(one.series.closed_shift()),
+        "closed_shift": _closed_shift(one.series),
     }
 
 
@@ -163,8 +163,14 @@ def series_text(found: Sequence[BySeries]) -> list[str]:
         lines.append(f"  {name} = {sigma:.13g}, off by {off:+.1e}")
         terms = ", ".join(f"{x:+.4e}" for x in one.terms[1:])
         lines.append(f"    orders 1..{one.series.order}: {terms}")
-        lines.append(f"    lowest shift: {one.series.closed_shift()}")
+        if shift := _closed_shift(one.series):
+            lines.append(f"    lowest shift: {shift}")
     return ["by series:", *lines] if lines else []
+
+
+def _closed_shift(series: NormalFrequencySeries) -> str | None:
+    """The lowest terms as a formula; None on a ring, which has none."""
+    return None if series.chain.periodic else str(series.closed_shift())
 
 
 def normal_event_record(event: NormalEvent) -> dict[str, Any]:

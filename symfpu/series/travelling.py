@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.grading import Grading, Ints
+from symfpu.algebra.polynomials import square_root
 from symfpu.algebra.travelling import TravellingDoubles, TravellingModes
 from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.errors import InputError
@@ -170,6 +171,22 @@ class TravellingSeries(Tabled):
         slope = self.seed_factors**2
         return frequency_sums(self._linear, slope, squares, diagonals, tables)
 
+    def frequency_coefficients(self, q: int, order: int) -> tuple[Ints, Floats]:
+        """omega_q^(k) without mu^k, as a polynomial in the amplitudes (Eq. omeser).
+
+        Returns exponents (count, s) of the amplitudes and coefficients (count,), none of them zero.
+        """
+        i, top = self.seeds.index(q), self._order(order)
+        squares = [self._square_part(k, i) for k in range(top + 1)]
+        polynomials = [
+            dict(zip(map(tuple, part.powers.tolist()), part.values.tolist(), strict=True))
+            for part in squares
+        ]
+        roots = square_root(polynomials, float(self._linear[i]))
+        chosen = {exponents: c for exponents, c in roots[top].items() if c != 0}
+        rows = np.array(list(chosen), dtype=np.int64).reshape(-1, len(self.seeds))
+        return rows, np.array(list(chosen.values()))
+
     def _table(self) -> Table:
         """One row for each coefficient of the stretches and of omega^2, without mu^k."""
         orders = range(self.order + 1)
@@ -249,8 +266,22 @@ def travelling_waves(
     modes = chain.seeds_of(seeds)
     omega = frequencies_of(frequencies, modes)
     order = integer(order, "order", 0)
-    check_size(chain.at(N=2), modes, order, FLOAT64.name)
-    grading = shared_grading(len(modes), 1 + chain.degree_step * order)
+    return series_of_waves(chain, modes, omega, order, progress)
+
+
+def series_of_waves(
+    chain: Chain,
+    modes: tuple[int, ...],
+    omega: tuple[Fraction, ...],
+    order: int,
+    progress: Progress | None,
+    *,
+    phantom: bool = False,
+) -> TravellingSeries:
+    """The series of checked arguments; phantom : cut at the first power of the first seed."""
+    check_size(chain.at(N=2), modes, order, FLOAT64.name, phantom=phantom)
+    degree = 1 + chain.degree_step * order
+    grading = shared_grading(len(modes), degree, phantom=phantom)
     space = TravellingModes(chain.N, modes, grading)
     ring = TravellingDoubles(space, points=1)  # type: ignore[arg-type]
     divisors = TravellingDivisors(chain, space, omega)

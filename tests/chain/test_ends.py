@@ -53,7 +53,7 @@ RESULTS = {
 }
 TAKE_RINGS = {"travelling_waves", "integrate", "alignment_indices", "seconds_needed"}
 TAKE_RINGS |= {"toda_gaps", "toda_invariants", "toda_torus", "travelling_breather"}
-TAKE_RINGS |= {"packet_state", "particle_state", "random_state", "read_state"}
+TAKE_RINGS |= {"packet_state", "particle_state", "random_state", "read_state", "normal_frequency_series"}
 
 
 def takes_a_chain(name):

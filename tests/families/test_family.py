@@ -13,9 +13,10 @@ from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
-from symfpu.families import events
+from symfpu.families import continuation
 from symfpu.families.continuation import first_torus, member
 from symfpu.families.family import Family, NotInFamily, family, member_at_energy, member_at_frequency
+from symfpu.refinement.conditions import Crossing
 from symfpu.refinement.tori import NoTorus, refine_at_energy, shifts_of
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -271,9 +272,15 @@ def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
     def another(torus, conditions, **options):
         return other
 
+    true = continuation.refined_torus
     for refined in (none, another):
+
+        def instead(torus, conditions, refined=refined, **options):
+            crossing = isinstance(conditions[0], Crossing)
+            return (refined if crossing else true)(torus, conditions, **options)
+
         with monkeypatch.context() as patched:
-            patched.setattr(events, "refined_torus", refined)
+            patched.setattr(continuation, "refined_torus", instead)
             found = family(LONG, (1,), "0.05", from_energy="0.02")
         event = next(e for e in found.events if e.mode == 17)
         first, second = found.members[event.after : event.after + 2]

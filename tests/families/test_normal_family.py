@@ -10,13 +10,15 @@ from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.families.normal_events import RESONANCE, STABILITY, Bracket, collision, discriminant
+from symfpu.families.normal_events import RESONANCE, STABILITY, discriminant
 from symfpu.families.normal_family import normal_family
+from symfpu.families.normal_zeros import Bracket, collision
 from symfpu.normal.resonances import PARAMETRIC, SUM, ParametricResonance
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
-from tests.tolerances import BESIDE_A_CROSSING, BESIDE_AN_ONSET, NORMAL_CONVERGED, ONSET
+from tests.normal.test_meeting import EDGES
+from tests.tolerances import BESIDE_A_CROSSING, BESIDE_AN_ONSET, NARROW_EVENT, NORMAL_CONVERGED, ONSET
 
 HYPERBOLIC = Chain(8, beta=1)
 
@@ -76,6 +78,19 @@ def test_the_onset_of_a_torus_is_the_same_from_both_sides():
             values.append(discriminant(found, event.resonance))
         onset = sum(a * np.prod([v / (v - w) for v in values if v != w]) for a, w in zip(places, values, strict=True))
         assert event.amplitudes[5] == pytest.approx(onset, abs=ONSET)
+
+
+@pytest.mark.long
+def test_a_narrow_tongue_of_a_torus_has_both_ends():
+    """2 sigma_4 = (3,1).omega, 2e-5 of an amplitude wide, between two tori 0.15 apart; the ends as those that digits judge."""
+    start = {1: "0.1", 5: "0.1"}
+    solution = refine_at_amplitudes(torus_at_amplitudes(HYPERBOLIC, start, order=6), start)
+    begins, ends = normal_family(solution, {1: "0.1", 5: "0.25"}, members=2, modes=[4], resonance_length=4).events
+    assert (begins.begins, ends.begins) == (True, False)
+    for event, edge in zip((begins, ends), EDGES, strict=True):
+        assert (event.resonance.kind, event.resonance.harmonic) == (PARAMETRIC, (3, 1))
+        assert event.amplitudes[5] == pytest.approx(edge, abs=NARROW_EVENT)
+        assert abs(event.amplitudes[5] - edge) < 0.15 * event.error
 
 
 @pytest.mark.long

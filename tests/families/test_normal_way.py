@@ -11,12 +11,14 @@ from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, RunInterrupted
 from symfpu.families.family import family, member_at_energy
-from symfpu.families.normal_events import Bracket, NormalEvent, located
+from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_family import normal_family
+from symfpu.families.normal_zeros import Bracket, located
 from symfpu.files.archive import BundleError
 from symfpu.normal.search import normal_modes
+from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.reports.family import family_table
-from tests.tolerances import BESIDE_AN_ONSET, NORMAL_CONVERGED, ONSET
+from tests.tolerances import BESIDE_AN_ONSET, GROWTH_BY_FLOQUET, NORMAL_CONVERGED, ONSET
 
 UNSTABLE = Chain(4, alpha="0.5")
 ARGUMENTS = (UNSTABLE, (2,), "1")
@@ -79,6 +81,37 @@ def test_events_are_found_beyond_a_fold():
         torus = member_at_energy(found, repr(event.energy * (1 + side * BESIDE_AN_ONSET)), harmonic=False)
         unstable.append(sum(floquet(torus).instabilities.values()))
     assert unstable[1] == unstable[0] + 1
+
+
+@pytest.mark.long
+def test_normal_frequencies_go_through_a_fold_of_the_energy():
+    """N = 16, beta = 1, seed 1, whose energy turns at 0.8127149. Floquet's multipliers count the same hyperbolic directions on every
+    member, one of them at a frequency of the orbit beyond the fold, and change their count at every event."""
+    found = family(Chain(16, beta=1), (1,), "5", from_energy="0.5", tolerance=1e-10, members=14, normal=True, resonance_length=0)
+    [fold] = [e for e in found.events if (e.kind, e.what) == ("fold", "H")]
+    for number, m in enumerate(found.members):
+        hyperbolic = {q for q, w in m.normal.frequencies.items() if complex(w).imag}
+        kinds = floquet(m.torus).instabilities
+        assert m.normal.missing == {}
+        assert len(hyperbolic) == 2 * kinds.get("complex quadruple", 0) + kinds.get("real > 0", 0)
+        assert (11 in hyperbolic) == (number > fold.after)
+        if 11 in hyperbolic:
+            locked = complex(m.normal.frequencies[11])
+            assert locked.real == pytest.approx(9 * float(m.torus.frequency), abs=NORMAL_CONVERGED)
+            growth = np.log(floquet(m.torus).multipliers[np.isclose(floquet(m.torus).multipliers.imag, 0)].real.max())
+            assert locked.imag == pytest.approx(growth * float(m.torus.frequency) / (2 * np.pi), rel=GROWTH_BY_FLOQUET)
+    located = [e for e in found.normal_events if e.resonance.modes != (11,)]
+    [interpolated] = [e for e in found.normal_events if e.resonance.modes == (11,)]
+    assert interpolated.after == fold.after
+    assert interpolated.energy == pytest.approx(fold.energy, rel=BESIDE_AN_ONSET)
+    assert [e.begins for e in located] == [True, True, False]
+    assert located[-1].after > fold.after
+    for event in located:
+        near, counts = found.members[event.after].torus, []
+        for side in (-1, 1):
+            A = event.amplitudes[1] + side * 10 * BESIDE_AN_ONSET
+            counts.append(floquet(refine_at_amplitudes(near, {1: repr(A)}, tolerance=1e-10)).instabilities.get("complex quadruple", 0))
+        assert counts[1] == counts[0] + 1
 
 
 @pytest.mark.long

@@ -140,8 +140,8 @@ def test_the_verb_takes_a_ring(tmp_path, capsys):
     assert main(["stability", file, "--plot", str(picture)]) == 0
     assert "-1" in capsys.readouterr().out
     assert picture.exists()
-    assert main(["stability", file, "--to-amplitudes", "0.4"]) == 2
-    assert "fixed" in capsys.readouterr().err
+    assert main(["stability", file, "--series", "4", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["series"]["2"]["closed_shift"] is None
 
 
 def test_rough_waves_are_refused():

@@ -116,7 +116,7 @@ def test_memory_is_asked_for_before():
         ((BOTH, (1,), 2, 1, {1: "0.4", 2: -1}), "positive"),
         ((BOTH, (1,), 2, 1, ("0.4", "0.8")), "^frequencies"),
         ((Chain("N", beta=1), (1,), 2, 1), "frequency_shift_formula"),
-        ((Chain(8, beta=1, ends="periodic"), (1,), 2, 1), "periodic"),
+        ((Chain(8, beta=1, ends="periodic"), (1,), 2, 1), "on a ring give"),
     ],
     ids=lambda x: repr(x)[:40],
 )

@@ -9,10 +9,13 @@ from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.normal.modes import NoNormalModes
+from symfpu.normal.phantom import normal_frequency_series
 from symfpu.normal.search import normal_modes
 from symfpu.normal.self_consistent import solve_normal_frequency
 from symfpu.refinement.tori import refine_at_amplitudes
+from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.tori.ring_torus import unfold
 from tests.tolerances import NORMAL_CONVERGED, OBSERVED_ORDER, THIRTY_DIGITS
 
 MODELS = {
@@ -71,3 +74,42 @@ def test_two_particles():
     found = solve_normal_frequency(breather_at_amplitude(chain, 1, "0.02"), 2, 8)
     exact = normal_modes(breather_at_amplitude(chain, 1, "0.02")).frequencies[2]
     assert found.sigma == pytest.approx(exact, abs=NORMAL_CONVERGED)
+
+
+@pytest.mark.parametrize("law", [{"alpha": "0.3"}, {"beta": "0.5"}, {"potential": "toda:1/2"}], ids=str)
+def test_what_the_series_of_a_ring_misses_is_of_the_next_order(law):
+    """About a travelling wave, of waves in both directions, q = N/2 and the seed's own opposite among them."""
+    chain, order = Chain(8, ends="periodic", **law), 2
+    missing = []
+    for amplitude in ("0.1", "0.2"):
+        solution = travelling_breather(chain, 1, amplitude=amplitude)
+        exact = normal_modes(solution).frequencies
+        assert set(exact) == {-3, -2, -1, 2, 3, 4}
+        missing.append([abs(solve_normal_frequency(solution, q, order).sigma - w) for q, w in exact.items()])
+    power = chain.degree_step * order + 2
+    rates = np.log2(np.array(missing[1]) / np.array(missing[0]))
+    assert rates == pytest.approx(power, abs=OBSERVED_ORDER)
+
+
+def test_the_series_of_a_ring_is_that_of_its_amplitudes():
+    solution = travelling_breather(Chain(8, alpha="0.3", ends="periodic"), 1, amplitude="0.2")
+    found = solve_normal_frequency(solution, -3, 4)
+    given = normal_frequency_series(solution.chain, (1,), -3, 4, found.frequencies)
+    assert given.at({1: 0.2}) == pytest.approx(found.sigma, abs=NORMAL_CONVERGED)
+    assert float(found.correction(2).subs({"A1": 1})) == found.coefficients[2][(2,)]
+
+
+def test_a_ring_has_no_other_series_than_of_travelling_waves_in_doubles():
+    solution = travelling_breather(Chain(8, alpha="0.3", ends="periodic"), 1, amplitude="0.2")
+    with pytest.raises(InputError, match=r"^digits"):
+        solve_normal_frequency(solution, 2, 2, digits=30)
+    with pytest.raises(InputError, match="standing"):
+        solve_normal_frequency(unfold(breather_at_amplitude(Chain(4, beta=1), 1, "0.1")), 2, 2)
+    with pytest.raises(InputError, match="on a ring give frequencies="):
+        normal_frequency_series(solution.chain, (1,), 2, 2)
+    with pytest.raises(InputError, match="fixed ends"):
+        solve_normal_frequency(solution, 2, 2).closed_shift()
+    omega = {1: "0.76", 2: "1.4"}
+    for option in ({"digits": 20}, {"ring": "nested"}):
+        with pytest.raises(InputError, match=f"^{next(iter(option))}"):
+            normal_frequency_series(solution.chain, (1,), 2, 2, omega, **option)
