@@ -80,7 +80,6 @@ def tables(found: Atlas) -> dict[str, str]:
         "laws": laws_table(found),
         "folds": folds_table(found),
         "packets": packets_table(found),
-        "stability": stability_table(found),
     }
 
 
@@ -194,17 +193,6 @@ def packets_table(found: Atlas) -> str:
                 cells = [f"{border[N].energy / N:.3g}" for border in (ratio, poles)]
                 size = f"{poles[N].energy / unit(model, N, s):.3g}"
                 rows.append([model, part, str(N), str(s), *cells, size])
-    return rows_of(head, rows)
-
-
-def stability_table(found: Atlas) -> str:
-    """H N at which breathers lose stability."""
-    head = ["model", "packet", *(f"N = {N}" for N in LENGTHS[:3])]
-    rows = []
-    for model in ("alpha=1", "beta=1"):
-        for packet in ("low:1", "middle:1", "high:1"):
-            known = chosen(found, packet, "stability", model)
-            rows.append([model, packet, *(energy(known.get(N)) for N in LENGTHS[:3])])
     return rows_of(head, rows)
 
 

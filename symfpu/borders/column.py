@@ -95,7 +95,7 @@ def _newton_borders(
 
 
 def _beginning(points: Points) -> tuple[QTorus, float]:
-    """The torus from which Newton's method begins: the largest whose series is good enough.
+    """The torus from which Newton's method begins: the lowest whose series is good enough.
 
     And its place. Where no point was asked for, those on the way to the nearest pole are looked
     at. Raises InputError where the series has none.
@@ -106,6 +106,6 @@ def _beginning(points: Points) -> tuple[QTorus, float]:
     if not known:
         allowed = "a chain and packet with a torus at small energy"
         raise InputError("packet", points.ray.seeds, allowed, "take another order")
-    good = [known[0], *(entry for entry in known if entry[2] < BEGIN_RESIDUAL)]
-    torus, place, _ = good[-1]
+    good = [entry for entry in known if entry[2] < BEGIN_RESIDUAL]
+    torus, place, _ = (good or known)[0]
     return torus, place
