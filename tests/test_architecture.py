@@ -2,6 +2,8 @@
 
 import ast
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -61,10 +63,37 @@ def test_the_way_is_one(step):
     assert module(path) in known
 
 
-def test_the_checker_imports_nothing_of_the_package():
-    assert [source for source, _ in imported("symfpu/proofs/verify.py") if source.startswith("symfpu")] == []
-    theorem = {source for source, _ in imported("symfpu/proofs/verify_theorem.py") if source.startswith("symfpu")}
-    assert theorem == {"symfpu.proofs.verify"}
+CHECKERS = {
+    "reading": set(),
+    "rounding": set(),
+    "verify": {"reading"},
+    "verify_theorem": {"reading", "verify"},
+    "check_torus": {"reading", "rounding"},
+    "check_existence": {"reading", "rounding"},
+    "check_stability": {"reading", "rounding", "check_existence"},
+}
+
+
+@pytest.mark.parametrize("name", CHECKERS)
+def test_a_checker_imports_the_standard_library_and_checkers_alone(name):
+    room = ROOT / "symfpu" / "proofs"
+    files = sorted((room / name).glob("*.py")) or [room / f"{name}.py"]
+    found = set().union(*(imported(file.relative_to(ROOT)) for file in files))
+    allowed = {f"symfpu.proofs.{part}" for part in CHECKERS[name] | {name}}
+    named = {f"{source}.{part}" if source == "symfpu.proofs" else source for source, part in found}
+    ours = {source for source in named if source.startswith("symfpu")}
+    assert {source for source in ours if not source.startswith(tuple(allowed))} == set()
+    assert {source.partition(".")[0] for source in named - ours} <= sys.stdlib_module_names
+
+
+def test_importing_a_checker_loads_nothing_else():
+    """Run alone in a new process: the package itself loads nothing that checkers could use."""
+    script = f"import sys\nfrom symfpu.proofs import {', '.join(CHECKERS)}\nprint(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-S", "-c", script], cwd=ROOT, check=True, capture_output=True, text=True).stdout.split()
+    ours = {name for name in loaded if name.startswith("symfpu.proofs.")}
+    assert {name.split(".")[2] for name in ours} == set(CHECKERS)
+    assert {name for name in loaded if name.startswith("symfpu")} - ours == {"symfpu", "symfpu.proofs"}
+    assert {name.partition(".")[0] for name in loaded} <= sys.stdlib_module_names | {"symfpu", "__main__"}
 
 
 def test_algebra_knows_no_physics():

@@ -33,6 +33,7 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import MULTIPRECISION, with_digits
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import integer
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
@@ -74,7 +75,7 @@ class BirkhoffForm(Tabled):
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
         listed = ",".join(map(str, self.seeds))
-        count = f"degree {self.degree} in the actions, {len(self.coefficients)} terms"
+        count = f"degree {self.degree} in the actions, {counted(len(self.coefficients), 'term')}"
         return f"BirkhoffForm({chain}, seeds={listed}, {count})"
 
     def hamiltonian(self) -> Any:

@@ -8,7 +8,7 @@ by what grows with t. So log GALI_k costs the same at t = 1e3 and at t = 1e12.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -86,11 +86,11 @@ class ForetoldIndices(Shown, Gridded):
         seeds = ",".join(map(str, self.torus.seeds))
         found = ", ".join(f"{slope.value:.2f}" for slope in self.slopes())
         due = ", ".join(map(str, self.asymptotic_slopes.values()))
-        settled = ", ".join(f"{t:.2g}" for t in self.settling().values())
+        settled = _since(list(self.settling().values()))
         return (
             f"ForetoldIndices({chain}, seeds={seeds}, t = {self.times[-1]:.3g}, {self.verdict}: "
             f"slopes of GALI_2..{self.vectors} {found}, on the torus {due}, "
-            f"settled from t = {settled}, by {self.normal})"
+            f"{settled}, by {self.normal})"
         )
 
     @property
@@ -194,6 +194,21 @@ class ForetoldIndices(Shown, Gridded):
             ),
             rows=rows,
         )
+
+
+def _since(settled: Sequence[float]) -> str:
+    """From when on indices have settled, in words."""
+    if all(map(math.isinf, settled)):
+        return "none settled by then"
+    times = ("not by then" if math.isinf(t) else f"{t:.2g}" for t in settled)
+    return f"settled from t = {', '.join(times)}"
+
+
+def settled_text(time: float, last: float) -> str:
+    """From when on one index has settled, in words, where times end at the last one."""
+    if math.isinf(time):
+        return f"not settled by t = {last:.3g}"
+    return f"settled from t = {time:.3g}"
 
 
 def foretold_indices(

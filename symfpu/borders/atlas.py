@@ -34,8 +34,8 @@ class AtlasBorder:
     """One border of an atlas. Made by `Atlas`; ours, dimensionless.
 
     chain : as it is typed. packet : as it was named; modes : its modes. order : of the series.
-    border : "ratio", "sums", "poles", "newton" or "stability". energy : H there; None if there is
-        none. details : its record.
+    border : "ratio", "sums", "poles", "fold", "newton" or "stability". energy : H there; None if
+        there is none. details : its record.
 
     >>> chain = {"N": 8, "alpha": "0", "beta": "1"}
     >>> AtlasBorder(chain, "low:1", (1,), 8, "poles", 1.02, {"mode": 5}).model
@@ -128,7 +128,8 @@ class Atlas(Shown, Tabled):
     ) -> BorderLaw:
         """The power of N with which this border of a packet goes.
 
-        packet : as it was named. border : "ratio", "sums", "poles", "newton" or "stability".
+        packet : as it was named. border : "ratio", "sums", "poles", "fold", "newton" or
+        "stability".
         model : the couplings, such as "alpha=1"; needed if there are several. order : of the
         series; default for each length the largest.
 
@@ -265,12 +266,13 @@ def atlas(
     borders : of "ratio", "sums", "poles" (where the radius of convergence falls to the torus' own
         amplitudes: by the largest term of each order, by the sums of all terms, by the nearest
         pole of Pade approximants to the frequencies), "newton" (where Newton's method finds no
-        further torus) and "stability" (the first unstable torus on its way).
+        further torus), "fold" (the first torus on its way that is on another sheet of the series)
+        and "stability" (the first unstable one).
     places : energies H > 0 (`per_particle` H/N; with by="amplitude" the A_q of all seeds) at which
         a point is wanted in any case. Each border is located to 1 % between points of its own.
     by : "energy", with equal mode energies, or "amplitude", with equal amplitudes.
     most_harmonics : of a torus of Newton's method, beyond which it is not followed; its residual
-        is 1e-9. reach : energies up to so many times that of the series' last point.
+        is 1e-9. reach : places up to so many times the series' last one.
     executor, file, retry, progress : as for `sweep`: a file is gone on with.
 
     Everything is dimensionless. Eq. omeser at every point, judged as by `assess`; ours. Tori in
@@ -371,5 +373,5 @@ def _places(places: Sequence[Number]) -> tuple[str, ...]:
 def _reach(reach: float) -> float:
     value = float(exact(reach, "reach"))
     if value < 1:
-        raise InputError("reach", reach, "a number of at least 1", "take 30")
+        raise InputError("reach", reach, "a number of at least 1", "take 3")
     return value

@@ -6,7 +6,13 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from symfpu.borders.newton_end import MOST_HARMONICS, NEWTON, STABILITY, newton_end
+from symfpu.borders.newton_end import (
+    FOLD,
+    MOST_HARMONICS,
+    NEWTON,
+    STABILITY,
+    newton_end,
+)
 from symfpu.borders.packets import packet_modes
 from symfpu.borders.point import ENERGY, ESTIMATES, POLES, Ray
 from symfpu.borders.search import NoBorder, Points, series_border
@@ -16,9 +22,10 @@ from symfpu.tori.torus import QTorus
 
 Json = dict[str, Any]
 
-BORDERS = (*ESTIMATES, NEWTON, STABILITY)
-BEGIN_RESIDUAL = 1e-6  # of a series whose torus Newton's method begins with
-REACH = 30.0  # times the largest place of the series, to which Newton's tori are followed
+BORDERS = (*ESTIMATES, FOLD, NEWTON, STABILITY)
+LOSSES = (FOLD, STABILITY)
+BEGIN_RESIDUAL = 1e-9  # of a series whose torus Newton's method begins with
+REACH = 3.0  # times the largest place of the series, to which Newton's tori are followed
 
 
 def atlas_column(
@@ -46,7 +53,7 @@ def atlas_column(
         points.at(place)
     estimates = [name for name in borders if name in ESTIMATES]
     found = {name: _series_border(points, name) for name in estimates}
-    asked = [name for name in borders if name in (NEWTON, STABILITY)]
+    asked = [name for name in borders if name in (NEWTON, *LOSSES)]
     newton: list[Json] = []
     if asked:
         of_newton, newton = _newton_borders(points, asked, most_harmonics, reach)
@@ -78,7 +85,7 @@ def _newton_borders(
             place,
             reach * max(point.place for point in points),
             most_harmonics=most_harmonics,
-            stability=STABILITY in asked,
+            losses=[name for name in asked if name in LOSSES],
         )
     except SymfpuError as error:
         none = {"none": f"{type(error).__name__}: {error}"}

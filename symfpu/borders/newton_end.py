@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from symfpu.borders.fold import sheet_of
 from symfpu.borders.point import ENERGY, Ray
 from symfpu.breathers.floquet import floquet
 from symfpu.normal.modes import NoNormalModes
@@ -23,12 +24,15 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import short
 
-FACTOR = 1.5  # of the place, at most, from one torus to the next
-STABILITY_WIDTH = 1.02  # ratio of the places between which stability is lost
+FACTOR = 1.25  # of the place, at most, from one torus to the next
+LOSS_WIDTH = 1.01  # ratio of the places between which something is lost
 LEAST_FACTOR = 1.01  # a step below which the torus before is the last
 TOLERANCE = 1e-9  # of the residual, as of what `normal_modes` takes
-MOST_HARMONICS = 800
-NEWTON, STABILITY = "newton", "stability"
+Json = dict[str, Any]
+Test = Callable[[RefinedTorus], Json]
+
+MOST_HARMONICS = 400
+NEWTON, FOLD, STABILITY = "newton", "fold", "stability"
 TOO_MANY = "more harmonics than allowed"
 NOT_FOLLOWED = "followed as far as asked"
 SEARCH_ENDS = (TOO_MANY, NOT_FOLLOWED)
@@ -54,31 +58,59 @@ class RefinedPoint:
 
 
 @dataclass(frozen=True, eq=False)
+class Loss:
+    """What tori lose on their way: stability, or the sheet of their series.
+
+    below, above : the last with it and the first without; below is None where the first torus has
+    lost it. found : of the latter, as JSON holds it.
+    """
+
+    below: RefinedPoint | None
+    above: RefinedPoint
+    found: Json
+
+    def record(self) -> Json:
+        """As JSON holds it."""
+        low = self.below or self.above
+        energies = [float(point.torus.energy()) for point in (low, self.above)]
+        return {
+            "place": short(math.sqrt(low.place * self.above.place)),
+            "energy": short(math.sqrt(energies[0] * energies[1])),
+            "between": [
+                short(self.below.place if self.below else 0.0),
+                short(self.above.place),
+            ],
+            **self.found,
+        }
+
+
+@dataclass(frozen=True, eq=False)
 class NewtonEnd:
     """The last torus of a ray, and what stands in the way of the next.
 
-    reason : of Newton's method; TOO_MANY and NOT_FOLLOWED are limits of the search, not of the
-    tori. above : the place at which there is none. points : of all tori. first_unstable : the
-    places of the last stable and first unstable one; growth : its rate. degree : of the ray.
+    reason : of Newton's method; SEARCH_ENDS are limits of the search, not of the tori. above : the
+    place at which there was none. points : of all tori. losses : by name, FOLD or STABILITY.
     """
 
     reason: str
     above: float
     points: tuple[RefinedPoint, ...] = field(repr=False)
-    first_unstable: tuple[float, float] | None
-    growth: float
-    degree: int
+    losses: Mapping[str, Loss]
 
     @property
     def last(self) -> RefinedPoint:
         """The torus at the largest place."""
         return self.points[-1]
 
-    def record(self, border: str) -> dict[str, Any]:
-        """The border asked for, NEWTON or STABILITY, as JSON holds it."""
-        return self._newton() if border == NEWTON else self._stability()
+    def record(self, border: str) -> Json:
+        """The border asked for, NEWTON, FOLD or STABILITY, as JSON holds it."""
+        if border == NEWTON:
+            return self._newton()
+        if border in self.losses:
+            return self.losses[border].record()
+        return {"none": f"kept up to {self.last.place:.6g}: {self.reason}"}
 
-    def _newton(self) -> dict[str, Any]:
+    def _newton(self) -> Json:
         near = self.last.torus.near_resonances[:1]
         return {
             "place": short(self.last.place),
@@ -91,20 +123,6 @@ class NewtonEnd:
             "slopes": [short(x) for x in _slopes(self.points)],
         }
 
-    def _stability(self) -> dict[str, Any]:
-        if self.first_unstable is None:
-            return {"none": f"no unstable torus up to {self.last.place:.6g}: {self.reason}"}
-        below, above = self.first_unstable
-        place = math.sqrt(below * above) if below else above
-        near = min(self.points, key=lambda point: abs(math.log(point.place / place)))
-        energy = float(near.torus.energy()) * (place / near.place) ** self.degree
-        return {
-            "place": short(place),
-            "energy": short(energy),
-            "between": [short(below), short(above)],
-            "growth": short(self.growth),
-        }
-
 
 def newton_end(
     ray: Ray,
@@ -113,63 +131,90 @@ def newton_end(
     end: float,
     *,
     most_harmonics: int = MOST_HARMONICS,
-    stability: bool = False,
+    losses: Sequence[str] = (),
 ) -> NewtonEnd:
     """The tori of a ray from one of the series on, each from the one before.
 
-    guess : a torus of the series; begin : its place; end : where the tori are left. stability :
-    whether the first unstable one is looked for.
+    guess : a torus of the series; begin : its place; end : where the tori are left. losses : of
+    FOLD and STABILITY, what is looked for on the way.
 
     Raises what `refine_at_energy` raises at the first of them.
     """
     points: list[RefinedPoint] = []
-    unstable: tuple[float, float] | None = None
-    growth = 0.0
+    lost: dict[str, Loss] = {}
     for found in _followed(ray, guess, begin, end, most_harmonics):
         if isinstance(found, _Stop):
             stop = found
             break
-        if stability and unstable is None and _growth(found.torus):
-            stable = points[-1] if points else None
-            unstable, growth = _first_unstable(ray, stable, found)
         points.append(found)
-    return NewtonEnd(stop.reason, stop.above, tuple(points), unstable, growth, ray.degree)
+        for name in losses:
+            if name not in lost and (loss := _loss(name, points)):
+                lost[name] = _located(ray, TESTS[name], loss)
+    return NewtonEnd(stop.reason, stop.above, tuple(points), lost)
 
 
-def _first_unstable(
-    ray: Ray, stable: RefinedPoint | None, unstable: RefinedPoint
-) -> tuple[tuple[float, float], float]:
-    """The places between which stability is lost, by halving, and the rate of growth above."""
-    growth = _growth(unstable.torus)
-    if stable is None:
-        return (0.0, unstable.place), growth
-    below, above = stable, unstable
-    while above.place > STABILITY_WIDTH * below.place:
+def _loss(name: str, points: Sequence[RefinedPoint]) -> Loss | None:
+    """What the last of these tori has lost: a sheet only if the torus before had lost it already.
+
+    Next to a weak resonance a torus is on another sheet for a moment, between the zeros of the
+    divisor and of what the amplitudes make of it.
+    """
+    lasting = LASTING[name]
+    if len(points) < lasting:
+        return None
+    latest = points[-lasting:]
+    changes = [TESTS[name](point.torus) for point in latest]
+    if not all(changes):
+        return None
+    before = points[-lasting - 1] if len(points) > lasting else None
+    return Loss(before, latest[0], changes[0])
+
+
+def _located(ray: Ray, test: Test, loss: Loss) -> Loss:
+    """The same between nearer places, by halving, as far as tori are found."""
+    below, above, found = loss.below, loss.above, loss.found
+    if below is None:
+        return loss
+    while above.place > LOSS_WIDTH * below.place:
         place = math.sqrt(below.place * above.place)
         try:
             middle = RefinedPoint(place, _refined(ray, below.torus, place))
         except NoTorus:
             break
-        if rate := _growth(middle.torus):
-            above, growth = middle, rate
+        if change := test(middle.torus):
+            above, found = middle, change
         else:
             below = middle
-    return (below.place, above.place), growth
+    return Loss(below, above, found)
 
 
-def _growth(torus: RefinedTorus) -> float:
-    """The rate of the fastest normal mode; 0 where none is unstable beyond doubt."""
+def _growth(torus: RefinedTorus) -> Json:
+    """The rate of the fastest normal mode; empty where none is unstable beyond doubt."""
     if len(torus.seeds) == 1:
         found = floquet(torus)
         if found.stable:
-            return 0.0
+            return {}
         period = 2 * math.pi / float(torus.frequencies[0])
-        return math.log(np.abs(found.multipliers).max()) / period
+        rate = math.log(np.abs(found.multipliers).max()) / period
+        return {"growth": short(rate)}
     try:
         modes = normal_modes(torus)
     except NoNormalModes:
-        return 0.0
-    return float(modes.growth) if modes.stable is False else 0.0
+        return {}
+    return {"growth": short(float(modes.growth))} if modes.stable is False else {}
+
+
+def _other_sheet(torus: RefinedTorus) -> Json:
+    """The coefficient that folds, where the torus is not on the sheet of its series; else empty."""
+    sheet = sheet_of(torus)
+    if sheet is None or sheet.sign > 0:
+        return {}
+    return {"mode": sheet.mode, "harmonic": list(sheet.harmonic)}
+
+
+TESTS: Mapping[str, Test] = {FOLD: _other_sheet, STABILITY: _growth}
+# how many tori in turn must have lost it
+LASTING = {FOLD: 2, STABILITY: 1}
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from symfpu.tori.verdict import RATIO_ORDERS, Assessment, assess, short
 DIGITS = 8  # of the places at which tori are looked for
 RATIO, SUMS, POLES = "ratio", "sums", "poles"
 ESTIMATES = (RATIO, SUMS, POLES)
+FOLD_POWER = 1.5  # of 1/k in the terms of a series that ends at a square root
 ENERGY, AMPLITUDE = "energy", "amplitude"
 
 
@@ -107,21 +108,28 @@ def point_at(ray: Ray, place: float, near: QTorus | None) -> Point:
 
 def _radii(found: Assessment, step: int) -> dict[str, float]:
     """Radius of convergence by three estimates, in units of the actual mu."""
-    growth = _growth_of_sums(found, step)
-    by_sums = 1 / growth if growth else math.inf
-    return {RATIO: found.radius, SUMS: by_sums, POLES: found.pole_radius}
+    largest = {term.order: term.size for term in found.terms}
+    moduli = np.sum([of_seed for of_seed, _ in found.sums.values()], axis=0)
+    sums = dict(enumerate(moduli.tolist()))
+    return {
+        RATIO: _radius(largest, found.order, step),
+        SUMS: _radius(sums, found.order, step),
+        POLES: found.pole_radius,
+    }
 
 
-def _growth_of_sums(found: Assessment, step: int) -> float:
-    """Factor an order of the sum of all terms of the seeds, from the last orders of one parity."""
-    moduli = [of_seed for of_seed, _ in found.sums.values()]
-    sums = np.sum(moduli, axis=0)
-    orders = np.arange(found.order, 0, -step)[:RATIO_ORDERS]
-    known = [k for k in orders if sums[k] > 0]
+def _radius(sizes: Mapping[int, float], order: int, step: int) -> float:
+    """R of the terms k^(-3/2) R^-k nearest to the last ones of one parity, by their logarithms.
+
+    Such are the terms of a series whose nearest singularity is a square root: a fold.
+    """
+    orders = range(order, 0, -step)[:RATIO_ORDERS]
+    known = [k for k in orders if sizes.get(k, 0) > 0]
     if len(known) < 2:
-        return 0.0
-    slope = np.polyfit(known, np.log(sums[known]), 1)[0]
-    return float(np.exp(slope))
+        return math.inf
+    logarithms = [math.log(sizes[k]) + FOLD_POWER * math.log(k) for k in known]
+    slope = np.polyfit(known, logarithms, 1)[0]
+    return float(np.exp(-slope))
 
 
 def singularity(found: Assessment) -> dict[str, Any]:

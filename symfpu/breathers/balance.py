@@ -22,6 +22,7 @@ from symfpu.chain import bonds
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, NoRealAmplitude, SymfpuError, UndeterminedAmplitudes
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, decimal, exact, seed_modes
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
@@ -95,7 +96,9 @@ class PeriodicOrbit(FourierTorus):
         which = (
             f"seed {self.seed}, omega={decimal(self.frequency)}, A={self.amplitude:.13g}"
         )
-        quality = f"{len(self.cosines) - 1} harmonics, residual {self.residual():.2g}"
+        quality = (
+            f"{counted(len(self.cosines) - 1, 'harmonic')}, residual {self.residual():.2g}"
+        )
         return f"PeriodicOrbit({chain}, {which}, H={self.energy():.11g}, {quality})"
 
 

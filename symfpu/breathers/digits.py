@@ -39,6 +39,7 @@ from symfpu.numbers.arithmetic import (
     fraction_of,
     from_integers,
 )
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, exact, integer
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, show
 
@@ -95,7 +96,8 @@ class PreciseOrbit(FourierTorus):
         exact_omega = mpmath.mpf(self.frequency.numerator) / self.frequency.denominator
         omega, A = mpmath.nstr(exact_omega, 15), mpmath.nstr(self.amplitude, 15)
         which = f"seed {self.seed}, omega={omega}.., A={A}.., {self.digits} digits"
-        quality = f"{len(self.cosines) - 1} harmonics, residual below {mpmath.nstr(self.bound, 2)}"
+        count = counted(len(self.cosines) - 1, "harmonic")
+        quality = f"{count}, residual below {mpmath.nstr(self.bound, 2)}"
         return f"PreciseOrbit({chain}, {which}, {quality})"
 
 

@@ -51,13 +51,16 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.length import label_entry, seed_labels
 from symfpu.errors import InputError
 from symfpu.files.archive import (
-    FORMAT,
+    DAMAGE,
+    MEMORY_ADVICE,
+    SAVED_ADVICE,
     Archive,
     BundleError,
     Json,
     write_document,
 )
 from symfpu.files.checkpoint import KINDS
+from symfpu.files.formats import ARCHIVE, BUNDLE, format_of, opened_by
 from symfpu.frames.recorded import Recorded
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
@@ -210,7 +213,7 @@ def document(
     """What every file begins with; without a series, a torus and test vectors yet."""
     moment = (created or datetime.now(UTC)).astimezone(UTC)
     return {
-        "format": FORMAT,
+        "format": BUNDLE,
         "schema": schema,
         "created": moment.isoformat(timespec="seconds"),
         "command": command,
@@ -275,17 +278,16 @@ def load(path: Path | str) -> Bundle:
 
 
 def _no_solution(archive: Archive, body: Json) -> Any:
-    raise ValueError(f"a {body['root']['class']:.40} where a series or a solution is due")
+    problem = f"holds {body['root']['class']:.40}, no series and no solution"
+    raise BundleError(archive.path, problem, "symfpu show opens it")
 
 
 def load_with(path: Path | str, other: Callable[[Archive, Json], Any]) -> Bundle:
     """As `load`; other : makes the result of a file with neither a series nor a solution."""
     path = named_path(path)
     with path.open("rb") as stream:
-        if stream.read(4) != b"PK\x03\x04":
-            raise BundleError(
-                path, "is not a symfpu bundle", "give a file that symfpu.save wrote"
-            )
+        if stream.read(len(ARCHIVE)) != ARCHIVE:
+            raise _foreign(path)
         try:
             return _bundle(path, Archive(path, stream), other)
         except BundleError:
@@ -293,11 +295,22 @@ def load_with(path: Path | str, other: Callable[[Archive, Json], Any]) -> Bundle
         except UnknownPotential as error:
             problem = f"{error}, which this symfpu does not know"
             raise BundleError(path, problem, "update symfpu") from None
-        # whatever zipfile, zlib, json, numpy and our own checks say to a damaged or hostile file
-        except Exception as error:
+        except MemoryError:
+            problem = "needs more memory than is free"
+            raise BundleError(path, problem, MEMORY_ADVICE) from None
+        except DAMAGE as error:
             reason = " ".join(f"{type(error).__name__} {error}".split())[:LONGEST_REASON]
             advice = "restore it from a copy or compute it again"
             raise BundleError(path, f"is damaged ({reason})", advice) from None
+
+
+def _foreign(path: Path) -> BundleError:
+    """What a file is that is no archive, and what opens it."""
+    named = format_of(path)
+    advice = opened_by(named)
+    if advice is None:
+        return BundleError(path, "is not a symfpu bundle", SAVED_ADVICE)
+    return BundleError(path, f"is a file of the format {named!r}, no bundle", advice)
 
 
 def named_path(path: object) -> Path:

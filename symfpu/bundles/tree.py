@@ -164,7 +164,7 @@ class Reader:
         """The value of a node."""
         if type(node) in PLAIN:
             return node
-        kind = next(iter(node))
+        kind, *_ = node
         if kind not in self._readers:
             raise ValueError(f"no value is of the kind {kind!r:.40}")
         return self._readers[kind](node)

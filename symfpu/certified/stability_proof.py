@@ -35,6 +35,7 @@ from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.counted import counted
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import QuasiPeriodic
@@ -124,7 +125,7 @@ class StabilityProof(Tabled):
             return (
                 f"linearly unstable, growth rate in {below(least, 9)} .. {above(most, 9)}"
             )
-        count = f"{len(self.exponents)} exponents within {above(widest, 1)}"
+        count = f"{counted(len(self.exponents), 'exponent')} within {above(widest, 1)}"
         gap = f", smallest gap {below(self.gaps[0].least, 5)} omega" if self.gaps else ""
         return f"linearly stable, {count}{gap}"
 

@@ -40,7 +40,8 @@ from symfpu.numbers.typed import Number, decimal, exact
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 TIME = 10**9  # the paper's longest orbits
-LAST = Fraction(511, 512)  # of the longest time
+LAST = Fraction(511, 512)  # of the time to the farthest distance
+MOST_DIGITS = 18  # of a double, which tell it from any other
 
 
 class NoStayProof(SymfpuError):
@@ -58,10 +59,21 @@ class NoStayProof(SymfpuError):
         advice = "more digits help: refine(torus, digits=30)"
         if frame**2 > residual * curvature:
             advice = f"the frame, known in doubles, allows some {1 / frame:.1g}"
+        asked, most = told_apart(time, longest)
         super().__init__(
-            f"no proof of a stay of {time:.3g}: at most {longest:.3g}; "
+            f"no proof of a stay of {asked}: at most {most}; "
             f"residual {residual:.2g}, frame {frame:.2g}, curvature {curvature:.2g}; {advice}"
         )
+
+
+def told_apart(larger: float, smaller: float) -> tuple[str, str]:
+    """Decimals of two times, rounded away from each other, in three digits or as many as differ."""
+    words = above(larger, 3), below(smaller, 3)
+    for digits in range(4, MOST_DIGITS):
+        if words[0] != words[1]:
+            break
+        words = above(larger, digits), below(smaller, digits)
+    return words
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -159,7 +171,7 @@ class StayProof(Tabled):
     def _table(self) -> Table:
         """Distances at powers of 10 of the time, up to the longest."""
         times, power = [], 1
-        while power <= self.longest * float(LAST):
+        while power <= self.longest:
             times.append(float(power))
             power *= 10
         distances = [float(self.distance_at(Fraction(t))) for t in times]
@@ -224,7 +236,7 @@ def stay_proof(
         frame=float(growth.terms[1]),
         curvature=float(growth.terms[2]),
         room=float(growth.room),
-        longest=float(growth.time(growth.longest())),
+        longest=float(longest_of(growth)),
         sigma={p.mode: float(p.rate) for p in directions if not p.twist},
         growth=growth,
         reach=reach,
@@ -242,10 +254,15 @@ def time_of(time: Number) -> Fraction:
     return long
 
 
+def longest_of(growth: Growth) -> Fraction:
+    """The longest time for which the bounds give a distance."""
+    return Fraction(0) if growth.room <= 0 else LAST * growth.time(growth.longest())
+
+
 def distance_of(growth: Growth, time: Fraction) -> Fraction:
     """A weighted distance that is not reached before a time. Raises NoStayProof."""
-    longest = Fraction(0) if growth.room <= 0 else growth.time(growth.longest())
-    found = growth.distance(time) if time <= longest * LAST else None
+    longest = longest_of(growth)
+    found = growth.distance(time) if time <= longest else None
     if found is None:
         raise NoStayProof(float(time), float(longest), *map(float, growth.terms[:3]))
     return found

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from symfpu.action_angle.actions import actions as actions_of
 from symfpu.action_angle.twist import twist
-from symfpu.bundles.bundle import load
 from symfpu.cli.chains import solution_of
 from symfpu.cli.terminal import (
     FileArgument,
@@ -17,6 +16,7 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
 from symfpu.reports.action_angle import actions_record, actions_text
+from symfpu.saved.results import load
 from symfpu.tori.ring_torus import RingTorus
 
 

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.bundles.bundle import load
 from symfpu.certified.existence import ExistenceProof, prove_existence
 from symfpu.certified.residual import ResidualProof, prove_residual
 from symfpu.certified.stability_proof import StabilityProof, prove_stability
@@ -36,6 +35,7 @@ from symfpu.reports.certified import (
 )
 from symfpu.reports.existence import existence_record, existence_text
 from symfpu.reports.stability_proof import stability_record, stability_text
+from symfpu.saved.results import load
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 AmplitudeOption = Annotated[

@@ -9,7 +9,8 @@ import typer
 from symfpu.bundles.bundle import Bundle
 from symfpu.chain.chain import Chain
 from symfpu.cli.choices import choice
-from symfpu.cli.terminal import held, whole
+from symfpu.cli.terminal import whole
+from symfpu.errors import InputError
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
@@ -20,8 +21,8 @@ BondsOption = Annotated[
         "-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"
     ),
 ]
-AlphaOption = Annotated[str, typer.Option("--alpha", help="Cubic coupling.")]
-BetaOption = Annotated[str, typer.Option("--beta", help="Quartic coupling.")]
+AlphaOption = Annotated[str, typer.Option("--alpha", help="Cubic coupling.", metavar="X")]
+BetaOption = Annotated[str, typer.Option("--beta", help="Quartic coupling.", metavar="X")]
 PotentialOption = Annotated[
     str | None,
     typer.Option(
@@ -54,7 +55,11 @@ def chain_of(
 
 
 def solution_of(bundle: Bundle, file: str) -> QuasiPeriodic | RingTorus:
-    """The solution of a file; InputError where there is none."""
-    held(bundle.torus, file)
-    assert bundle.torus is not None
+    """The solution of a file; InputError, with what it holds, where there is none."""
+    if bundle.torus is None:
+        kind = type(bundle.result).__name__
+        allowed = "a file with a torus or a breather in it"
+        opened = f"it holds {kind}, which symfpu show opens"
+        advice = f"{opened}; write one with symfpu solve or breather -o"
+        raise InputError("FILE", file, allowed, advice)
     return bundle.torus

@@ -41,6 +41,7 @@ from symfpu.families.family import METHODS, Family, family
 from symfpu.families.normal_events import RESONANCE_LENGTH
 from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_file, output_folder
+from symfpu.numbers.counted import counted
 from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import (
@@ -227,7 +228,7 @@ def follow_family(
         str | None,
         typer.Option(help="Energy where it begins.  Default: a thousandth.", metavar="E"),
     ] = None,
-    members: Annotated[str, typer.Option(help="The most members.")] = "200",
+    members: Annotated[str, typer.Option(help="The most members.", metavar="M")] = "200",
     multipliers: Annotated[
         bool, typer.Option("--multipliers", help="Floquet multipliers (one seed).")
     ] = False,
@@ -292,7 +293,7 @@ def follow_family(
     else:
         say("\n".join(family_text(found)))
         if folder is not None:
-            counts = f"{len(found.members)} members, {len(pictures)} pictures"
+            counts = f"{counted(len(found.members), 'member')}, {counted(len(pictures), 'picture')}"
             print(f"written: {folder}: family.csv, {counts}")
         say_kept(saved)
         say_drawn(picture)

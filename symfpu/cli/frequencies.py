@@ -41,6 +41,7 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
 from symfpu.files.writing import output_file
+from symfpu.numbers.typed import part
 from symfpu.reports.tables import text_table
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine, frequency_analysis
 from symfpu.spectral.mapping import FrequencyMap, frequency_map
@@ -120,6 +121,7 @@ def frequencies(
     states = {"state": state, "packet": packet, "random": random}
     how: dict[str, Any] = {"T": number("time", time), "step": number("step", step)}
     how["lines"] = whole("lines", lines)
+    above = part(number("level", level), "level")
     log = None if rows is None else path_named("file", rows)
     _refuse_for_others(energies is None, rows, output, angles)
     target = None if output is None else output_file(path_named("output", output))
@@ -130,7 +132,7 @@ def frequencies(
         else:
             others = {"FILE": file, "state": state, "random": random, "energy": energy}
             _refuse_beside_energies(others)
-            how |= {"level": number("level", level), "file": log}
+            how |= {"level": above, "file": log}
             found = _of_many(typed, packet, energies, how, advance)
         if target is not None and isinstance(found, FrequencyAnalysis):
             near = torus_near(found, _strongest(found, angles))
@@ -141,7 +143,7 @@ def frequencies(
         print_json(found.record())
         return
     say(found)
-    _print(found, number("level", level))
+    _print(found, above)
     if target is not None:
         print(f"written: {target}")
     say_kept(saved)

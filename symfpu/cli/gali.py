@@ -5,13 +5,19 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable
 from functools import partial
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import typer
 
-from symfpu.action_angle.foretold import ForetoldIndices, flow_of, indices_by
+from symfpu.action_angle.foretold import (
+    ForetoldIndices,
+    flow_of,
+    indices_by,
+    settled_text,
+)
 from symfpu.action_angle.linear_flow import LinearFlow
 from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
@@ -92,9 +98,11 @@ def gali(
         str, choice("--scheme", tuple(PARTICLE_SCHEMES), "Integrator.")
     ] = SCHEME,
     samples: Annotated[
-        str, typer.Option(help="Times at which the indices are kept.")
+        str, typer.Option(help="Times at which the indices are kept.", metavar="S")
     ] = str(SAMPLES),
-    seed: Annotated[str, typer.Option(help="Seed of the random deviation vectors.")] = "0",
+    seed: Annotated[
+        str, typer.Option(help="Seed of the random deviation vectors.", metavar="SEED")
+    ] = "0",
     frames: Annotated[
         str, typer.Option(help="Number of frames of deviation vectors.", metavar="M")
     ] = str(FRAMES),
@@ -230,7 +238,7 @@ def _foretold_record(
             "verdict": closed.verdict,
             "slopes": {str(s.k): fifteen_digits(s.value) for s in closed.slopes()},
             "asymptotic_slopes": {str(k): n for k, n in closed.asymptotic_slopes.items()},
-            "settled": {str(k): repr(t) for k, t in settled},
+            "settled": {str(k): repr(t) if isfinite(t) else None for k, t in settled},
             "largest_difference": fifteen_digits(_apart(found, closed)),
         }
     }
@@ -245,7 +253,7 @@ def _foretold_text(found: AlignmentIndices, closed: ForetoldIndices | None) -> l
     settled = closed.settling()
     for slope in closed.slopes():
         due = f"on the torus {closed.asymptotic_slopes[slope.k]}"
-        since = f"settled from t = {settled[slope.k]:.3g}"
+        since = settled_text(settled[slope.k], closed.times[-1])
         lines.append(f"GALI_{slope.k:<3} slope {slope.value:8.3f}   {due}, {since}")
     return lines
 

@@ -1,8 +1,8 @@
 """Command line: parses, calls one public function, prints or writes.
 
-Exit code 0 for success, 1 for an honest failure (no root, no convergence), 2 for bad input, 130
-for the interrupt key; errors are one line on standard error, progress goes there too, and --json
-leaves standard output machine-readable.
+Exit code 0 for success, 1 for an honest failure (no root, no convergence), 2 for bad input, files
+too, 130 for the interrupt key; errors are one line on standard error, progress goes there too, and
+--json leaves standard output machine-readable.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import typer
 from symfpu.cli.terminal import Interrupted
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError, SymfpuError
+from symfpu.files.archive import BundleError
 
 INTERRUPTION = "interrupted: nothing is kept but what was already written"
 
@@ -54,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = command.main(
             args=words, prog_name="symfpu", standalone_mode=False, obj=words
         )
-    except InputError as error:
+    except (InputError, BundleError) as error:
         return _fail(str(error), 2)
     except Interrupted as error:
         return _fail(str(error), 130)

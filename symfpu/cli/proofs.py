@@ -41,8 +41,8 @@ from symfpu.files.writing import output_file, write_text
 from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
 from symfpu.proofs.checkers import verified_certificate
+from symfpu.proofs.reading import CertificateError
 from symfpu.proofs.sweeps import sweep_propagation
-from symfpu.proofs.verify import CertificateError
 from symfpu.reports.proofs import certificate_record, sweep_markdown
 
 ALLOWED_CERTIFICATE = "one written by symfpu prove or certify, unaltered"
@@ -121,7 +121,9 @@ def prove(
     potential: PotentialOption = None,
     points: Annotated[
         str | None,
-        typer.Option(help="Independent primes and random frequencies.  Default: 1."),
+        typer.Option(
+            help="Independent primes and random frequencies.  Default: 1.", metavar="P"
+        ),
     ] = None,
     all_N: Annotated[
         bool, typer.Option("--all-N", help="Prove it for every N and all sets of S seeds.")

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.chain.chain import Chain
 from symfpu.cli.chains import (
     AlphaOption,
     BetaOption,
@@ -257,12 +257,24 @@ def _with_fixed_ends(
     )
 
 
+def _refuse_on_a_ring(wish: Wish) -> None:
+    """InputError for what the series of waves on a ring does not take."""
+    allowed = "none with --ends periodic, where waves are found from frequencies"
+    for name, words in (("amplitudes", "A,A,..."), ("energy", "E")):
+        if getattr(wish, name) is not None:
+            advice = f"give --omega and -o FILE, then symfpu refine FILE --{name} {words}"
+            raise InputError(name, getattr(wish, name), allowed, advice)
+    if wish.digits is not None:
+        allowed = "none with --ends periodic, which is in doubles"
+        advice = "leave it out; what takes a ring is in docs/chains.md"
+        raise InputError("digits", wish.digits, allowed, advice)
+
+
 def _on_a_ring(
     chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
 ) -> tuple[RingTorus, Assessment, dict[str, Any]]:
     """Travelling waves; from frequencies alone, in doubles."""
-    if wish.digits is not None or wish.frequencies is None:
-        require_fixed_ends(chain)
+    _refuse_on_a_ring(wish)
     assert wish.frequencies is not None
     waves = travelling_waves(chain, seeds, wish.frequencies, wish.order, progress=advance)
     advance("amplitudes", NO_FRACTION)

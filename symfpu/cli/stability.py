@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from symfpu.bundles.bundle import load
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import solution_of
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
@@ -40,6 +39,7 @@ from symfpu.reports.normal import (
     series_records,
     series_text,
 )
+from symfpu.saved.results import load
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 MEMBERS = 9
@@ -74,7 +74,9 @@ def stability(
     ] = None,
     members: Annotated[
         str | None,
-        typer.Option(help=f"With --to-amplitudes: number of tori.  Default: {MEMBERS}."),
+        typer.Option(
+            help=f"With --to-amplitudes: number of tori.  Default: {MEMBERS}.", metavar="M"
+        ),
     ] = None,
     output: Annotated[
         str | None,

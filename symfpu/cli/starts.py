@@ -30,10 +30,10 @@ OwnBonds = Annotated[
     typer.Option("-N", help="Without FILE: number of bonds of the chain.", metavar="N"),
 ]
 OwnAlpha = Annotated[
-    str | None, typer.Option("--alpha", help="Without FILE: cubic coupling.")
+    str | None, typer.Option("--alpha", help="Without FILE: cubic coupling.", metavar="X")
 ]
 OwnBeta = Annotated[
-    str | None, typer.Option("--beta", help="Without FILE: quartic coupling.")
+    str | None, typer.Option("--beta", help="Without FILE: quartic coupling.", metavar="X")
 ]
 OwnPotential = Annotated[
     str | None,

@@ -17,7 +17,7 @@ from datetime import timedelta
 from pathlib import Path
 from threading import Event, Lock, Thread
 from time import monotonic
-from typing import Annotated, Any, TextIO, TypeVar
+from typing import Annotated, Any, TextIO
 
 import rich.progress
 import typer
@@ -60,7 +60,6 @@ JsonOption = Annotated[
     bool, typer.Option("--json", help="Machine-readable result on standard output.")
 ]
 
-Found = TypeVar("Found")
 
 NOTHING_KEPT = "nothing is kept"
 BAR_WIDTH = 20
@@ -156,14 +155,6 @@ def kept_run(checkpoint: Path | None) -> str:
         return NOTHING_KEPT
     kept = f"the run up to its last checkpoint is kept in {checkpoint}"
     return f"{kept}; the same command goes on from it"
-
-
-def held(found: Found | None, file: str) -> Found:
-    """What a file was to hold; InputError where there is none."""
-    if found is None:
-        advice = "write one with symfpu solve or breather -o"
-        raise InputError("FILE", file, "a file with a torus or a breather in it", advice)
-    return found
 
 
 def print_json(record: dict[str, Any]) -> None:

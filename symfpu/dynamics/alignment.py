@@ -46,6 +46,7 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -119,7 +120,7 @@ class AlignmentIndices(Shown, Gridded):
         if verdict == "undecided" and dimension.supported is not None:
             verdict += f", best supported dimension {dimension.supported}"
         if self.others:
-            verdict += f" by {len(self.frames)} frames"
+            verdict += f" by {counted(len(self.frames), 'frame')}"
         values = ", ".join(f"{s.value:.2f}" for s in self.slopes())
         slopes = f"slopes of GALI_2..{self.vectors} {values}"
         exponent = f"Lyapunov exponent {self.lyapunov[-1]:.2g}"

@@ -37,6 +37,7 @@ from symfpu.errors import (
 )
 from symfpu.families.continuation import Level
 from symfpu.numbers.arithmetic import text
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import root_squares, shifts, solve_amplitudes
@@ -132,7 +133,7 @@ class AppendixAFamily:
             if self.members
             else ""
         )
-        return f"AppendixAFamily({len(self.members)} members{energies}; {self.ending})"
+        return f"AppendixAFamily({counted(len(self.members), 'member')}{energies}; {self.ending})"
 
 
 def linear_specific_energy(chain: Chain, amplitudes: Mapping[int, float]) -> float:

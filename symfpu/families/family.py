@@ -45,6 +45,7 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.table import joined
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, exact, integer
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
@@ -66,6 +67,12 @@ LOWERING = 0.25  # factor of a first energy that no torus of the series has
 LOWEST_SHARE = 1e-12  # the part of it that is given up
 # about how many steps lead with Appendix A from the beginning to the energy asked for
 APPENDIX_MEMBERS = 20
+# in the order in which they are told, as one and as several
+KINDS_OF_EVENTS = {
+    "fold": ("fold", "folds"),
+    "resonance": ("resonance", "resonances"),
+    "stability": ("change of stability", "changes of stability"),
+}
 
 
 class NotInFamily(SymfpuError):
@@ -127,14 +134,14 @@ class Family(Shown, Gridded):
         seeds = ",".join(map(str, self.seeds))
         doubtful = sum(m.verdict != "torus" for m in self.members)
         doubts = f", {doubtful} of them doubtful" if doubtful else ""
-        members = f"{len(self.members)} members{doubts}"
+        members = f"{counted(len(self.members), 'member')}{doubts}"
         energies = [m.energy for m in self.members]
         H = f"H = {min(energies):.6g} .. {max(energies):.6g}"
         counts = Counter(event.kind for event in self.events)
-        kinds = [kind for kind in ("fold", "resonance", "stability") if counts[kind]]
-        counted = [_counted(counts[kind], kind) for kind in kinds]
-        counted += list(map(repr, self.normal_events))
-        events = ", ".join(counted) or "no events"
+        kinds = [kind for kind in KINDS_OF_EVENTS if counts[kind]]
+        listed = [counted(counts[kind], *KINDS_OF_EVENTS[kind]) for kind in kinds]
+        listed += list(map(repr, self.normal_events))
+        events = ", ".join(listed) or "no events"
         return f"Family({chain}, seeds={seeds}, {members}, {H}, {events}; it {self.ending})"
 
     def _grid(self) -> Grid:
@@ -167,12 +174,6 @@ class Family(Shown, Gridded):
             "event_harmonic": ([joined(e.harmonic) for e in events], "nu of a resonance"),
         }
         return {name: Variable(("event",), *pair) for name, pair in columns.items()}
-
-
-def _counted(n: int, kind: str) -> str:
-    if kind == "stability":
-        return f"{n} change{'s' * (n > 1)} of stability"
-    return f"{n} {kind}{'s' * (n > 1)}"
 
 
 def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> RefinedTorus:
@@ -368,7 +369,7 @@ def family(
         if kept.folder is None:
             raise
         raise RunInterrupted(
-            f"after {len(kept.members)} members", str(kept.folder)
+            f"after {counted(len(kept.members), 'member')}", str(kept.folder)
         ) from stop
 
 
@@ -451,7 +452,7 @@ def _ending(plan: Plan, kept: Kept) -> str:
         return f"{_turned(kept)}returned to the linear limit"
     if len(kept.members) < plan.most:
         return ""
-    return f"was left after {len(kept.members)} members, the most asked for"
+    return f"was left after {counted(len(kept.members), 'member')}, the most asked for"
 
 
 def _turned(kept: Kept) -> str:
@@ -585,7 +586,7 @@ def _by_appendix_a(plan: Plan, order: int, kept: Kept, tell: Progress) -> Family
 
     if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
         return _up_to_goal(plan, kept, at_goal)
-    why = f"was left after {len(kept.members)} members, the most asked for"
+    why = f"was left after {counted(len(kept.members), 'member')}, the most asked for"
     if len(kept.members) >= plan.most:
         return _family(plan, kept.members, (), why)
     after = (known[-2], known[-1]) if len(known) > 1 else None
@@ -637,5 +638,7 @@ def _followed(
         kept.add(series_member(found.torus), [])
         tell(f"member {len(kept.members)}", plan.done(kept.members))
         if plan.done(kept.members) < 1 and len(kept.members) >= plan.most:
-            return f"was left after {len(kept.members)} members, the most asked for"
+            return (
+                f"was left after {counted(len(kept.members), 'member')}, the most asked for"
+            )
     return ENDED_AT_GOAL

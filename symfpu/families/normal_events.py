@@ -93,6 +93,39 @@ class NormalEvent(Recorded):
         return f"{what}, hyperbolic up to {where}{note}"
 
 
+class Bracket(NamedTuple):
+    """Two places of a curve, and what a function is there, of opposite signs."""
+
+    low: float
+    high: float
+    at_low: float
+    at_high: float
+
+    @property
+    def width(self) -> float:
+        return self.high - self.low
+
+    @property
+    def least(self) -> float:
+        """The smaller size of the two values."""
+        return min(abs(self.at_low), abs(self.at_high))
+
+    @property
+    def largest(self) -> float:
+        """The larger one."""
+        return max(abs(self.at_low), abs(self.at_high))
+
+    def secant(self) -> float:
+        """Where the function is zero if it is linear."""
+        return self.low + self.width * self.at_low / (self.at_low - self.at_high)
+
+    def half(self, middle: float, value: float) -> Bracket:
+        """The half in which the sign changes."""
+        if (value < 0) == (self.at_low < 0):
+            return self._replace(low=middle, at_low=value)
+        return self._replace(high=middle, at_high=value)
+
+
 class Known(NamedTuple):
     """What is known at a place of a curve; modes : the eigenfunctions to begin with nearby."""
 
@@ -144,32 +177,34 @@ class Stretch:
         self, resonance: ParametricResonance, low: Known, high: Known
     ) -> NormalEvent:
         """Where the discriminant is zero."""
-        values = tuple(discriminant(end.normal, resonance) for end in (low, high))
+        values = [discriminant(end.normal, resonance) for end in (low, high)]
+        bracket = Bracket(low.place, high.place, *values)
 
         def of(place: float) -> float:
             return discriminant(self._known(place, resonance.modes).normal, resonance)
 
         gap = 2 * LEAST_GAP * abs(resonance.left_of(_real(low.normal)))
-        begins = values[1] < 0
+        begins = bracket.at_high < 0
         try:
-            place, error = located(of, low.place, high.place, values, gap**2)
+            place, error = located(of, bracket, gap**2)
         except Failed:
-            place, error = _between(low, high, values), high.place - low.place
+            place, error = bracket.secant(), bracket.width
         return self._event(STABILITY, resonance, place, begins=begins, error=error)
 
     def _crossing(self, resonance: ParametricResonance) -> Iterator[NormalEvent]:
         """Where the distance is zero: two onsets if both are hyperbolic there, none if it jumps."""
         low, high = self._first, self._second
-        values = tuple(resonance.distance_of(end.normal) for end in (low, high))
+        values = [resonance.distance_of(end.normal) for end in (low, high)]
+        bracket = Bracket(low.place, high.place, *values)
 
         def of(place: float) -> float:
             return resonance.distance_of(self._known(place, resonance.modes).normal)
 
         try:
-            place = _zero(of, low.place, high.place, values)
+            place = _zero(of, bracket)
             there = self._known(place, resonance.modes)
         except Failed:
-            yield self._crossed_apart(resonance, of, values)
+            yield self._crossed_apart(resonance, of, bracket)
             return
         distance = resonance.distance_of(there.normal)
         if there.normal.growth:
@@ -182,15 +217,14 @@ class Stretch:
         self,
         resonance: ParametricResonance,
         of: Callable[[float], float],
-        values: tuple[float, ...],
+        bracket: Bracket,
     ) -> NormalEvent:
         """Where modes that do not couple have one frequency they cannot be told apart."""
-        low, high = self._first, self._second
-        gap = LEAST_GAP * max(map(abs, values)) / SHARE
+        gap = LEAST_GAP * bracket.largest / SHARE
         try:
-            place, error = collision(of, low.place, high.place, values, gap)
+            place, error = collision(of, bracket, gap)
         except (*Failed, Outside):
-            place, error = _between(low, high, values), high.place - low.place
+            place, error = bracket.secant(), bracket.width
         return self._event(RESONANCE, resonance, place, error=error)
 
     def _event(
@@ -261,19 +295,12 @@ def _real(found: NormalFrequencies) -> dict[int, float]:
     return {q: complex(w).real for q, w in found.frequencies.items()}
 
 
-def _between(low: Known, high: Known, ends: tuple[float, ...]) -> float:
-    """Where a function has its zero if it is linear."""
-    a, b = ends
-    return low.place + (high.place - low.place) * a / (a - b)
-
-
-def _zero(
-    function: Callable[[float], float], low: float, high: float, ends: tuple[float, ...]
-) -> float:
+def _zero(function: Callable[[float], float], bracket: Bracket) -> float:
     """Where a function changes its sign, by Brent's secants."""
     from scipy.optimize import brentq
 
-    known = dict(zip((low, high), ends, strict=True))
+    low, high = bracket.low, bracket.high
+    known = {low: bracket.at_low, high: bracket.at_high}
 
     def value(part: float) -> float:
         if part not in known:
@@ -284,41 +311,29 @@ def _zero(
 
 
 def located(
-    D: Callable[[float], float],
-    low: float,
-    high: float,
-    ends: tuple[float, ...],
-    least: float,
+    D: Callable[[float], float], bracket: Bracket, least: float
 ) -> tuple[float, float]:
     """As `collision`, between halves of the way where it leads out of it or D is too small.
 
     So are the ends of a narrow tongue, and of a short piece; then the error is what is left.
     """
-    width = NARROWED * (high - low)
-    while high - low > width:
+    width = NARROWED * bracket.width
+    while bracket.width > width:
         try:
-            if min(map(abs, ends)) > least:
-                return collision(D, low, high, ends, least)
+            if bracket.least > least:
+                return collision(D, bracket, least)
         except (*Failed, Outside):
             pass
-        middle = (low + high) / 2
+        middle = (bracket.low + bracket.high) / 2
         value = D(middle)
         if abs(value) < NOISE:
-            return middle, high - low
-        first, second = ends
-        if (value < 0) == (first < 0):
-            low, ends = middle, (value, second)
-        else:
-            high, ends = middle, (first, value)
-    return (low + high) / 2, high - low
+            return middle, bracket.width
+        bracket = bracket.half(middle, value)
+    return (bracket.low + bracket.high) / 2, bracket.width
 
 
 def collision(
-    D: Callable[[float], float],
-    low: float,
-    high: float,
-    ends: tuple[float, ...],
-    least: float,
+    D: Callable[[float], float], bracket: Bracket, least: float
 ) -> tuple[float, float]:
     """The zero of a smooth function that cannot be computed where |D| < least, and its error.
 
@@ -326,7 +341,8 @@ def collision(
     together until they stand at the least |D|. The error is what two points fewer change. Raises
     Outside.
     """
-    known = dict(zip((low, high), ends, strict=True))
+    low, high = bracket.low, bracket.high
+    known = {low: bracket.at_low, high: bracket.at_high}
     best = _inverse(known)
     for _ in range(ROUNDS):
         if not low < best < high:

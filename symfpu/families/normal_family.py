@@ -27,6 +27,7 @@ from symfpu.normal.frequencies import frequencies_of
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import checked_modes, followed_modes
 from symfpu.notebook import Shown
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, exact, integer
 from symfpu.refinement.tori import NoTorus, RefinedTorus, refine_at_amplitudes
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
@@ -60,7 +61,7 @@ class NormalFamily(Shown, Gridded):
         first, last = (self._amplitudes(found) for found in self.members[:: self._span])
         line = ", ".join(f"A_{q}={a:.6g} .. {last[q]:.6g}" for q, a in first.items())
         events = "; ".join(map(repr, self.events)) or "no events"
-        count = f"{len(self.members)} members"
+        count = counted(len(self.members), "member")
         return f"NormalFamily({chain}, {count}, {line}, {self.verdict}, {events})"
 
     @property

@@ -12,6 +12,7 @@ import os
 import secrets
 import struct
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -21,12 +22,12 @@ import psutil
 from numpy.typing import NDArray
 
 from symfpu.errors import InputError, SymfpuError
+from symfpu.files.formats import BUNDLE
 from symfpu.numbers.typed import integer
 
 Array = NDArray[Any]
 Json = dict[str, Any]
 
-FORMAT = "symfpu bundle"
 SCHEMA = 6  # the newest that is read; files say the oldest that reads them
 DOCUMENT = "bundle.json"
 COMPRESSION = 1  # mantissas are noise; the zeros between them are gone at the first level
@@ -34,6 +35,7 @@ CHUNK = 1 << 22
 DEFLATE_RATIO = 1032  # no deflated byte stands for more
 DOCUMENT_GROWTH = 20  # bytes of memory for a byte of JSON, about
 SAVED_ADVICE = "give a file that symfpu.save wrote"
+MEMORY_ADVICE = "close other programs"
 
 
 class BundleError(SymfpuError):
@@ -49,6 +51,25 @@ class BundleError(SymfpuError):
         self.problem = problem
         self.advice = advice
         super().__init__(f"{path} {problem}; {advice}")
+
+
+# what zipfile, zlib, json, numpy and our own checks say to a damaged or hostile file
+DAMAGE = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    LookupError,
+    OSError,
+    RuntimeError,
+    StopIteration,
+    SymfpuError,
+    TypeError,
+    ValueError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 def digest_of(body: Json) -> str:
@@ -115,6 +136,7 @@ class Archive:
     """
 
     def __init__(self, path: Path, stream: BinaryIO) -> None:
+        self.path = path
         self._zip = zipfile.ZipFile(stream)
         entries = self._zip.infolist()
         members = {info.filename: info for info in entries}
@@ -132,7 +154,7 @@ class Archive:
         needed = sum(info.file_size for info in entries) + document
         if needed > free:
             problem = f"needs {needed:,} bytes of memory, {free:,} are free"
-            raise BundleError(path, problem, "close other programs")
+            raise BundleError(path, problem, MEMORY_ADVICE)
         self.body = self._document(path)
         self.digests: dict[str, str] = self.body["arrays"]
         named = {f"{name}.npy" for name in self.digests}
@@ -145,8 +167,8 @@ class Archive:
         info = self._zip.getinfo(DOCUMENT)
         with self._zip.open(info) as member:
             body = json.loads(member.read(info.file_size))
-        if not isinstance(body, dict) or body.get("format") != FORMAT:
-            problem = f"is not a symfpu bundle (its format is not {FORMAT!r})"
+        if not isinstance(body, dict) or body.get("format") != BUNDLE:
+            problem = f"is not a symfpu bundle (its format is not {BUNDLE!r})"
             raise BundleError(path, problem, SAVED_ADVICE)
         schema = integer(body["schema"], "schema", 1)
         if schema > SCHEMA:

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from symfpu.errors import InputError
 from symfpu.files.archive import (
-    FORMAT,
+    DAMAGE,
+    MEMORY_ADVICE,
     Archive,
     BundleError,
     Json,
@@ -24,6 +25,7 @@ from symfpu.files.archive import (
     member_digest,
     write_archive,
 )
+from symfpu.files.formats import ARCHIVE, BUNDLE
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
@@ -102,7 +104,7 @@ def write_checkpoint(
         members[name] = np.ascontiguousarray(values, dtype="<f8").reshape(-1)
         digests[name] = member_digest(members[name])
     body: Json = {
-        "format": FORMAT,
+        "format": BUNDLE,
         "schema": CHECKPOINT_SCHEMA,
         "kind": kind.name,
         "parameters": parameters,
@@ -128,7 +130,7 @@ def read_checkpoint(
         return None
     with path.open("rb") as stream:
         try:
-            if stream.read(4) != b"PK\x03\x04":
+            if stream.read(len(ARCHIVE)) != ARCHIVE:
                 raise ValueError("it is no archive")
             archive = Archive(path, stream)
             if archive.body.get("kind") != kind.name:
@@ -140,8 +142,10 @@ def read_checkpoint(
             return integer(archive.body["steps"], "steps", 0), arrays
         except (BundleError, Refused):
             raise
-        # whatever zipfile, zlib, json and our own checks say to a damaged or hostile file
-        except Exception as error:
+        except MemoryError:
+            problem = "needs more memory than is free"
+            raise BundleError(path, problem, MEMORY_ADVICE) from None
+        except DAMAGE as error:
             damage = f"is damaged ({type(error).__name__} {error})"
             problem = f"is not a checkpoint of {kind.of}, or {damage}"
             raise BundleError(path, problem, ADVICE) from None

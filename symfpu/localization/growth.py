@@ -15,6 +15,7 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.localization.profiles import energy_record
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import double, seed_modes
 
 Floats = NDArray[np.float64]
@@ -50,7 +51,7 @@ class GroupGrowth(Tabled):
     saturation: tuple[float, float]
 
     def __repr__(self) -> str:
-        name = f"D_{self.order} ({len(self.modes)} modes)"
+        name = f"D_{self.order} ({counted(len(self.modes), 'mode')})"
         return f"{name}: {self._exponents}, {self._times}"
 
     @property

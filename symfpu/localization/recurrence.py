@@ -12,6 +12,7 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.localization.profiles import energy_record
+from symfpu.numbers.counted import counted
 
 Floats = NDArray[np.float64]
 # of the largest distance: apart, so that wiggles do not cross both
@@ -74,7 +75,7 @@ class Recurrence(Tabled):
         time, part = self.best
         best = f"best at t={time:.6g} of {part:.4%}"
         away = f"up to {self.excursion:.3g} of the energy away"
-        return f"Recurrence({len(self.times)} returns, {first}, {best}, {away})"
+        return f"Recurrence({counted(len(self.times), 'return')}, {first}, {best}, {away})"
 
     def _table(self) -> Table:
         columns = {"time": self.times, "returned": self.returned}

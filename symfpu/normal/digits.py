@@ -9,6 +9,7 @@ harmonics of a quarter more says what is missing.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -34,6 +35,7 @@ from symfpu.refinement.digits import (
     MOST_HARMONICS,
     SPARE_DIGITS,
     Failure,
+    LeftOver,
 )
 from symfpu.refinement.equation import Ints
 from symfpu.refinement.harmonics import within_reach
@@ -154,28 +156,16 @@ class State(NamedTuple):
         return np.asarray(np.stack(rows, axis=1))
 
 
-class LeftOver(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class LeftOfMode(LeftOver):
     """The residual at all harmonics of a quarter more.
 
-    residual : its norm over Omega_q^2. inside : change of sigma, relative, or of p that the matrix
-    asks for; by_torus : of sigma that the error of the torus makes, relative. outside : |residual /
-    divisor| at harmonics that were left out, (M, s), the largest of each.
+    inside is of sigma, relative, or of p. residual : its norm over Omega_q^2. by_torus : change of
+    sigma that the error of the torus makes, relative.
     """
 
     residual: Any
-    inside: Any
     by_torus: Any
-    harmonics: Ints
-    outside: list[Any]
-
-    @property
-    def error(self) -> Any:
-        return max([self.inside, *self.outside])
-
-    def needed(self, digits: int) -> Ints:
-        """Harmonics that were left out with an error of the last digit; (M, s)."""
-        least = mpmath.mpf(10) ** -(digits + 1)
-        return self.harmonics[[x > least for x in self.outside]]
 
 
 class NormalSweeps:
@@ -259,7 +249,7 @@ class NormalSweeps:
     def _parts(self, values: Values) -> list[Any]:
         return [values.real, values.imag][: len(self.sigma)]
 
-    def left_over(self) -> LeftOver:
+    def left_over(self) -> LeftOfMode:
         """The residual at all harmonics of a quarter more, in more digits."""
         finer, harmonics = self.stage.finer, self.stage.flow.harmonics
         place = {tuple(nu): i for i, nu in enumerate(finer.harmonics.tolist())}
@@ -271,7 +261,7 @@ class NormalSweeps:
         divisors = finer.divisors(sigma)
         total = mpmath.sqrt(sum(int(x) ** 2 for x in image.flat))
         size = float(self.stage.flow.linear[self.mode.mode - 1]) ** 2
-        return LeftOver(
+        return LeftOfMode(
             residual=mpmath.ldexp(total, -finer.bits) / size,
             inside=self._inside(image[:, rows], finer.bits),
             by_torus=self._by_torus(),
@@ -289,7 +279,7 @@ class NormalSweeps:
         error = getattr(torus, "error", mpmath.mpf(10) ** -self.stage.digits)
         return error * float(share) / abs(self.start)
 
-    def result(self, left: LeftOver) -> NormalMode:
+    def result(self, left: LeftOfMode) -> NormalMode:
         """The mode, p of norm 1 with its main coefficient positive."""
         flow, mode = self.stage.flow, self.mode
         p = self._normalised()

@@ -27,6 +27,7 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, with_digits
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, exact, integer, seed_modes
 from symfpu.series.arguments import digits_of
 from symfpu.series.divisors import SmallDivisor
@@ -81,7 +82,7 @@ class NormalFrequencySeries(Tabled):
             f"sigma_{self.mode}={float(self.sigma):.13g}" if self.numeric else "universal"
         )
         place = f"seeds={listed}, mode {self.mode}, order {self.order}"
-        return f"NormalFrequencySeries({chain}, {place}, {count} terms, {found})"
+        return f"NormalFrequencySeries({chain}, {place}, {counted(count, 'term')}, {found})"
 
     @property
     def numeric(self) -> bool:

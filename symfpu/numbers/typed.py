@@ -155,6 +155,15 @@ def double(value: Number, name: str) -> float:
         ) from error
 
 
+def part(value: Number, name: str) -> float:
+    """A number between 0 and 1, neither of them; InputError for any other."""
+    found = double(value, name)
+    if not 0 < found < 1:
+        allowed = "a number between 0 and 1"
+        raise InputError(name, value, allowed, "take a part of the whole such as 1e-3")
+    return found
+
+
 def fraction_text(value: Fraction) -> str:
     """The exact number as text that `fraction` reads: a decimal or p/q.
 

@@ -1,5 +1,7 @@
 """Pictures of public results: functions take a result and optional axes, and return axes."""
 
+from symfpu.plots.atlas import atlas_borders as atlas_borders
+from symfpu.plots.atlas import atlas_map as atlas_map
 from symfpu.plots.families import family_amplitudes as family_amplitudes
 from symfpu.plots.families import family_frequencies as family_frequencies
 from symfpu.plots.families import family_multipliers as family_multipliers

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.plots.style import MARK, QUIET, Axes, axes_for, require
+from symfpu.plots.style import MARK, QUIET, Axes, axes_for, legend, look, require
 from symfpu.spectral.mapping import FrequencyMap
 
 ADVICE = "make one with frequency_map"
@@ -22,7 +22,8 @@ def frequency_map(result: FrequencyMap, ax: Axes | None = None) -> Axes:
         ones.
 
     A curve a mode, the axis even about 0 and logarithmic beyond; the numbers along the top say
-    how many independent frequencies are above the level. Returns the axes. Raises InputError.
+    how many independent frequencies are above the level: of two whose strongest lines are in one
+    mode its curve has the stronger. Returns the axes. Raises InputError.
 
     >>> from matplotlib.figure import Figure
     >>> from symfpu import Chain
@@ -37,14 +38,14 @@ def frequency_map(result: FrequencyMap, ax: Axes | None = None) -> Axes:
         axes.set_xscale("log")
         axes.set_yscale("symlog", linthresh=_least(shifts))
         axes.axhline(0.0, color=QUIET, lw=0.8, zorder=0)
-        for q in found.chain.mode_numbers:
-            shift = shifts[:, q - 1]
-            if not np.isnan(shift).all():
-                axes.plot(found.energies, shift, "o-", markersize=3, label=f"$q={q}$")
+        shown = [q for q in found.chain.mode_numbers if np.isfinite(shifts[:, q - 1]).any()]
+        for i, q in enumerate(shown):
+            style = look(i) | {"ms": 3, "label": f"$q={q}$"}
+            axes.plot(found.energies, shifts[:, q - 1], **style)
         _say_counts(axes, found)
         axes.set_xlabel("energy $H$")
         axes.set_ylabel(r"$\omega_q / \Omega_q - 1$")
-        axes.legend()
+        legend(axes)
     return axes
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,9 @@ import numpy as np
 from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.dimension import DECADES
-from symfpu.plots.style import Axes, axes_for, look, require
+from symfpu.plots.style import QUIET, Axes, axes_for, legend, look, require
 
+RINGS, RINGS_APART = 40, 5  # of an integrated index; those of neighbours between them
 LEAST_HEIGHT_DECADES = 0.5  # of the picture, for indices that stay where they are
 FORETOLD, FORETOLD_ADVICE = "foretold indices", "pass what foretold_indices gave"
 WORDS, ADVICE = "alignment indices", "pass what alignment_indices gave"
@@ -66,7 +68,7 @@ def foretold(
         new ones. observed : what `alignment_indices` gave with the same frame; no line without.
 
     Triangles on the upper edge are the times from which G_k has the slope of the torus, which is
-    in the legend. Returns the axes. Raises InputError.
+    in the legend; rings are some of the samples. Returns the axes. Raises InputError.
 
     >>> from matplotlib.figure import Figure
     >>> from symfpu import Chain, breather_at_amplitude, foretold_indices
@@ -85,22 +87,37 @@ def foretold(
             label = rf"$G_{{{k}}} \to t^{{{slope}}}$"
             axes.plot(x, found.log10_gali[:, i], label=label, lw=1.0, **style)
             if observed is not None and k <= observed.vectors:
-                points = np.log10(observed.times), observed.log10_gali[:, k - 2]
-                axes.plot(
-                    *points, ls="none", marker="o", ms=4, mfc="none", color=style["color"]
-                )
+                _rings(axes, observed, i, style["color"])
         bottom, top = axes.get_ylim()
         top = max(top, 0.0)
         for i, time in enumerate(settled.values()):
             if math.isfinite(time):
                 place = math.log10(time), top
                 axes.plot(*place, marker="v", color=look(i)["color"], clip_on=False, ms=6)
+        _name_marks(axes, rings=observed is not None, settled=settled.values())
         axes.set_ylim(bottom, top)
         axes.set_xlabel(r"$\log_{10}\, t$")
         axes.set_ylabel(r"$\log_{10}\, G_k$")
         axes.set_title(found.verdict)
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        legend(axes, most=0)
     return axes
+
+
+def _rings(axes: Axes, observed: AlignmentIndices, i: int, color: str) -> None:
+    """One integrated index: so many rings that the curve below them is seen."""
+    every = math.ceil(len(observed.times) / RINGS)
+    some = slice(i * every // RINGS_APART % every, None, every)
+    points = np.log10(observed.times)[some], observed.log10_gali[some, i]
+    axes.plot(*points, ls="none", marker="o", ms=4, mfc="none", color=color)
+
+
+def _name_marks(axes: Axes, *, rings: bool, settled: Iterable[float]) -> None:
+    """What marks mean, in the legend, where there are any."""
+    alike: dict[str, Any] = {"ls": "none", "color": QUIET}
+    if rings:
+        axes.plot([], [], marker="o", ms=4, mfc="none", label="integrated", **alike)
+    if any(map(math.isfinite, settled)):
+        axes.plot([], [], marker="v", ms=6, label="settled", **alike)
 
 
 def lyapunov(result: Any, ax: Axes | None = None) -> Axes:

@@ -10,7 +10,8 @@ import numpy as np
 from symfpu.families.family import Family
 from symfpu.families.normal_events import STABILITY, NormalEvent
 from symfpu.families.normal_family import NormalFamily
-from symfpu.plots.style import QUIET, Axes, axes_for, require
+from symfpu.numbers.counted import counted
+from symfpu.plots.style import QUIET, Axes, axes_for, legend, look, require
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 
@@ -50,16 +51,16 @@ def family_normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     unstable = sum(not row.stable for row in rows)
     verdict = f"{unstable} of them unstable" if unstable else "stable"
     with axes_for(ax) as axes:
-        for q in rows[0].sigma:
+        for i, q in enumerate(rows[0].sigma):
             sigma = np.array([complex(row.sigma.get(q, np.nan)) for row in rows])
-            _line(axes, x, sigma - linear[q - 1], f"$q={q}$")
+            _line(axes, x, sigma - linear[q - 1], look(i), f"$q={q}$")
         for event in events:
             style = "--" if event.kind == STABILITY else ":"
             axes.axvline(event.amplitudes[seed], color=QUIET, ls=style, lw=1, zorder=0)
         axes.set_xlabel(f"$A_{{{seed}}}$")
         axes.set_ylabel(r"$\mathrm{Re}\,\sigma_q - \Omega_q$")
-        axes.set_title(f"{len(rows)} tori, {verdict}")
-        axes.legend()
+        axes.set_title(f"{counted(len(rows), 'torus', 'tori')}, {verdict}")
+        legend(axes)
     return axes
 
 
@@ -80,11 +81,11 @@ def _axis(rows: list[_Row]) -> tuple[int, Any]:
     return seed, np.array([float(row[seed]) for row in known])
 
 
-def _line(axes: Axes, x: Any, shift: Any, label: str) -> None:
+def _line(axes: Axes, x: Any, shift: Any, style: Mapping[str, Any], label: str) -> None:
     """One mode: a curve, and marks where tori are."""
     unstable = shift.imag != 0
-    (curve,) = axes.plot(x, shift.real, label=label)
-    alike = {"color": curve.get_color(), "ls": "none"}
-    axes.plot(x[~unstable], shift.real[~unstable], marker="o", ms=4, **alike)
+    elliptic = [int(i) for i in np.flatnonzero(~unstable)]
+    axes.plot(x, shift.real, label=label, ms=4, markevery=elliptic, **style)
+    alike = {"color": style["color"], "ls": "none"}
     empty = {"marker": "D", "ms": 8, "mfc": "none"}
     axes.plot(x[unstable], shift.real[unstable], **empty, **alike)

@@ -27,6 +27,7 @@ Axes = Any
 Kind = TypeVar("Kind")
 
 SUFFIXES = (".png", ".pdf", ".svg")
+LONGEST_LEGEND = 15  # rows of a column
 COLOURS = 5  # of the style file; then they come round
 MARKERS = "osD^v<>*P"
 SHADES = ("0.95", "0.885")  # of neighbouring groups
@@ -131,12 +132,16 @@ def look(i: int) -> dict[str, Any]:
 
 
 def legend(ax: Axes, *, title: str | None = None, most: int = 6) -> None:
-    """A legend where it covers least, beside the axes if it is long; none without labels."""
+    """A legend where it covers least, beside the axes if it is long; none without labels.
+
+    A very long one has columns, so that it is no higher than the axes.
+    """
     handles, _ = ax.get_legend_handles_labels()
     if not handles:
         return
     if len(handles) > most:
-        beside = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
+        columns = 1 + (len(handles) - 1) // LONGEST_LEGEND
+        beside = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncols": columns}
         ax.legend(title=title, fontsize="small", **beside)
     else:
         ax.legend(title=title)

@@ -11,7 +11,8 @@ from functools import partial
 from html import escape
 from typing import Any, NamedTuple
 
-from symfpu.action_angle.foretold import ForetoldIndices
+from symfpu.action_angle.foretold import ForetoldIndices, settled_text
+from symfpu.borders.atlas import Atlas
 from symfpu.breathers.floquet import Floquet
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
@@ -21,7 +22,9 @@ from symfpu.families.normal_family import NormalFamily
 from symfpu.integrable.invariants import TodaInvariants
 from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import decimal
+from symfpu.plots.atlas import atlas_borders
 from symfpu.plots.families import family_frequencies
 from symfpu.plots.frequency_map import frequency_map
 from symfpu.plots.indices import alignment, foretold
@@ -127,7 +130,7 @@ def _torus_rows(result: Any) -> Rows:
 
 
 def _series_verdict(series: LindstedtSeries) -> str:
-    return f"order {series.order}, {series.coefficient_count:,} coefficients"
+    return f"order {series.order}, {counted(series.coefficient_count, 'coefficient')}"
 
 
 def _series_rows(series: LindstedtSeries) -> Rows:
@@ -182,7 +185,7 @@ def _foretold_rows(found: ForetoldIndices) -> Rows:
     yield "seeds", _listed(found.torus.seeds)
     for k, time in found.settling().items():
         slope = found.asymptotic_slopes[k]
-        yield f"G_{k}", f"slope {slope}, from t = {time:.2g} on"
+        yield f"G_{k}", f"slope {slope}, {settled_text(time, found.times[-1])}"
     yield "rates of growth", ", ".join(f"{rate:.2g}" for rate in found.rates)
 
 
@@ -259,13 +262,26 @@ def _line_rows(found: FrequencyAnalysis) -> Rows:
     yield "drift", f"{found.drift:.2g}"
 
 
+def _borders_found(found: Atlas) -> int:
+    return sum(border.energy is not None for border in found.borders)
+
+
+def _atlas_rows(found: Atlas) -> Rows:
+    yield "points", str(found.points)
+    for (model, packet, border), law in found.laws.items():
+        yield f"{border} of {packet}, {model}", f"N^({law.exponent:.3g} +- {law.error:.2g})"
+
+
 def _map_rows(found: FrequencyMap) -> Rows:
     yield "chain", _model(found.chain)
     yield "packet", _listed(found.packet)
     yield "to t", f"{found.T:.10g}"
     by_energy = zip(found.energies, found.counts, found.drifts, strict=True)
     for energy, count, drift in by_energy:
-        yield f"H = {energy:.6g}", f"{count} frequencies, drift {drift:.2g}"
+        yield (
+            f"H = {energy:.6g}",
+            f"{counted(count, 'frequency', 'frequencies')}, drift {drift:.2g}",
+        )
 
 
 def _energy_series(orbit: Orbit, ax: Axes | None = None) -> Axes:
@@ -321,7 +337,9 @@ USUAL = (
     Usual(
         FrequencyAnalysis,
         lines,
-        lambda found: f"{len(found.seeds)} independent frequencies",
+        lambda found: counted(
+            len(found.seeds), "independent frequency", "independent frequencies"
+        ),
         _line_rows,
     ),
     Usual(
@@ -329,6 +347,13 @@ USUAL = (
         frequency_map,
         lambda found: f"{found.counts.min()} to {found.counts.max()} frequencies",
         _map_rows,
+    ),
+    Usual(
+        Atlas,
+        atlas_borders,
+        lambda found: counted(_borders_found(found), "border"),
+        _atlas_rows,
+        lambda found: _borders_found(found) > 0,
     ),
     Usual(TodaInvariants, toda_gaps, lambda found: "gaps and actions", _toda_rows),
 )

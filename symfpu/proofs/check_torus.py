@@ -9,32 +9,39 @@ in a function, in the order of `check_certificate`.
 A series is sum a[nu] exp(i nu.theta) with real a[nu], integers times 2^-places, and a bound of
 what it is off by in the norm sum |a[nu]|, in units of the last place. With p = i y a state of the
 chain has real series x_j, y_j. Bounds are rounded up. The file shares no code with the prover and
-imports nothing but the standard library.
+imports nothing but the standard library and what checkers read and round with.
 """
 
-import hashlib
-import json
 import math
-import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from symfpu.proofs.reading import (
+    MOST_BITS,
+    Json,
+    Kind,
+    dyadic,
+    fraction,
+    need,
+    read_kind,
+    verified,
+    whole,
+)
+from symfpu.proofs.rounding import scientific, up
+
 FORMAT = "symfpu torus certificate"
-SCHEMA = 1
 KEYS = {
     "format", "schema", "N", "coefficients", "seeds", "omega", "bits", "torus", "residual",
     "frame_bits", "rate_bits", "directions", "weights", "stay", "digest",
 }  # fmt: skip
-LARGEST_FILE = 2**28  # bytes
+KIND = Kind(FORMAT, 1, KEYS, largest_file=2**28)
 LARGEST_N, MOST_ANGLES = 128, 4
 MOST_HARMONICS, HIGHEST_HARMONIC = 300_000, 2000
-MOST_BITS = 8192
 MOST_PLACES = 8_000_000  # of the box of a product
 HIGHEST_DEGREE = 40
-LONGEST_NUMBER = 20_000  # characters
 GUARD = 40  # places of the residual beyond those of the torus
 SPARE = 12  # places of the frame beyond its own
 COARSE = 20  # places of the frame where its inverse is bounded
@@ -42,87 +49,22 @@ INVERSE_PLACES = 40
 RATIO = Fraction(63, 64)  # of neighbouring nodes of an integral
 NODE_BITS = 64
 MOST_NODES = 20_000
-EXACT = re.compile(r"-?[0-9]+(/[1-9][0-9]*)?")
-READING_ERRORS = (
-    OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError,
-    ZeroDivisionError, OverflowError,
-)  # fmt: skip
 
-Json = dict[str, Any]
 Harmonic = tuple[int, ...]
 Row = list[Fraction]
-
-
-class TorusError(ValueError):
-    """Why a certificate is refused, in one line."""
 
 
 def verify(path: str | Path) -> list[str]:
     """Lines that say what was checked in the certificate of a file.
 
-    Raises TorusError, with the reason, if it is not right.
+    Raises CertificateError, with the reason, if it is not right.
     """
-    try:
-        return check_certificate(read_certificate(Path(path)))
-    except TorusError:
-        raise
-    except READING_ERRORS as error:
-        raise TorusError(f"no readable certificate: {error!r:.200}") from None
-
-
-def need(condition: object, reason: str) -> None:
-    """Refuse the certificate unless the condition holds."""
-    if not condition:
-        raise TorusError(reason)
-
-
-# --- the file
+    return verified(path, read_certificate, check_certificate)[1]
 
 
 def read_certificate(path: Path) -> Json:
-    """The contents of a file, its size bounded first; no floats, no booleans, no null."""
-    small = path.is_file() and path.stat().st_size <= LARGEST_FILE
-    need(small, "not a regular file of at most 256 MB")
-    text = path.read_text("ascii", "replace")
-    bare = re.sub(r'"[^"\\]*"', '"', text)  # without what stands in strings
-    strange = re.search(r'[^\s0-9{}\[\],:"-]|[0-9]{3000}', bare)
-    need(not strange, "not JSON of plain strings and integers of at most 3000 digits")
-    data: Json = json.loads(text)
-    need(bare.count(":") == len(KEYS), "a key is missing, unknown or there twice")
-    need(set(data) == KEYS, "a key is missing, unknown or there twice")
-    need(data["format"] == FORMAT, "not a certificate of a torus")
-    need(data["schema"] == SCHEMA, f"this checker supports schema {SCHEMA}")
-    check_digest(data)
-    return data
-
-
-def check_digest(data: Json) -> None:
-    """The digest is that of everything else."""
-    contents = {key: data[key] for key in data if key != "digest"}
-    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    need(data["digest"] == digest, "the digest is not that of the contents")
-
-
-def whole(value: Any, least: int, most: int, name: str) -> int:
-    """An integer in its range."""
-    need(type(value) is int and least <= value <= most, f"{name} is out of its range")
-    return int(value)
-
-
-def fraction(text: Any, name: str) -> Fraction:
-    """An exact number as it is written."""
-    readable = type(text) is str and len(text) <= LONGEST_NUMBER and EXACT.fullmatch(text)
-    need(readable, f"{name} is no fraction")
-    return Fraction(text)
-
-
-def dyadic(pair: Any, name: str) -> Fraction:
-    """m 2^-e of a pair [m, e], positive."""
-    mantissa, places = pair
-    whole(mantissa, 1, 2**MOST_BITS, name)
-    whole(places, 0, 2 * MOST_BITS, name)
-    return Fraction(mantissa, 1 << places)
+    """A certificate from its file."""
+    return read_kind(path, KIND)
 
 
 # --- series
@@ -144,11 +86,6 @@ class Series(NamedTuple):
     def norm(self) -> Fraction:
         """Above the norm."""
         return Fraction(self.size, 1 << self.places)
-
-
-def up(x: Fraction) -> int:
-    """The least integer not below."""
-    return -((-x.numerator) // x.denominator)
 
 
 def combined(terms: Iterable[tuple[Fraction | int, Series]]) -> Series:
@@ -812,18 +749,3 @@ def residual_text(claim: Claim, data: Json, stated: Fraction) -> str:
         f"frequencies {omega}, leaves |x'' - force| <= {scientific(stated)} of every particle at "
         f"all angles"
     )
-
-
-def scientific(
-    x: Fraction, digits: int = 3, rounded: Callable[[Fraction], int] = up
-) -> str:
-    """A number in decimals, its size rounded up, or another way."""
-    if not x:
-        return "0"
-    size, sign = abs(x), "-" if x < 0 else ""
-    exponent = len(str(size.numerator)) - len(str(size.denominator))
-    if size < Fraction(10) ** exponent:
-        exponent -= 1
-    text = str(rounded(size / Fraction(10) ** (exponent - digits + 1)))
-    exponent += len(text) - digits
-    return f"{sign}{text[0]}.{text[1:digits]}e{exponent}"

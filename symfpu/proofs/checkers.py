@@ -5,11 +5,11 @@ The checkers share no code with the provers; that of stability asks that of exis
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from symfpu.files.formats import format_of, opened_by
 from symfpu.proofs import (
     check_existence,
     check_stability,
@@ -17,12 +17,9 @@ from symfpu.proofs import (
     verify,
     verify_theorem,
 )
-from symfpu.proofs.verify import CertificateError
+from symfpu.proofs.reading import CertificateError, Json, verified
 
-Json = dict[str, Any]
 PROPAGATION = "symfpu propagation certificate"
-KIND = re.compile(r'"format":\s*"([^"\\]*)"')
-LONGEST_HEAD = 4096  # characters in which a file names its kind
 
 
 class Checker(NamedTuple):
@@ -60,27 +57,17 @@ def verify_certificate(path: str | Path) -> list[str]:
 def verified_certificate(path: str | Path) -> tuple[Json, list[str]]:
     """The same with the certificate, which is read once."""
     path = Path(path)
-    checker = CHECKERS.get(kind_of(path), CHECKERS[PROPAGATION])
-    try:
-        certificate = checker.read(path)
-        return certificate, checker.check(certificate)
-    except CertificateError:
-        raise
-    except (
-        check_existence.ExistenceError,
-        check_stability.StabilityError,
-        check_torus.TorusError,
-    ) as error:
-        raise CertificateError(str(error)) from error
-    except verify.READING_ERRORS as error:
-        raise CertificateError(f"no readable certificate: {error!r:.200}") from None
+    checker = checker_of(path)
+    return verified(path, checker.read, checker.check)
 
 
-def kind_of(path: Path) -> str:
-    """The kind that the head of a file names; each checker reads it again for itself."""
+def checker_of(path: Path) -> Checker:
+    """That of the kind which the head of a file names; each checker reads it again for itself."""
     try:
-        with path.open(encoding="ascii", errors="replace") as file:
-            found = KIND.search(file.read(LONGEST_HEAD))
-    except OSError:
-        return ""
-    return found[1] if found else ""
+        kind = format_of(path)
+    except OSError as error:
+        raise CertificateError(f"{error.strerror}: {path}") from error
+    advice = opened_by(kind)
+    if kind in CHECKERS or advice is None:
+        return CHECKERS.get(kind, CHECKERS[PROPAGATION])
+    raise CertificateError(f"its format is {kind!r}: {advice}")

@@ -21,6 +21,7 @@ from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table, joined
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import integer
 from symfpu.proofs.certificates import law_name, prove_propagation, proved_chain
 from symfpu.sweeps.rows import SweepFailure, SweepRow
@@ -71,7 +72,7 @@ class Sweep(Tabled):
         count = Counter(case.verdict for case in self.cases)
         verdicts = ", ".join(f"{n} {verdict}" for verdict, n in sorted(count.items()))
         holds = sum(case.corrected_rule_holds for case in self.cases)
-        what = f"{self.model}, order {self.order}: {len(self.cases)} seed sets"
+        what = f"{self.model}, order {self.order}: {counted(len(self.cases), 'seed set')}"
         return f"Sweep({what}: {verdicts}; corrected rule holds in {holds})"
 
     @property

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-import multiprocessing
+import math
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import partial
@@ -27,6 +27,7 @@ from symfpu.proofs.every_length import DecidedFlat, decided_flat
 from symfpu.proofs.families import equation_text, mode_text
 from symfpu.proofs.flats import MOST_SEEDS, Arrangement, Flat, degree_of, flats, last_order
 from symfpu.proofs.seed_sums import without_odd_sums
+from symfpu.sweeps.workers import worker_processes
 
 FORMAT, SCHEMA = "symfpu rule for all N certificate", 2
 MODELS = ("alpha", "beta")
@@ -286,7 +287,8 @@ def prove_for_all_N(
 
     With s = k + 1 seeds (alpha) or 2k + 1 (beta) order k is settled for all larger sets, too.
     Raises InputError, before anything is computed, for arguments out of range and for a file of
-    another theorem; FileFull where a flat finds no room. What a flat is, why a representative
+    another theorem; FileFull where a flat finds no room; WorkersDoNotStart where a script starts
+    processes without that line. What a flat is, why a representative
     decides it, and what it proves: docs/propagation.md (ours).
 
     >>> proof = prove_for_all_N("beta", 2, 1)
@@ -312,8 +314,7 @@ def prove_for_all_N(
         todo = [flat for flat in asked if flat not in kept.decided]
         pool = executor
         if pool is None and len(todo) > FEW:
-            context = multiprocessing.get_context("spawn")
-            pool = stack.enter_context(ProcessPoolExecutor(mp_context=context))
+            pool = stack.enter_context(worker_processes(math.ceil(len(todo) / BATCH)))
         for batch in _decided(pool, model, last, todo):
             kept.append(batch)
             told("flats", len(kept.decided) / len(asked))

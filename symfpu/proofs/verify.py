@@ -13,11 +13,9 @@ C do, with the g_n of `read_potential`.
 A coefficient that is not 0 modulo p proves a mode excited for generic frequencies; with symbols
 for the L_q(nu), a polynomial that is 0 proves a zero. Written to be audited: one claim a
 function, in the order in which `verify` calls them. The file shares no code with the prover and
-imports nothing but the standard library.
+imports nothing but the standard library and what checkers read with, `reading.py`.
 """
 
-import hashlib
-import json
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
@@ -28,7 +26,17 @@ from operator import mul, sub
 from pathlib import Path
 from typing import Any, NamedTuple
 
-LARGEST_FILE = 2**26  # bytes
+from symfpu.proofs.reading import (
+    EXACT,
+    Json,
+    check_digest,
+    need,
+    outside_strings,
+    parsed,
+    text_of,
+    verified,
+)
+
 MOST_VALUES = 10**6
 MOST_STEPS = 2 * 10**6
 MOST_SEEDS = 64
@@ -36,7 +44,6 @@ MOST_POINTS = 256
 LARGEST_N = 4096
 LONGEST_COEFFICIENTS = 10**5  # characters, the longest times the order
 MODELS: dict[str, tuple[int, dict[int, Any]]] = {"alpha": (1, {2: 1}), "beta": (2, {3: 1})}
-EXACT = re.compile(r"-?[0-9]+(/[1-9][0-9]*)?")
 NAMED = re.compile(
     r"([a-z_]+):(-?[0-9.]+(?:/[1-9][0-9]*)?(?:,-?[0-9.]+(?:/[1-9][0-9]*)?)*)"
 )
@@ -46,17 +53,7 @@ PROBABILITY = re.compile(
 )
 # with these Miller-Rabin is a proof below 3.3e24
 BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41)
-READING_ERRORS = (
-    OSError,
-    ValueError,
-    LookupError,
-    TypeError,
-    AttributeError,
-    RecursionError,
-    ZeroDivisionError,
-)
 
-Json = dict[str, Any]
 Monomial = tuple[int, ...]
 Polynomial = dict[
     tuple[Any, ...], int
@@ -64,27 +61,12 @@ Polynomial = dict[
 ByMode = dict[int, Polynomial]
 
 
-class CertificateError(ValueError):
-    """Why a certificate is refused, in one line."""
-
-
 def verify(path: str | Path) -> list[str]:
     """Lines that say what was checked in the certificate of a file.
 
     Raises CertificateError, with the reason, if it is not right.
     """
-    try:
-        return check_certificate(read_certificate(Path(path)))
-    except CertificateError:
-        raise
-    except READING_ERRORS as error:
-        raise CertificateError(f"no readable certificate: {error!r:.200}") from None
-
-
-def need(condition: object, reason: str) -> None:
-    """Refuse the certificate unless the condition holds."""
-    if not condition:
-        raise CertificateError(reason)
+    return verified(path, read_certificate, check_certificate)[1]
 
 
 # --- the file
@@ -95,15 +77,13 @@ def read_certificate(path: Path) -> Json:
 
     As neither floats nor booleans nor minus signs are let in, == and < are exact afterwards.
     """
-    small = path.stat().st_size <= LARGEST_FILE and path.is_file()
-    need(small, "not a regular file of at most 64 MB")
-    text = path.read_text("ascii", "replace")
-    bare = re.sub(r'"[^"\\]*"', '"', text)  # without what stands in strings
+    text = text_of(path)
+    bare = outside_strings(text)
     values = sum(map(bare.count, ',[{"'))
     need(values <= MOST_VALUES, "the file has more than 10^6 values")
     strange = re.search(r'[^\s0-9{}\[\],:nul"]|[0-9]{21}', bare)
     need(not strange, "not JSON of plain strings, null and integers of at most 20 digits")
-    data: Json = json.loads(text)
+    data = parsed(text)
     check_header(data)
     check_digest(data)
     check_keys(data, bare.count(":"))
@@ -120,14 +100,6 @@ def check_header(data: Json) -> None:
         schema in (1, 2),
         f"schema version {schema!r:.40} is unknown: this checker supports versions 1, 2",
     )
-
-
-def check_digest(data: Json) -> None:
-    """The digest is that of everything else."""
-    contents = {key: data[key] for key in data if key != "digest"}
-    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    need(data["digest"] == digest, "the digest is not that of the contents")
 
 
 def check_keys(data: Json, colons: int) -> None:

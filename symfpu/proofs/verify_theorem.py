@@ -5,10 +5,9 @@ certificate says nothing of a flat, and decides each once more: by sums of seeds
 fold with one sign, by chains of couplings, by the signs of the products of couplings, by residues
 that the recursion of `verify` computes again, or by couplings that are zero. The theorems that
 make these proofs are in docs/propagation.md. It shares no code with the prover and imports
-nothing but the standard library and the checker of certificates of one N.
+nothing but the standard library, the checker of certificates of one N and what checkers read with.
 """
 
-import json
 import re
 from collections.abc import Iterator
 from fractions import Fraction
@@ -19,21 +18,26 @@ from operator import mul
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from symfpu.proofs.reading import (
+    CertificateError,
+    Json,
+    check_digest,
+    need,
+    outside_strings,
+    parsed,
+    text_of,
+    verified,
+)
 from symfpu.proofs.verify import (
-    LARGEST_FILE,
     MODELS,
-    READING_ERRORS,
     Budget,
     Case,
-    CertificateError,
     Point,
     Recursion,
-    check_digest,
     check_point,
     coupled_sets,
     couplings,
     folded,
-    need,
     propagation_rule,
 )
 
@@ -50,7 +54,6 @@ LARGEST_TRIAL = 64  # bonds among which it is looked for else
 # the last orders at which a chain of couplings holds for the frequencies of every N
 CHAINS = {"alpha": 3, "beta": 2}
 
-Json = dict[str, Any]
 Row = tuple[int, ...]
 Powers = tuple[int, ...]
 
@@ -60,12 +63,7 @@ def verify(path: str | Path) -> list[str]:
 
     Raises CertificateError, with the reason, if the certificate is not right.
     """
-    try:
-        return check_theorem(read_theorem(Path(path)))
-    except CertificateError:
-        raise
-    except READING_ERRORS as error:
-        raise CertificateError(f"no readable certificate: {error!r:.200}") from None
+    return verified(path, read_theorem, check_theorem)[1]
 
 
 # --- the file
@@ -73,13 +71,11 @@ def verify(path: str | Path) -> list[str]:
 
 def read_theorem(path: Path) -> Json:
     """The contents, without floats, booleans and minus signs: == and < are exact afterwards."""
-    small = path.stat().st_size <= LARGEST_FILE and path.is_file()
-    need(small, "not a regular file of at most 64 MB")
-    text = path.read_text("ascii", "replace")
-    bare = re.sub(r'"[^"\\]*"', '"', text)
+    text = text_of(path)
+    bare = outside_strings(text)
     strange = re.search(r'[^\s0-9{}\[\],:nul"]|[0-9]{21}', bare)
     need(not strange, "not JSON of plain strings, null and integers of at most 20 digits")
-    data: Json = json.loads(text)
+    data = parsed(text)
     need(data["format"] == FORMAT, "not a theorem for all N")
     need(data["schema"] == 2, "schema version unknown: this checker supports version 2")
     once = bare.count(":") == len(data)

@@ -239,14 +239,12 @@ def _digits_of(guess: Guess) -> int:
 
 @dataclass(frozen=True, eq=False)
 class LeftOver:
-    """The residual at all harmonics of a larger box.
+    """What Newton's method left at chosen harmonics and at others, relative.
 
-    bound : as of PreciseTorus. inside : largest change of a coefficient that the matrix asks for.
-    outside : |residual / divisor| at harmonics that were left out, (M, s), the largest of each.
-    All but the bound relative to the largest coefficient.
+    inside : largest change that the matrix asks for. outside : |residual / divisor| at harmonics
+    that were left out, (M, s), the largest of each.
     """
 
-    bound: Any
     inside: Any
     harmonics: Ints
     outside: list[Any]
@@ -259,6 +257,16 @@ class LeftOver:
         """Harmonics that were left out with an error of the last digit; (M, s)."""
         least = mpmath.mpf(10) ** -(digits + 1)
         return self.harmonics[[x > least for x in self.outside]]
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOfTorus(LeftOver):
+    """The residual at all harmonics of a larger box, over the largest coefficient.
+
+    bound : as of PreciseTorus, not relative.
+    """
+
+    bound: Any
 
 
 class TorusSweeps:
@@ -387,7 +395,7 @@ class TorusSweeps:
             sweeps=self.number,
         )
 
-    def left_over(self) -> LeftOver:
+    def left_over(self) -> LeftOfTorus:
         """The residual at all harmonics of a larger box, in more digits."""
         finer = self._finer()
         chosen = {tuple(nu) for nu in self.harmonics.tolist()}
@@ -407,7 +415,8 @@ class TorusSweeps:
         rounding = len(c) * (1 + max(abs(int(w)) for w in omega) >> finer.bits)
         total = max(abs(imbalance).sum(axis=0) + off) + rounding
         bound = mpmath.ldexp(int(total), -finer.bits) / self._acceleration()
-        return LeftOver(bound, self._inside(imbalance[rows]), wanted[out], outside)
+        inside = self._inside(imbalance[rows])
+        return LeftOfTorus(inside, wanted[out], outside, bound)
 
     def _finer(self) -> KroneckerForce:
         highest = np.ceil(CHECKED * np.abs(self.harmonics).max(axis=0)).astype(int)
@@ -450,7 +459,7 @@ class TorusSweeps:
             guess.chain, guess.seeds, self.frequencies, self.harmonics, cosines, {}, digits
         )
 
-    def result(self, digits: int, left: LeftOver) -> PreciseTorus:
+    def result(self, digits: int, left: LeftOfTorus) -> PreciseTorus:
         """The torus, without harmonics that are zero in fixed point."""
         kept = self.c.any(axis=1)
         guess = self.start

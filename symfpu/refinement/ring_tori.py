@@ -9,6 +9,7 @@ from math import lcm
 import numpy as np
 
 from symfpu.errors import InputError
+from symfpu.numbers.counted import counted
 from symfpu.refinement.conditions import seed_amplitudes
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.invariance import dilated
@@ -61,7 +62,7 @@ class RefinedRingTorus(RingTorus):
         by_seed = zip(self.seeds, self.frequencies, strict=True)
         rates = ", ".join(f"omega_{q}={float(w):.16g}" for q, w in by_seed)
         found = ", ".join(f"A_{q}={a:.13g}" for q, a in self.amplitudes.items())
-        quality = f"H={float(self.energy()):.12g}, {len(self.sines)} waves"
+        quality = f"H={float(self.energy()):.12g}, {counted(len(self.sines), 'wave')}"
         near = self.near_resonances[:1]
         nearest = "".join(f", smallest divisor {divisor}" for divisor in near)
         doubts = "".join(f"; {warning}" for warning in self.warnings)

@@ -8,6 +8,7 @@ from symfpu.certified.existence import ExistenceProof
 from symfpu.certified.residual import ResidualProof
 from symfpu.certified.stability_proof import StabilityProof
 from symfpu.certified.stay import StayProof
+from symfpu.numbers.counted import counted
 from symfpu.proofs import (
     certificates,
     check_existence,
@@ -83,7 +84,7 @@ def sweep_markdown(sweep: Sweep) -> str:
     """
     proved = sum(case.verdict == "proved" for case in sweep.cases)
     holds = sum(case.corrected_rule_holds for case in sweep.cases)
-    counts = f"{len(sweep.cases)} seed sets. The proposition holds in {proved}; "
+    counts = f"{counted(len(sweep.cases), 'seed set')}. The proposition holds in {proved}; "
     counts += f"the corrected rule predicts the actual sets in {holds}."
     parts = [f"## {sweep.model} model, order {sweep.order}", counts]
     parts.append(markdown_table(["N", "seeds", "sets", *VERDICTS], _count_rows(sweep)))

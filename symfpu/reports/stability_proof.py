@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.certified.stability_proof import ProvedExponent, StabilityProof
+from symfpu.numbers.counted import counted
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import fifteen_digits
@@ -63,10 +64,8 @@ def stability_text(proof: StabilityProof) -> str:
                 f"  sigma = {one.sigma:.10g} within {above(one.radius, 2)}: "
                 f"grows with a rate of {below(least, 9)} .. {above(most, 9)}"
             )
-    count, largest = (
-        len(proof.exponents),
-        max((e.block for e in proof.exponents), default=0),
-    )
+    count = counted(len(proof.exponents), "exponent")
+    largest = max((e.block for e in proof.exponents), default=0)
     linear = max((e.linear for e in proof.exponents), default=0.0)
-    lines.append(f"  {count} exponents; Z up to {linear:.3g}, blocks up to {largest}")
+    lines.append(f"  {count}; Z up to {linear:.3g}, blocks up to {largest}")
     return "\n".join(lines)

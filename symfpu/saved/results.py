@@ -50,12 +50,20 @@ def save(
         return save_solution(path, result, **notes, created=created)
     if not isinstance(result, RESULTS):
         allowed = "a series, a solution or another result"
-        advice = "pass what symfpu computed"
-        raise InputError("result", type(result).__name__, allowed, advice)
+        raise InputError("result", type(result).__name__, allowed, _advice(result))
     file = named_path(path)
     require_notes(verdict, command, created)
     write_tree(file, result, CLASSES, verdict=verdict, command=command, created=created)
     return file
+
+
+def _advice(result: object) -> str:
+    """What to do with what is no result of those that are kept."""
+    if isinstance(result, Bundle):
+        return "pass what it holds, its .result"
+    if hasattr(result, "certificate"):
+        return "its certificate is kept by .write(path), and symfpu verify opens it"
+    return "pass what symfpu computed"
 
 
 def load(path: Path | str) -> Bundle:

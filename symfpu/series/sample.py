@@ -23,6 +23,7 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.table import Column, Table
 from symfpu.frames.tabled import Gridded, Tabled
+from symfpu.numbers.counted import counted
 from symfpu.series.coefficient_table import (
     COORDINATE,
     Part,
@@ -63,7 +64,7 @@ class FrequencyChanges(Gridded):
 
     def __repr__(self) -> str:
         first = ", ".join(f"{w:.12g}" for w in self.omega[0])
-        return f"FrequencyChanges({len(self.omega)} points, omega of the first {first})"
+        return f"FrequencyChanges({counted(len(self.omega), 'point')}, omega of the first {first})"
 
     def _grid(self) -> Grid:
         changes = "derivative of omega by"
@@ -108,7 +109,8 @@ class EnergyChanges(Gridded):
 
     def __repr__(self) -> str:
         total = self.energies[0].sum()
-        return f"EnergyChanges({len(self.energies)} points, sum of the first {total:.12g})"
+        points = counted(len(self.energies), "point")
+        return f"EnergyChanges({points}, sum of the first {total:.12g})"
 
     def _grid(self) -> Grid:
         points, modes, seeds = self.by_amplitudes.shape
@@ -161,7 +163,9 @@ class SampledSeries(Tabled):
     values: Floats = field(repr=False)
 
     def __repr__(self) -> str:
-        return f"SampledSeries({len(self.frequencies)} points of {self.series!r})"
+        return (
+            f"SampledSeries({counted(len(self.frequencies), 'point')} of {self.series!r})"
+        )
 
     @property
     def coordinates(self) -> Tables:

@@ -37,6 +37,7 @@ from symfpu.numbers.arithmetic import (
     integers,
     with_digits,
 )
+from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, integer
 from symfpu.series.arguments import digits_of, frequencies_of
 from symfpu.series.coefficient_table import (
@@ -149,7 +150,7 @@ class LindstedtSeries(Shown, Tabled):
         )
         return (
             f"LindstedtSeries({chain}, seeds={','.join(map(str, self.seeds))}, order {self.order}, "
-            f"{self.coefficient_count:,} coefficients ({self.precision}){smallest})"
+            f"{counted(self.coefficient_count, 'coefficient')} ({self.precision}){smallest})"
         )
 
     @cached_property

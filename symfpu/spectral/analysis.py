@@ -18,7 +18,8 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Column, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
-from symfpu.numbers.typed import integer
+from symfpu.numbers.counted import counted
+from symfpu.numbers.typed import integer, part
 from symfpu.spectral.channels import SPAN, Channel, ChannelBank
 from symfpu.spectral.combinations import Basis
 from symfpu.spectral.record import LINE_WIDTH, Exponential, Record
@@ -105,9 +106,11 @@ class FrequencyAnalysis(Shown, Tabled):
         by_seed = zip(self.seeds, self.frequencies, self.errors, strict=True)
         shown = ", ".join(f"omega_{q}={w:.15g} +- {e:.1g}" for q, w, e in by_seed)
         unknown = sum(line.harmonic is None for line in self.lines)
-        lines = f"{len(self.lines)} lines, {unknown} of them unidentified"
+        lines = f"{counted(len(self.lines), 'line')}, {unknown} of them unidentified"
         chain = repr(self.chain)[6:-1]
-        independent = f"{len(self.seeds)} independent frequencies"
+        independent = counted(
+            len(self.seeds), "independent frequency", "independent frequencies"
+        )
         found = f"{independent}: {shown}; {lines}, drift {self.drift:.2g}"
         return f"FrequencyAnalysis({chain}, T={self.T:.10g}, {found})"
 
@@ -119,9 +122,9 @@ class FrequencyAnalysis(Shown, Tabled):
     def count(self, level: float) -> int:
         """How many independent frequencies are stronger than this part of the strongest.
 
-        level : between 0 and 1, dimensionless.
+        level : between 0 and 1, dimensionless. Raises InputError for any other.
         """
-        return int((self.strengths > level).sum())
+        return int((self.strengths > part(level, "level")).sum())
 
     @property
     def drift(self) -> float:

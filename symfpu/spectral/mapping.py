@@ -23,7 +23,8 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.table import joined
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
-from symfpu.numbers.typed import Number, decimal, double, exact, integer, seed_modes
+from symfpu.numbers.counted import counted
+from symfpu.numbers.typed import Number, decimal, double, exact, integer, part, seed_modes
 from symfpu.spectral.one_energy import Row, kept_row, orbit_frequencies, require_analysable
 from symfpu.sweeps.rows import SweepFailure, SweepRows
 from symfpu.sweeps.sweep import sweep
@@ -70,7 +71,7 @@ class FrequencyMap(Shown, Gridded):
         chain = repr(self.chain)[6:-1]
         E, n, d = self.energies, self.counts, self.drifts
         start = f"packet {joined(self.packet)}, T={self.T:.10g}"
-        energies = f"{len(E)} energies {E[0]:.6g} .. {E[-1]:.6g}"
+        energies = f"{counted(len(E), 'energy', 'energies')} {E[0]:.6g} .. {E[-1]:.6g}"
         counts = f"{n.min()} .. {n.max()} frequencies above {self.level:g}"
         drift = f"drift {d.min():.2g} .. {d.max():.2g}"
         return f"FrequencyMap({chain}, {start}, {energies}, {counts}, {drift})"
@@ -166,8 +167,7 @@ def frequency_map(
     """
     require_fixed_ends(chain)
     modes = tuple(seed_modes(seeds, chain.N))
-    if not 0 < level < 1:
-        raise InputError("level", level, "a number between 0 and 1", "take 1e-3")
+    part(level, "level")
     asked = _energies(energies)
     orbits = _orbits(chain, T, step, scheme, lines)
     told = _Told(progress or unheard, len(asked))

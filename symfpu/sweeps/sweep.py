@@ -13,7 +13,6 @@ from typing import Any
 
 import psutil
 
-from symfpu.algebra.dense import available_cores
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress, unheard
@@ -22,7 +21,7 @@ from symfpu.sweeps.rows import Json, SweepFailure, SweepRow, SweepRows
 from symfpu.sweeps.rows_file import RowsFile, head_of, in_order, key_of, read_rows
 from symfpu.sweeps.running import Call, finished
 from symfpu.sweeps.values import argument_value, error_value, result_value
-from symfpu.sweeps.workers import ProcessWorkers
+from symfpu.sweeps.workers import worker_processes
 
 Case = Mapping[str, Any]
 Memory = Callable[..., float]
@@ -233,13 +232,8 @@ def _pool(executor: Any, calls: int) -> Iterator[Executor]:
     if executor is not None:
         yield executor.get_executor() if hasattr(executor, "get_executor") else executor
         return
-    pool = ProcessWorkers(min(calls, available_cores()))
-    try:
+    with worker_processes(calls) as pool:
         yield pool
-    except BaseException:
-        pool.shutdown(cancel_futures=True)
-        raise
-    pool.shutdown()
 
 
 def _limit(memory: Memory | None, within: int | None) -> int:

@@ -18,6 +18,7 @@ from multiprocessing.connection import Connection, wait
 from queue import Empty, SimpleQueue
 from typing import Any, NamedTuple
 
+from symfpu.algebra.dense import available_cores
 from symfpu.errors import InputError, SymfpuError
 
 STARTS = 20  # times that a process may be killed before it is ready, or has begun a task
@@ -46,12 +47,13 @@ class WorkerDied(SymfpuError):
 class WorkersDoNotStart(SymfpuError, BrokenExecutor):
     """Worker processes die before they are ready.
 
-    Raised in `sweep`, the cause of SweepStopped. reason : how they end. Ours.
+    Raised in `sweep`, the cause of SweepStopped, and in `prove_for_all_N`. reason : how they end.
+    Ours.
     """
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
-        advice = "in a script, start the sweep under `if __name__ == '__main__':`"
+        advice = "in a script, start them under `if __name__ == '__main__':`"
         super().__init__(f"worker processes do not start ({reason}); {advice}")
 
 
@@ -123,6 +125,18 @@ class ProcessWorkers(Executor):
                 else:
                     task.future.set_exception(value)
         worker.close()
+
+
+@contextmanager
+def worker_processes(tasks: int) -> Iterator[ProcessWorkers]:
+    """A process for each task, but no more than cores; all end at once where an error is raised."""
+    pool = ProcessWorkers(min(tasks, available_cores()))
+    try:
+        yield pool
+    except BaseException:
+        pool.shutdown(cancel_futures=True)
+        raise
+    pool.shutdown()
 
 
 class Worker:

@@ -18,7 +18,7 @@ from symfpu import (
     travelling_torus,
     travelling_waves,
 )
-from symfpu.action_angle.foretold import flow_of
+from symfpu.action_angle.foretold import flow_of, settled_text
 from symfpu.dynamics.alignment import random_frame
 from symfpu.dynamics.dimension import ODDNESS
 from tests.tolerances import FORETOLD, FORETOLD_AT_REST, SAME_VOLUME, SLOPE
@@ -175,3 +175,12 @@ def test_volumes_do_not_depend_on_how_many_vectors_follow():
     one = foretold_indices(torus(2), flow_times, vectors=5)
     again = foretold_indices(torus(2), TIMES, vectors=5)
     assert one.log10_gali == pytest.approx(again.log10_gali[::5], abs=SAME_VOLUME)
+
+
+def test_what_has_not_settled_says_so():
+    early, late = (foretold_indices(torus(1), T, vectors=3) for T in (1e3, 1e9))
+    assert "none settled by then" in repr(early)
+    assert "settled from t = " in repr(late)
+    assert "inf" not in repr(early) + repr(late)
+    assert settled_text(np.inf, 1e3) == "not settled by t = 1e+03"
+    assert settled_text(12.3, 1e3) == "settled from t = 12.3"

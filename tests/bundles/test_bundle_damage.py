@@ -17,7 +17,10 @@ import symengine as se
 
 from symfpu.bundles.bundle import BundleError, load, save
 from symfpu.chain.chain import Chain
+from symfpu.dynamics.orbits import integrate
+from symfpu.files.archive import Archive
 from symfpu.proofs.certificates import prove_propagation
+from symfpu.saved.results import save as save_any
 from symfpu.series.lindstedt import lindstedt
 from tests.bundles.test_bundle import ALPHA, digest, healthy, opened, same  # noqa: F401 (a fixture)
 
@@ -81,11 +84,34 @@ def foreign(kind, path):
         path.write_bytes(contents[kind])
 
 
+FOREIGN = {
+    "certificate": "is a file of the format 'symfpu propagation certificate', no bundle; symfpu verify opens it",
+    "PK only": "is damaged",
+}
+
+
 @pytest.mark.parametrize("kind", ["certificate", "npz", "other zip", "empty", "text", "pickle", "PK only"])
 def test_foreign_files_are_refused(kind, tmp_path):
     foreign(kind, tmp_path / "file")
-    with pytest.raises(BundleError, match="is damaged" if kind == "PK only" else "is not a symfpu bundle"):
+    with pytest.raises(BundleError, match=FOREIGN.get(kind, "is not a symfpu bundle")):
         load(tmp_path / "file")
+
+
+def test_a_result_without_series_and_solution_is_not_called_damaged(tmp_path):
+    orbit = integrate(Chain(4, beta=1), [0.1, 0, 0], [0, 0, 0], 10, step=0.125)
+    with pytest.raises(BundleError, match="holds Orbit, no series and no solution; symfpu show opens it"):
+        load(save_any(tmp_path / "orbit", orbit))
+
+
+def test_a_lack_of_memory_is_no_damage(healthy, tmp_path, monkeypatch):
+    def none_left(*_):
+        raise MemoryError
+
+    path = tmp_path / "file"
+    path.write_bytes(healthy[1])
+    monkeypatch.setattr(Archive, "array", none_left)
+    with pytest.raises(BundleError, match="needs more memory than is free; close other programs"):
+        load(path)
 
 
 def test_files_that_cannot_be_read_are_errors_of_the_system(tmp_path):

@@ -23,6 +23,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.from_expression import from_expression
 from symfpu.errors import InputError
 from symfpu.proofs import check_existence
+from symfpu.proofs.reading import dyadic
 from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -179,7 +180,7 @@ def test_the_checker_agrees_in_every_bound(name, tmp_path):
     inverse = check_existence.read_inverse(data, claim)
     bonds = check_existence.Bonds(claim, inverse.last + inverse.slope_harmonics)
     bounds = check_existence.Bounds(claim, bonds, inverse)
-    radius = check_existence.dyadic(data["unique"], "unique")
+    radius = dyadic(data["unique"], "unique")
     assert bounds.length() == 0
     ours = [found.residual, 1 + found.linear, found.curvature]
     theirs = [bounds.residual(), 1 + bounds.linear(), bounds.curvature(radius)]

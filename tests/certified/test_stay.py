@@ -1,5 +1,6 @@
 """How long orbits stay near a torus: against integrated orbits; what cannot be proved says why."""
 
+import re
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
@@ -14,7 +15,7 @@ from symfpu.certified.growth import Growth
 from symfpu.certified.norms import norms, weights_of
 from symfpu.certified.residual import prove_residual
 from symfpu.certified.rounded_torus import residual_of, rounded_torus, stretches_of
-from symfpu.certified.stay import NoStayProof, prove_stay
+from symfpu.certified.stay import NoStayProof, prove_stay, told_apart
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.normal.modes import NoNormalModes
@@ -196,3 +197,20 @@ def test_a_hyperbolic_torus_is_refused_by_name():
 def test_other_polynomials(law):
     proof = prove_stay(refine(torus(4, law), digits=30))
     assert proof.distance < DIGITS_STAY
+
+
+def test_a_time_just_too_long_is_told_from_the_longest():
+    """Both with as many digits as differ, the longest not above itself, and it can be proved."""
+    longest = prove_stay(torus(), time=1).longest
+    with pytest.raises(NoStayProof) as caught:
+        prove_stay(torus(), time=Fraction(longest) * (1 + Fraction(1, 10**6)))
+    asked, most = map(float, re.search("a stay of (.*): at most (.*?); ", str(caught.value)).groups())
+    assert longest < asked
+    assert most <= caught.value.longest == longest
+    assert prove_stay(torus(), time=most).time == most
+
+
+def test_times_far_apart_have_three_digits():
+    assert told_apart(1e9, 123456.0) == ("1.0e+9", "1.23e+5")
+    assert told_apart(2.0000001, 2.0) == ("2.01", "2.0")
+    assert told_apart(2.0, 1.9999999) == ("2.0", "1.99")

@@ -112,7 +112,7 @@ def test_a_torus_stays_for_a_time_and_its_residual_is_a_theorem(torus, tmp_path,
 
 def test_too_long_a_stay_is_one_line_and_code_1(torus, capsys):
     assert main(["certify", torus, "--time", "1e12"]) == 1
-    assert "no proof of a stay of 1e+12: at most" in capsys.readouterr().err
+    assert "no proof of a stay of 1.0e+12: at most" in capsys.readouterr().err
 
 
 def test_options_of_a_torus_are_refused_for_a_breather(saved, torus, capsys):

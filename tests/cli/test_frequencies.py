@@ -78,3 +78,11 @@ def test_what_does_not_go_together_is_refused(capsys, words, said):
     code, out, err = run(capsys, *words)
     assert (code, out) == (2, "")
     assert said in err
+
+
+@pytest.mark.parametrize("more", [["--energy", "0.1"], ["--energies", "0.1,0.2"]])
+@pytest.mark.parametrize("level", ["2", "1", "0", "-1"])
+def test_a_level_is_a_part_of_the_strongest(capsys, level, more):
+    code, out, err = run(capsys, *CHAIN, "--packet", "1", *more, f"--level={level}")
+    assert (code, out) == (2, "")
+    assert "allowed is a number between 0 and 1" in err

@@ -107,7 +107,7 @@ def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, kept, tmp_
     assert "a checkpoint of the same alignment indices (steps is 750 in it, 500 here)" in err
     assert (tmp_path / "run").stat().st_mtime_ns == begun
     code, out, err = run(capsys, "gali", str(tmp_path / "run"), "--time", "200")
-    assert (code, out) == (1, "")
+    assert (code, out) == (2, "")
     assert "is a checkpoint of alignment indices" in err
 
 

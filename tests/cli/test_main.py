@@ -149,7 +149,7 @@ def test_a_foreign_file_is_one_line_and_no_traceback(capsys, tmp_path, content):
     file.write_bytes(content)
     for options in ([], ["--json"]):
         code, out, err = run(capsys, "show", str(file), *options)
-        assert (code, out) == (1, "")
+        assert (code, out) == (2, "")
         assert len(err.splitlines()) == 1
         assert "foreign" in err
         assert "Traceback" not in err

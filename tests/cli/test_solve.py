@@ -72,8 +72,9 @@ def test_the_text_says_how_the_energy_is_shared(capsys):
         (["--amplitudes", "0.1,0.1", "--harmonic"], "harmonic = True"),
         (["--energy", "1", "--shares", "1"], "shares = '1': allowed is a number for each of the seeds (2, 1)"),
         (["--energy", "-1"], "energy = '-1'"),
-        (["--energy", "1", "--ends", "periodic"], "a chain with fixed ends"),
-        (["--amplitudes", "1,1", "--ends", "periodic"], "a chain with fixed ends"),
+        (["--energy", "1", "--ends", "periodic"], "give --omega and -o FILE, then symfpu refine FILE --energy E"),
+        (["--amplitudes", "1,1", "--ends", "periodic"], "give --omega and -o FILE, then symfpu refine FILE --amplitudes A,A,..."),
+        (["--omega", "1,2", "--digits", "30", "--ends", "periodic"], "digits = 30: allowed is none with --ends periodic"),
     ],
 )
 def test_refusals(capsys, words, said):

@@ -1,6 +1,7 @@
 """Verbs load what they need and no more; all of them are in the table; their help fits a terminal."""
 
 import os
+import re
 import subprocess
 import sys
 from importlib import import_module
@@ -106,3 +107,13 @@ def test_the_help_of_export_names_every_language():
     from symfpu.codegen.export import LANGUAGES
 
     assert list(verb.LANGUAGES) == list(LANGUAGES)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_option_of_text_says_what_to_type(verb, capsys, monkeypatch):
+    """A name or words to choose from, never the type."""
+    monkeypatch.setenv("COLUMNS", "200")
+    main([verb, "--help"])
+    options = re.findall(r"^\W*--?\w.*$", capsys.readouterr().out, re.MULTILINE)
+    assert any("--help" in line for line in options)
+    assert [line for line in options if "<str>" in line] == []

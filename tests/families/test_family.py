@@ -102,7 +102,7 @@ def test_it_begins_where_it_is_asked_to():
     """By default at a thousandth of the goal."""
     begun = family(ROUND, (3,), "0.5", members=1)
     assert begun.members[0].energy == pytest.approx(0.0005, rel=FIXED_ENERGY)
-    assert begun.ending == "was left after 1 members, the most asked for"
+    assert begun.ending == "was left after 1 member, the most asked for"
 
 
 ENDS = {

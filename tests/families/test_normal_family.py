@@ -10,7 +10,7 @@ from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.families.normal_events import RESONANCE, STABILITY, collision, discriminant
+from symfpu.families.normal_events import RESONANCE, STABILITY, Bracket, collision, discriminant
 from symfpu.families.normal_family import normal_family
 from symfpu.normal.resonances import PARAMETRIC, SUM, ParametricResonance
 from symfpu.normal.search import normal_modes
@@ -34,8 +34,7 @@ def test_a_collision_is_found_without_looking_near_it():
         asked.append(x)
         return math.expm1(0.43 - x) * (1 + x)
 
-    ends = D(0.38), D(0.46)
-    part, error = collision(D, 0.38, 0.46, ends, 1e-3)
+    part, error = collision(D, Bracket(0.38, 0.46, D(0.38), D(0.46)), 1e-3)
     assert part == pytest.approx(0.43, abs=NORMAL_CONVERGED)
     assert error < NORMAL_CONVERGED
     assert min(abs(x - 0.43) for x in asked) > 1e-4

@@ -11,7 +11,7 @@ from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, RunInterrupted
 from symfpu.families.family import family, member_at_energy
-from symfpu.families.normal_events import NormalEvent, located
+from symfpu.families.normal_events import Bracket, NormalEvent, located
 from symfpu.families.normal_family import normal_family
 from symfpu.files.archive import BundleError
 from symfpu.normal.search import normal_modes
@@ -96,7 +96,7 @@ def test_a_narrow_tongue_has_both_ends():
 
 
 def test_a_zero_of_what_is_too_small_to_interpolate_is_halved():
-    found, error = located(lambda x: 1e-6 * (0.3 - x), 0.0, 1.0, (0.3e-6, -0.7e-6), 1e-3)
+    found, error = located(lambda x: 1e-6 * (0.3 - x), Bracket(0.0, 1.0, 0.3e-6, -0.7e-6), 1e-3)
     assert abs(found - 0.3) <= error < 1e-3
 
 

@@ -17,7 +17,7 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.integrable.invariants import toda_gaps
 from symfpu.localization.floors import spectrum_floor
-from symfpu.plots.style import COLOURS, EPS, MARKERS, look, parameters, styled
+from symfpu.plots.style import COLOURS, EPS, MARKERS, legend, look, parameters, styled
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.travelling import travelling_waves
 from tests.plots import cases
@@ -536,3 +536,25 @@ def test_gaps_and_times_fit(ax):
         plots.toda_gaps(cases.gaps(), ax, times=[0.0, 1.0])
     with pytest.raises(InputError, match="result ="):
         plots.toda_gaps(SimpleNamespace(gaps=1), ax)
+
+
+@pytest.mark.parametrize(("curves", "columns"), [(6, 1), (7, 1), (15, 1), (31, 3)])
+def test_a_long_legend_is_beside_the_axes_in_columns(curves, columns):
+    ax = Figure().add_subplot()
+    for i in range(curves):
+        ax.plot([0, 1], label=f"q={i}")
+    legend(ax)
+    ax.figure.draw_without_rendering()
+    frame = ax.get_legend().get_window_extent()
+    assert bool(frame.x0 >= ax.bbox.x1) is (curves > 6)
+    assert ax.get_legend()._ncols == columns
+    assert frame.height <= 1.2 * ax.bbox.height
+
+
+def test_integrated_indices_are_so_many_rings_that_curves_are_seen():
+    ax = plots.foretold(cases.foretold(), Figure().add_subplot(), observed=cases.integrated())
+    rings = [line for line in ax.lines if line.get_marker() == "o" and len(line.get_xdata())]
+    assert len(rings) == cases.integrated().vectors - 1
+    assert all(20 <= len(line.get_xdata()) <= 60 for line in rings)
+    words = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert "integrated" in words

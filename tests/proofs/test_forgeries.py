@@ -7,7 +7,8 @@ import json
 import pytest
 
 from symfpu.proofs.certificates import prove_propagation
-from symfpu.proofs.verify import CertificateError, verify
+from symfpu.proofs.reading import CertificateError
+from symfpu.proofs.verify import verify
 
 CASES = {
     "proved": (9, (2, 4), 3, "alpha"),

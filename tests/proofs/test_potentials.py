@@ -13,8 +13,9 @@ from symfpu.chain.propagation import coupling_sequence
 from symfpu.errors import InputError
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.proofs.leading import leading_term, leading_terms, lemma_holds
+from symfpu.proofs.reading import CertificateError
 from symfpu.proofs.sweeps import sweep_propagation
-from symfpu.proofs.verify import NAMED_POTENTIALS, CertificateError, verify
+from symfpu.proofs.verify import NAMED_POTENTIALS, verify
 from symfpu.series.lindstedt import lindstedt
 from tests.proofs.test_forgeries import alterations, is_valid, sealed
 

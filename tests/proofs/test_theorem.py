@@ -1,9 +1,14 @@
 """The rule for every N, against the recursion at seed sets which the proof never saw."""
 
 import json
+import os
 import random
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
 from itertools import combinations_with_replacement, product
 from operator import mul
+from pathlib import Path
 
 import pytest
 
@@ -16,8 +21,11 @@ from symfpu.proofs.decided_file import DecidedFile
 from symfpu.proofs.every_length import decided_flat
 from symfpu.proofs.flats import Flat, last_order
 from symfpu.proofs.plus_terms import BOTH, MINUS, PLUS, PlusResidues, PlusTerms, sign_product, splits
-from symfpu.proofs.verify import MODELS, Budget, Case, CertificateError, Point, Recursion
+from symfpu.proofs.reading import CertificateError
+from symfpu.proofs.verify import MODELS, Budget, Case, Point, Recursion
 from symfpu.proofs.verify_theorem import read_claim
+
+ROOT = Path(__file__).parents[2]
 
 
 def test_exceptions_are_those_of_the_recursion_at_other_lengths():
@@ -239,3 +247,22 @@ def test_exceptions_at_order_one_are_those_of_theorem_6(s):
     for found in prove_for_all_N("beta", s, 1).decided:
         flat = found.flat
         assert {e.mode for e in found.exceptions} == of_theorem_6(flat.N, flat.seeds), flat
+
+
+def test_a_script_that_starts_processes_without_its_guard_is_told(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text("from symfpu import prove_for_all_N\nprove_for_all_N('alpha', 2, 5)\n")
+    done = subprocess.run(
+        [sys.executable, str(script)], cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True
+    )
+    assert done.returncode == 1
+    last = done.stderr.splitlines()[-1]
+    assert "WorkersDoNotStart: worker processes do not start" in last
+    assert last.endswith("in a script, start them under `if __name__ == '__main__':`")
+
+
+@pytest.mark.long
+def test_processes_decide_as_this_one_does():
+    """So many flats that worker processes share them."""
+    with ThreadPoolExecutor(1) as pool:
+        assert repr(prove_for_all_N("alpha", 2, 5)) == repr(prove_for_all_N("alpha", 2, 5, executor=pool))

@@ -9,7 +9,7 @@ import pytest
 
 from symfpu import prove_for_all_N
 from symfpu.proofs import verify_theorem
-from symfpu.proofs.verify import CertificateError
+from symfpu.proofs.reading import CertificateError
 from symfpu.proofs.verify_theorem import verify
 
 

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import symfpu
+from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.bundles.tree import OWN_FORMAT
+from symfpu.certified.existence import prove_existence
 from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.dynamics.orbits import integrate
@@ -195,3 +197,15 @@ def test_notes_are_checked(notes, tmp_path):
 def test_other_verbs_name_what_they_need(file, capsys):
     assert main(["refine", str(file)]) == 2
     assert "a file with a torus or a breather in it" in capsys.readouterr().err
+
+
+def test_a_proof_with_a_certificate_says_how_it_is_kept(tmp_path):
+    proof = prove_existence(breather_at_amplitude(Chain(3, alpha="0.3"), 1, "0.1"))
+    with pytest.raises(InputError, match=r"its certificate is kept by .write\(path\), and symfpu verify opens it"):
+        save(tmp_path / "proof", proof)
+
+
+def test_a_bundle_says_what_of_it_is_kept(tmp_path):
+    bundle = load(save(tmp_path / "breather", breather_at_amplitude(Chain(3, alpha="0.3"), 1, "0.1")))
+    with pytest.raises(InputError, match=r"pass what it holds, its \.result"):
+        save(tmp_path / "again", bundle)

@@ -175,3 +175,11 @@ def test_a_mode_at_rest_has_no_lines():
     found = frequency_analysis(integrate(breather.chain, *breather.state(), 400, step=0.1))
     assert {line.mode for line in found.lines} == {2, 4}
     assert found.seeds == (4,)
+
+
+@pytest.mark.parametrize("level", [0, 1, 2, -0.5, "x"])
+def test_a_count_is_above_a_part_of_the_strongest(level):
+    found = frequency_analysis(orbit(300.0), lines=2)
+    assert found.count(1e-3) >= 1
+    with pytest.raises(InputError, match="level"):
+        found.count(level)

@@ -82,7 +82,7 @@ def test_a_script_without_its_guard_is_told(tmp_path):
     done = run([str(script)])
     _, error = done.communicate(timeout=60)
     assert done.returncode == 1
-    assert "start the sweep under `if __name__ == '__main__':`" in error.decode()
+    assert "start them under `if __name__ == '__main__':`" in error.decode()
 
 
 def test_a_function_that_was_typed_is_refused_before_processes_start():

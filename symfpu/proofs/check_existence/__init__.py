@@ -8,7 +8,8 @@ computed anew, each in a function: `theorem.py` has the hypotheses, in order.
 Fixed point: a number is an integer times 2^-P, FINE places for the residual and COARSE for all
 else. A series is its cosine coefficients and the bound of their error in the norm
 sum |a_n| nu^n, in units of the last place. Bounds are rounded up, divisors down. The folder shares
-no code with the prover and imports nothing but the standard library.
+no code with the prover and imports nothing but the standard library and what checkers read and
+round with, `reading.py` and `rounding.py`.
 """
 
 from pathlib import Path
@@ -21,21 +22,15 @@ from symfpu.proofs.check_existence.fixed_point import Cosines as Cosines
 from symfpu.proofs.check_existence.inverse import Packed as Packed
 from symfpu.proofs.check_existence.inverse import read_inverse as read_inverse
 from symfpu.proofs.check_existence.reading import FORMAT as FORMAT
-from symfpu.proofs.check_existence.reading import READING_ERRORS as READING_ERRORS
-from symfpu.proofs.check_existence.reading import ExistenceError as ExistenceError
-from symfpu.proofs.check_existence.reading import dyadic as dyadic
+from symfpu.proofs.check_existence.reading import KIND as KIND
 from symfpu.proofs.check_existence.reading import read_certificate as read_certificate
 from symfpu.proofs.check_existence.theorem import check_certificate as check_certificate
+from symfpu.proofs.reading import verified
 
 
 def verify(path: str | Path) -> list[str]:
     """Lines that say what was checked in the certificate of a file.
 
-    Raises ExistenceError, with the reason, if it is not right.
+    Raises CertificateError, with the reason, if it is not right.
     """
-    try:
-        return check_certificate(read_certificate(Path(path)))
-    except ExistenceError:
-        raise
-    except READING_ERRORS as error:
-        raise ExistenceError(f"no readable certificate: {error!r:.200}") from None
+    return verified(path, read_certificate, check_certificate)[1]

@@ -11,9 +11,9 @@ from symfpu.proofs.check_existence.fixed_point import (
     Norm,
     Series,
     rounded_up,
-    up,
 )
-from symfpu.proofs.check_existence.reading import need
+from symfpu.proofs.reading import need
+from symfpu.proofs.rounding import up
 
 COARSE = 60  # places of everything but the residual
 GUARD = 64  # places of the residual beyond those of the orbit

@@ -13,7 +13,7 @@ from symfpu.proofs.check_existence.fixed_point import (
     rounded_up,
 )
 from symfpu.proofs.check_existence.inverse import BORDER, Inverse, Packed
-from symfpu.proofs.check_existence.reading import need
+from symfpu.proofs.reading import need
 
 LARGEST_DERIVATIVE = 2**20  # an entry of DF that the packed product expects
 

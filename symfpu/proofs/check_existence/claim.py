@@ -3,14 +3,8 @@
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from symfpu.proofs.check_existence.reading import (
-    MOST_BITS,
-    Json,
-    fraction,
-    need,
-    unpacked,
-    whole,
-)
+from symfpu.proofs.check_existence.reading import MOST_BITS, unpacked
+from symfpu.proofs.reading import Json, fraction, need, whole
 
 LARGEST_N = 512
 MOST_HARMONICS = 4096

@@ -16,8 +16,8 @@ from symfpu.proofs.check_existence.fixed_point import (
     COSINE_UNITS,
     POWER_PLACES,
     Series,
-    up,
 )
+from symfpu.proofs.rounding import up
 
 Interval = tuple[Fraction, Fraction]
 NOTHING = Fraction(0), Fraction(0)

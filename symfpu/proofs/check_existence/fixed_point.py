@@ -4,6 +4,8 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import NamedTuple
 
+from symfpu.proofs.rounding import up
+
 GUARD_OF_COSINES = 48
 POWER_PLACES = 40  # of nu^n
 COSINE_UNITS = 2  # of the last place, more than a cosine is off
@@ -136,11 +138,6 @@ class FixedPoint:
                 values[n] += x * c.numerator // c.denominator
             error += up(powers[k].error * abs(c)) + self.norm.units(len(values))
         return Series(values, error)
-
-
-def up(x: Fraction | int) -> int:
-    """The least integer not below."""
-    return -((-x.numerator) // x.denominator)
 
 
 def rounded_up(x: Fraction, places: int) -> Fraction:

@@ -4,7 +4,8 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from symfpu.proofs.check_existence.claim import Claim, Place
-from symfpu.proofs.check_existence.reading import Json, need, unpacked, whole
+from symfpu.proofs.check_existence.reading import unpacked
+from symfpu.proofs.reading import Json, need, whole
 
 BORDER: Place = (0, 0)  # the unknown frequency as a column, the condition as a row
 MOST_SLOPES = 4096  # harmonics of slopes and of weights

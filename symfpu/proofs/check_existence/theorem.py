@@ -7,8 +7,10 @@ from symfpu.proofs.check_existence.bounds import Bounds
 from symfpu.proofs.check_existence.claim import AMPLITUDE, Claim, read_claim
 from symfpu.proofs.check_existence.condition import energy_between
 from symfpu.proofs.check_existence.inverse import BORDER, Inverse, read_inverse
-from symfpu.proofs.check_existence.reading import Json, dyadic, need, stated
-from symfpu.proofs.check_existence.wording import scientific, theorem_text
+from symfpu.proofs.check_existence.reading import stated
+from symfpu.proofs.check_existence.wording import theorem_text
+from symfpu.proofs.reading import Json, dyadic, need
+from symfpu.proofs.rounding import scientific
 
 MOST_STEPS = 10**9
 

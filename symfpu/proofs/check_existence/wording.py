@@ -1,13 +1,13 @@
 """What has been proved, in one sentence."""
 
-from collections.abc import Callable
 from fractions import Fraction
 from math import floor
 from typing import Any
 
 from symfpu.proofs.check_existence.claim import AMPLITUDE, ENERGY, FREQUENCY, Claim, Force
-from symfpu.proofs.check_existence.fixed_point import up
-from symfpu.proofs.check_existence.reading import Json, stated
+from symfpu.proofs.check_existence.reading import stated
+from symfpu.proofs.reading import Json
+from symfpu.proofs.rounding import scientific
 
 SIGNS = {FREQUENCY: "frequency omega", AMPLITUDE: "amplitude A", ENERGY: "energy H"}
 
@@ -75,22 +75,3 @@ def decimal_interval(entry: Any) -> str:
     digits = max(1, len(str(int(abs(middle) / half))) + 1) if half else 40
     text = scientific(middle, digits)
     return f"{text} +- {scientific(half + abs(middle - Fraction(text)))}"
-
-
-def scientific(
-    x: Fraction, digits: int = 3, rounded: Callable[[Fraction], int] = up
-) -> str:
-    """A number in decimals, its size rounded up, or another way."""
-    if not x:
-        return "0"
-    exponent = len(str(abs(x.numerator))) - len(str(x.denominator))
-    if abs(x) < Fraction(10) ** exponent:
-        exponent -= 1
-    mantissa = rounded(abs(x) / Fraction(10) ** (exponent - digits + 1))
-    text = str(mantissa)
-    if len(text) > digits:
-        exponent += 1
-        text = text[:digits]
-    sign = "-" if x < 0 else ""
-    point = f"{text[0]}.{text[1:]}" if digits > 1 else text
-    return f"{sign}{point}e{exponent}" if exponent else f"{sign}{point}"

@@ -1,0 +1,253 @@
+"""The atlas of docs/atlas.md: its data, its tables and its pictures.
+
+python docs/make_atlas.py           tables and pictures from docs/data/atlas.jsonl
+python docs/make_atlas.py --data    first the data: rows that the file has are not computed again
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from symfpu import Atlas, AtlasBorder, Chain, atlas, read_atlas
+from symfpu.errors import InputError
+
+HERE = Path(__file__).parent
+FILE = HERE / "data" / "atlas.jsonl"
+PAGE = HERE / "atlas.md"
+SERIES = ("ratio", "poles")
+LENGTHS = (8, 16, 32, 64, 128, 256)
+MODELS: dict[str, dict[str, str]] = {
+    "alpha=1": {"alpha": "1"},
+    "beta=1": {"beta": "1"},
+    "potential=toda:1": {"potential": "toda:1"},
+}
+TODA = "potential=toda:1"
+ORDERS = {
+    1: {"alpha=1": (16, 12), "beta=1": (8, 6), TODA: (16,)},
+    2: {"alpha=1": (8, 6), "beta=1": (5, 4), TODA: (8,)},
+}
+EXTENSIVE = {"alpha=1": 4, "beta=1": 3}
+PARTS = {"1/32": (32, 64, 128, 256), "1/16": (16, 32, 64, 128)}
+REACH = 2
+PICTURES = ("atlas-alpha.png", "atlas-beta.png", "atlas-map.png")
+
+
+def grids() -> Iterator[dict[str, Any]]:
+    """The arguments of every call of `atlas`, in one file together."""
+    for model, couplings in MODELS.items():
+        for N in LENGTHS:
+            chain = Chain(N, **couplings)
+            extra = ("fold", "newton") if N <= 64 else ()
+            stable = ("stability",) if N <= 32 and model != TODA else ()
+            places = ("low", "middle", "high")
+            one = SERIES + extra + stable
+            yield grid(chain, [f"{p}:1" for p in places], ORDERS[1][model], one)
+            two = SERIES + (("fold", "newton") if N <= 32 else ())
+            packets = ["low:2"] if model == TODA else ["low:2", "high:2"]
+            yield grid(chain, packets, ORDERS[2][model], two)
+    for model, order in EXTENSIVE.items():
+        for part, lengths in PARTS.items():
+            for N in lengths:
+                yield grid(Chain(N, **MODELS[model]), [f"low:{part}"], (order,), SERIES)
+        seeds = [str(q) for q in range(1, 16)]
+        order = max(ORDERS[1][model])
+        yield grid(Chain(16, **MODELS[model]), seeds, (order,), (*SERIES, "fold"))
+
+
+def grid(
+    chain: Chain, packets: list[str], order: tuple[int, ...], borders: tuple[str, ...]
+) -> dict[str, Any]:
+    """One call of `atlas`."""
+    return {"chains": [chain], "packets": packets, "order": order, "borders": borders}
+
+
+def make_data() -> None:
+    """All rows that the file has not; it may be stopped and called again."""
+    for number, arguments in enumerate(grids(), 1):
+        found = atlas(**arguments, reach=REACH, file=FILE)
+        print(number, found, flush=True)
+
+
+def tables(found: Atlas) -> dict[str, str]:
+    """The tables of the page by name."""
+    return {
+        "laws": laws_table(found),
+        "folds": folds_table(found),
+        "packets": packets_table(found),
+        "stability": stability_table(found),
+    }
+
+
+def rows_of(head: list[str], rows: list[list[str]]) -> str:
+    """A table of Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def exponent(found: Atlas, packet: str, border: str, model: str, **how: Any) -> str:
+    """A fitted power of N with its error, or why there is none."""
+    try:
+        law = found.law(packet, border, model=model, **how)
+    except InputError:
+        return ""
+    return f"{law.exponent:.2f} ± {law.error:.2f}"
+
+
+def laws_table(found: Atlas) -> str:
+    """Exponents of H in N at a fixed number of seeds."""
+    head = [
+        "model",
+        "packet",
+        "ratio",
+        "Padé poles",
+        "the same, lower order",
+        "fold",
+        "Newton's end",
+        "stability",
+    ]
+    rows = []
+    for model in MODELS:
+        for packet in ("low:1", "middle:1", "high:1", "low:2", "high:2"):
+            lower = ORDERS[int(packet[-1])][model][-1]
+            cells = [exponent(found, packet, name, model) for name in SERIES]
+            cells.append(exponent(found, packet, "poles", model, order=lower))
+            cells += [
+                exponent(found, packet, name, model)
+                for name in ("fold", "newton", "stability")
+            ]
+            if any(cells):
+                rows.append([model, packet, *cells])
+    return rows_of(head, rows)
+
+
+def chosen(found: Atlas, packet: str, border: str, model: str) -> dict[int, AtlasBorder]:
+    """Borders by N, of the largest order."""
+    members = sorted(found.borders, key=lambda b: b.order)
+    wanted = [
+        b for b in members if (b.packet, b.border, b.model) == (packet, border, model)
+    ]
+    return {b.N: b for b in wanted if b.energy is not None}
+
+
+def folds_table(found: Atlas) -> str:
+    """Energies of the lowest borders of one low seed, in units of lambda = 1."""
+    head = [
+        "model",
+        "N",
+        "ratio",
+        "Padé poles",
+        "fold",
+        "what folds",
+        "lambda of the fold",
+        "stability lost",
+    ]
+    rows = []
+    for model in ("alpha=1", "beta=1"):
+        by_name = {
+            name: chosen(found, "low:1", name, model)
+            for name in (*SERIES, "fold", "stability")
+        }
+        for N in LENGTHS:
+            cells = [energy(by_name[name].get(N)) for name in (*SERIES, "fold")]
+            fold = by_name["fold"].get(N)
+            what = (
+                ""
+                if fold is None
+                else f"mode {fold.details['mode']}, harmonic {fold.details['harmonic'][0]}"
+            )
+            size = "" if fold is None else f"{fold.energy / unit(model, N, 1):.3f}"
+            rows.append(
+                [model, str(N), *cells, what, size, energy(by_name["stability"].get(N))]
+            )
+    return rows_of(head, rows)
+
+
+def unit(model: str, N: int, s: int) -> float:
+    """The energy at which the paper's lambda is 1."""
+    if model == "alpha=1":
+        return math.pi**4 * s**4 / N**3
+    return math.pi**2 * s**2 / N
+
+
+def energy(border: AtlasBorder | None) -> str:
+    """To three digits."""
+    return "" if border is None else f"{border.energy:.3g}"
+
+
+def packets_table(found: Atlas) -> str:
+    """Energies per particle of packets that grow with the chain."""
+    head = ["model", "M", "N", "s", "H/N by ratio", "H/N by poles", "lambda (poles)"]
+    rows = []
+    for model in EXTENSIVE:
+        for part, lengths in PARTS.items():
+            ratio, poles = (chosen(found, f"low:{part}", name, model) for name in SERIES)
+            for N in lengths:
+                if N not in ratio or N not in poles:
+                    continue
+                s = len(poles[N].modes)
+                cells = [f"{border[N].energy / N:.3g}" for border in (ratio, poles)]
+                size = f"{poles[N].energy / unit(model, N, s):.3g}"
+                rows.append([model, part, str(N), str(s), *cells, size])
+    return rows_of(head, rows)
+
+
+def stability_table(found: Atlas) -> str:
+    """H N at which breathers lose stability."""
+    head = ["model", "packet", *(f"N = {N}" for N in LENGTHS[:3])]
+    rows = []
+    for model in ("alpha=1", "beta=1"):
+        for packet in ("low:1", "middle:1", "high:1"):
+            known = chosen(found, packet, "stability", model)
+            rows.append([model, packet, *(energy(known.get(N)) for N in LENGTHS[:3])])
+    return rows_of(head, rows)
+
+
+def with_tables(text: str, found: Atlas) -> str:
+    """The page with its tables made anew."""
+    for name, table in tables(found).items():
+        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
+        start, _, rest = text.partition(begin)
+        _, _, after = rest.partition(end)
+        text = f"{start}{begin}\n{table}\n{end}{after}"
+    return text
+
+
+def draw(found: Atlas) -> None:
+    """The pictures of the page."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from symfpu import plots
+
+    packets = ["low:1", "high:1", "low:2"]
+    for model, name in zip(("alpha=1", "beta=1"), PICTURES, strict=False):
+        axes = plots.atlas_borders(
+            found, models=[model], packets=packets, borders=["poles", "fold"]
+        )
+        save(axes, name)
+    axes = plots.atlas_map(found, N=16, model="alpha=1", border="fold")
+    save(axes, PICTURES[-1])
+
+
+def save(axes: Any, name: str) -> None:
+    """A picture beside the page."""
+    axes.figure.savefig(
+        HERE / name, dpi=110, bbox_inches="tight", metadata={"Software": None}
+    )
+
+
+def main() -> None:
+    """Data if asked for, then page and pictures."""
+    if sys.argv[1:] == ["--data"]:
+        make_data()
+    found = read_atlas(FILE)
+    PAGE.write_text(with_tables(PAGE.read_text(), found))
+    draw(found)
+
+
+if __name__ == "__main__":
+    main()

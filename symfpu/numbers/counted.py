@@ -1,0 +1,13 @@
+"""Counts in words, of one thing and of several."""
+
+from __future__ import annotations
+
+
+def counted(count: int, one: str, several: str = "") -> str:
+    """A number and what it counts; several : the plural, default with an s.
+
+    >>> from symfpu.numbers.counted import counted
+    >>> counted(1, "exponent"), counted(3, "energy", "energies")
+    ('1 exponent', '3 energies')
+    """
+    return f"{count:,} {one if count == 1 else several or one + 's'}"

@@ -1,0 +1,93 @@
+"""The orbit whose stability is claimed: its own checker proves it, and what its symmetry allows."""
+
+from fractions import Fraction
+from typing import NamedTuple
+
+from symfpu.proofs import check_existence
+from symfpu.proofs.reading import CertificateError, Json, check_kind, dyadic, need
+
+Place = tuple[int, int]  # harmonic n, mode q
+
+
+class Orbit(NamedTuple):
+    """What the certificate of existence has proved: an orbit within `radius` of these numbers.
+
+    couplings : of phi(r) = V'(r) - r by power of r. rows : c_q[n] 2^bits by harmonic, all modes.
+    """
+
+    N: int
+    couplings: dict[int, Fraction]
+    seed: int
+    omega: Fraction
+    bits: int
+    rows: list[list[int]]
+    radius: Fraction
+
+    @property
+    def even(self) -> bool:
+        """Whether V is even."""
+        return all(k % 2 for k in self.couplings)
+
+
+def check_existence_of(data: Json) -> str:
+    """The orbit exists: the sentence of the other checker."""
+    check_kind(data, check_existence.KIND)
+    try:
+        return check_existence.check_certificate(data)[0]
+    except CertificateError as error:
+        raise CertificateError(f"no orbit is proved: {error}") from error
+
+
+def orbit_of(data: Json) -> Orbit:
+    """The numbers of a certificate of existence that has been checked."""
+    claim = check_existence.read_claim(data)
+    need(not claim.bordered, "stability needs an orbit of exact frequency")
+    need(not claim.force.growths, "stability needs a polynomial potential")
+    rows = [[0] * claim.N for _ in range(claim.harmonics + 1)]
+    for (n, q), c in claim.orbit.items():
+        rows[n][q] = c
+    radius = dyadic(data["radius"], "radius")
+    couplings = claim.force.couplings
+    return Orbit(claim.N, couplings, claim.seed, claim.omega, claim.bits, rows, radius)
+
+
+class Sector(NamedTuple):
+    """Places (n, q) with q = first + slope n (mod 2), n = start (mod step).
+
+    folds : exponents count modulo folds omega. trivial : the velocity of the orbit is in it.
+    """
+
+    N: int
+    first: int
+    slope: int
+    start: int
+    step: int
+    folds: int
+    trivial: bool
+
+    def allowed(self, n: int) -> range:
+        """The modes at a harmonic."""
+        if (n - self.start) % self.step:
+            return range(0)
+        parity = (self.first + self.slope * n) % 2
+        return range(1 if parity else 2, self.N, 2)
+
+    @property
+    def exponents(self) -> int:
+        """How many exponents up to sign there are beside the double multiplier 1."""
+        modes = self.N - 1 if self.slope else len(self.allowed(self.start))
+        return modes - int(self.trivial)
+
+
+def sectors_of(orbit: Orbit) -> list[Sector]:
+    """The table of docs/stability-proofs.md; none is empty."""
+    N, parity = orbit.N, orbit.seed % 2
+    if orbit.even:
+        own = Sector(N, parity, 0, 1, 2, 2, True)
+        other = Sector(N, 1 - parity, 0, 0, 2, 2, False)
+    elif parity == 0:
+        own = Sector(N, 0, 0, 0, 1, 1, True)
+        other = Sector(N, 1, 0, 0, 1, 1, False)
+    else:
+        return [Sector(N, 0, 1, 0, 1, 2, True)]
+    return [own, other] if other.exponents else [own]

@@ -1,0 +1,113 @@
+"""What checkers read with: nothing but plain strings and integers passes, each key once, each number in its range."""
+
+import json
+from fractions import Fraction
+
+import pytest
+
+from symfpu.proofs.reading import CertificateError, Kind, check_kind, dyadic, fraction, need, read_kind, text_of, verified, whole
+from symfpu.proofs.rounding import scientific, up
+from tests.proofs.test_forgeries import sealed
+
+KIND = Kind("some certificate", 3, {"format", "schema", "value", "digest"})
+GOOD = sealed({"format": "some certificate", "schema": 3, "value": [1, -2, "1/2"]})
+
+
+def read(text, folder):
+    path = folder / "c.json"
+    path.write_text(text)
+    return read_kind(path, KIND)
+
+
+def test_a_certificate_is_read_as_it_was_written(tmp_path):
+    assert read(json.dumps(GOOD), tmp_path) == GOOD
+
+
+STRANGE = {
+    "a float": ('"value": [1.0, -2, "1/2"]', "not JSON of plain"),
+    "a power": ('"value": [1e0, -2, "1/2"]', "not JSON of plain"),
+    "a boolean": ('"value": [true, -2, "1/2"]', "not JSON of plain"),
+    "nothing": ('"value": [null, -2, "1/2"]', "not JSON of plain"),
+    "a long integer": (f'"value": [{"1" * 3000}, -2, "1/2"]', "not JSON of plain"),
+    "a key twice": ('"value": [1, -2, "1/2"], "value": [1, -2, "1/2"]', "there twice"),
+    "a key twice inside": ('"value": {"a": 1, "a": 2}', "there twice"),
+    "a key more": ('"more": 1, "value": [1, -2, "1/2"]', "missing or unknown"),
+    "another value": ('"value": [1, -2, "1/3"]', "the digest is not"),
+}
+
+
+@pytest.mark.parametrize("name", STRANGE)
+def test_what_is_no_plain_certificate_is_refused(name, tmp_path):
+    part, reason = STRANGE[name]
+    with pytest.raises(CertificateError, match=reason):
+        read(json.dumps(GOOD).replace('"value": [1, -2, "1/2"]', part), tmp_path)
+
+
+@pytest.mark.parametrize(("key", "value", "reason"), [("format", "other", "not a some certificate"), ("schema", 4, "supports schema 3")])
+def test_another_kind_or_version_is_refused(key, value, reason):
+    with pytest.raises(CertificateError, match=reason):
+        check_kind(sealed(GOOD | {key: value}), KIND)
+
+
+def test_a_large_file_is_not_read(tmp_path):
+    path = tmp_path / "c.json"
+    path.write_text("{}" + " " * 2**20)
+    with pytest.raises(CertificateError, match="at most 1 MB"):
+        text_of(path, largest_file=2**20)
+
+
+@pytest.mark.parametrize("value", [True, "5", None, 5.0, -1, 11])
+def test_an_integer_is_one_in_its_range(value):
+    assert whole(10, 0, 10, "it") == 10
+    with pytest.raises(CertificateError, match="it is out of its range"):
+        whole(value, 0, 10, "it")
+
+
+@pytest.mark.parametrize("text", ["1.5", "1/0", "1/-2", " 1", "1e3", "", 1, "1" * 20_001, "½"])
+def test_a_fraction_is_one_as_written(text):
+    assert fraction("-3/6", "it") == Fraction(-1, 2)
+    with pytest.raises(CertificateError, match="it is no fraction"):
+        fraction(text, "it")
+
+
+@pytest.mark.parametrize("pair", [[0, 1], [-1, 1], [1, -1], [1, 2**15], [2**8192 + 1, 0], [True, 1]])
+def test_a_bound_is_a_positive_dyadic_number(pair):
+    assert dyadic([3, 2], "it") == Fraction(3, 4)
+    with pytest.raises(CertificateError, match="it is out of its range"):
+        dyadic(pair, "it")
+
+
+@pytest.mark.parametrize("error", [OSError, KeyError, TypeError, AttributeError, RecursionError, ZeroDivisionError, OverflowError])
+def test_what_breaks_the_reading_refuses_the_certificate(error, tmp_path):
+    def broken(path):
+        raise error("reason")
+
+    with pytest.raises(CertificateError, match=r"no readable certificate.*reason"):
+        verified(tmp_path, broken, list)
+
+
+def test_a_reason_stays_as_it_is(tmp_path):
+    with pytest.raises(CertificateError, match=r"^reason$"):
+        verified(tmp_path, lambda _: {}, lambda _: need(False, "reason"))
+
+
+@pytest.mark.parametrize(
+    ("x", "digits", "text"),
+    [
+        (Fraction(0), 3, "0"),
+        (Fraction(1, 3), 3, "3.34e-1"),
+        (Fraction(-1, 3), 3, "-3.34e-1"),
+        (Fraction(9999, 1000), 3, "1.00e1"),
+        (Fraction(10) ** 30, 2, "1.0e30"),
+        (Fraction(7, 2), 1, "4"),
+        (Fraction(3), 3, "3.00"),
+    ],
+)
+def test_numbers_in_decimals_are_not_below_the_true_ones(x, digits, text):
+    assert scientific(x, digits) == text
+    assert abs(Fraction(scientific(x, digits))) >= abs(x)
+    assert abs(Fraction(scientific(x, digits, rounded=lambda y: y.__floor__()))) <= abs(x)
+
+
+def test_up_is_the_least_integer_not_below():
+    assert [up(x) for x in (Fraction(1, 2), Fraction(-1, 2), Fraction(4, 2), 3)] == [1, 0, 2, 3]
