@@ -20,7 +20,6 @@ from symfpu.action_angle.birkhoff import birkhoff_form
 from symfpu.action_angle.foretold import foretold_indices
 from symfpu.action_angle.newton_twist import NoTwist
 from symfpu.action_angle.twist import twist
-from symfpu.borders.atlas import atlas
 from symfpu.breathers.at_energy import NoBreatherAtEnergy
 from symfpu.breathers.balance import Balance, NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
@@ -71,6 +70,7 @@ from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.phantom import normal_frequency_series
 from symfpu.normal.search import normal_modes
 from symfpu.paper.corrected import TimeIsUp
+from symfpu.paper.side_by_side import TargetsFailed
 from symfpu.proofs.certificates import prove_propagation
 from symfpu.proofs.leading import leading_terms
 from symfpu.proofs.reading import CertificateError
@@ -85,7 +85,6 @@ from symfpu.spectral.analysis import frequency_analysis
 from symfpu.spectral.mapping import MapIncomplete
 from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
 from symfpu.sweeps.sweep import CaseTooLarge, SweepStopped
-from symfpu.sweeps.this_process import ThisProcess
 from symfpu.sweeps.workers import WorkerDied, WorkersDoNotStart
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.at_energy import NoTorusAtEnergy, torus_at_energy
@@ -227,9 +226,9 @@ RESULTS = {
     "AmplitudeHistory, digits": (lambda _: amplitude_history(series(30)), lambda x: x.differences()),
     "AppendixAFamily": (appendix, lambda x: [motion(m.torus) for m in x.members]),
     "Assessment": (lambda _: assess(torus().series, torus()), lambda x: x.record()),
-    "Atlas": (lambda _: borders_found(), lambda x: (x.borders, x.laws, x.points)),
-    "AtlasBorder": (lambda _: borders_found().borders[0], lambda x: (x.N, x.model, x.limited, x.reason)),
-    "BorderLaw": (lambda _: borders_found().law("high:1", "poles"), lambda x: x.local),
+    "Atlas": (lambda _: cases.borders_found(), lambda x: (x.borders, x.laws, x.points)),
+    "AtlasBorder": (lambda _: cases.borders_found().borders[0], lambda x: (x.N, x.model, x.limited, x.reason)),
+    "BorderLaw": (lambda _: cases.borders_found().law("high:1", "poles"), lambda x: x.local),
     "Bundle": (bundle, lambda x: motion(x.torus)),
     "Chain": (lambda _: Chain(8, alpha="1/3", beta="0.1"), lambda x: (x.frequencies(), x.small_parameter())),
     "Event": (lambda _: Event("fold", "omega_1", 3, 0.1, 0.2), lambda x: x.kind),
@@ -305,12 +304,6 @@ def normal_member():
 
 def sweep():
     return Sweep("beta", 1, (SweepCase(4, (1, 2), "refuted", ((3, 1, None),), True),))
-
-
-@cache
-def borders_found():
-    chains = [{"N": N, "beta": 1} for N in (1, 4, 6, 8)]
-    return atlas(chains, ["high:1"], 4, borders=["poles"], executor=ThisProcess())
 
 
 def swept_rows():
@@ -433,6 +426,7 @@ ERRORS = {
     WorkersDoNotStart: lambda: WorkersDoNotStart("exit code 1"),
     Interrupted: lambda: Interrupted("nothing is kept"),
     TimeIsUp: lambda: TimeIsUp(10.0, "step 3"),
+    TargetsFailed: lambda: TargetsFailed({"fig9": Interrupted("nothing is kept")}),
     CertificateError: lambda: CertificateError("a witness is zero"),
 }
 

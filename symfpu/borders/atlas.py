@@ -34,9 +34,8 @@ class AtlasBorder:
     """One border of an atlas. Made by `Atlas`; ours, dimensionless.
 
     chain : as it is typed. packet : as it was named; modes : its modes. order : of the series.
-    border : "ratio", "sums", "poles", "fold", "newton" or
-        "stability". energy : H there; None if there is
-        none. details : its record.
+    border : "ratio", "sums", "poles", "fold", "newton" or "stability". energy : H there; None if
+        there is none. details : its record.
 
     >>> chain = {"N": 8, "alpha": "0", "beta": "1"}
     >>> AtlasBorder(chain, "low:1", (1,), 8, "poles", 1.02, {"mode": 5}).model
@@ -273,8 +272,9 @@ def atlas(
         a point is wanted in any case. Each border is located to 1 % between points of its own.
     by : "energy", with equal mode energies, or "amplitude", with equal amplitudes.
     most_harmonics : of a torus of Newton's method, beyond which it is not followed; its residual
-        is 1e-9. reach : energies up to so many times that of the series' last point.
-    executor, file, retry, progress : as for `sweep`: a file is gone on with.
+        is 1e-9. reach : places up to so many times the series' last one.
+    executor, file, retry : as for `sweep`: a file is gone on with.
+    progress : called as (label, fraction done).
 
     Everything is dimensionless. Eq. omeser at every point, judged as by `assess`; ours. Tori in
     narrow resonances between two points are not seen. Raises InputError for arguments out of

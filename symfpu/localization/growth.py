@@ -101,7 +101,7 @@ class GrowthExponents(Tabled):
     >>> t = np.geomspace(1, 1e3, 61)
     >>> averages = np.stack([1 + 0 * t, np.minimum(1e-9 * t**2, 1e-4), 1e-20 + 0 * t], axis=-1)
     >>> growth_exponents(Chain(N=4, alpha=1), t, averages, [(1,), (2,)], window=(2, 100))
-    GrowthExponents(D_1 (1 modes): c = 2, spread 0, not saturated)
+    GrowthExponents(D_1 (1 mode): c = 2, spread 0, not saturated)
     >>> found = growth_exponents(Chain(N=4, alpha=1), t, averages, [(1,), (2,)], window=(2, 100))
     >>> found.to_frame()[["mode", "order", "exponent"]].round(6)
        mode  order  exponent

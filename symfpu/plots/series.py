@@ -169,10 +169,18 @@ def _leave_room(axes: Axes, sizes: list[float]) -> None:
     axes.set_xlim(10**left, 10**right)
 
 
+def _of_coefficient(coefficient: float, rounding: float) -> str:
+    """Its size; what is rounding alone is no size."""
+    if abs(coefficient) < rounding:
+        return "$c$ below rounding"
+    return f"$c$ = {_minus(f'{coefficient:.1e}')}"
+
+
 def _divisors(result: Any) -> list[_Divisor]:
     if isinstance(result, (RefinedTorus, RefinedRingTorus)):
         near = result.near_resonances
-        notes = [f"$c$ = {_minus(f'{r.coefficient:.1e}')}" for r in near]
+        rounding = EPS * float(np.abs(result.cosines).max())
+        notes = [_of_coefficient(float(r.coefficient), rounding) for r in near]
         pairs = zip(near, notes, strict=True)
         return [_Divisor(abs(r.divisor), r.mode, r.harmonic, note) for r, note in pairs]
     series = result.series if isinstance(result, QTorus) else result

@@ -12,6 +12,7 @@ from html import escape
 from typing import Any, NamedTuple
 
 from symfpu.action_angle.foretold import ForetoldIndices, settled_text
+from symfpu.borders.atlas import Atlas
 from symfpu.breathers.floquet import Floquet
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
@@ -23,6 +24,7 @@ from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import decimal
+from symfpu.plots.atlas import atlas_borders
 from symfpu.plots.families import family_frequencies
 from symfpu.plots.frequency_map import frequency_map
 from symfpu.plots.indices import alignment, foretold
@@ -260,6 +262,16 @@ def _line_rows(found: FrequencyAnalysis) -> Rows:
     yield "drift", f"{found.drift:.2g}"
 
 
+def _borders_found(found: Atlas) -> int:
+    return sum(border.energy is not None for border in found.borders)
+
+
+def _atlas_rows(found: Atlas) -> Rows:
+    yield "points", str(found.points)
+    for (model, packet, border), law in found.laws.items():
+        yield f"{border} of {packet}, {model}", f"N^({law.exponent:.3g} +- {law.error:.2g})"
+
+
 def _map_rows(found: FrequencyMap) -> Rows:
     yield "chain", _model(found.chain)
     yield "packet", _listed(found.packet)
@@ -335,6 +347,13 @@ USUAL = (
         frequency_map,
         lambda found: f"{found.counts.min()} to {found.counts.max()} frequencies",
         _map_rows,
+    ),
+    Usual(
+        Atlas,
+        atlas_borders,
+        lambda found: counted(_borders_found(found), "border"),
+        _atlas_rows,
+        lambda found: _borders_found(found) > 0,
     ),
     Usual(TodaInvariants, toda_gaps, lambda found: "gaps and actions", _toda_rows),
 )

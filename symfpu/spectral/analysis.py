@@ -87,7 +87,7 @@ class FrequencyAnalysis(Shown, Tabled):
     >>> orbit = integrate(torus.chain, *torus.state(), 1000, step=0.1)
     >>> found = frequency_analysis(orbit)
     >>> found
-    FrequencyAnalysis(N=4, alpha=0.3, T=1000, 1 independent frequencies: omega_1=... +- ...; ...)
+    FrequencyAnalysis(N=4, alpha=0.3, T=1000, 1 independent frequency: omega_1=... +- ...; ...)
     >>> bool(abs(found.frequencies[0] - float(torus.frequency)) < 1e-12)
     True
     """

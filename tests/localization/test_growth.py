@@ -83,7 +83,7 @@ def test_modes_without_a_stage_of_growth_have_no_exponent():
     Ebar[:, 2] = 0
     found = growth_exponents(Chain(4, alpha=1), t, Ebar, [(1,), (2,), (3,), ()])
     assert np.isnan(found.exponents).all()
-    assert "D_1 (1 modes): no stage of growth, saturated at 0.1 .. 0.1; D_2 (1 modes): no stage of growth, not saturated" in repr(found)
+    assert "D_1 (1 mode): no stage of growth, saturated at 0.1 .. 0.1; D_2 (1 mode): no stage of growth, not saturated" in repr(found)
 
 
 def test_modes_of_D_1_grow_as_first_order_theory_says():

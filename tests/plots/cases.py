@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 
 from symfpu.action_angle.foretold import foretold_indices
+from symfpu.borders.atlas import atlas
 from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
@@ -24,6 +25,7 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.series.travelling import travelling_waves
 from symfpu.spectral.analysis import frequency_analysis
 from symfpu.spectral.mapping import frequency_map
+from symfpu.sweeps.this_process import ThisProcess
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.ring_torus import travelling_torus
@@ -107,6 +109,13 @@ def lines_found():
     chain = Chain(N=5, alpha="0.3")
     start = fpu_trajectory(chain, {1: "0.3", 3: "0.2"})
     return frequency_analysis(integrate(chain, *start, 1000, step=0.25))
+
+
+@cache
+def borders_found():
+    """Three lengths of a chain, and one that is impossible."""
+    chains = [{"N": N, "beta": 1} for N in (1, 4, 6, 8)]
+    return atlas(chains, ["high:1"], 4, borders=["poles"], executor=ThisProcess())
 
 
 @cache

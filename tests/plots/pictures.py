@@ -49,6 +49,8 @@ PICTURES = {
     "normal-frequencies": lambda ax: plots.normal_frequencies(cases.normal(), ax),
     "family-normal-frequencies": lambda ax: plots.family_normal_frequencies(cases.normal_line(), ax),
     "lines": lambda ax: plots.lines(cases.lines_found(), ax),
+    "atlas-borders": lambda ax: plots.atlas_borders(cases.borders_found(), ax),
+    "atlas-map": lambda ax: plots.atlas_map(cases.borders_found(), ax, N=8, border="poles"),
     "frequency-map": lambda ax: plots.frequency_map(cases.mapped(), ax),
     "frequency-drift": lambda ax: plots.frequency_drift(cases.mapped(), ax),
     "multipliers": lambda ax: plots.multipliers(cases.stable_floquet(), ax),

@@ -27,6 +27,7 @@ RESULTS = {
     "ForetoldIndices": (cases.foretold, "slope -1, from t"),
     "FrequencyAnalysis": (cases.lines_found, "independent frequencies"),
     "FrequencyMap": (cases.mapped, "frequencies"),
+    "Atlas": (cases.borders_found, "3 borders"),
     "Floquet": (cases.stable_floquet, "stable"),
     "Family": (cases.pair, "reached"),
     "PropagationProof": (cases.proof, "refuted"),
