@@ -5,7 +5,7 @@ OUT ?= out
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 # workers of pytest share the cores
 OLD := -W ignore::DeprecationWarning -W ignore::PendingDeprecationWarning # old releases call newer ones of each other
 
-.PHONY: install reproduce test lowest bench sweeps long generated equations citation doors verdicts docs links clean
+.PHONY: install reproduce test lowest bench sweeps atlas long generated equations citation doors verdicts docs links clean
 
 install: .venv/installed
 
@@ -37,6 +37,9 @@ sweeps: install  ## decide the propagation rule for all seed sets: N <= 12, up t
 	mkdir -p $(OUT)
 	$(BIN)/symfpu sweep --model alpha --longest 12 --largest 3 --order 5 --file $(OUT)/alpha.jsonl -o $(OUT)/sweep-alpha.md
 	$(BIN)/symfpu sweep --model beta --longest 12 --largest 3 --order 3 --file $(OUT)/beta.jsonl -o $(OUT)/sweep-beta.md
+
+atlas: install  ## where tori end, docs/atlas.md: what its data lack first (about 40 minutes of processor time from nothing), tables, pictures
+	$(ONE_THREAD) $(BIN)/python docs/make_atlas.py --data
 
 long: install  ## tests that `make test` leaves out: minutes of exact checks, notebooks, whole figures
 	$(ONE_THREAD) $(BIN)/python -m pytest -m long -n auto --dist worksteal

@@ -107,18 +107,17 @@ def laws_table(found: Atlas) -> str:
         "Padé poles",
         "the same, lower order",
         "fold",
-        "Newton's end",
         "stability",
     ]
     rows = []
     for model in MODELS:
         for packet in ("low:1", "middle:1", "high:1", "low:2", "high:2"):
-            lower = ORDERS[int(packet[-1])][model][-1]
+            orders = ORDERS[int(packet[-1])][model]
             cells = [exponent(found, packet, name, model) for name in SERIES]
-            cells.append(exponent(found, packet, "poles", model, order=lower))
+            lower = exponent(found, packet, "poles", model, order=orders[-1])
+            cells.append(lower if len(orders) > 1 else "")
             cells += [
-                exponent(found, packet, name, model)
-                for name in ("fold", "newton", "stability")
+                exponent(found, packet, name, model) for name in ("fold", "stability")
             ]
             if any(cells):
                 rows.append([model, packet, *cells])

@@ -15,6 +15,7 @@ from symfpu.tori.verdict import short
 
 FIRST_PLACE, LOWERING, LOWERINGS = 1e-6, 1e-2, 6  # energies at which a ray is begun
 LARGEST_PLACE = 1e6  # no border is looked for beyond
+MOST_STEPS = 40  # on the way to a border
 SHORTEST, LONGEST = 1.3, 1e4  # factors of a step towards a border
 OVERSHOOT = 1.1
 WIDTH = 0.01  # of ln place, to which a border is located
@@ -88,12 +89,12 @@ def series_border(points: Points, estimate: str) -> SeriesBorder:
 
     begin = _begun(points, logarithm)
     below, above = _bracket(points, logarithm, begin)
-    brentq(
-        lambda x: logarithm(_rounded(math.exp(x))),
-        math.log(below),
-        math.log(above),
-        xtol=WIDTH,
-    )
+    ends = {math.log(below): logarithm(below), math.log(above): logarithm(above)}
+
+    def between(x: float) -> float:
+        return ends[x] if x in ends else logarithm(_rounded(math.exp(x)))
+
+    brentq(between, *ends, xtol=WIDTH)
     return _border(points, estimate)
 
 
@@ -132,7 +133,7 @@ def _bracket(
         if logarithm(point.place) <= 0:
             return below, point.place
         below = point.place
-    while below < LARGEST_PLACE:
+    for _ in range(MOST_STEPS):
         exponent = points.at(below).exponent
         size = math.log(OVERSHOOT) + exponent * logarithm(below)
         factor = math.exp(min(size, math.log(LONGEST)))
@@ -140,6 +141,8 @@ def _bracket(
         if logarithm(place) <= 0:
             return below, place
         below = place
+        if below > LARGEST_PLACE:
+            break
     raise NoBorder(f"the radius stays above 1 up to {below:g}")
 
 

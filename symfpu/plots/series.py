@@ -179,7 +179,7 @@ def _of_coefficient(coefficient: float, rounding: float) -> str:
 def _divisors(result: Any) -> list[_Divisor]:
     if isinstance(result, (RefinedTorus, RefinedRingTorus)):
         near = result.near_resonances
-        rounding = EPS * float(np.abs(result.cosines).max())
+        rounding = EPS * max(abs(float(A)) for A in result.amplitudes.values())
         notes = [_of_coefficient(float(r.coefficient), rounding) for r in near]
         pairs = zip(near, notes, strict=True)
         return [_Divisor(abs(r.divisor), r.mode, r.harmonic, note) for r, note in pairs]
