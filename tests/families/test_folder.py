@@ -67,7 +67,8 @@ def test_a_stopped_family_goes_on_as_if_it_had_not_been(run, tmp_path):
     arguments, options = RUNS[run]
     for members in (1, 5):
         part = family(*arguments, **options, members=members, folder=tmp_path)
-        assert part.ending == f"was left after {members} members, the most asked for"
+        count = "1 member" if members == 1 else f"{members} members"
+        assert part.ending == f"was left after {count}, the most asked for"
         assert len(part.members) == members
     alike(family(*arguments, **options, folder=tmp_path), whole(run))
     alike(family(*arguments, **options, folder=tmp_path), whole(run))

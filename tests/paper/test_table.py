@@ -141,7 +141,7 @@ def test_figure_1_is_computed_from_the_printed_frequencies(computed):
 
 @pytest.mark.long
 def test_reproduce_fig1_writes_pictures_data_and_claims(computed, monkeypatch, capsys, tmp_path):
-    """The alignment indices end at 1e3, before they decide."""
+    """The alignment indices end at 1e3, before they confirm what is foretold; the evidence says so."""
     monkeypatch.setattr("symfpu.paper.fig1.figure1_data", lambda step: computed[0])
     monkeypatch.setattr("symfpu.paper.dimensions.TIME", 1e3)
     assert main(["reproduce", "fig1", "-o", str(tmp_path), "--json"]) == 0
@@ -159,4 +159,7 @@ def test_reproduce_fig1_writes_pictures_data_and_claims(computed, monkeypatch, c
     assert claims["the energies E_q fall exponentially with q"]["verdict"] == "holds"
     assert claims["up to k = 24 the behaviour of the series appears as convergent"]["verdict"] == "does not hold"
     assert "the printed digits at order 22, 26" in claims["the amplitudes of order 24 are A_1 = 0.5848897"]["ours"]
-    assert claims["G_2 stays constant to 1e9"]["verdict"] == "undecided"
+    dimension = claims["G_2 stays constant to 1e9"]
+    assert dimension["verdict"] == "holds"
+    assert "to t = 1e+03" in dimension["ours"]
+    assert "slopes are not those foretold" in dimension["ours"]

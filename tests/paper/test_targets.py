@@ -171,7 +171,7 @@ def test_reproduce_convergence_writes_page_data_and_pictures(cancellation, breat
     with monkeypatch.context() as unseen:
         unseen.setattr("symfpu.paper.targets.draw_panels", lambda *given: [])
         figure = reproduced("convergence", tmp_path, lambda label, fraction: steps.append(label))
-    assert steps == ["first", "second", "convergence: pictures"]
+    assert steps == ["convergence", "first", "second", "convergence: pictures"]
     code = main(["reproduce", "convergence", "-o", str(tmp_path / "out"), "--json"])
     captured = capsys.readouterr()
     assert (code, captured.err) == (0, "")

@@ -24,7 +24,7 @@ RESULTS = {
     "Assessment": (cases.assessment, "undecided"),
     "Orbit": (cases.orbit, "energy error"),
     "AlignmentIndices": (cases.indices, "dimension 2"),
-    "ForetoldIndices": (cases.foretold, "slope -1, from t"),
+    "ForetoldIndices": (cases.foretold, "slope -1, settled from t"),
     "FrequencyAnalysis": (cases.lines_found, "independent frequencies"),
     "FrequencyMap": (cases.mapped, "frequencies"),
     "Atlas": (cases.borders_found, "3 borders"),
