@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.borders.fold import sheet_of
+from symfpu.borders.fold import MOST_UNKNOWNS, sheet_of
 from symfpu.borders.point import ENERGY, Ray
 from symfpu.breathers.floquet import floquet
 from symfpu.normal.modes import NoNormalModes
@@ -108,6 +108,8 @@ class NewtonEnd:
             return self._newton()
         if border in self.losses:
             return self.losses[border].record()
+        if border == FOLD and sheet_of(self.last.torus) is None:
+            return {"none": f"not looked for above {MOST_UNKNOWNS} coefficients of a torus"}
         return {"none": f"kept up to {self.last.place:.6g}: {self.reason}"}
 
     def _newton(self) -> Json:

@@ -7,6 +7,7 @@ import pytest
 
 from symfpu import Chain, lindstedt, refine_at_energy, torus_at_energy
 from symfpu.borders.fold import sheet_of
+from symfpu.borders.newton_end import NewtonEnd, RefinedPoint
 from symfpu.borders.point import _radius
 from tests.tolerances import FOLD_RADIUS, SHEET_DETERMINANT
 
@@ -96,4 +97,7 @@ def test_the_determinant_by_differences(part):
 
 def test_too_many_coefficients_are_said(monkeypatch):
     monkeypatch.setattr("symfpu.borders.fold.MOST_UNKNOWNS", 10)
-    assert sheet_of(followed(0.5 * FOLD)) is None
+    torus = followed(0.5 * FOLD)
+    assert sheet_of(torus) is None
+    end = NewtonEnd("left", 1.0, (RefinedPoint(0.5 * FOLD, torus),), {})
+    assert end.record("fold")["none"].startswith("not looked for")
