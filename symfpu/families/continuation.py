@@ -11,16 +11,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import Any
 
-import mpmath
 import numpy as np
 
 from symfpu.breathers.floquet import Floquet, floquet
-from symfpu.chain.chain import Chain
-from symfpu.chain.frequency_shift import frequency_shift
-from symfpu.errors import SymfpuError
+from symfpu.families.extrapolation import extrapolated
 from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
@@ -28,29 +24,22 @@ from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.normal.frequencies import NormalFrequencies
-from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import (
-    Amplitude,
     Condition,
     Energy,
     Plane,
     ratio_conditions,
 )
-from symfpu.refinement.equation import Floats, Ints
-from symfpu.refinement.invariance import DIGITS
+from symfpu.refinement.equation import Floats
 from symfpu.refinement.tori import (
-    TOLERANCE,
     NoTorus,
     RefinedTorus,
-    refine_at_amplitudes,
     refined_torus,
     shifts_of,
 )
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus
 
-GUESS_ORDER = 2  # of the series that begins a family
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
 # the smallest from a doubtful member: near a saddle such ones crawl on without end
 DOUBTFUL_STEP = 0.05
@@ -68,8 +57,6 @@ ENERGY_TOLERANCE = (
 OVERHANG = (
     1e-6  # of the distance of two tori, by which one between them may seem to lie outside
 )
-# relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
-GUESS_CHANGE = 0.3
 
 
 @dataclass(frozen=True)
@@ -248,65 +235,6 @@ class Event(Recorded):
         return f"{self.kind}: {self.what} at {where}{value}"
 
 
-def first_torus(
-    chain: Chain,
-    amplitudes: Mapping[int, float],
-    *,
-    energy_ratio: Mapping[int, float] | None = None,
-    tolerance: float = TOLERANCE,
-    progress: Progress | None = None,
-) -> RefinedTorus:
-    """The torus with these small amplitudes, from a short series about the lowest frequency shift.
-
-    energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed
-    is as given.
-    """
-    guess = _short_series(chain, amplitudes)
-    if energy_ratio is None:
-        return refine_at_amplitudes(
-            guess, amplitudes, tolerance=tolerance, progress=progress
-        )
-    first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
-    conditions = [first, *ratio_conditions(tuple(amplitudes), energy_ratio, energies=True)]
-    return refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
-
-
-def first_at(
-    level: Level,
-    chain: Chain,
-    amplitudes: Mapping[int, float],
-    ratio: Sequence[Condition],
-    *,
-    tolerance: float = TOLERANCE,
-    progress: Progress | None = None,
-) -> RefinedTorus:
-    """The torus of an energy near the linear limit, from a short series with about its amplitudes.
-
-    ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found
-    are far from those of the series: a torus of another family may have the energy.
-    """
-    guess = _short_series(chain, amplitudes)
-    conditions = [level.condition, *ratio]
-    found = refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
-    astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
-    if astray > GUESS_CHANGE:
-        raise NoTorus(
-            f"an amplitude is {astray:.0%} off the one expected", found, found.residual()
-        )
-    return found
-
-
-def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
-    """The series of lowest orders about the frequencies that these amplitudes shift."""
-    shifts = frequency_shift(chain, amplitudes)
-    with mpmath.workdps(DIGITS):
-        shifted = [chain.linear_frequency(q) + mpmath.mpf(shifts[q]) for q in amplitudes]
-        omega = [Fraction(text(w, 25)) for w in shifted]
-    series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
-    phases = dict.fromkeys(amplitudes, 0.0)
-    return QTorus(series, dict(amplitudes), phases, 0, GUESS_ORDER)
-
-
 def member(
     torus: RefinedTorus, *, multipliers: bool, normal: NormalFrequencies | None = None
 ) -> Member:
@@ -332,30 +260,6 @@ def series_member(torus: QTorus) -> Member:
     energy = float(torus.energy())
     harmonic = float(torus.harmonic_energies().sum())
     return Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings)
-
-
-def returned(members: Sequence[Member], *, tolerance: float) -> bool:
-    """Whether a family has come back to the linear limit.
-
-    It is below where it began, at the torus that the series there lead to.
-
-    Two tori of the same amplitudes nearer to each other than the root of the tolerance are one:
-    Newton's method leads from one to the other.
-    """
-    if len(members) < 3:
-        return False
-    first, (before, last) = members[0], members[-2:]
-    if not last.energy < min(first.energy, before.energy):
-        return False
-    if any(abs(last.amplitudes[q]) >= abs(a) for q, a in first.amplitudes.items()):
-        return False
-    try:
-        other = first_torus(first.torus.chain, last.amplitudes, tolerance=tolerance)
-    except SymfpuError:
-        return False
-    same = _cosines_at(last.torus.harmonics, other, 0 * other.cosines[0])
-    difference = np.abs(last.torus.cosines - same).max()
-    return bool(difference < np.sqrt(tolerance) * np.abs(other.cosines).max())
 
 
 class Way:
@@ -509,23 +413,3 @@ def _require_resolved(found: RefinedTorus) -> None:
         raise NoTorus(
             f"{len(found.harmonics)} harmonics do not resolve it", found, residual
         )
-
-
-def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> FourierTorus:
-    """The guess on the line through two tori, `ratio` of their distance beyond the second."""
-    earlier = _cosines_at(last.harmonics, before, 0 * last.cosines[0])
-    cosines = last.cosines + ratio * (last.cosines - earlier)
-    omega = zip(before.frequencies, last.frequencies, strict=True)
-    frequencies = tuple(b + Fraction(ratio) * (b - a) for a, b in omega)
-    phases = dict(last.phases)
-    return FourierTorus(
-        last.chain, last.seeds, frequencies, last.harmonics, cosines, phases
-    )
-
-
-def _cosines_at(harmonics: Ints, torus: QuasiPeriodic, missing: Floats) -> Floats:
-    """The cosines of a torus at these harmonics, (H, s); a row `missing` where it has none."""
-    rows = {tuple(nu): i for i, nu in enumerate(torus.harmonics.tolist())}
-    wanted = map(tuple, harmonics.tolist())
-    found = [torus.cosines[rows[nu]] if nu in rows else missing for nu in wanted]
-    return np.array(found)

@@ -19,9 +19,9 @@ from symfpu.families.continuation import (
     Level,
     Member,
     Way,
-    extrapolated,
     member,
 )
+from symfpu.families.extrapolation import extrapolated
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_way import NormalWay
 from symfpu.refinement.conditions import Crossing

@@ -25,18 +25,17 @@ from symfpu.families.appendix_a import (
     member_at,
     members_between,
 )
+from symfpu.families.beginnings import first_at, returned
 from symfpu.families.continuation import (
     Event,
     Level,
     Member,
     Way,
-    extrapolated,
-    first_at,
     members_grid,
-    returned,
     series_member,
 )
 from symfpu.families.events import continued, events_between
+from symfpu.families.extrapolation import extrapolated
 from symfpu.families.folder import BEGINNING, Kept, Plan, checked_family
 from symfpu.families.normal_events import RESONANCE_LENGTH, NormalEvent
 from symfpu.files.progress import Progress, unheard
