@@ -12,7 +12,11 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import SymfpuError
 from symfpu.families.continuation import Level, Member
-from symfpu.families.extrapolation import cosines_at
+from symfpu.families.extrapolation import (
+    FamilyTorus,
+    coefficients_at,
+    coefficients_of,
+)
 from symfpu.files.progress import Progress
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import Amplitude, Condition, ratio_conditions
@@ -20,11 +24,12 @@ from symfpu.refinement.invariance import DIGITS
 from symfpu.refinement.tori import (
     TOLERANCE,
     NoTorus,
-    RefinedTorus,
     refine_at_amplitudes,
     refined_torus,
 )
 from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.short_waves import short_waves
 from symfpu.tori.torus import QTorus
 
 GUESS_ORDER = 2  # of the series that begins a family
@@ -39,7 +44,7 @@ def first_torus(
     energy_ratio: Mapping[int, float] | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> RefinedTorus:
+) -> FamilyTorus:
     """The torus with these small amplitudes, from a short series about the lowest frequency shift.
 
     energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed
@@ -63,7 +68,7 @@ def first_at(
     *,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> RefinedTorus:
+) -> FamilyTorus:
     """The torus of an energy near the linear limit, from a short series with about its amplitudes.
 
     ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found
@@ -80,8 +85,10 @@ def first_at(
     return found
 
 
-def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
+def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus | RingTorus:
     """The series of lowest orders about the frequencies that these amplitudes shift."""
+    if chain.periodic:
+        return short_waves(chain, amplitudes, GUESS_ORDER)
     shifts = frequency_shift(chain, amplitudes)
     with mpmath.workdps(DIGITS):
         shifted = [chain.linear_frequency(q) + mpmath.mpf(shifts[q]) for q in amplitudes]
@@ -110,6 +117,7 @@ def returned(members: Sequence[Member], *, tolerance: float) -> bool:
         other = first_torus(first.torus.chain, last.amplitudes, tolerance=tolerance)
     except SymfpuError:
         return False
-    same = cosines_at(last.torus.harmonics, other, 0 * other.cosines[0])
-    difference = np.abs(last.torus.cosines - same).max()
-    return bool(difference < np.sqrt(tolerance) * np.abs(other.cosines).max())
+    harmonics, known = coefficients_of(last.torus)
+    same = coefficients_at(harmonics, other)
+    difference = np.abs(known - same).max()
+    return bool(difference < np.sqrt(tolerance) * np.abs(same).max())

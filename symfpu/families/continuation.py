@@ -9,14 +9,15 @@ it, so that a turn of the energy or of a frequency is passed like any other poin
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from symfpu.breathers.floquet import Floquet, floquet
-from symfpu.families.extrapolation import extrapolated
+from symfpu.chain.chain import Chain
+from symfpu.families.extrapolation import FamilyTorus, extrapolated
 from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
@@ -24,6 +25,7 @@ from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.normal.frequencies import NormalFrequencies
+from symfpu.normal.search import Solution
 from symfpu.refinement.conditions import (
     Condition,
     Energy,
@@ -33,11 +35,10 @@ from symfpu.refinement.conditions import (
 from symfpu.refinement.equation import Floats
 from symfpu.refinement.tori import (
     NoTorus,
-    RefinedTorus,
     refined_torus,
     shifts_of,
 )
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
@@ -59,9 +60,22 @@ OVERHANG = (
 )
 
 
+def linear_by_mode(chain: Chain, modes: Iterable[int]) -> dict[int, float]:
+    """Omega of modes of a chain in doubles, in their order."""
+    known, numbers = chain.frequencies().tolist(), chain.mode_numbers
+    return {q: known[numbers.index(q)] for q in modes}
+
+
+def harmonic_energy_of(torus: Solution) -> float:
+    """Sum E_q at the angles zero; of waves of a ring, nowhere at rest, averaged over the angles."""
+    if isinstance(torus, RingTorus):
+        return float(torus.average_spectrum().sum())
+    return float(torus.harmonic_energies().sum())
+
+
 @dataclass(frozen=True)
 class Level:
-    """An energy asked for, H or with `harmonic` sum E_q, at the angles zero."""
+    """An energy asked for, H or with `harmonic` sum E_q; see `harmonic_energy_of`."""
 
     energy: float
     harmonic: bool
@@ -71,9 +85,9 @@ class Level:
         """The symbol of this energy."""
         return "sum E_q" if self.harmonic else "H"
 
-    def of(self, torus: QuasiPeriodic) -> float:
+    def of(self, torus: Solution) -> float:
         """This energy of a torus."""
-        return float(torus.harmonic_energies().sum() if self.harmonic else torus.energy())
+        return harmonic_energy_of(torus) if self.harmonic else float(torus.energy())
 
     def of_member(self, found: Member) -> float:
         """This energy of a member, which knows both."""
@@ -98,7 +112,7 @@ class Member(Tabled):
     """One torus of a family; dimensionless.
 
     torus : the solution. amplitudes : by seed. energy : H, harmonic_energy : sum E_q, both at the
-        angles zero.
+        angles zero, of a ring sum E_q averaged over the angles.
     residual : of the equations of motion, relative to the largest acceleration.
         warnings : reasons to doubt it.
     multipliers : of a breather, normal : NormalFrequencies, if asked for. Ours; Appendix A has
@@ -113,7 +127,7 @@ class Member(Tabled):
     0       0  0.0005   torus
     """
 
-    torus: QuasiPeriodic
+    torus: Solution
     amplitudes: Mapping[int, float]
     energy: float
     harmonic_energy: float
@@ -236,7 +250,7 @@ class Event(Recorded):
 
 
 def member(
-    torus: RefinedTorus, *, multipliers: bool, normal: NormalFrequencies | None = None
+    torus: FamilyTorus, *, multipliers: bool, normal: NormalFrequencies | None = None
 ) -> Member:
     """A torus with its energies, its residual and, for a breather, its multipliers.
 
@@ -246,7 +260,7 @@ def member(
         torus=torus,
         amplitudes=torus.amplitudes,
         energy=float(torus.energy()),
-        harmonic_energy=float(torus.harmonic_energies().sum()),
+        harmonic_energy=harmonic_energy_of(torus),
         residual=torus.residual(),
         warnings=torus.warnings,
         multipliers=floquet(torus) if multipliers else None,
@@ -272,7 +286,7 @@ class Way:
         energies: bool,
         tolerance: float,
         progress: Progress | None,
-        tori: Sequence[RefinedTorus],
+        tori: Sequence[FamilyTorus],
         step: float,
         largest: float = 0.0,
     ) -> None:
@@ -281,7 +295,7 @@ class Way:
         self.tori, self.step = list(tori), step
         self.largest = largest  # relative shift so far
 
-    def local(self, *tori: RefinedTorus) -> Way:
+    def local(self, *tori: FamilyTorus) -> Way:
         """The same family from other tori, to look between members."""
         return Way(
             self.ratio,
@@ -299,7 +313,7 @@ class Way:
         The largest relative one, not far below any before.
         """
         torus = self.tori[0]
-        linear = torus.chain.frequencies()[np.array(torus.seeds) - 1]
+        linear = np.array(list(linear_by_mode(torus.chain, torus.seeds).values()))
         shifts = [np.abs(shifts_of(torus)).astype(float) for torus in self.tori[-2:]]
         relative = [float(np.max(shift / linear)) for shift in shifts]
         self.largest = max(self.largest, *relative)
@@ -311,13 +325,13 @@ class Way:
         ratio = ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)
         return [first, *ratio]
 
-    def variables(self, torus: RefinedTorus, scales: Floats) -> Floats:
+    def variables(self, torus: FamilyTorus, scales: Floats) -> Floats:
         """Where a torus is, (ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
         A = np.array([np.longdouble(abs(a)) for a in torus.amplitudes.values()])
         shifts = shifts_of(torus) / scales
         return np.concatenate([np.log(A), shifts])
 
-    def at(self, distance: float) -> RefinedTorus:
+    def at(self, distance: float) -> FamilyTorus:
         """The torus at this length of way from the last one, along the secant; raises NoTorus."""
         before, last = self.tori[-2:]
         scales = self.scales()
@@ -339,7 +353,7 @@ class Way:
             raise NoTorus(reason, found, found.residual())
         return found
 
-    def between(self, level: Level) -> RefinedTorus:
+    def between(self, level: Level) -> FamilyTorus:
         """The torus of an energy between those of the last two; raises NoTorus."""
         before, last = self.tori[-2:]
         low, high = level.of(before), level.of(last)
@@ -356,7 +370,7 @@ class Way:
             raise NoTorus(f"{torus} is not between two neighbours", found, found.residual())
         return found
 
-    def meeting(self, condition: Condition, guess: QuasiPeriodic) -> RefinedTorus:
+    def meeting(self, condition: Condition, guess: Solution) -> FamilyTorus:
         """The torus of a condition between the last two, from a guess.
 
         Raises NoTorus, also for one that is elsewhere or doubtful.
@@ -370,7 +384,7 @@ class Way:
             raise NoTorus("it is not between two neighbours", found, found.residual())
         return found
 
-    def place(self, torus: RefinedTorus) -> tuple[float, float]:
+    def place(self, torus: FamilyTorus) -> tuple[float, float]:
         """How far along the way between the last two tori another one is, and how far off it.
 
         Both in the distance of the two.
@@ -383,7 +397,7 @@ class Way:
         off = float(np.linalg.norm(gone - along * secant))
         return along, off / float(np.linalg.norm(secant))
 
-    def advance(self, goal: Level) -> RefinedTorus:
+    def advance(self, goal: Level) -> FamilyTorus:
         """The next torus, by the longest step that succeeds.
 
         That of the goal where it leads beyond. Raises NoTorus when none does.
@@ -405,7 +419,7 @@ class Way:
         return found
 
 
-def _require_resolved(found: RefinedTorus) -> None:
+def _require_resolved(found: FamilyTorus) -> None:
     """Raises NoTorus for what is no member of a family."""
     if min(found.frequencies) <= 0:  # the mirror image of the family behind a saddle
         raise NoTorus("a frequency passes zero", found, found.residual())

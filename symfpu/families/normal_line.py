@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.families.extrapolation import extrapolated, waves_extrapolated
+from symfpu.families.extrapolation import extrapolated, in_doubles
 from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import followed_modes
@@ -128,12 +128,8 @@ class Line:
             return self._known[near[0]]
         last, before = near
         ratio = (part - last) / (last - before)
-        earlier, later = self._known[before], self._known[last]
-        if isinstance(earlier, RingTorus) and isinstance(later, RingTorus):
-            return waves_extrapolated(earlier, later, ratio)
-        assert isinstance(earlier, QuasiPeriodic)
-        assert isinstance(later, QuasiPeriodic)
-        return extrapolated(earlier.in_doubles(), later.in_doubles(), ratio)
+        earlier, later = (in_doubles(self._known[p]) for p in (before, last))
+        return extrapolated(earlier, later, ratio)
 
     def modes_at(
         self, n: int, modes: tuple[int, ...], before: list[NormalModes]
