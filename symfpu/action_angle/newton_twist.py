@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symfpu.action_angle.actions import half_weighted
+from symfpu.action_angle.actions import actions, half_weighted
 from symfpu.errors import SymfpuError
 from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.numbers.arithmetic import Numbers
@@ -53,6 +53,13 @@ def changes_by_newton(torus: QuasiPeriodic | RingTorus) -> tuple[Floats, Floats]
     """
     found = _changes(torus)
     return found.by_shift.T, found.by_action.T
+
+
+def action_turn(torus: QuasiPeriodic | RingTorus) -> float:
+    """det of d ln I_i / d ln A_j: it passes zero where the actions turn on a family; NoTwist."""
+    by_action = _changes(torus).by_action
+    by_logarithm = by_action / np.array(list(actions(torus).values()))
+    return float(np.linalg.det(by_logarithm))
 
 
 @dataclass(frozen=True, eq=False)
