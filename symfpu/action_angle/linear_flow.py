@@ -25,6 +25,7 @@ from symfpu.normal.search import Solution
 from symfpu.refinement.equation import Floats, Ints
 
 Complex = NDArray[np.complex128]
+Sum = tuple[Complex, Values]  # weights of harmonics (T, H) and their coefficients (H, n)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,10 +96,10 @@ class LinearFlow:
         along, across = [], []
         for i, changed in enumerate(self._by_action):
             moved = waves * (1j * nu[:, i])
-            along.append(self._state(moved @ c, (moved * rates) @ c))
+            along.append(self._state([(moved, c)], [(moved * rates, c)]))
             turned = waves * (1j * (nu @ self.twist[:, i]))
-            momenta = (waves * rates) @ changed + turned @ c
-            across.append(self._state(waves @ changed, momenta))
+            momenta = [(waves * rates, changed), (turned, c)]
+            across.append(self._state([(waves, changed)], momenta))
         return np.stack(along, axis=2), np.stack(across, axis=2)
 
     def _across(self, theta: Floats, along: Floats, across: Floats) -> Floats:
@@ -111,18 +112,28 @@ class LinearFlow:
             if known not in waves:
                 waves = {known: np.exp(1j * (theta @ direction.harmonics.T))}
             rates = 1j * (direction.sigma + direction.rates)
-            Q = waves[known] @ direction.coefficients
-            P = (waves[known] * rates) @ direction.coefficients
-            found[:, :, 2 * place] = self._state(Q, P)
-            found[:, :, 2 * place + 1] = self._state(-1j * Q, -1j * P)
+            p = direction.coefficients
+            for part, turn in enumerate((1, -1j)):
+                turned = turn * waves[known]
+                found[:, :, 2 * place + part] = self._state(
+                    [(turned, p)], [(turned * rates, p)]
+                )
         if self.exact:
             return found
         inwards, outwards = symplectic(across, found), symplectic(along, found)
         return np.asarray(found + along @ inwards - across @ outwards)
 
-    def _state(self, Q: Values, P: Values) -> Floats:
-        """Displacements and momenta of complex modes (T, n); (T, 2D)."""
-        return np.concatenate([(Q @ self._shapes).real, (P @ self._shapes).real], axis=1)
+    def _state(self, positions: Sequence[Sum], momenta: Sequence[Sum]) -> Floats:
+        """Displacements and momenta of sums over harmonics; (T, 2D)."""
+        parts = [sum(map(self._displaced, sums)) for sums in (positions, momenta)]
+        return np.concatenate(parts, axis=1)
+
+    def _displaced(self, one: Sum) -> Floats:
+        """The real part of a sum over harmonics, displaced by its modes; (T, D)."""
+        weights, table = one
+        if np.isrealobj(table) and np.isrealobj(self._shapes):
+            return np.asarray(weights.real @ table @ self._shapes)
+        return np.asarray((weights @ table @ self._shapes).real)
 
     def coordinates(self, deviations: Floats) -> Floats:
         """Of deviations (2D, k) at t = 0, by the columns of the basis; (2n, k)."""
