@@ -245,7 +245,15 @@ def read_claim(data: Json) -> Claim:
     need(all(w > 0 for w in omega), "a frequency is not positive")
     bits = whole(data["bits"], 1, MOST_BITS, "bits")
     torus = read_series(data["torus"], bits, N, seeds, parity=0, even=True)
+    check_angles(torus, len(seeds))
     return Claim(N, couplings, list(seeds), omega, torus)
+
+
+def check_angles(torus: list[Series], count: int) -> None:
+    """Every angle moves a particle by a harmonic of its own: no point, and no torus of fewer."""
+    for m in range(count):
+        own = tuple(int(i == m) for i in range(count))
+        need(any(x.values.get(own) for x in torus), f"nothing moves with the angle {m + 1}")
 
 
 def read_couplings(texts: Any) -> dict[int, Fraction]:
@@ -742,7 +750,9 @@ def check_certificate(data: Json) -> list[str]:
 def residual_text(claim: Claim, data: Json, stated: Fraction) -> str:
     """The first theorem."""
     law = " + ".join(f"({c}) r^{k + 1}/{k + 1}" for k, c in claim.couplings.items())
-    omega = ", ".join(scientific(w, 12) for w in claim.omega)
+    digits = [scientific(w, 12) for w in claim.omega]
+    exact = list(map(Fraction, digits)) == claim.omega
+    omega = ", ".join(digits) if exact else f"near {', '.join(digits)} (exact in it)"
     return (
         f"theorem: in the chain of N = {claim.N} bonds with fixed ends and V = r^2/2 + {law} the "
         f"torus of the certificate, {len(data['torus'])} harmonics of {claim.angles} angles with "
