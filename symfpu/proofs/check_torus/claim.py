@@ -49,7 +49,15 @@ def read_claim(data: Json) -> Claim:
     need(all(w > 0 for w in omega), "a frequency is not positive")
     bits = whole(data["bits"], 1, MOST_BITS, "bits")
     torus = read_series(data["torus"], bits, N, seeds, parity=0, even=True)
+    check_angles(torus, len(seeds))
     return Claim(N, couplings, list(seeds), omega, torus)
+
+
+def check_angles(torus: list[Series], count: int) -> None:
+    """Every angle moves a particle by a harmonic of its own: no point, and no torus of fewer."""
+    for m in range(count):
+        own = tuple(int(i == m) for i in range(count))
+        need(any(x.values.get(own) for x in torus), f"nothing moves with the angle {m + 1}")
 
 
 def read_couplings(texts: Any) -> dict[int, Fraction]:

@@ -26,7 +26,9 @@ def check_certificate(data: Json) -> list[str]:
 def residual_text(claim: Claim, data: Json, stated: Fraction) -> str:
     """The first theorem."""
     law = " + ".join(f"({c}) r^{k + 1}/{k + 1}" for k, c in claim.couplings.items())
-    omega = ", ".join(scientific(w, 12) for w in claim.omega)
+    digits = [scientific(w, 12) for w in claim.omega]
+    exact = list(map(Fraction, digits)) == claim.omega
+    omega = ", ".join(digits) if exact else f"near {', '.join(digits)} (exact in it)"
     return (
         f"theorem: in the chain of N = {claim.N} bonds with fixed ends and V = r^2/2 + {law} the "
         f"torus of the certificate, {len(data['torus'])} harmonics of {claim.angles} angles with "
