@@ -19,7 +19,7 @@ def lines_of(energy, T):
 def test_each_angle_more_brings_the_torus_nearer_to_the_trajectory():
     """A trajectory on a torus of more angles than it is given would stay where it is."""
     start, _ = packet_state(CHAIN, (1,), "0.001")
-    lines = lines_of("0.001", 2e5)
+    lines = lines_of("0.001", 1e5)
     distances = []
     for s in (1, 2, 3, 4):
         near = torus_near(lines, range(1, s + 1))
