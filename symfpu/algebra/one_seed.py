@@ -18,8 +18,11 @@ from numba.extending import intrinsic
 
 from symfpu.algebra import uncompiled
 from symfpu.algebra.kernels import as_doubles, reduce_lanes
-from symfpu.algebra.uncompiled import TILE
-from symfpu.compiled import JIT, compiled
+from symfpu.compiled import JIT, compiled, vector_bits
+
+# rows of a result that are summed at once: eight vectors, of 512 bits or two halves of 256 a row,
+# hide the time that a sum takes, and leave registers for the factors
+TILE = 8 if vector_bits() == 512 else 4
 
 INT64 = ir.IntType(64)
 DOUBLE = ir.DoubleType()
@@ -121,8 +124,9 @@ def _convolution(tile: int) -> Any:
     return code
 
 
-add_tile: Any = _convolution(TILE) if JIT else uncompiled.add_tile
-add_one_row: Any = _convolution(1) if JIT else uncompiled.add_one_row
+convolution: Any = _convolution if JIT else uncompiled.convolution
+add_tile: Any = convolution(TILE)
+add_one_row: Any = convolution(1)
 
 
 @compiled()

@@ -25,7 +25,7 @@ def test_it_is_the_general_product(top, width):
     lanes = (0.0,) * width
     ours, general = np.zeros((2, top + 1, width))
     first = int(grading.canonical(top)[0])
-    tiles = np.arange(first, top + 1, uncompiled.TILE)
+    tiles = np.arange(first, top + 1, one_seed.TILE)
     count = one_seed.convolve(lanes, left, right, ours, splits, grading.first_row, tiles)
     blocks, none = grading.wanted_blocks(top), np.zeros(0, dtype=bool)
     start = int(grading.first_row[top])
@@ -37,12 +37,12 @@ def test_it_is_the_general_product(top, width):
 
 def test_a_tile_is_its_definition():
     left, right = integers(20, 8, 3), integers(20, 8, 4)
-    expected, ours, interpreted = np.ones((3, 9, 8))
-    for t in range(uncompiled.TILE):
+    expected, ours, interpreted = np.ones((3, 12, 8))
+    for t in range(one_seed.TILE):
         for n in range(7):
             expected[2 + t] += left[1 + n] * right[9 + t - n]
     one_tile(left, right, ours)
-    uncompiled.add_tile((0.0,) * 8, left, 1, right, 9, 7, interpreted, 2)
+    uncompiled.convolution(one_seed.TILE)((0.0,) * 8, left, 1, right, 9, 7, interpreted, 2)
     assert np.array_equal(ours, expected)
     assert np.array_equal(interpreted, expected)
 
