@@ -17,6 +17,7 @@ from symfpu.algebra.dense import Bonds, DenseRing, Floats, ValuesRing
 from symfpu.algebra.grading import Ints
 
 SAFE_EXPONENT = 200
+SMALLEST_NORMAL = np.finfo(np.float64).tiny
 
 
 class DoublesRing(DenseRing[Bonds]):
@@ -60,6 +61,11 @@ class Float64Ring(DoublesRing[Floats], ValuesRing):
         if shift:  # else one step of the exponent would lead further away
             self.exponent += shift
             self._rescale(degree, shift)
+
+    def _store(self, target: Floats, degree: int, rows: Ints, values: Floats) -> None:
+        """Subnormal numbers, which have lost digits and take a hundred products' time, as zero."""
+        kept = np.abs(values) >= SMALLEST_NORMAL
+        super()._store(target, degree, rows, np.where(kept, values, 0.0))
 
     def _rescale(self, degree: int, shift: int) -> None:
         """Multiply everything stored of degree d by 2^(-shift (d - 1))."""

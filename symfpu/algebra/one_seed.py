@@ -140,12 +140,23 @@ def _add_terms(lanes, left, i, right, j, first, last, out, o):  # type: ignore[n
 
 
 @compiled()
+def _zero_rows(values, start, degree):  # type: ignore[no-untyped-def]
+    """How many rows of a degree are zero before the first that is not; after the last as many."""
+    for n in range(degree + 1):
+        for lane in range(values.shape[1]):
+            if values[start + n, lane] != 0.0:
+                return n
+    return degree + 1
+
+
+@compiled()
 def convolve(lanes, left, right, out, splits, starts, tiles, moduli=None, limit=0):  # type: ignore[no-untyped-def]
     """out[p] += sum of left_d[m] right_e[p - m] over all splits (d, e) of a degree.
 
     Returns the number of multiply-adds.
 
-    lanes : a tuple whose length is the row's. left, right : (rows of all degrees, lanes). out :
+    lanes : a tuple whose length is the row's. left, right : (rows of all degrees, lanes), each
+    degree the same from both ends; rows of zeros there are passed over: high harmonics. out :
     (rows of this degree, lanes). starts : (degrees,) first row of each. tiles : first rows of the
     tiles to fill. moduli, limit : as of `kernels.multiply`; a split has fewer products than that.
     """
@@ -153,23 +164,28 @@ def convolve(lanes, left, right, out, splits, starts, tiles, moduli=None, limit=
     pending = 1
     for split in range(len(splits)):
         d, e = splits[split, 0], splits[split, 1]
+        i, j = starts[d], starts[e]
+        # rows of both factors that are not zero, as many at either end
+        low, lowest = _zero_rows(left, i, d), _zero_rows(right, j, e)
+        high, highest = d - low, e - lowest
+        if low > d or lowest > e:
+            continue
         if moduli is not None:
             added = min(d, e) + 1
             if pending + added > limit:
                 _reduce_tiles(out, tiles, moduli)
                 pending = 1
             pending += added
-        i, j = starts[d], starts[e]
         for p in tiles:
             # terms that all rows of the tile have
-            first, last = max(0, p + TILE - 1 - e), min(d, p)
+            first, last = max(low, p + TILE - 1 - highest), min(high, p - lowest)
             whole = p + TILE <= len(out) and first <= last
             if whole:
                 shared = last + 1 - first
                 add_tile(lanes, left, i + first, right, j + p - first, shared, out, p)
                 count += TILE * shared
             for t in range(p, min(p + TILE, len(out))):
-                begin, end = max(0, t - e), min(d, t)
+                begin, end = max(low, t - highest), min(high, t - lowest)
                 if whole:
                     count += _add_terms(
                         lanes, left, i, right, j + t, begin, first - 1, out, t

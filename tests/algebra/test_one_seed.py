@@ -47,6 +47,29 @@ def test_a_tile_is_its_definition():
     assert np.array_equal(interpreted, expected)
 
 
+@pytest.mark.parametrize("zeros", [0, 3, 8])
+def test_rows_of_zeros_at_both_ends_cost_nothing_and_change_nothing(zeros):
+    """Degrees whose highest harmonics are zero: the general product, with fewer multiply-adds."""
+    top, width = 40, 8
+    grading = Grading(seeds=1, degree=top)
+    values = integers(int(grading.first_row[-1]), width, 1)
+    for d in range(1, top):
+        rows = values[grading.first_row[d] : grading.first_row[d + 1]]
+        kept = np.abs(2 * np.arange(d + 1) - d) <= d - 2 * zeros
+        rows[:] = np.where(kept[:, None], rows + rows[::-1], 0.0)
+    splits = np.array([(d, top - d) for d in range(1, top)])
+    lanes, first = (0.0,) * width, int(grading.canonical(top)[0])
+    ours, general = np.zeros((2, top + 1, width))
+    tiles = np.arange(first, top + 1, one_seed.TILE)
+    count = one_seed.convolve(lanes, values, values, ours, splits, grading.first_row, tiles)
+    blocks, none = grading.wanted_blocks(top), np.zeros(0, dtype=bool)
+    start = int(grading.first_row[top])
+    whole = kernels.multiply(lanes, values, values, general, top, start, splits, False, none, blocks, grading.tables, None)
+    assert np.array_equal(ours[first:], general[first:])
+    assert general[first:].any()
+    assert count < whole if zeros else count == whole
+
+
 @compiled(keep=False)
 def one_tile(left, right, out):
     one_seed.add_tile((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), left, 1, right, 9, 7, out, 2)
