@@ -9,8 +9,10 @@ module imports numba.
 
 from __future__ import annotations
 
+import platform
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
@@ -24,6 +26,10 @@ from symfpu.compiled import JIT, compiled, vector_bits
 # hide the time that a sum takes, and leave registers for the factors
 TILE = 8 if vector_bits() == 512 else 4
 
+X86 = platform.machine() in ("x86_64", "AMD64")
+FLUSH = np.uint32(0x8040)  # subnormal results, and subnormal factors, as zero
+
+_untyped: Any = cgutils
 INT64 = ir.IntType(64)
 DOUBLE = ir.DoubleType()
 
@@ -52,9 +58,8 @@ class _Tile:
     """Sums in registers, one for each row of a tile, in the code that is written."""
 
     def __init__(self, builder: Any, results: _Rows, o: Any, count: int) -> None:
-        untyped: Any = cgutils
         self.builder, self.results, self.o = builder, results, o
-        self.sums = [untyped.alloca_once(builder, results.vector) for _ in range(count)]
+        self.sums = [_untyped.alloca_once(builder, results.vector) for _ in range(count)]
         for t, place in enumerate(self.sums):
             builder.store(results.load(o, t), place, align=8)
 
@@ -129,6 +134,44 @@ add_tile: Any = convolution(TILE)
 add_one_row: Any = convolution(1)
 
 
+@intrinsic
+def _control_code(_context: Any) -> Any:
+    """The control word of the processor's floating-point vectors; 0 where it is no x86."""
+
+    def generate(_target: Any, builder: Any, _signature: Any, _args: Any) -> Any:
+        if not X86:
+            return ir.IntType(32)(0)
+        place = _untyped.alloca_once(builder, ir.IntType(32))
+        _control_call(builder, "llvm.x86.sse.stmxcsr", place)
+        return builder.load(place)
+
+    return types.uint32(), generate
+
+
+@intrinsic
+def _set_control_code(_context: Any, control: Any) -> Any:
+    """Sets that word."""
+
+    def generate(target: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        if X86:
+            place = _untyped.alloca_once_value(builder, args[0])
+            _control_call(builder, "llvm.x86.sse.ldmxcsr", place)
+        return target.get_dummy_value()
+
+    return types.void(types.uint32), generate
+
+
+def _control_call(builder: Any, name: str, place: Any) -> None:
+    pointer = ir.IntType(8).as_pointer()
+    signature = ir.FunctionType(ir.VoidType(), [pointer])
+    function = _untyped.get_or_insert_function(builder.module, signature, name)
+    builder.call(function, [builder.bitcast(place, pointer)])
+
+
+control: Any = _control_code if JIT else uncompiled.control
+set_control: Any = _set_control_code if JIT else uncompiled.set_control
+
+
 @compiled()
 def _add_terms(lanes, left, i, right, j, first, last, out, o):  # type: ignore[no-untyped-def]
     """out[o] += sum of left[i + m] right[j - m] over first <= m <= last; how many they are."""
@@ -153,13 +196,24 @@ def _zero_rows(values, start, degree):  # type: ignore[no-untyped-def]
 def convolve(lanes, left, right, out, splits, starts, tiles, moduli=None, limit=0):  # type: ignore[no-untyped-def]
     """out[p] += sum of left_d[m] right_e[p - m] over all splits (d, e) of a degree.
 
-    Returns the number of multiply-adds.
+    Returns the number of multiply-adds. Sums below the smallest normal number become zero: a
+    processor takes a hundred times as long for them.
 
     lanes : a tuple whose length is the row's. left, right : (rows of all degrees, lanes), each
     degree the same from both ends; rows of zeros there are passed over: high harmonics. out :
     (rows of this degree, lanes). starts : (degrees,) first row of each. tiles : first rows of the
     tiles to fill. moduli, limit : as of `kernels.multiply`; a split has fewer products than that.
     """
+    before = control()
+    set_control(before | FLUSH)
+    count = _convolve(lanes, left, right, out, splits, starts, tiles, moduli, limit)
+    set_control(before)
+    return count * len(lanes)
+
+
+@compiled()
+def _convolve(lanes, left, right, out, splits, starts, tiles, moduli, limit):  # type: ignore[no-untyped-def]
+    """The sums, and how many products of rows they have."""
     count = 0
     pending = 1
     for split in range(len(splits)):
@@ -194,7 +248,7 @@ def convolve(lanes, left, right, out, splits, starts, tiles, moduli=None, limit=
                 count += _add_terms(lanes, left, i, right, j + t, begin, end, out, t)
     if moduli is not None:
         _reduce_tiles(out, tiles, moduli)
-    return count * len(lanes)
+    return count
 
 
 @compiled()

@@ -67,6 +67,15 @@ def convolution(tile: int) -> Any:
     return add
 
 
+def control() -> Any:
+    """The processor's way with subnormal numbers, which NumPy's loops leave alone."""
+    return np.uint32(0)
+
+
+def set_control(word: Any) -> None:
+    """Nothing is set."""
+
+
 def _exact_product(a: Any, b: Any) -> tuple[Any, Any]:
     """The product rounded, and what rounding took from it (Dekker)."""
     product = a * b

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from symfpu import compiled as compiled_loops
 from symfpu.algebra import kernels, one_seed, uncompiled
 from symfpu.algebra.grading import Grading
 from symfpu.chain.chain import Chain
@@ -68,6 +69,16 @@ def test_rows_of_zeros_at_both_ends_cost_nothing_and_change_nothing(zeros):
     assert np.array_equal(ours[first:], general[first:])
     assert general[first:].any()
     assert count < whole if zeros else count == whole
+
+
+@pytest.mark.skipif(not (compiled_loops.JIT and one_seed.X86), reason="only there the processor is told")
+def test_subnormal_sums_are_zero_and_the_processor_is_left_as_it_was():
+    grading, lanes = Grading(seeds=1, degree=2), (0.0,) * 8
+    values = np.full((int(grading.first_row[-1]), 8), 2.0**-520)
+    out = np.zeros((3, 8))
+    one_seed.convolve(lanes, values, values, out, np.array([(1, 1)]), grading.first_row, np.array([1]))
+    assert not out.any()
+    assert (values * values).all()
 
 
 @compiled(keep=False)
