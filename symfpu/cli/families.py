@@ -13,6 +13,7 @@ from symfpu.cli.chains import (
     AlphaOption,
     BetaOption,
     BondsOption,
+    EndsOption,
     PotentialOption,
     chain_of,
     solution_of,
@@ -208,6 +209,7 @@ def follow_family(
     alpha: AlphaOption = "0",
     beta: BetaOption = "0",
     potential: PotentialOption = None,
+    ends: EndsOption = "fixed",
     harmonic: Annotated[
         bool,
         typer.Option(
@@ -260,7 +262,7 @@ def follow_family(
     as_json: JsonOption = False,
 ) -> None:
     """A family of tori from small energy on, past folds and past the end of its series."""
-    chain = chain_of(bonds, alpha, beta, potential)
+    chain = chain_of(bonds, alpha, beta, potential, ends)
     chosen = tuple(whole_numbers("seeds", seeds))
     picture = picture_named(plot)
     saved = file_named(kept_file)
