@@ -13,6 +13,7 @@ from symfpu.bundles.bundle import save
 from symfpu.cli.chains import chain_of
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
+from symfpu.cli.runs import StepOption, TimeOption
 from symfpu.cli.starts import (
     EnergyOption,
     OwnAlpha,
@@ -55,9 +56,7 @@ ENERGY_DIGITS = 4  # of the energies of a range
 @app.command(epilog="Example: symfpu frequencies torus.symfpu --time 1e5")
 def frequencies(
     context: typer.Context,
-    time: Annotated[
-        str, typer.Option("--time", help="How long to follow it, such as 1e6.", metavar="T")
-    ],
+    time: TimeOption,
     file: StartArgument = None,
     state: StateOption = None,
     packet: PacketOption = None,
@@ -75,7 +74,7 @@ def frequencies(
     alpha: OwnAlpha = None,
     beta: OwnBeta = None,
     potential: OwnPotential = None,
-    step: Annotated[str, typer.Option(help="Length of a step.", metavar="H")] = "0.2",
+    step: StepOption = "0.2",
     lines: Annotated[
         str, typer.Option(help="Lines of each mode, at most.", metavar="L")
     ] = "8",

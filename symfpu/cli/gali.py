@@ -22,6 +22,7 @@ from symfpu.action_angle.linear_flow import LinearFlow
 from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
+from symfpu.cli.runs import CheckpointOption, SamplesOption, StepOption, kept_run
 from symfpu.cli.starts import (
     EnergyOption,
     OwnAlpha,
@@ -38,7 +39,6 @@ from symfpu.cli.starts import (
 )
 from symfpu.cli.terminal import (
     JsonOption,
-    kept_run,
     number,
     optional,
     path_named,
@@ -90,15 +90,11 @@ def gali(
             metavar="M",
         ),
     ] = None,
-    step: Annotated[str, typer.Option(help="Step of the integrator.", metavar="H")] = str(
-        STEP
-    ),
+    step: StepOption = str(STEP),
     scheme: Annotated[
         str, choice("--scheme", tuple(PARTICLE_SCHEMES), "Integrator.")
     ] = SCHEME,
-    samples: Annotated[
-        str, typer.Option(help="Times at which the indices are kept.", metavar="S")
-    ] = str(SAMPLES),
+    samples: SamplesOption = str(SAMPLES),
     seed: Annotated[
         str, typer.Option(help="Seed of the random deviation vectors.", metavar="SEED")
     ] = "0",
@@ -111,13 +107,7 @@ def gali(
             "-o", "--output", help="Folder for gali.csv and the pictures.", metavar="FOLDER"
         ),
     ] = None,
-    checkpoint: Annotated[
-        str | None,
-        typer.Option(
-            help="Keep the run in this file, and go on from it if it was killed.",
-            metavar="FILE",
-        ),
-    ] = None,
+    checkpoint: CheckpointOption = None,
     estimate: Annotated[
         bool,
         typer.Option(

@@ -14,6 +14,13 @@ from numpy.typing import NDArray
 from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
+from symfpu.cli.runs import (
+    CheckpointOption,
+    SamplesOption,
+    StepOption,
+    TimeOption,
+    kept_run,
+)
 from symfpu.cli.starts import (
     EnergyOption,
     OwnAlpha,
@@ -30,7 +37,6 @@ from symfpu.cli.starts import (
 )
 from symfpu.cli.terminal import (
     JsonOption,
-    kept_run,
     number,
     path_named,
     print_json,
@@ -56,9 +62,7 @@ SHOWN_MODES = 8  # those of the largest average harmonic energy
 @app.command(epilog="Example: symfpu orbit torus.symfpu --time 1e5 -o orbit.csv")
 def orbit(
     context: typer.Context,
-    time: Annotated[
-        str, typer.Option("--time", help="How long to follow it, such as 1e6.", metavar="T")
-    ],
+    time: TimeOption,
     file: StartArgument = None,
     state: StateOption = None,
     packet: PacketOption = None,
@@ -69,11 +73,9 @@ def orbit(
     beta: OwnBeta = None,
     potential: OwnPotential = None,
     ends: OwnEnds = None,
-    step: Annotated[str, typer.Option(help="Length of a step.", metavar="H")] = "0.2",
+    step: StepOption = "0.2",
     scheme: Annotated[str, choice("--scheme", tuple(SCHEMES), "Integrator.")] = "kahan_li8",
-    samples: Annotated[
-        str, typer.Option(help="How many times to look, log-spaced.", metavar="S")
-    ] = "200",
+    samples: SamplesOption = "200",
     output: Annotated[
         str | None,
         typer.Option(
@@ -83,13 +85,7 @@ def orbit(
             metavar="FILE",
         ),
     ] = None,
-    checkpoint: Annotated[
-        str | None,
-        typer.Option(
-            help="Keep the run in this file, and go on from it if it was killed.",
-            metavar="FILE",
-        ),
-    ] = None,
+    checkpoint: CheckpointOption = None,
     kept_file: SaveOption = None,
     plot: PlotOption = None,
     as_json: JsonOption = False,

@@ -151,14 +151,6 @@ def path_named(argument: str, text: str) -> Path:
     return Path(text)
 
 
-def kept_run(checkpoint: Path | None) -> str:
-    """What stands of a run that was interrupted."""
-    if checkpoint is None or not checkpoint.exists():
-        return NOTHING_KEPT
-    kept = f"the run up to its last checkpoint is kept in {checkpoint}"
-    return f"{kept}; the same command goes on from it"
-
-
 def print_json(record: dict[str, Any]) -> None:
     """A result for machines on standard output."""
     print(json.dumps(headed(record), indent=1))

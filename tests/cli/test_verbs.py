@@ -14,7 +14,7 @@ import symfpu.cli
 from symfpu.cli.main import main
 from symfpu.cli.verbs import VERBS, app
 
-FOUNDATIONS = {"chains", "choices", "__init__", "keeping", "main", "pictures", "starts", "terminal", "theorems", "verbs"}
+FOUNDATIONS = {"chains", "choices", "__init__", "keeping", "main", "pictures", "runs", "starts", "terminal", "theorems", "verbs"}
 MODULES = {verb.module for verb in VERBS.values()}
 HEAVY = {"numba", "scipy", "scipy.optimize", "scipy.sparse", "matplotlib", "sympy", "pandas"}
 SOLVE = ["solve", "-N", "8", "--alpha", "0.3", "--seeds", "1", "--omega", "0.3905", "--order", "4"]
