@@ -22,7 +22,9 @@ from symfpu.cli.chains import (
 )
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
+    DigitsOption,
     JsonOption,
+    SolutionOption,
     one_of,
     optional,
     path_named,
@@ -63,17 +65,11 @@ def breather(
     energy: Annotated[
         str | None, typer.Option(help="The one of this energy H.", metavar="E")
     ] = None,
-    digits: Annotated[
-        str | None,
-        typer.Option(help="Any number of digits.  Default: doubles.", metavar="D"),
-    ] = None,
+    digits: DigitsOption = None,
     multipliers: Annotated[
         bool, typer.Option("--multipliers", help="Floquet multipliers.")
     ] = False,
-    output: Annotated[
-        str | None,
-        typer.Option("-o", "--output", help="Keep the orbit in this file.", metavar="FILE"),
-    ] = None,
+    output: SolutionOption = None,
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:

@@ -15,12 +15,12 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
 ENDS = ("fixed", "periodic")
-BondsOption = Annotated[
-    str,
-    typer.Option(
-        "-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"
-    ),
-]
+BONDS = typer.Option(
+    "-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"
+)
+
+BondsOption = Annotated[str, BONDS]
+BondsIfGiven = Annotated[str | None, BONDS]
 AlphaOption = Annotated[str, typer.Option("--alpha", help="Cubic coupling.", metavar="X")]
 BetaOption = Annotated[str, typer.Option("--beta", help="Quartic coupling.", metavar="X")]
 PotentialOption = Annotated[

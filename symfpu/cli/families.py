@@ -23,9 +23,12 @@ from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
+    DigitsOption,
     FileArgument,
+    HarmonicOption,
     JsonOption,
     SeedsOption,
+    SolutionOption,
     by_seed,
     number,
     optional,
@@ -70,34 +73,21 @@ ResonanceOption = Annotated[
 def refine_file(
     context: typer.Context,
     file: FileArgument,
-    output: Annotated[
-        str | None,
-        typer.Option(
-            "-o", "--output", help="Keep the refined torus in this file.", metavar="FILE"
-        ),
-    ] = None,
+    output: SolutionOption = None,
     energy: Annotated[
         str | None,
         typer.Option(
             help="The torus of this energy H, amplitudes in the same ratio.", metavar="E"
         ),
     ] = None,
-    harmonic: Annotated[
-        bool,
-        typer.Option(
-            "--harmonic", help="With --energy: the harmonic energy sum E_q instead of H."
-        ),
-    ] = False,
+    harmonic: HarmonicOption = False,
     amplitudes: Annotated[
         str | None,
         typer.Option(
             help="The torus of these amplitudes, one for each seed.", metavar="A,A,..."
         ),
     ] = None,
-    digits: Annotated[
-        str | None,
-        typer.Option(help="Any number of digits.  Default: doubles.", metavar="D"),
-    ] = None,
+    digits: DigitsOption = None,
     checkpoint: Annotated[
         str | None,
         typer.Option(

@@ -11,7 +11,7 @@ import typer
 
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import excitation_sequence
-from symfpu.cli.chains import BondsOption, EndsOption, PotentialOption
+from symfpu.cli.chains import BondsIfGiven, BondsOption, EndsOption, PotentialOption
 from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
@@ -20,6 +20,7 @@ from symfpu.cli.terminal import (
     CertificateOption,
     JsonOption,
     OrderOption,
+    SeedsIfGiven,
     SeedsOption,
     path_named,
     print_json,
@@ -107,16 +108,8 @@ def _set_of(modes: Iterable[int]) -> str:
 )
 def prove(
     order: OrderOption,
-    bonds: Annotated[
-        str | None,
-        typer.Option(
-            "-N", help="Number of bonds; the chain has N-1 moving particles.", metavar="N"
-        ),
-    ] = None,
-    seeds: Annotated[
-        str | None,
-        typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,..."),
-    ] = None,
+    bonds: BondsIfGiven = None,
+    seeds: SeedsIfGiven = None,
     model: SingleModelOption = None,
     potential: PotentialOption = None,
     points: Annotated[

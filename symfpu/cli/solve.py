@@ -20,6 +20,7 @@ from symfpu.cli.chains import (
 )
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
+    HarmonicOption,
     JsonOption,
     OrderOption,
     SeedsOption,
@@ -107,12 +108,7 @@ def solve(
             metavar="S,S,...",
         ),
     ] = None,
-    harmonic: Annotated[
-        bool,
-        typer.Option(
-            "--harmonic", help="With --energy: the harmonic energy sum E_q instead of H."
-        ),
-    ] = False,
+    harmonic: HarmonicOption = False,
     alpha: AlphaOption = "0",
     beta: BetaOption = "0",
     potential: PotentialOption = None,

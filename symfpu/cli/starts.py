@@ -10,7 +10,7 @@ import typer
 from symfpu.chain.chain import Chain
 from symfpu.cli.chains import ENDS, chain_of, solution_of
 from symfpu.cli.choices import choice
-from symfpu.cli.terminal import path_named, whole, whole_numbers
+from symfpu.cli.terminal import SAVED_SOLUTION, path_named, whole, whole_numbers
 from symfpu.dynamics.starts import packet_state, random_state
 from symfpu.dynamics.state_files import read_state
 from symfpu.errors import InputError
@@ -19,12 +19,7 @@ from symfpu.saved.results import load
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
-StartArgument = Annotated[
-    str | None,
-    typer.Argument(
-        help="A file written by symfpu solve, breather or refine -o.", metavar="[FILE]"
-    ),
-]
+StartArgument = Annotated[str | None, typer.Argument(help=SAVED_SOLUTION, metavar="[FILE]")]
 OwnBonds = Annotated[
     str | None,
     typer.Option("-N", help="Without FILE: number of bonds of the chain.", metavar="N"),

@@ -39,16 +39,32 @@ from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
 from symfpu.reports.head import headed
 
-SeedsOption = Annotated[
-    str, typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")
-]
+SEEDS = typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")
+SAVED_SOLUTION = "A file written by symfpu solve, breather or refine -o."
+
+SeedsOption = Annotated[str, SEEDS]
+SeedsIfGiven = Annotated[str | None, SEEDS]
 OrderOption = Annotated[
     str, typer.Option("--order", help="Order k of the series.", metavar="K")
 ]
-FileArgument = Annotated[
-    str,
-    typer.Argument(
-        help="A file written by symfpu solve, breather or refine -o.", metavar="FILE"
+HarmonicOption = Annotated[
+    bool,
+    typer.Option(
+        "--harmonic", help="With --energy: the harmonic energy sum E_q instead of H."
+    ),
+]
+DigitsOption = Annotated[
+    str | None,
+    typer.Option("--digits", help="Any number of digits.  Default: doubles.", metavar="D"),
+]
+FileArgument = Annotated[str, typer.Argument(help=SAVED_SOLUTION, metavar="FILE")]
+SolutionOption = Annotated[
+    str | None,
+    typer.Option(
+        "-o",
+        "--output",
+        help="Keep the solution in this file, for verbs that take FILE.",
+        metavar="FILE",
     ),
 ]
 CertificateOption = Annotated[
