@@ -45,7 +45,7 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.search import Solution, second_order
+from symfpu.normal.torus import Solution, second_order
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import double, integer
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from symfpu.action_angle.newton_twist import ActionChanges
 from symfpu.action_angle.shapes import Values, by_mode, mode_shapes
 from symfpu.normal.modes import NormalMode
-from symfpu.normal.search import Solution
+from symfpu.normal.torus import Solution
 from symfpu.refinement.equation import Floats, Ints
 
 Complex = NDArray[np.complex128]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.normal.linearised_standing import is_sine, is_standing
-from symfpu.normal.search import Solution
+from symfpu.normal.torus import Solution
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.tori.ring_torus import RingTorus
 

@@ -25,7 +25,7 @@ from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
-from symfpu.normal.search import PRECISE, Solution
+from symfpu.normal.torus import PRECISE, Solution
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Numbers, text, with_digits
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus

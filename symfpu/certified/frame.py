@@ -22,7 +22,8 @@ from symfpu.files.progress import Progress
 from symfpu.normal.linearised import LinearisedFlow, coefficients_by_harmonic
 from symfpu.normal.modes import NormalMode
 from symfpu.normal.reduction import Block, Bordered
-from symfpu.normal.search import checked_modes, normal_modes
+from symfpu.normal.search import normal_modes
+from symfpu.normal.torus import checked_modes
 from symfpu.refinement.equation import Floats
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic

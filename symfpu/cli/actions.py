@@ -15,7 +15,7 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
-from symfpu.normal.search import Solution
+from symfpu.normal.torus import Solution
 from symfpu.reports.action_angle import actions_record, actions_text
 from symfpu.saved.results import load
 from symfpu.tori.ring_torus import RingTorus

@@ -62,7 +62,8 @@ from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
-from symfpu.normal.search import Solution, checked_modes, normal_modes
+from symfpu.normal.search import normal_modes
+from symfpu.normal.torus import Solution, checked_modes
 from symfpu.plots.indices import foretold as draw_foretold
 from symfpu.reports.tables import fifteen_digits
 

@@ -28,8 +28,9 @@ from symfpu.families.normal_events import RESONANCE_LENGTH
 from symfpu.families.normal_family import NormalFamily, normal_family
 from symfpu.files.writing import output_folder
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.search import LENGTH, Solution, normal_modes
+from symfpu.normal.search import normal_modes
 from symfpu.normal.self_consistent import solve_normal_frequency
+from symfpu.normal.torus import LENGTH, Solution
 from symfpu.reports.normal import (
     BySeries,
     by_series,

@@ -25,7 +25,7 @@ from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.normal.frequencies import NormalFrequencies
-from symfpu.normal.search import Solution
+from symfpu.normal.torus import Solution
 from symfpu.refinement.conditions import (
     Condition,
     Energy,

@@ -24,7 +24,7 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.normal.frequencies import frequencies_of
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.search import checked_modes, checked_solution
+from symfpu.normal.torus import checked_modes, checked_solution
 from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, exact, integer

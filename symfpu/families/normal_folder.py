@@ -15,7 +15,7 @@ from symfpu.files.writing import write_text
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_again
 from symfpu.normal.modes import NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.resonances import ParametricResonance
-from symfpu.normal.search import Solution
+from symfpu.normal.torus import Solution
 
 Json = dict[str, Any]
 RECORD = "line.json"

@@ -10,7 +10,8 @@ from symfpu.families.normal_events import Known, NormalEvent, Stretch
 from symfpu.files.progress import Progress
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.search import REFINED, Solution, followed_modes
+from symfpu.normal.search import followed_modes
+from symfpu.normal.torus import REFINED, Solution
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.equation import Floats
 

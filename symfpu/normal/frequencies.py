@@ -8,7 +8,7 @@ from typing import Any
 
 from symfpu.normal.modes import NoNormalModes, NormalModes
 from symfpu.normal.resonances import LOCKED, ParametricResonance
-from symfpu.normal.search import LENGTH, resonances_near
+from symfpu.normal.torus import LENGTH, resonances_near
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 

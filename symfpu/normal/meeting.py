@@ -28,7 +28,8 @@ from symfpu.normal.reduction import (
     steps_of,
 )
 from symfpu.normal.resonances import DIFFERENCE, ParametricResonance
-from symfpu.normal.search import HEIGHTS, at_harmonics, harmonics_of, kept_rows, linearised
+from symfpu.normal.search import HEIGHTS, at_harmonics
+from symfpu.normal.torus import harmonics_of, kept_rows, linearised
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus

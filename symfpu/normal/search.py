@@ -3,55 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from functools import partial
-from typing import Any, TypeAlias
 
-import mpmath
 import numpy as np
 
-from symfpu.breathers.digits import PreciseOrbit
-from symfpu.chain.chain import require_fixed_ends
-from symfpu.chain.frequency_shift import shift_coefficients
-from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.normal.collisions import undecided_modes
 from symfpu.normal.digits import PreciseModes
 from symfpu.normal.linearised import (
     Linearised,
-    LinearisedFlow,
     Values,
-    coefficients_by_harmonic,
 )
 from symfpu.normal.linearised_standing import (
-    LinearisedStanding,
-    coupled_groups,
-    folded,
     is_sine,
     is_standing,
 )
-from symfpu.normal.linearised_waves import LinearisedWaves, wave_rows
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.reduction import Reduced, continued, followed, hyperbolic, reduced
-from symfpu.normal.resonances import OWN, ParametricResonance, resonances_of
-from symfpu.numbers.arithmetic import DOUBLES, arithmetic_of
+from symfpu.normal.resonances import OWN, ParametricResonance
+from symfpu.normal.torus import (
+    LENGTH,
+    PRECISE,
+    Solution,
+    checked_modes,
+    checked_solution,
+    harmonics_of,
+    kept_rows,
+    linearised,
+    resonances_near,
+    second_order,
+)
 from symfpu.numbers.typed import integer
-from symfpu.refinement.digits import Failure, PreciseTorus
-from symfpu.refinement.equation import Floats, Ints
-from symfpu.refinement.harmonics import chosen_harmonics
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
+from symfpu.refinement.digits import Failure
+from symfpu.refinement.equation import Ints
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
-Solution: TypeAlias = QuasiPeriodic | RingTorus
-PRECISE = (PreciseTorus, PreciseOrbit)  # solutions whose digits are those of the equations
-REFINED = 1e-9  # residual of a torus, relative, above which it is refused
 # coefficients of the torus above these parts of its largest, and what their harmonics may leave
 HEIGHTS, TOLERANCE = (1e-8, 1e-11, 1e-14, 1e-17), 1e-10
-SMALLEST_KEPT = (
-    1e-18  # coefficients of the torus below this part of its largest are rounding
-)
 SHOWN_DIVISORS = 5
-LENGTH = 12  # sum |nu_i| of the resonances that are listed
 UNRESOLVED = 1e-7  # difference from a frequency of the torus that a double root may have
 SPREAD = 10.0  # times rounding: what is nearer to nu.omega turns as the torus does
 STILL = 1e-2  # of sigma: the action of a direction that may turn as the torus does
@@ -163,64 +153,6 @@ def followed_modes(
     search = _Search(torus, LENGTH, before)
     found, missing = search.each(chosen, progress or unheard)
     return search.result(solution, found, missing), missing
-
-
-def checked_solution(solution: object) -> Solution:
-    """The solution in doubles; InputError for what is no refined torus."""
-    if isinstance(solution, RingTorus):
-        if is_standing(solution):
-            folded(solution)
-        torus: Solution = solution
-    else:
-        require_solution(solution, "solution")
-        assert isinstance(solution, QuasiPeriodic)
-        require_fixed_ends(solution.chain)
-        torus = solution.in_doubles()
-    residual = torus.residual()
-    if not residual <= REFINED:
-        given = f"a torus whose residual is {residual:.2g}"
-        allowed = f"one that solves the equations of motion to {REFINED:.0e}"
-        raise InputError("solution", given, allowed, "refine it first: refine(solution)")
-    return torus
-
-
-def checked_modes(torus: Solution, modes: Iterable[int] | None) -> tuple[int, ...]:
-    """Those asked for, ascending; InputError for what is no normal mode."""
-    normal = [q for q in torus.chain.mode_numbers if q not in torus.seeds]
-    if modes is None:
-        return tuple(normal)
-    allowed = f"different modes that are no seeds, of {normal}"
-    try:
-        given = [integer(q, "modes", min(torus.chain.mode_numbers)) for q in modes]
-    except TypeError as error:
-        raise InputError("modes", modes, allowed, "pass a list of modes") from error
-    if set(given) - set(normal) or len(set(given)) < len(given):
-        raise InputError("modes", given, allowed, "name other modes")
-    return tuple(sorted(given))
-
-
-def second_order(torus: Solution) -> dict[int, float]:
-    """Omega_q with the closed shift of second order by the amplitudes of the seeds, by mode.
-
-    Of a ring without it, but for the sines about standing waves.
-    """
-    chain = torus.chain
-    if isinstance(torus, RingTorus):
-        linear = chain.frequencies()
-        known = dict(zip(chain.mode_numbers, linear.tolist(), strict=True))
-        return known | (second_order(folded(torus)) if is_standing(torus) else {})
-    squares = chain.frequencies() ** 2
-    cubic, quartic = (float(chain.potential.coefficient(n)) for n in (3, 4))
-    guesses = {}
-    for q in chain.mode_numbers:
-        shift = 0.0
-        for n, A in amplitudes_of(torus).items():
-            (a, b), c = shift_coefficients(chain.N, q, n)
-            square = float(squares[n - 1])
-            by_cubic = cubic**2 * (float(a) + float(b) * square)
-            shift += A**2 / (2 * chain.N) * (by_cubic + quartic * float(c) * square)
-        guesses[q] = float(np.sqrt(squares[q - 1])) * (1 + shift)
-    return guesses
 
 
 class _Search:
@@ -406,43 +338,6 @@ class _Search:
         return False
 
 
-def kept_rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
-    """Coefficients of a torus by harmonic, without those that are rounding."""
-    known = _rows(torus)
-    largest = max(float(np.abs(row).max()) for row in known.values())
-    least = SMALLEST_KEPT * largest
-    return {nu: row for nu, row in known.items() if np.abs(row).max() > least}
-
-
-def harmonics_of(
-    torus: Solution, known: Mapping[tuple[int, ...], Floats], height: float
-) -> Ints:
-    """Those of coefficients above a part of the largest, (H, s); known : of `kept_rows`."""
-    columns = len(next(iter(known.values())))
-    travels = isinstance(torus, RingTorus) and not is_standing(torus)
-    functions = 1 if travels else (columns + 2) // 2
-    chosen, _ = chosen_harmonics(known, functions, len(torus.seeds), height)
-    return chosen
-
-
-def _rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
-    """Coefficients of a torus by harmonic."""
-    if not isinstance(torus, RingTorus):
-        return coefficients_by_harmonic(torus)
-    if is_standing(torus):
-        return coefficients_by_harmonic(folded(torus))
-    return wave_rows(torus)
-
-
-def linearised(torus: Solution, harmonics: Ints) -> Linearised:
-    """The linearised flow in these harmonics and their negatives."""
-    if not isinstance(torus, RingTorus):
-        return LinearisedFlow(torus, harmonics)
-    if is_standing(torus):
-        return LinearisedStanding(torus.chain, folded(torus), harmonics)
-    return LinearisedWaves(torus, harmonics)
-
-
 def at_harmonics(mode: NormalMode, harmonics: Ints) -> Values:
     """The eigenfunction at other harmonics, 0 where it has none, of norm 1; shape (F, N-1)."""
     rows = {tuple(nu): row for row, nu in enumerate(mode.harmonics.tolist())}
@@ -482,28 +377,3 @@ def _smallest_divisors(flow: Linearised, found: Reduced) -> tuple[NormalDivisor,
             mode = flow.mode_at(int(row), int(column))
             nearest.append(NormalDivisor(mode, harmonic, divisor, coefficient))
     return tuple(nearest)
-
-
-def resonances_near(
-    torus: Solution, sigma: Mapping[int, Any], length: int
-) -> list[ParametricResonance]:
-    """Those of real parts in doubles or in digits; a distance has all its digits."""
-    omega = tuple(float(w) for w in torus.frequencies)
-    doubles = {q: float(w) for q, w in sigma.items()}
-    found: list[ParametricResonance] = []
-    for chain, part in coupled_groups(torus, doubles):
-        found += resonances_of(chain, torus.seeds, omega, part, length)
-    if isinstance(torus, PRECISE) and arithmetic_of(list(sigma.values())) is not DOUBLES:
-        found = _in_all_digits(torus, found, sigma)
-    return sorted(found, key=lambda r: abs(r.distance))
-
-
-def _in_all_digits(
-    torus: QuasiPeriodic, found: list[ParametricResonance], sigma: Mapping[int, Any]
-) -> list[ParametricResonance]:
-    """Resonances with the distances of frequencies in digits."""
-    with torus.numbers.context(torus.digits):
-        exact = [torus.numbers.number(w) for w in torus.frequencies]
-        distances = [r.left_of(sigma) - mpmath.fdot(r.harmonic, exact) for r in found]
-    pairs = zip(found, distances, strict=True)
-    return [replace(r, distance=float(distance)) for r, distance in pairs]

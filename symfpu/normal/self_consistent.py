@@ -22,7 +22,7 @@ from symfpu.normal.phantom import (
     phantom_series,
 )
 from symfpu.normal.resonances import resonances_of
-from symfpu.normal.search import LENGTH, second_order
+from symfpu.normal.torus import LENGTH, second_order
 from symfpu.numbers.arithmetic import DOUBLES, GUARD_DIGITS, MULTIPRECISION
 from symfpu.numbers.typed import integer
 from symfpu.refinement.ring_tori import require_travelling

@@ -15,7 +15,8 @@ from symfpu.errors import InputError
 from symfpu.integrable.torus import toda_torus
 from symfpu.normal.linearised import LinearisedFlow
 from symfpu.normal.resonances import DIFFERENCE, PARAMETRIC, SUM, resonances_of
-from symfpu.normal.search import normal_modes, second_order
+from symfpu.normal.search import normal_modes
+from symfpu.normal.torus import second_order
 from symfpu.paper.starts import printed_row, printed_torus
 from symfpu.refinement.tori import refine, refine_at_amplitudes
 from symfpu.series.lindstedt import lindstedt
