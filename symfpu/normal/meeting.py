@@ -28,15 +28,13 @@ from symfpu.normal.reduction import (
     steps_of,
 )
 from symfpu.normal.resonances import DIFFERENCE, ParametricResonance
-from symfpu.normal.search import HEIGHTS, at_harmonics
-from symfpu.normal.torus import harmonics_of, kept_rows, linearised
+from symfpu.normal.search import at_harmonics
+from symfpu.normal.torus import finest_flow
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
 STEPS = 8  # of sigma, for one torus
-# of coefficients of the torus: two directions of a narrow tongue feel small ones
-FINEST = HEIGHTS[-1]
 ENOUGH = 1e-9  # relative step of sigma that ends them: what is left is its square
 EPS = float(np.finfo(float).eps)
 ROUNDED = 4.0  # of EPS, about, in a matrix G over Omega_q^2, and in a distance over sigma
@@ -75,9 +73,8 @@ class NormalCondition(ABC):
 
     def __init__(self, near: NormalModes, resonance: ParametricResonance) -> None:
         self._q, self._other = resonance.modes[0], resonance.modes[-1]
-        torus = near.torus
-        harmonics = harmonics_of(torus, kept_rows(torus), FINEST)
-        self._flow = linearised(torus, harmonics)
+        # two directions of a narrow tongue feel small coefficients of the torus
+        self._flow = finest_flow(near.torus)
         self._harmonic = np.array(resonance.harmonic)
         omega = np.array([float(w) for w in near.torus.frequencies])
         self._rate = float(self._harmonic @ omega)

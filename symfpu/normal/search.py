@@ -10,26 +10,18 @@ import numpy as np
 from symfpu.files.progress import Progress, unheard
 from symfpu.normal.collisions import undecided_modes
 from symfpu.normal.digits import PreciseModes
-from symfpu.normal.linearised import (
-    Linearised,
-    Values,
-)
-from symfpu.normal.linearised_standing import (
-    is_sine,
-    is_standing,
-)
+from symfpu.normal.linearised import Linearised, Values
+from symfpu.normal.linearised_standing import is_sine, is_standing
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.reduction import Reduced, continued, followed, hyperbolic, reduced
 from symfpu.normal.resonances import OWN, ParametricResonance
 from symfpu.normal.torus import (
     LENGTH,
     PRECISE,
+    Flows,
     Solution,
     checked_modes,
     checked_solution,
-    harmonics_of,
-    kept_rows,
-    linearised,
     resonances_near,
     second_order,
 )
@@ -39,8 +31,7 @@ from symfpu.refinement.equation import Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 
-# coefficients of the torus above these parts of its largest, and what their harmonics may leave
-HEIGHTS, TOLERANCE = (1e-8, 1e-11, 1e-14, 1e-17), 1e-10
+TOLERANCE = 1e-10  # residual of a mode whose harmonics are enough
 SHOWN_DIVISORS = 5
 UNRESOLVED = 1e-7  # difference from a frequency of the torus that a double root may have
 SPREAD = 10.0  # times rounding: what is nearer to nu.omega turns as the torus does
@@ -156,19 +147,18 @@ def followed_modes(
 
 
 class _Search:
-    """Linearised flows of one torus with ever more harmonics, made when they are needed."""
+    """The search for the modes of one torus, from closed shifts or from modes known before."""
 
     def __init__(
         self, torus: Solution, length: int, before: NormalModes | None = None
     ) -> None:
-        self._known = kept_rows(torus)
         self._torus, self._length = torus, length
         self._guesses = second_order(torus)
         earlier = before.modes if before else ()
         self._before = {mode.mode: mode.in_doubles() for mode in earlier}
         self._earlier = second_order(before.torus) if before else {}
         self._travels = isinstance(torus, RingTorus) and not is_standing(torus)
-        self._flows: list[Linearised] = []
+        self._flows = Flows(torus)
 
     def each(self, modes: tuple[int, ...], tell: Progress) -> Found:
         """Those that continue the chosen modes."""
@@ -297,20 +287,14 @@ class _Search:
     ) -> NormalMode | None:
         """With as many harmonics as the tolerance needs; the best one met if none do."""
         best: NormalMode | None = None
-        for place in range(len(HEIGHTS)):
-            flow = self._flow(place).of(q)
+        for every in self._flows:
+            flow = every.of(q)
             found = find(flow)
             if found and (best is None or found.residual < best.residual):
                 best = _mode_of(flow, found)
             if best and best.residual < TOLERANCE:
                 break
         return best
-
-    def _flow(self, place: int) -> Linearised:
-        if place == len(self._flows):
-            harmonics = harmonics_of(self._torus, self._known, HEIGHTS[place])
-            self._flows.append(linearised(self._torus, harmonics))
-        return self._flows[place]
 
     def _twin(self, found: NormalMode, others: Iterable[NormalMode]) -> NormalMode | None:
         """One of the others that is the same solution, shifted by a harmonic or conjugate.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, TypeAlias
 
@@ -13,11 +13,7 @@ from symfpu.breathers.digits import PreciseOrbit
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.chain.frequency_shift import shift_coefficients
 from symfpu.errors import InputError
-from symfpu.normal.linearised import (
-    Linearised,
-    LinearisedFlow,
-    coefficients_by_harmonic,
-)
+from symfpu.normal.linearised import Linearised, LinearisedFlow, coefficients_by_harmonic
 from symfpu.normal.linearised_standing import (
     LinearisedStanding,
     coupled_groups,
@@ -37,6 +33,7 @@ from symfpu.tori.ring_torus import RingTorus
 Solution: TypeAlias = QuasiPeriodic | RingTorus
 PRECISE = (PreciseTorus, PreciseOrbit)  # solutions whose digits are those of the equations
 REFINED = 1e-9  # residual of a torus, relative, above which it is refused
+HEIGHTS = (1e-8, 1e-11, 1e-14, 1e-17)  # parts of the largest coefficient of the torus
 SMALLEST_KEPT = (
     1e-18  # coefficients of the torus below this part of its largest are rounding
 )
@@ -101,7 +98,34 @@ def second_order(torus: Solution) -> dict[int, float]:
     return guesses
 
 
-def kept_rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
+class Flows:
+    """Linearised flows of one torus with ever more harmonics, made when they are needed."""
+
+    def __init__(self, torus: Solution) -> None:
+        self._torus, self._known = torus, _kept_rows(torus)
+        self._made: list[Linearised] = []
+
+    def __iter__(self) -> Iterator[Linearised]:
+        """With the harmonics of coefficients above each of HEIGHTS."""
+        for place, height in enumerate(HEIGHTS):
+            if place == len(self._made):
+                self._made.append(_flow(self._torus, self._known, height))
+            yield self._made[place]
+
+
+def finest_flow(torus: Solution) -> Linearised:
+    """The one with the most harmonics."""
+    return _flow(torus, _kept_rows(torus), HEIGHTS[-1])
+
+
+def _flow(
+    torus: Solution, known: Mapping[tuple[int, ...], Floats], height: float
+) -> Linearised:
+    """With harmonics of coefficients above a part of the largest; known : of `_kept_rows`."""
+    return _linearised(torus, _harmonics_of(torus, known, height))
+
+
+def _kept_rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
     """Coefficients of a torus by harmonic, without those that are rounding."""
     known = _rows(torus)
     largest = max(float(np.abs(row).max()) for row in known.values())
@@ -109,10 +133,10 @@ def kept_rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
     return {nu: row for nu, row in known.items() if np.abs(row).max() > least}
 
 
-def harmonics_of(
+def _harmonics_of(
     torus: Solution, known: Mapping[tuple[int, ...], Floats], height: float
 ) -> Ints:
-    """Those of coefficients above a part of the largest, (H, s); known : of `kept_rows`."""
+    """Those of coefficients above a part of the largest, (H, s); known : of `_kept_rows`."""
     columns = len(next(iter(known.values())))
     travels = isinstance(torus, RingTorus) and not is_standing(torus)
     functions = 1 if travels else (columns + 2) // 2
@@ -129,7 +153,7 @@ def _rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
     return wave_rows(torus)
 
 
-def linearised(torus: Solution, harmonics: Ints) -> Linearised:
+def _linearised(torus: Solution, harmonics: Ints) -> Linearised:
     """The linearised flow in these harmonics and their negatives."""
     if not isinstance(torus, RingTorus):
         return LinearisedFlow(torus, harmonics)
