@@ -296,7 +296,7 @@ NEWTON: dict[str, Door] = {
         c.chain, (1,), 1e-2 * c.size**2, members=2, folder=c.folder / "family"
     ),
     "floquet": lambda c: symfpu.floquet(c.periodic),
-    "foretold_indices": lambda c: symfpu.foretold_indices(c.breather, 1e4, vectors=2),
+    "foretold_indices": lambda c: symfpu.foretold_indices(c.periodic, 1e4, vectors=2),
     "prove_existence": lambda c: symfpu.prove_existence(c.periodic),
     "prove_stability": lambda c: symfpu.prove_stability(c.periodic),
     "prove_residual": lambda c: symfpu.prove_residual(c.solution),
@@ -321,7 +321,7 @@ NEWTON: dict[str, Door] = {
     ),
     "travelling_breather": lambda c: c.wave,
     "shoot": lambda c: symfpu.shoot(c.chain, 1, c.breather.frequency),
-    "twist": lambda c: symfpu.twist(c.breather),
+    "twist": lambda c: symfpu.twist(c.periodic),
     "twist_at_rest": lambda c: symfpu.twist_at_rest(c.chain, SEEDS),
 }
 DYNAMICS: dict[str, Door] = {

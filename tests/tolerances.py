@@ -684,6 +684,9 @@ SAME_DERIVATIVE = 1e-12
 # An onset by inverse interpolation of its discriminant: 1e-14 of D over its slope, some 0.02 an amplitude.
 ONSET = 1e-10
 
+# An onset extrapolated by a polynomial of degree four through squares from 2e-3 to 1e-2 of an amplitude before it: measured 7e-9.
+EXTRAPOLATED_ONSET = 3e-8
+
 # An event by Newton's method from several starts: some roundings of an amplitude of 0.4.
 EVENT = 2e-15
 
@@ -751,3 +754,9 @@ SIX_DIGITS = 5e-6
 
 # Two borders that are the same: each lies between points whose logarithms differ by at most 0.01, and is located within.
 LOCATED = 0.01
+
+# An angle more takes 13 to 52 times off the distance of the trajectory at H = 0.001: at least tenfold.
+FALL_BY_AN_ANGLE = 10.0
+# Height of a line of Fig. 9's trajectory and its coefficient on the 4-torus, which is 1e-3 of the largest coordinate away, 1/9
+# of it by the fifth angle: 2.3e-3 measured.
+COMBINATION_HEIGHT = 0.02

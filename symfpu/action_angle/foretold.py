@@ -21,13 +21,12 @@ from symfpu.action_angle.linear_flow import (
     exact_direction,
 )
 from symfpu.action_angle.newton_twist import changes_by_action
-from symfpu.chain.chain import require_fixed_ends
 from symfpu.dynamics.alignment import (
     SAMPLES,
     Slope,
+    drawn_frame,
     frame_size,
     last_time,
-    random_frame,
     sample_count,
 )
 from symfpu.dynamics.dimension import (
@@ -44,11 +43,13 @@ from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
+from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.search import second_order
+from symfpu.normal.search import Solution, second_order
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import double, integer
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.ring_torus import RingTorus
 
 Floats = NDArray[np.float64]
 REFINED = 1e-8  # residual of a torus, relative, above which it is refused
@@ -74,7 +75,7 @@ class ForetoldIndices(Shown, Gridded):
     ..., on the torus -1, -2, -3, settled from t = ..., by normal modes)
     """
 
-    torus: QuasiPeriodic
+    torus: Solution
     times: Floats
     log10_gali: Floats
     growth: Floats
@@ -212,7 +213,7 @@ def settled_text(time: float, last: float) -> str:
 
 
 def foretold_indices(
-    solution: QuasiPeriodic,
+    solution: Solution,
     T: float | ArrayLike,
     *,
     vectors: int | None = None,
@@ -223,17 +224,20 @@ def foretold_indices(
 ) -> ForetoldIndices:
     """GALI_2 .. GALI_vectors of a torus or breather for all times, without integration.
 
-    solution : of fixed ends, refined: its residual is at most 1e-8. Dimensionless.
+    solution : refined: its residual is at most 1e-8. With fixed ends, or of a ring: travelling
+        waves, or what `unfold` gave. Dimensionless.
     T : the last time, up to 1e15, or the times (S,), ascending and positive, 64 at least.
     vectors, seed, samples : as `alignment_indices` takes them; the frame is the same.
-    start : the time on the solution at which the frame is drawn, `solution.state(start)`.
+    start : the time on the solution at which the frame is drawn: `solution.state(start)`, on a
+        ring `mode_coordinates(start)` and `mode_momenta(start)`.
     normal : what `normal_modes(solution)` gave, all modes, elliptic: then the indices are exact.
         Without it the normal directions turn as modes at rest do, which changes indices by a few
         tenths of a decade at most for weak coupling, and neither slopes nor settling times.
+        Standing waves of a ring want it: no mode at rest is like what displaces them.
 
     Neighbouring tori turn against each other by t Lambda dI, and normal directions turn with
     sigma_q: the volumes of sections 3.2 and 4 are Gram determinants of that. Ours. Raises
-    InputError, also for a torus of a ring and for a hyperbolic one; NoTwist.
+    InputError, also for a hyperbolic torus; NoTwist.
 
     >>> from symfpu import Chain, breather_at_amplitude
     >>> found = foretold_indices(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.4"), 1e8)
@@ -248,23 +252,24 @@ def foretold_indices(
 
 
 def flow_of(
-    torus: QuasiPeriodic, normal: NormalModes | None = None, start: float = 0.0
+    torus: Solution, normal: NormalModes | None = None, start: float = 0.0
 ) -> LinearFlow:
     """The linearised flow about a refined torus from its state at a time on."""
     directions = _at_rest(torus) if normal is None else _given(torus, normal)
     phases = np.array([float(torus.phases[q]) for q in torus.seeds])
     omega = np.array([float(w) for w in torus.frequencies])
     begun = phases + omega * start
-    changes = changes_by_action(torus.in_doubles())
-    return LinearFlow(changes, omega, begun, directions, exact=normal is not None)
+    doubles = _in_doubles(torus)
+    changes = changes_by_action(doubles)
+    return LinearFlow(doubles, changes, begun, directions, exact=normal is not None)
 
 
 def indices_by(
-    flow: LinearFlow, solution: QuasiPeriodic, times: Floats, vectors: int, seed: int
+    flow: LinearFlow, solution: Solution, times: Floats, vectors: int, seed: int
 ) -> ForetoldIndices:
     """Indices of one frame; all frames of a torus need one flow."""
-    n, s = solution.chain.N - 1, len(solution.seeds)
-    frame = np.concatenate(random_frame(vectors, n, seed), axis=1).T
+    s = len(solution.seeds)
+    frame = np.concatenate(drawn_frame(solution.chain, vectors, seed), axis=1).T
     gali, growth = _volumes(flow, frame, times)
     return ForetoldIndices(
         torus=solution,
@@ -285,9 +290,9 @@ def growth_rates(flow: LinearFlow) -> Floats:
 
 
 def _volumes(flow: LinearFlow, frame: Floats, times: Floats) -> tuple[Floats, Floats]:
-    """log10 GALI_k of a frame (2n, k), (T, k-1), and log |v_1|."""
+    """log10 GALI_k of a frame (2D, k), (T, k-1), and log |v_1|."""
     start = flow.coordinates(frame)
-    most = max(1, len(flow.changes.harmonics), *(len(d.harmonics) for d in flow.normal))
+    most = max(1, len(flow.harmonics), *(len(d.harmonics) for d in flow.normal))
     portion = max(1, TABLE // (8 * most))
     gali, growth = [], []
     for first in range(0, len(times), portion):
@@ -312,17 +317,26 @@ def _volumes_at(flow: LinearFlow, start: Floats, times: Floats) -> tuple[Floats,
     return np.cumsum(np.log10(heights), axis=1)[:, 1:], np.log(lengths[:, 0])
 
 
-def _checked(solution: object) -> QuasiPeriodic:
-    """The solution in doubles; InputError for what is no refined torus of fixed ends."""
-    require_solution(solution, "solution")
-    assert isinstance(solution, QuasiPeriodic)
-    require_fixed_ends(solution.chain)
-    residual = solution.residual()
+def _checked(solution: object) -> Solution:
+    """The solution in doubles; InputError for what is no refined torus, and for other waves."""
+    if isinstance(solution, RingTorus):
+        if is_standing(solution):
+            folded(solution)
+        torus: Solution = solution
+    else:
+        require_solution(solution, "solution")
+        assert isinstance(solution, QuasiPeriodic)
+        torus = solution
+    residual = torus.residual()
     if not residual <= REFINED:
         given = f"a torus whose residual is {residual:.2g}"
         allowed = f"one that solves the equations of motion to {REFINED:.0e}"
         raise InputError("solution", given, allowed, "refine it first: refine(solution)")
-    return solution.in_doubles()
+    return _in_doubles(torus)
+
+
+def _in_doubles(torus: Solution) -> Solution:
+    return torus if isinstance(torus, RingTorus) else torus.in_doubles()
 
 
 def _times(T: object, samples: int) -> Floats:
@@ -342,14 +356,20 @@ def _times(T: object, samples: int) -> Floats:
     return times
 
 
-def _at_rest(torus: QuasiPeriodic) -> list[NormalDirection]:
+def _at_rest(torus: Solution) -> list[NormalDirection]:
+    if isinstance(torus, RingTorus) and is_standing(torus):
+        allowed = "normal modes, of standing waves of a ring"
+        raise InputError("normal", None, allowed, "pass normal_modes(solution)")
     n, s = torus.chain.N - 1, len(torus.seeds)
     sigma = second_order(torus)
-    normal = [q for q in torus.chain.mode_numbers if q not in torus.seeds]
-    return [direction_at_rest(q, sigma[q], n, s) for q in normal]
+    return [
+        direction_at_rest(place, sigma[q], n, s)
+        for place, q in enumerate(torus.chain.mode_numbers)
+        if q not in torus.seeds
+    ]
 
 
-def _given(torus: QuasiPeriodic, normal: object) -> list[NormalDirection]:
+def _given(torus: Solution, normal: object) -> list[NormalDirection]:
     """The directions of normal modes that are those of this torus; InputError for others."""
     if not isinstance(normal, NormalModes):
         advice = "pass normal_modes(solution)"

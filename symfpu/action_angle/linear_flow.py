@@ -4,8 +4,10 @@ The solutions of the linearised equations are spanned by
     E_i = dz/dtheta_i, s of them, along the torus,
     F_j + t sum_i Lambda_ij E_i, F_j = dz/dI_j: neighbouring tori turn against each other,
     Re and Im of exp(i sigma_q t) p_q(theta), 2(n-s) of them, normal to the torus,
-z = (Q, P), all at theta = omega t + phi. The changes of action of a deviation v are dI = Omega(E,
-v) with the symplectic form Omega(a, b) = a_Q.b_P - a_P.b_Q; they stay as they are.
+z = (x, p), all at theta = omega t + phi. The changes of action of a deviation v are dI = Omega(E,
+v) with the symplectic form Omega(a, b) = a_x.b_p - a_p.b_x; they stay as they are. Coordinates x
+are the D of `symfpu.action_angle.shapes`: n = N - 1 modes of fixed ends, N particles of a ring,
+which does not move as a whole.
 """
 
 from __future__ import annotations
@@ -17,10 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.action_angle.newton_twist import ActionChanges
+from symfpu.action_angle.shapes import Values, by_mode, mode_shapes
 from symfpu.normal.modes import NormalMode
+from symfpu.normal.search import Solution
 from symfpu.refinement.equation import Floats, Ints
 
 Complex = NDArray[np.complex128]
+Sum = tuple[Complex, Values]  # weights of harmonics (T, H) and their coefficients (H, n)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,15 +44,15 @@ def exact_direction(mode: NormalMode) -> NormalDirection:
     return NormalDirection(sigma, mode.harmonics, mode.rates, p)
 
 
-def direction_at_rest(q: int, sigma: float, n: int, s: int) -> NormalDirection:
-    """The mode q alone, turning with sigma: what a normal mode is for small amplitudes."""
+def direction_at_rest(place: int, sigma: float, n: int, s: int) -> NormalDirection:
+    """One of the n modes alone, turning with sigma: a normal mode for small amplitudes."""
     alone = np.zeros((1, n))
-    alone[0, q - 1] = 1.0
+    alone[0, place] = 1.0
     return NormalDirection(sigma, np.zeros((1, s), dtype=np.int64), np.zeros(1), alone)
 
 
 def symplectic(a: Floats, b: Floats) -> Floats:
-    """Omega of the columns of a (..., 2n, k) with those of b (..., 2n, m); (..., k, m)."""
+    """Omega of the columns of a (..., 2D, k) with those of b (..., 2D, m); (..., k, m)."""
     n = a.shape[-2] // 2
     left = np.swapaxes(a, -1, -2)
     return np.asarray(left[..., :n] @ b[..., n:, :] - left[..., n:] @ b[..., :n, :])
@@ -56,44 +61,45 @@ def symplectic(a: Floats, b: Floats) -> Floats:
 class LinearFlow:
     """The closed form of one torus.
 
-    changes : of the torus with its actions. omega, phases : of its angles, (s,). normal : its
-    directions, all N-1-s of them. exact : whether these are solutions, or modes at rest.
+    torus : in doubles. changes : of it with its actions. phases : of its angles where the frame is
+    drawn, (s,). normal : its directions, all N-1-s of them. exact : whether these are solutions,
+    or modes at rest.
     """
 
     def __init__(
         self,
+        torus: Solution,
         changes: ActionChanges,
-        omega: Floats,
         phases: Floats,
         normal: Sequence[NormalDirection],
         *,
         exact: bool,
     ) -> None:
-        self.changes, self.omega, self.phases = changes, omega, phases
-        self.normal, self.exact = normal, exact
-        self.twist = changes.twist
+        self.harmonics, self.twist = changes.harmonics, changes.twist
+        self.omega = np.array([float(w) for w in torus.frequencies])
+        self.phases, self.normal, self.exact = phases, normal, exact
+        self._shapes = mode_shapes(torus)
+        self._modes = by_mode(torus, self.harmonics, changes.cosines)
+        self._by_action = by_mode(torus, self.harmonics, changes.by_cosine)
 
     def basis(self, times: Floats) -> tuple[Floats, Floats, Floats]:
-        """E, F and the normal directions without exp(i sigma t), as columns; (T, 2n, .)."""
+        """E, F and the normal directions without exp(i sigma t), as columns; (T, 2D, .)."""
         theta = times[:, None] * self.omega + self.phases
         along, across = self._along(theta)
         return along, across, self._across(theta, along, across)
 
     def _along(self, theta: Floats) -> tuple[Floats, Floats]:
         """E and F at angles (T, s)."""
-        made = self.changes
-        nu, c = made.harmonics, made.cosines
-        rates = nu @ self.omega
-        angles = theta @ nu.T
-        cosines, sines = np.cos(angles), np.sin(angles)
+        nu, c = self.harmonics, self._modes
+        waves = np.exp(1j * (theta @ nu.T))
+        rates = 1j * (nu @ self.omega)
         along, across = [], []
-        for i, changed in enumerate(made.by_cosine):
-            turned = nu @ made.twist[:, i]
-            along.append(
-                _state(-(sines * nu[:, i]) @ c, -(cosines * (nu[:, i] * rates)) @ c)
-            )
-            momenta = -(sines * rates) @ changed - (sines * turned) @ c
-            across.append(_state(cosines @ changed, momenta))
+        for i, changed in enumerate(self._by_action):
+            moved = waves * (1j * nu[:, i])
+            along.append(self._state([(moved, c)], [(moved * rates, c)]))
+            turned = waves * (1j * (nu @ self.twist[:, i]))
+            momenta = [(waves * rates, changed), (turned, c)]
+            across.append(self._state([(waves, changed)], momenta))
         return np.stack(along, axis=2), np.stack(across, axis=2)
 
     def _across(self, theta: Floats, along: Floats, across: Floats) -> Floats:
@@ -106,19 +112,34 @@ class LinearFlow:
             if known not in waves:
                 waves = {known: np.exp(1j * (theta @ direction.harmonics.T))}
             rates = 1j * (direction.sigma + direction.rates)
-            Q = waves[known] @ direction.coefficients
-            P = (waves[known] * rates) @ direction.coefficients
-            found[:, :, 2 * place] = _state(Q.real, P.real)
-            found[:, :, 2 * place + 1] = _state(Q.imag, P.imag)
+            p = direction.coefficients
+            for part, turn in enumerate((1, -1j)):
+                turned = turn * waves[known]
+                found[:, :, 2 * place + part] = self._state(
+                    [(turned, p)], [(turned * rates, p)]
+                )
         if self.exact:
             return found
         inwards, outwards = symplectic(across, found), symplectic(along, found)
         return np.asarray(found + along @ inwards - across @ outwards)
 
+    def _state(self, positions: Sequence[Sum], momenta: Sequence[Sum]) -> Floats:
+        """Displacements and momenta of sums over harmonics; (T, 2D)."""
+        parts = [sum(map(self._displaced, sums)) for sums in (positions, momenta)]
+        return np.concatenate(parts, axis=1)
+
+    def _displaced(self, one: Sum) -> Floats:
+        """The real part of a sum over harmonics, displaced by its modes; (T, D)."""
+        weights, table = one
+        if np.isrealobj(table) and np.isrealobj(self._shapes):
+            return np.asarray(weights.real @ table @ self._shapes)
+        return np.asarray((weights @ table @ self._shapes).real)
+
     def coordinates(self, deviations: Floats) -> Floats:
-        """Of deviations (2n, k) at t = 0, by the columns of the basis; (2n, k)."""
+        """Of deviations (2D, k) at t = 0, by the columns of the basis; (2n, k)."""
         basis = np.concatenate(self.basis(np.zeros(1)), axis=2)[0]
-        return np.asarray(np.linalg.solve(basis, deviations))
+        orthonormal, factor = np.linalg.qr(basis)
+        return np.asarray(np.linalg.solve(factor, orthonormal.T @ deviations))
 
     def moved(self, start: Floats, times: Floats) -> Floats:
         """Those of the same deviations at times; (T, 2n, k)."""
@@ -135,11 +156,7 @@ class LinearFlow:
 
     def mean_metric(self) -> Floats:
         """The average of E_i.E_j over the torus, in closed form; (s, s)."""
-        made = self.changes
-        nu = made.harmonics
-        squares = (made.cosines**2).sum(axis=1) * (1 + (nu @ self.omega) ** 2)
+        nu = self.harmonics
+        sizes = (np.abs(self._modes @ self._shapes) ** 2).sum(axis=1)
+        squares = sizes * (1 + (nu @ self.omega) ** 2)
         return np.asarray((nu * squares[:, None]).T @ nu / 2)
-
-
-def _state(Q: Floats, P: Floats) -> Floats:
-    return np.concatenate([Q, P], axis=1)

@@ -3,7 +3,8 @@
 The unknowns are the coefficients c and the frequencies, the equations those of invariance with one
 condition for each amplitude. Newton's matrix solved for a unit change of ln A_j gives dc and
 domega; no difference is taken. Where the frequencies turn back, domega/dlnA is singular and the
-matrix is not.
+matrix is not. On a ring the coefficients are those of its one function of the angles where waves
+travel, and those of the fixed ends where they stand: then the ring has twice their actions.
 """
 
 from __future__ import annotations
@@ -13,16 +14,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symfpu.action_angle.actions import half_weighted
+from symfpu.action_angle.actions import actions, half_weighted
 from symfpu.errors import SymfpuError
+from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.refinement.conditions import Amplitude, seed_amplitudes
-from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.harmonics import unit_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.newton import responses
+from symfpu.refinement.ring_tori import wave_coefficients
 from symfpu.refinement.tori import shifts_of
+from symfpu.refinement.waves import WaveEquation
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 
 class NoTwist(SymfpuError):
@@ -40,21 +45,30 @@ class NoTwist(SymfpuError):
         super().__init__(f"no twist: {reason}")
 
 
-def changes_by_newton(torus: QuasiPeriodic) -> tuple[Floats, Floats]:
+def changes_by_newton(torus: QuasiPeriodic | RingTorus) -> tuple[Floats, Floats]:
     """Derivatives of the frequencies and of the actions by ln A_j, (s, s), j last.
 
-    torus : that solves the equations of motion, in doubles. Raises NoTwist.
+    torus : that solves the equations of motion, in doubles; of a ring, travelling waves or what
+        `unfold` gave. Raises NoTwist; InputError for other waves.
     """
     found = _changes(torus)
     return found.by_shift.T, found.by_action.T
+
+
+def action_turn(torus: QuasiPeriodic | RingTorus) -> float:
+    """det of d ln I_i / d ln A_j: it passes zero where the actions turn on a family; NoTwist."""
+    by_action = _changes(torus).by_action
+    by_logarithm = by_action / np.array(list(actions(torus).values()))
+    return float(np.linalg.det(by_logarithm))
 
 
 @dataclass(frozen=True, eq=False)
 class ActionChanges:
     """A torus and how it changes with its actions.
 
-    harmonics : (H, s). cosines : c, (H, N-1). by_cosine : dc/dI_i, (s, H, N-1). twist :
-    Lambda_ij = domega_i/dI_j, (s, s).
+    harmonics : (H, s). cosines : c, (H, C). by_cosine : dc/dI_i, (s, H, C). twist : Lambda_ij =
+    domega_i/dI_j, (s, s). The columns are the modes of fixed ends, C = N-1, also where waves stand;
+    of travelling waves there is one, that of their function of the angles.
     """
 
     harmonics: Ints
@@ -63,7 +77,7 @@ class ActionChanges:
     twist: Floats
 
 
-def changes_by_action(torus: QuasiPeriodic) -> ActionChanges:
+def changes_by_action(torus: QuasiPeriodic | RingTorus) -> ActionChanges:
     """The same by the actions, with what the coefficients do. Raises NoTwist."""
     found = _changes(torus)
     try:
@@ -81,15 +95,18 @@ def changes_by_action(torus: QuasiPeriodic) -> ActionChanges:
 class _Changes(NamedTuple):
     """By ln A_j, j first."""
 
-    equation: InvarianceEquation
+    equation: TorusEquation
     cosines: Floats
     by_cosine: Floats
     by_shift: Floats
     by_action: Floats
 
 
-def _changes(torus: QuasiPeriodic) -> _Changes:
-    equation, table = equation_of(torus)
+def _changes(torus: QuasiPeriodic | RingTorus) -> _Changes:
+    if isinstance(torus, RingTorus) and is_standing(torus):
+        half = _changes(folded(torus))
+        return half._replace(by_action=2 * half.by_action)
+    equation, table = _equation_of(torus)
     cosines = table.astype(np.longdouble)
     shifts = shifts_of(torus)
     amplitudes = seed_amplitudes(equation, cosines)
@@ -109,6 +126,15 @@ def _changes(torus: QuasiPeriodic) -> _Changes:
         faster = half_weighted(equation.harmonics, turned, squares)
         by_action.append(moved + faster)
     return _Changes(equation, known, by_cosine, by_shift, np.array(by_action))
+
+
+def _equation_of(torus: QuasiPeriodic | RingTorus) -> tuple[TorusEquation, Numbers]:
+    """The equation of fixed ends or of travelling waves, and the coefficients in it."""
+    if not isinstance(torus, RingTorus):
+        return equation_of(torus)
+    harmonics, table = wave_coefficients(torus)
+    equation = WaveEquation(torus.chain, torus.seeds, harmonics)
+    return equation, np.where(equation.mask, table, 0)
 
 
 def equation_of(torus: QuasiPeriodic) -> tuple[InvarianceEquation, Numbers]:

@@ -7,6 +7,7 @@ convex in the actions, and Nekhoroshev's estimates are at their best.
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -24,9 +25,8 @@ from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
-from symfpu.normal.search import PRECISE
-from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text, with_digits
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.normal.search import PRECISE, Solution
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Numbers, text, with_digits
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
 
@@ -163,26 +163,23 @@ def _rounding(digits: int | None) -> float:
     return 1e-10 if digits is None else 10.0**-digits
 
 
-def twist(solution: QuasiPeriodic) -> Twist:
+def twist(solution: Solution) -> Twist:
     """Lambda = d omega / d I of a torus or breather, its signature and determinants.
 
     solution : a torus of a series, whose truncated sums are differentiated exactly, to all its
         digits; or any refined solution (`refine`, breathers), by Newton's matrix: in doubles, of
-        one that was refined to many digits (PreciseTorus, PreciseOrbit) with as many.
-        Dimensionless.
+        one that was refined to many digits (PreciseTorus, PreciseOrbit) with as many; of a ring,
+        refined: travelling waves, or what `unfold` gave. Dimensionless.
 
     Nothing is a difference of two tori. Lambda of an exact torus is symmetric; that of a truncated
     series as far as it is a torus. Returns Twist. Ours. Raises InputError for a solution that is
-    neither, and for a torus of a ring; NoTwist where the amplitudes do not tell the actions;
-    TooLarge for series whose program does not fit: refine the torus.
+    neither; NoTwist where the amplitudes do not tell the actions; TooLarge for series whose program
+    does not fit: refine the torus.
 
     >>> from symfpu import Chain, breather_at_amplitude
     >>> twist(breather_at_amplitude(Chain(8, beta=1), 1, "0.01"))
     Twist(N=8, beta=1, seeds=1, positive definite, smallest eigenvalue 0.0214..., ...)
     """
-    if isinstance(solution, RingTorus):
-        advice = "actions(solution) takes it; the twist needs fixed ends"
-        raise InputError("solution", "a RingTorus", "a torus of fixed ends", advice)
     by_angle = actions(solution)
     places = solution.digits if isinstance(solution, (QTorus, *PRECISE)) else None
     matrix, method = _lambda(solution)
@@ -208,7 +205,7 @@ def _rounded(values: list[Any], digits: int | None) -> Numbers:
         return with_digits(np.array(numbers, dtype=object), digits)
 
 
-def _lambda(solution: QuasiPeriodic) -> tuple[Numbers, str]:
+def _lambda(solution: Solution) -> tuple[Numbers, str]:
     """d omega / d I, and how it was found."""
     if isinstance(solution, QTorus):
         by_amplitude, method = changes_of_series(solution), "series"
@@ -216,21 +213,30 @@ def _lambda(solution: QuasiPeriodic) -> tuple[Numbers, str]:
         _require_refined(solution)
         by_amplitude, method = _by_newton(solution), "Newton"
     frequencies, of_actions = by_amplitude
-    with solution.numbers.context(solution.digits):
+    with _context_of(solution):
         try:
             return solved(of_actions.T, frequencies.T).T, method
         except np.linalg.LinAlgError as failure:
             raise NoTwist("the actions do not change with the amplitudes") from failure
 
 
-def _by_newton(solution: QuasiPeriodic) -> tuple[Numbers, Numbers]:
+def _context_of(solution: Solution) -> AbstractContextManager[Any]:
+    """Of the precision of its numbers."""
+    if isinstance(solution, RingTorus):
+        return DOUBLES.context(None)
+    return solution.numbers.context(solution.digits)
+
+
+def _by_newton(solution: Solution) -> tuple[Numbers, Numbers]:
     """In digits where the solution has those of the equations, in doubles else."""
+    if isinstance(solution, RingTorus):
+        return changes_by_newton(solution)
     if isinstance(solution, PRECISE):
         return changes_in_digits(solution)
     return changes_by_newton(solution.in_doubles())
 
 
-def _require_refined(solution: QuasiPeriodic) -> None:
+def _require_refined(solution: Solution) -> None:
     residual = solution.residual()
     if not residual <= SOLVED:
         given = f"a {type(solution).__name__} with residual {residual:.2g}"

@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from scipy.optimize import brentq
-
 from symfpu.borders.point import Point, Ray, point_at, singularity
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import short
@@ -83,6 +81,7 @@ class SeriesBorder:
 
 def series_border(points: Points, estimate: str) -> SeriesBorder:
     """The lowest border of a ray by this estimate; raises NoBorder."""
+    from scipy.optimize import brentq
 
     def logarithm(place: float) -> float:
         return _logarithm(points.at(place), estimate)

@@ -7,6 +7,7 @@ and d_n = a_n / 2; every coefficient is a ball that holds the true one.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
@@ -63,9 +64,15 @@ class BondBalls:
             total = total * self.nu + abs(a)
         return total
 
+    def polynomials(self, couplings: dict[int, Fraction]) -> list[Series]:
+        """sum couplings[k] r_j^k of every bond."""
+        N = self.orbit.chain.N
+        half = [_polynomial(bond, couplings) for bond in self.stretches[: (N + 1) // 2]]
+        return reflected(half, N, self.orbit.seed)
+
     def forces(self) -> list[Series]:
         """phi(r_j) of every bond, without what `force` leaves out."""
-        return [_polynomial(bond, self.force.powers) for bond in self.stretches]
+        return self.polynomials(self.force.powers)
 
     def forces_left_out(self) -> Any:
         """Above the sum over bonds of the norms of what `force` leaves out."""
@@ -75,7 +82,7 @@ class BondBalls:
     def slopes(self) -> list[Series]:
         """phi'(r_j) of every bond, without what `force` leaves out."""
         terms = {k - 1: k * coupling for k, coupling in self.force.powers.items()}
-        return [_polynomial(bond, terms) for bond in self.stretches]
+        return self.polynomials(terms)
 
     def slopes_left_out(self) -> Any:
         """Above the sum over bonds of the norms of what `force` leaves out."""
@@ -99,18 +106,17 @@ class BondBalls:
         """The derivative of V + r V'/2 along every bond, and the norm of what is left out."""
         terms = self.force.virial_terms()
         lost = sum((self.force.virial_left_out(x) for x in self.norms), flint.arb(0))
-        return [_polynomial(bond, terms) for bond in self.stretches], lost
+        return self.polynomials(terms), lost
 
     def mean_energy(self) -> Any:
         """The mean of sum_j (V + r V'/2): H on a periodic orbit."""
         powers = self.force.powers.items()
         terms = {k: c * (Fraction(1, k + 1) + Fraction(1, 2)) for k, c in powers}
+        series = self.polynomials({1: Fraction(1), **terms})
         total = flint.arb(0)
-        for bond, size in zip(self.stretches, self.norms, strict=True):
+        for bond, size, other in zip(self.stretches, self.norms, series, strict=True):
             lost = flint.arb(0, 2 * size * self.force.left_out(size, 0))
-            total += (
-                mean_of_product(bond, _polynomial(bond, {1: Fraction(1), **terms})) + lost
-            )
+            total += mean_of_product(bond, other) + lost
         return total
 
     def at_rest(self) -> list[Any]:
@@ -140,18 +146,46 @@ class BondBalls:
 
 
 def _polynomial(series: Series, couplings: dict[int, Fraction]) -> Series:
-    """sum couplings[k] series^k as a cosine series; k from 1 up; by Horner's rule."""
+    """sum couplings[k] series^k as a cosine series; k from 1 up.
+
+    By Paterson's and Stockmeyer's rule: Horner's with a power of the series, whose coefficients
+    are polynomials of lower powers.
+    """
     if not couplings:
         return [flint.arb(0)]
-    last, factor = len(series) - 1, _palindrome(series)
-    degree = max(couplings)
-    total = flint.arb_poly([ball(couplings[degree])])
-    for k in range(degree - 1, -1, -1):
-        total *= factor
-        if k in couplings:
-            total[(degree - k) * last] += ball(couplings[k])
-    middle = degree * last
+    last, degree = len(series) - 1, max(couplings)
+    width = math.isqrt(degree)
+    powers = _powers(series, width)
+    total, middle = flint.arb_poly([]), (width - 1) * last
+    for first in range(degree - degree % width, -1, -width):
+        if first + width <= degree:
+            total *= powers[width]
+            middle += width * last
+        for i in range(width):
+            if first + i in couplings:
+                term = powers[i] * ball(couplings[first + i])
+                total += term.left_shift(middle - i * last)
     return [total[middle], *(2 * total[middle + n] for n in range(1, middle + 1))]
+
+
+def _powers(series: Series, highest: int) -> list[Any]:
+    """The palindromes of series^0 .. series^highest, series^k in the middle at k times the last."""
+    factor = _palindrome(series)
+    powers = [flint.arb_poly([1]), factor]
+    while len(powers) <= highest:
+        powers.append(powers[-1] * factor)
+    return powers
+
+
+def reflected(half: list[Series], N: int, seed: int) -> list[Series]:
+    """Of all bonds from those of the first half, N even or odd.
+
+    Bond N-1-j is at t what bond j is at t, or half a period later where the seed is odd.
+    """
+    others = half[: N // 2]
+    if seed % 2:
+        others = [[-a if n % 2 else a for n, a in enumerate(bond)] for bond in others]
+    return [*half, *reversed(others)]
 
 
 def product(a: Series, b: Series) -> Series:

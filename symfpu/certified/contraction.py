@@ -159,20 +159,34 @@ class LinearPart:
 
     def matrix(self, rows: Places, columns: Places) -> tuple[Floats, Floats]:
         """Derivatives of the anharmonic force, and a bound of their rounding."""
-        K = self.K
-        n, m = rows.n[:, None], columns.n
-        pair = rows.q[:, None] - 1, columns.q - 1
-        padded = np.concatenate([self.coupling, np.zeros((1, *self.coupling.shape[1:]))])
-        errors = np.append(self.coupling_errors, 0.0)
-        apart, total = np.minimum(abs(n - m), K + 1), np.minimum(n + m, K + 1)
-        folds = n > 0
-        values = padded[(apart, *pair)] + np.where(folds, padded[(total, *pair)], 0.0)
-        errors = errors[apart] + np.where(folds, errors[total], 0.0)
+        values = np.zeros((len(rows.n), len(columns.n)))
+        errors = np.zeros_like(values)
+        for n in range(int(rows.n[-1]) + 1):
+            near = within(columns.n, n - self.K, n + self.K)
+            own = within(rows.n, n, n)
+            entries, rounding = self._of_harmonic(n, columns.n[near], columns.q[near])
+            values[own, near] = entries[:, rows.q[own] - 1].T
+            errors[own, near] = rounding
         if self.border is not None:
             values[0], errors[0] = self.border.row(columns)
             values[:, 0], errors[:, 0] = self.border.derivatives(rows)
             values[0, 0] = errors[0, 0] = 0.0  # the corner is among the divisors
         return values, errors
+
+    def _of_harmonic(self, n: int, m: Ints, q: Ints) -> tuple[Floats, Floats]:
+        """Rows of all modes at a harmonic n, by column and mode; columns (m, q) within K of it."""
+        values = self.coupling[abs(n - m), q - 1]
+        errors = self.coupling_errors[abs(n - m)]
+        folded = np.flatnonzero((n > 0) & (n + m <= self.K))
+        values[folded] += self.coupling[n + m[folded], q[folded] - 1]
+        errors[folded] += self.coupling_errors[n + m[folded]]
+        return values, errors
+
+
+def within(ascending: Ints, first: int, last: int) -> slice:
+    """Where they are from the first to the last."""
+    start = np.searchsorted(ascending, first)
+    return slice(int(start), int(np.searchsorted(ascending, last, side="right")))
 
 
 @dataclass(frozen=True, eq=False)

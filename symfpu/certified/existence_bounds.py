@@ -36,6 +36,7 @@ SLACK = 1.01  # of Z1 and Z2, and RADIUS_SLACK of r, so that coarser bounds suff
 RADIUS_SLACK = 1.25
 SHRINK = 0.9
 MOST_RATE = 0.99  # Z1 + Z2 R that uniqueness is claimed for
+LEAST_STEP = 1e-300  # of Y, a double
 MANTISSA = 20  # bits of the radii
 
 
@@ -193,11 +194,9 @@ class Radii:
 def radii(bounds: ProofBounds) -> Radii | None:
     """The radii that the bounds allow; None where there are none."""
     Y, least = bounds.residual, bounds.rate(flint.arb(0))
-    unique = flint.arb(1)
-    while not bounds.rate(unique) < MOST_RATE:
-        unique *= SHRINK
-        if not unique > Y:
-            return None
+    unique = largest_unique(bounds, Y)
+    if unique is None:
+        return None
     unique_pair = dyadic(unique, above=False)
     unique, radius = ball(of_dyadic(unique_pair)), Y * RADIUS_SLACK / (1 - least)
     while radius <= unique:
@@ -208,6 +207,32 @@ def radii(bounds: ProofBounds) -> Radii | None:
             return Radii(pair, unique_pair)
         radius *= RADIUS_SLACK
     return None
+
+
+def largest_unique(bounds: ProofBounds, Y: Any) -> Any | None:
+    """The largest SHRINK^k within which the map contracts, by halving; None if not above Y.
+
+    The rate grows with the radius.
+    """
+
+    def contracts(k: int) -> bool:
+        return bool(bounds.rate(flint.arb(SHRINK) ** k) < MOST_RATE)
+
+    if contracts(0):
+        return flint.arb(1)
+    if not Y < 1:
+        return None
+    fails = 0
+    holds = math.floor(math.log(max(double_above(Y), LEAST_STEP)) / math.log(SHRINK))
+    if not contracts(holds):
+        return None
+    while holds - fails > 1:
+        middle = (holds + fails) // 2
+        if contracts(middle):
+            holds = middle
+        else:
+            fails = middle
+    return flint.arb(SHRINK) ** holds
 
 
 def dyadic(x: Any, *, above: bool) -> tuple[int, int]:

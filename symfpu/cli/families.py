@@ -13,6 +13,7 @@ from symfpu.cli.chains import (
     AlphaOption,
     BetaOption,
     BondsOption,
+    EndsOption,
     PotentialOption,
     chain_of,
     solution_of,
@@ -43,6 +44,7 @@ from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_file, output_folder
 from symfpu.numbers.counted import counted
 from symfpu.refinement.digits import PreciseTorus
+from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import (
     RefinedTorus,
@@ -110,6 +112,12 @@ def refine_file(
             help="Relative residual of the equations of motion to be reached.", metavar="X"
         ),
     ] = "1e-13",
+    most_harmonics: Annotated[
+        int,
+        typer.Option(
+            help="Harmonics that may be taken; memory grows with them.", metavar="H"
+        ),
+    ] = MOST_HARMONICS,
     plot: PlotOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -139,16 +147,17 @@ def refine_file(
             "harmonic", True, "an --energy that it says something about", "give --energy E"
         )
     kept = None if output is None else output_file(path_named("output", output))
-    goal = number("tolerance", tolerance)
+    how: dict[str, Any] = {"tolerance": number("tolerance", tolerance)}
+    how["most_harmonics"] = most_harmonics
     with progress_bar("Newton's method") as advance:
         refined: RefinedTorus | RefinedRingTorus | PreciseTorus
         if energy is not None:
             refined = refine_at_energy(
-                torus, energy, harmonic=harmonic, tolerance=goal, progress=advance
+                torus, energy, harmonic=harmonic, progress=advance, **how
             )
         else:
             given = ratio("amplitudes", amplitudes, torus.seeds)
-            refined = _found(torus, given, places, run, tolerance=goal, progress=advance)
+            refined = _found(torus, given, places, run, progress=advance, **how)
         if kept:
             command = shlex.join(["symfpu", *context.obj])
             save(kept, refined, verdict=verdict_of(refined), command=command)
@@ -208,6 +217,7 @@ def follow_family(
     alpha: AlphaOption = "0",
     beta: BetaOption = "0",
     potential: PotentialOption = None,
+    ends: EndsOption = "fixed",
     harmonic: Annotated[
         bool,
         typer.Option(
@@ -260,7 +270,7 @@ def follow_family(
     as_json: JsonOption = False,
 ) -> None:
     """A family of tori from small energy on, past folds and past the end of its series."""
-    chain = chain_of(bonds, alpha, beta, potential)
+    chain = chain_of(bonds, alpha, beta, potential, ends)
     chosen = tuple(whole_numbers("seeds", seeds))
     picture = picture_named(plot)
     saved = file_named(kept_file)

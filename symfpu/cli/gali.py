@@ -62,10 +62,9 @@ from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
 from symfpu.files.writing import output_folder
-from symfpu.normal.search import checked_modes, normal_modes
+from symfpu.normal.search import Solution, checked_modes, normal_modes
 from symfpu.plots.indices import foretold as draw_foretold
 from symfpu.reports.tables import fifteen_digits
-from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
@@ -194,7 +193,7 @@ def gali(
 class _Forecast(NamedTuple):
     """The linearised flow about a torus: what foretells its indices."""
 
-    torus: QuasiPeriodic
+    torus: Solution
     flow: LinearFlow
 
     def of(self, found: AlignmentIndices, seed: int) -> ForetoldIndices:
@@ -205,8 +204,8 @@ class _Forecast(NamedTuple):
 def _forecast(start: Start) -> _Forecast:
     """Of the torus of a file; InputError for other starts, and for a torus not refined."""
     torus = start.torus
-    if not isinstance(torus, QuasiPeriodic):
-        allowed = "only for a FILE with a torus of fixed ends"
+    if torus is None:
+        allowed = "only for a FILE with a torus"
         raise InputError("foretold", True, allowed, "leave --foretold out")
     with progress_bar("normal modes") as advance:
         every = checked_modes(torus, None)

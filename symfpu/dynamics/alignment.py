@@ -418,9 +418,14 @@ def _steps(T: float, h: float) -> int:
 
 def _first_frame(chain: Chain, vectors: int, seed: int) -> tuple[Numbers, Numbers]:
     """Orthonormal vectors in modes, (vectors, N-1) each."""
+    x, p = drawn_frame(chain, vectors, seed)
+    return (chain.modes(x), chain.modes(p)) if chain.periodic else (x, p)
+
+
+def drawn_frame(chain: Chain, vectors: int, seed: int) -> tuple[Floats, Floats]:
+    """Orthonormal vectors as rows: modes of fixed ends, (vectors, N-1); particles of a ring, N."""
     if chain.periodic:
-        x, p = _random_ring_frame(vectors, chain.N, seed)
-        return chain.modes(x), chain.modes(p)
+        return _random_ring_frame(vectors, chain.N, seed)
     return random_frame(vectors, chain.N - 1, seed)
 
 

@@ -9,18 +9,15 @@ it, so that a turn of the energy or of a frequency is passed like any other poin
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import Any
 
-import mpmath
 import numpy as np
 
 from symfpu.breathers.floquet import Floquet, floquet
 from symfpu.chain.chain import Chain
-from symfpu.chain.frequency_shift import frequency_shift
-from symfpu.errors import SymfpuError
+from symfpu.families.extrapolation import FamilyTorus, extrapolated
 from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
@@ -28,29 +25,22 @@ from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.normal.frequencies import NormalFrequencies
-from symfpu.numbers.arithmetic import text
+from symfpu.normal.search import Solution
 from symfpu.refinement.conditions import (
-    Amplitude,
     Condition,
     Energy,
     Plane,
     ratio_conditions,
 )
-from symfpu.refinement.equation import Floats, Ints
-from symfpu.refinement.invariance import DIGITS
+from symfpu.refinement.equation import Floats
 from symfpu.refinement.tori import (
-    TOLERANCE,
     NoTorus,
-    RefinedTorus,
-    refine_at_amplitudes,
     refined_torus,
     shifts_of,
 )
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
 
-GUESS_ORDER = 2  # of the series that begins a family
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
 # the smallest from a doubtful member: near a saddle such ones crawl on without end
 DOUBTFUL_STEP = 0.05
@@ -68,13 +58,24 @@ ENERGY_TOLERANCE = (
 OVERHANG = (
     1e-6  # of the distance of two tori, by which one between them may seem to lie outside
 )
-# relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
-GUESS_CHANGE = 0.3
+
+
+def linear_by_mode(chain: Chain, modes: Iterable[int]) -> dict[int, float]:
+    """Omega of modes of a chain in doubles, in their order."""
+    known, numbers = chain.frequencies().tolist(), chain.mode_numbers
+    return {q: known[numbers.index(q)] for q in modes}
+
+
+def harmonic_energy_of(torus: Solution) -> float:
+    """Sum E_q at the angles zero; of waves of a ring, nowhere at rest, averaged over the angles."""
+    if isinstance(torus, RingTorus):
+        return float(torus.average_spectrum().sum())
+    return float(torus.harmonic_energies().sum())
 
 
 @dataclass(frozen=True)
 class Level:
-    """An energy asked for, H or with `harmonic` sum E_q, at the angles zero."""
+    """An energy asked for, H or with `harmonic` sum E_q; see `harmonic_energy_of`."""
 
     energy: float
     harmonic: bool
@@ -84,9 +85,9 @@ class Level:
         """The symbol of this energy."""
         return "sum E_q" if self.harmonic else "H"
 
-    def of(self, torus: QuasiPeriodic) -> float:
+    def of(self, torus: Solution) -> float:
         """This energy of a torus."""
-        return float(torus.harmonic_energies().sum() if self.harmonic else torus.energy())
+        return harmonic_energy_of(torus) if self.harmonic else float(torus.energy())
 
     def of_member(self, found: Member) -> float:
         """This energy of a member, which knows both."""
@@ -111,7 +112,7 @@ class Member(Tabled):
     """One torus of a family; dimensionless.
 
     torus : the solution. amplitudes : by seed. energy : H, harmonic_energy : sum E_q, both at the
-        angles zero.
+        angles zero, of a ring sum E_q averaged over the angles.
     residual : of the equations of motion, relative to the largest acceleration.
         warnings : reasons to doubt it.
     multipliers : of a breather, normal : NormalFrequencies, if asked for. Ours; Appendix A has
@@ -126,7 +127,7 @@ class Member(Tabled):
     0       0  0.0005   torus
     """
 
-    torus: QuasiPeriodic
+    torus: Solution
     amplitudes: Mapping[int, float]
     energy: float
     harmonic_energy: float
@@ -248,67 +249,8 @@ class Event(Recorded):
         return f"{self.kind}: {self.what} at {where}{value}"
 
 
-def first_torus(
-    chain: Chain,
-    amplitudes: Mapping[int, float],
-    *,
-    energy_ratio: Mapping[int, float] | None = None,
-    tolerance: float = TOLERANCE,
-    progress: Progress | None = None,
-) -> RefinedTorus:
-    """The torus with these small amplitudes, from a short series about the lowest frequency shift.
-
-    energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed
-    is as given.
-    """
-    guess = _short_series(chain, amplitudes)
-    if energy_ratio is None:
-        return refine_at_amplitudes(
-            guess, amplitudes, tolerance=tolerance, progress=progress
-        )
-    first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
-    conditions = [first, *ratio_conditions(tuple(amplitudes), energy_ratio, energies=True)]
-    return refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
-
-
-def first_at(
-    level: Level,
-    chain: Chain,
-    amplitudes: Mapping[int, float],
-    ratio: Sequence[Condition],
-    *,
-    tolerance: float = TOLERANCE,
-    progress: Progress | None = None,
-) -> RefinedTorus:
-    """The torus of an energy near the linear limit, from a short series with about its amplitudes.
-
-    ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found
-    are far from those of the series: a torus of another family may have the energy.
-    """
-    guess = _short_series(chain, amplitudes)
-    conditions = [level.condition, *ratio]
-    found = refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
-    astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
-    if astray > GUESS_CHANGE:
-        raise NoTorus(
-            f"an amplitude is {astray:.0%} off the one expected", found, found.residual()
-        )
-    return found
-
-
-def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
-    """The series of lowest orders about the frequencies that these amplitudes shift."""
-    shifts = frequency_shift(chain, amplitudes)
-    with mpmath.workdps(DIGITS):
-        shifted = [chain.linear_frequency(q) + mpmath.mpf(shifts[q]) for q in amplitudes]
-        omega = [Fraction(text(w, 25)) for w in shifted]
-    series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
-    phases = dict.fromkeys(amplitudes, 0.0)
-    return QTorus(series, dict(amplitudes), phases, 0, GUESS_ORDER)
-
-
 def member(
-    torus: RefinedTorus, *, multipliers: bool, normal: NormalFrequencies | None = None
+    torus: FamilyTorus, *, multipliers: bool, normal: NormalFrequencies | None = None
 ) -> Member:
     """A torus with its energies, its residual and, for a breather, its multipliers.
 
@@ -318,7 +260,7 @@ def member(
         torus=torus,
         amplitudes=torus.amplitudes,
         energy=float(torus.energy()),
-        harmonic_energy=float(torus.harmonic_energies().sum()),
+        harmonic_energy=harmonic_energy_of(torus),
         residual=torus.residual(),
         warnings=torus.warnings,
         multipliers=floquet(torus) if multipliers else None,
@@ -334,30 +276,6 @@ def series_member(torus: QTorus) -> Member:
     return Member(torus, amplitudes, energy, harmonic, torus.residual(), torus.warnings)
 
 
-def returned(members: Sequence[Member], *, tolerance: float) -> bool:
-    """Whether a family has come back to the linear limit.
-
-    It is below where it began, at the torus that the series there lead to.
-
-    Two tori of the same amplitudes nearer to each other than the root of the tolerance are one:
-    Newton's method leads from one to the other.
-    """
-    if len(members) < 3:
-        return False
-    first, (before, last) = members[0], members[-2:]
-    if not last.energy < min(first.energy, before.energy):
-        return False
-    if any(abs(last.amplitudes[q]) >= abs(a) for q, a in first.amplitudes.items()):
-        return False
-    try:
-        other = first_torus(first.torus.chain, last.amplitudes, tolerance=tolerance)
-    except SymfpuError:
-        return False
-    same = _cosines_at(last.torus.harmonics, other, 0 * other.cosines[0])
-    difference = np.abs(last.torus.cosines - same).max()
-    return bool(difference < np.sqrt(tolerance) * np.abs(other.cosines).max())
-
-
 class Way:
     """The last two tori of a family, and steps from them."""
 
@@ -368,7 +286,7 @@ class Way:
         energies: bool,
         tolerance: float,
         progress: Progress | None,
-        tori: Sequence[RefinedTorus],
+        tori: Sequence[FamilyTorus],
         step: float,
         largest: float = 0.0,
     ) -> None:
@@ -377,7 +295,7 @@ class Way:
         self.tori, self.step = list(tori), step
         self.largest = largest  # relative shift so far
 
-    def local(self, *tori: RefinedTorus) -> Way:
+    def local(self, *tori: FamilyTorus) -> Way:
         """The same family from other tori, to look between members."""
         return Way(
             self.ratio,
@@ -395,7 +313,7 @@ class Way:
         The largest relative one, not far below any before.
         """
         torus = self.tori[0]
-        linear = torus.chain.frequencies()[np.array(torus.seeds) - 1]
+        linear = np.array(list(linear_by_mode(torus.chain, torus.seeds).values()))
         shifts = [np.abs(shifts_of(torus)).astype(float) for torus in self.tori[-2:]]
         relative = [float(np.max(shift / linear)) for shift in shifts]
         self.largest = max(self.largest, *relative)
@@ -407,13 +325,13 @@ class Way:
         ratio = ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)
         return [first, *ratio]
 
-    def variables(self, torus: RefinedTorus, scales: Floats) -> Floats:
+    def variables(self, torus: FamilyTorus, scales: Floats) -> Floats:
         """Where a torus is, (ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
         A = np.array([np.longdouble(abs(a)) for a in torus.amplitudes.values()])
         shifts = shifts_of(torus) / scales
         return np.concatenate([np.log(A), shifts])
 
-    def at(self, distance: float) -> RefinedTorus:
+    def at(self, distance: float) -> FamilyTorus:
         """The torus at this length of way from the last one, along the secant; raises NoTorus."""
         before, last = self.tori[-2:]
         scales = self.scales()
@@ -435,7 +353,7 @@ class Way:
             raise NoTorus(reason, found, found.residual())
         return found
 
-    def between(self, level: Level) -> RefinedTorus:
+    def between(self, level: Level) -> FamilyTorus:
         """The torus of an energy between those of the last two; raises NoTorus."""
         before, last = self.tori[-2:]
         low, high = level.of(before), level.of(last)
@@ -452,7 +370,7 @@ class Way:
             raise NoTorus(f"{torus} is not between two neighbours", found, found.residual())
         return found
 
-    def meeting(self, condition: Condition, guess: QuasiPeriodic) -> RefinedTorus:
+    def meeting(self, condition: Condition, guess: Solution) -> FamilyTorus:
         """The torus of a condition between the last two, from a guess.
 
         Raises NoTorus, also for one that is elsewhere or doubtful.
@@ -466,7 +384,7 @@ class Way:
             raise NoTorus("it is not between two neighbours", found, found.residual())
         return found
 
-    def place(self, torus: RefinedTorus) -> tuple[float, float]:
+    def place(self, torus: FamilyTorus) -> tuple[float, float]:
         """How far along the way between the last two tori another one is, and how far off it.
 
         Both in the distance of the two.
@@ -479,7 +397,7 @@ class Way:
         off = float(np.linalg.norm(gone - along * secant))
         return along, off / float(np.linalg.norm(secant))
 
-    def advance(self, goal: Level) -> RefinedTorus:
+    def advance(self, goal: Level) -> FamilyTorus:
         """The next torus, by the longest step that succeeds.
 
         That of the goal where it leads beyond. Raises NoTorus when none does.
@@ -501,7 +419,7 @@ class Way:
         return found
 
 
-def _require_resolved(found: RefinedTorus) -> None:
+def _require_resolved(found: FamilyTorus) -> None:
     """Raises NoTorus for what is no member of a family."""
     if min(found.frequencies) <= 0:  # the mirror image of the family behind a saddle
         raise NoTorus("a frequency passes zero", found, found.residual())
@@ -509,23 +427,3 @@ def _require_resolved(found: RefinedTorus) -> None:
         raise NoTorus(
             f"{len(found.harmonics)} harmonics do not resolve it", found, residual
         )
-
-
-def extrapolated(before: QuasiPeriodic, last: QuasiPeriodic, ratio: float) -> FourierTorus:
-    """The guess on the line through two tori, `ratio` of their distance beyond the second."""
-    earlier = _cosines_at(last.harmonics, before, 0 * last.cosines[0])
-    cosines = last.cosines + ratio * (last.cosines - earlier)
-    omega = zip(before.frequencies, last.frequencies, strict=True)
-    frequencies = tuple(b + Fraction(ratio) * (b - a) for a, b in omega)
-    phases = dict(last.phases)
-    return FourierTorus(
-        last.chain, last.seeds, frequencies, last.harmonics, cosines, phases
-    )
-
-
-def _cosines_at(harmonics: Ints, torus: QuasiPeriodic, missing: Floats) -> Floats:
-    """The cosines of a torus at these harmonics, (H, s); a row `missing` where it has none."""
-    rows = {tuple(nu): i for i, nu in enumerate(torus.harmonics.tolist())}
-    wanted = map(tuple, harmonics.tolist())
-    found = [torus.cosines[rows[nu]] if nu in rows else missing for nu in wanted]
-    return np.array(found)

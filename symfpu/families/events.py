@@ -19,9 +19,9 @@ from symfpu.families.continuation import (
     Level,
     Member,
     Way,
-    extrapolated,
     member,
 )
+from symfpu.families.extrapolation import FamilyTorus, coefficients_of, extrapolated
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_way import NormalWay
 from symfpu.refinement.conditions import Crossing
@@ -37,7 +37,7 @@ LOCATIONS = 8  # the most members spent on it
 MOST_CROSSINGS = 8
 
 
-def quantities(torus: RefinedTorus) -> dict[str, float]:
+def quantities(torus: FamilyTorus) -> dict[str, float]:
     """What may turn along a family: energy, shifts of the frequencies, amplitudes."""
     by_seed = zip(torus.seeds, shifts_of(torus), strict=True)
     shifts = {f"omega_{q}": float(shift) for q, shift in by_seed}
@@ -48,59 +48,79 @@ def quantities(torus: RefinedTorus) -> dict[str, float]:
 class _Sign(NamedTuple):
     """A divisor that changes its sign between two tori.
 
-    part : of their distance, where it does so by interpolation.
+    part : of their distance, where it does so by interpolation. column : of its coefficient.
     """
 
     mode: int
     harmonic: tuple[int, ...]
+    column: int
     part: float
     coefficient: float
 
 
-def _signs(first: RefinedTorus, second: RefinedTorus) -> list[_Sign]:
+def _signs(first: FamilyTorus, second: FamilyTorus) -> list[_Sign]:
     """The divisors of significant coefficients that change their sign between two tori.
 
     They are in the order in which they do so.
     """
-    i, j = _common_rows(first, second)
-    harmonics = first.harmonics[i]
-    earlier, later = _divisors(first, i), _divisors(second, j)
-    size = np.maximum(np.abs(first.cosines[i]), np.abs(second.cosines[j]))
-    significant = size / np.abs(second.cosines).max() > LEAST_COEFFICIENT
-    changed = (earlier * later < 0) & significant & ~_own_harmonics(first, harmonics)
+    harmonics, earlier_size, later_size = _common(first, second)
+    places = _places(first, harmonics)
+    numbers = np.array(first.chain.mode_numbers)[places]
+    modes = np.broadcast_to(numbers, earlier_size.shape)
+    earlier, later = (_divisors(torus, harmonics, places) for torus in (first, second))
+    size = np.maximum(np.abs(earlier_size), np.abs(later_size))
+    largest = np.abs(coefficients_of(second)[1]).max()
+    significant = size / largest > LEAST_COEFFICIENT
+    own = _own_harmonics(first, harmonics, modes)
+    changed = (earlier * later < 0) & significant & ~own
     found = []
-    for h, place in zip(*np.nonzero(changed), strict=True):
-        before, after = earlier[h, place], later[h, place]
+    for h, column in zip(*np.nonzero(changed), strict=True):
+        before, after = earlier[h, column], later[h, column]
         part = float(before / (before - after))
         harmonic = tuple(harmonics[h].tolist())
-        coefficient = float(second.cosines[j[h], place])
-        found.append(_Sign(int(place) + 1, harmonic, part, coefficient))
+        mode = int(modes[h, column])
+        coefficient = float(later_size[h, column])
+        found.append(_Sign(mode, harmonic, int(column), part, coefficient))
     return sorted(found, key=lambda sign: sign.part)
 
 
-def _common_rows(first: RefinedTorus, second: RefinedTorus) -> tuple[Ints, Ints]:
-    """Rows of the harmonics that two tori share, in the one and in the other."""
-    rows = {tuple(nu): i for i, nu in enumerate(first.harmonics.tolist())}
-    of_second = enumerate(map(tuple, second.harmonics.tolist()))
+def _common(first: FamilyTorus, second: FamilyTorus) -> tuple[Ints, Floats, Floats]:
+    """The harmonics that two tori share, (H, s), and coefficients of the one and the other."""
+    (known, earlier), (others, later) = coefficients_of(first), coefficients_of(second)
+    rows = {tuple(nu): i for i, nu in enumerate(known.tolist())}
+    of_second = enumerate(map(tuple, others.tolist()))
     pairs = [(rows[nu], j) for j, nu in of_second if nu in rows]
-    i, j = zip(*pairs, strict=True)
-    return np.array(i), np.array(j)
+    i, j = map(list, zip(*pairs, strict=True))
+    return known[i], earlier[i], later[j]
 
 
-def _divisors(torus: RefinedTorus, rows: Ints) -> Floats:
-    """|nu.omega| - Omega_q of these rows; shape (rows, N-1)."""
+def _places(torus: FamilyTorus, harmonics: Ints) -> Ints:
+    """Of the modes of coefficients among those of the chain, broadcast with (H, C).
+
+    Of travelling waves the one mode of each harmonic.
+    """
+    numbers = np.array(torus.chain.mode_numbers)
+    if isinstance(torus, RefinedTorus):
+        return np.arange(len(numbers))[None, :]
+    waves = harmonics @ np.array(torus.seeds) % torus.chain.N
+    place = np.zeros(torus.chain.N, dtype=np.int64)
+    place[numbers % torus.chain.N] = np.arange(len(numbers))
+    return np.asarray(place[waves][:, None])
+
+
+def _divisors(torus: FamilyTorus, harmonics: Ints, places: Ints) -> Floats:
+    """|nu.omega| - Omega of the modes; shape (H, C)."""
     omega = np.array([float(w) for w in torus.frequencies])
-    rates = np.abs(torus.harmonics[rows] @ omega)
-    return np.asarray(rates[:, None] - torus.chain.frequencies())
+    rates = np.abs(harmonics @ omega)
+    return np.asarray(rates[:, None] - torus.chain.frequencies()[places])
 
 
-def _own_harmonics(torus: RefinedTorus, harmonics: Ints) -> NDArray[np.bool_]:
-    """Where a seed has its own harmonic; shape (rows, N-1)."""
+def _own_harmonics(torus: FamilyTorus, harmonics: Ints, modes: Ints) -> NDArray[np.bool_]:
+    """Where a seed has its own harmonic; shape (H, C)."""
     single = np.abs(harmonics).sum(axis=1) == 1
-    own = np.zeros((len(harmonics), torus.chain.N - 1), dtype=bool)
-    for k, q in enumerate(torus.seeds):
-        own[:, q - 1] = single & (harmonics[:, k] == 1)
-    return own
+    of_seeds = zip(torus.seeds, harmonics.T, strict=True)
+    own = [(single & (n == 1))[:, None] & (modes == q) for q, n in of_seeds]
+    return np.asarray(np.any(own, axis=0))
 
 
 def resonances(way: Way, after: int) -> Iterator[Event]:
@@ -120,9 +140,8 @@ def resonances(way: Way, after: int) -> Iterator[Event]:
             energy = float(first.energy()) + sign.part * rise
             coefficient = sign.coefficient
         else:
-            row = torus.harmonics.tolist().index(list(sign.harmonic))
             energy = float(torus.energy())
-            coefficient = float(torus.cosines[row, sign.mode - 1])
+            coefficient = _coefficient(torus, sign)
         yield Event(
             kind="resonance",
             what="divisor",
@@ -135,7 +154,14 @@ def resonances(way: Way, after: int) -> Iterator[Event]:
         )
 
 
-def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
+def _coefficient(torus: FamilyTorus, sign: _Sign) -> float:
+    """The one under a divisor."""
+    harmonics, table = coefficients_of(torus)
+    row = harmonics.tolist().index(list(sign.harmonic))
+    return float(table[row, sign.column])
+
+
+def _resonant(way: Way, sign: _Sign) -> FamilyTorus | None:
     """The torus between the last two on which this divisor is zero.
 
     None where Newton's method does not lead to it.
@@ -183,7 +209,7 @@ def _fold(way: Way, name: str, after: int) -> Event:
     return Event("fold", name, after + (place > 0), float(torus.energy()), value)
 
 
-def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTorus, float]:
+def _turn(way: Way, measure: Callable[[FamilyTorus], float]) -> tuple[FamilyTorus, float]:
     """Where a measure turns, and how far along the way from the middle one of the last three tori.
 
     Newton tori between these, at the vertex of the parabola through the best three of all.
@@ -214,7 +240,7 @@ def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTo
     return torus, place
 
 
-def crossing(way: Way, goal: Level) -> tuple[int, RefinedTorus] | None:
+def crossing(way: Way, goal: Level) -> tuple[int, FamilyTorus] | None:
     """The torus of the goal where the energy turns between the last three tori.
 
     All of them are below the goal, which the energy passes.

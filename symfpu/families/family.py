@@ -17,7 +17,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from symfpu.chain.chain import Chain, require_chain
+from symfpu.chain.chain import Chain, require_any_chain, require_chain
 from symfpu.errors import InputError, RunInterrupted, SymfpuError
 from symfpu.families.appendix_a import (
     AppendixAMember,
@@ -25,18 +25,17 @@ from symfpu.families.appendix_a import (
     member_at,
     members_between,
 )
+from symfpu.families.beginnings import first_at, returned
 from symfpu.families.continuation import (
     Event,
     Level,
     Member,
     Way,
-    extrapolated,
-    first_at,
     members_grid,
-    returned,
     series_member,
 )
 from symfpu.families.events import continued, events_between
+from symfpu.families.extrapolation import FamilyTorus, extrapolated, in_doubles
 from symfpu.families.folder import BEGINNING, Kept, Plan, checked_family
 from symfpu.families.normal_events import RESONANCE_LENGTH, NormalEvent
 from symfpu.files.progress import Progress, unheard
@@ -52,7 +51,6 @@ from symfpu.refinement.invariance import DIGITS, long
 from symfpu.refinement.tori import (
     TOLERANCE,
     NoTorus,
-    RefinedTorus,
     refine_at_energy,
     refined_torus,
 )
@@ -176,7 +174,7 @@ class Family(Shown, Gridded):
         return {name: Variable(("event",), *pair) for name, pair in columns.items()}
 
 
-def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> RefinedTorus:
+def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> FamilyTorus:
     """The torus of a family that has this energy, by Newton's method from the nearest member.
 
     found : the family. energy : an exact number, dimensionless; H, or with `harmonic` sum E_q,
@@ -208,7 +206,7 @@ def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Refine
 
 def member_at_frequency(
     found: Family, seed: int, frequency: Number
-) -> tuple[RefinedTorus, ...]:
+) -> tuple[FamilyTorus, ...]:
     """The tori of a family on which this seed has this frequency.
 
     One for every pair of neighbouring members with the frequency between them.
@@ -248,13 +246,13 @@ def _require_family(found: object) -> None:
 
 def _between(
     found: Family, k: int, place: int, omega: Fraction, part: float
-) -> RefinedTorus:
+) -> FamilyTorus:
     """The torus with this frequency, between member k and the next, near the given part."""
     seed = found.seeds[place]
     with mpmath.workdps(2 * DIGITS):
         exact_omega = mpmath.mpf(omega.numerator) / omega.denominator
         shift = long(exact_omega - found.chain.linear_frequency(seed))
-    first, second = (m.torus.in_doubles() for m in found.members[k : k + 2])
+    first, second = (in_doubles(m.torus) for m in found.members[k : k + 2])
     energies = found.energy_ratio is not None
     ratio = found.energy_ratio or found.members[k].amplitudes
     conditions = [
@@ -286,11 +284,14 @@ def family(
     """The family of tori of these seeds from small energy to `to_energy`.
 
     chain, seeds : the model and distinct modes; energies, amplitudes and frequencies are
-        dimensionless.
+        dimensionless. On a ring seeds are signed and tori are travelling waves; standing ones have
+        the family of their fixed ends, unfolded.
     to_energy : the goal, an exact number.
-    harmonic : whether energies are sum E_q at the angles zero instead of H.
+    harmonic : whether energies are sum E_q instead of H: at the angles zero, of a ring averaged
+        over them.
     amplitude_ratio, energy_ratio : by seed, at most one; energy_ratio is of mode energies
-        averaged over the torus. Default equal mode energies.
+        averaged over the torus. Default equal mode energies. Opposite seeds want an
+        amplitude_ratio other than 1: their E_q are one, and waves of equal amplitudes stand.
     from_energy : of the first member; default a thousandth of the goal, a tenth with
         'appendix-a', or where the family in the folder began; where the series there lead to no
         torus it is reached by a family from below.
@@ -298,10 +299,10 @@ def family(
     multipliers : of breathers, with changes of stability. normal : normal frequencies of every
         member, each continued from the member before, with the places where they collide and
         those of resonances up to sum |nu_i| = resonance_length (`normal_family` says how).
-        tolerance : as for `refine`. All only with 'arclength' and fixed ends.
+        tolerance : as for `refine`. All only with 'arclength'.
     method : 'arclength', Newton's method and pseudo-arclength continuation; or 'appendix-a', the
         algorithm of the paper's Appendix A, corrected, whose members are truncated series of
-        `order` and whose mode energies grow alike (no ratio is kept).
+        `order` and whose mode energies grow alike (no ratio is kept), with fixed ends.
     order : of those series.
     folder : every member is kept there as a file at once; an interrupted family goes on from it,
         with other goals too.
@@ -314,13 +315,16 @@ def family(
     it ended. One that comes back to the linear limit ends there.
     Raises InputError for arguments out of range and for a folder that holds another family; where
     there is no first member, NoTorus, or NotInFamily if the family turns or ends below
-    `from_energy`; RunInterrupted, a KeyboardInterrupt, where there is a folder.
+    `from_energy`, on a ring ResonantDivisor where opposite waves drive each other at the lowest
+    orders; RunInterrupted, a KeyboardInterrupt, where there is a folder.
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> [round(member.energy, 6) for member in tori.members]
     [0.0005, 0.000605, 0.000772, 0.001]
     """
-    require_chain(chain)
+    require_any_chain(chain)
+    if method == APPENDIX_A:
+        require_chain(chain)
     if method not in METHODS:
         raise InputError(
             "method", method, f"one of {', '.join(METHODS)}", "name one of these"
@@ -409,12 +413,10 @@ def _by_arclength(
 
 
 def _way(
-    plan: Plan, kept: Kept, progress: Progress, tori: Sequence[RefinedTorus] = ()
+    plan: Plan, kept: Kept, progress: Progress, tori: Sequence[FamilyTorus] = ()
 ) -> Way:
     """The way of a family from its last members, or from other tori."""
-    known = tori or [
-        m.torus for m in kept.members[-3:] if isinstance(m.torus, RefinedTorus)
-    ]
+    known = tori or [m.torus for m in kept.members[-3:] if isinstance(m.torus, FamilyTorus)]
     return Way(
         plan.ratio,
         energies=plan.energies,
@@ -469,7 +471,7 @@ def _ended(kept: Kept, end: NoTorus, step: float) -> str:
     """Where and why no further member was found."""
     last = kept.members[-1]
     doubtful = " from a doubtful member" if last.warnings else ""
-    nearest = last.torus.near_resonances[:1] if isinstance(last.torus, RefinedTorus) else ()
+    nearest = last.torus.near_resonances[:1] if isinstance(last.torus, FamilyTorus) else ()
     divisor = "".join(f"; the smallest divisor there is {near!r}" for near in nearest)
     steps = f"with steps along the way down to {step:.1g}{doubtful}{divisor}"
     return f"{_turned(kept)}ended at H = {last.energy:.7g}: {end.reason}, {steps}"
@@ -496,8 +498,8 @@ def _up_to_goal(plan: Plan, kept: Kept, at_goal: Callable[[int], Member]) -> Fam
     return _family(plan, members, events, ENDED_AT_GOAL)
 
 
-def _refined(members: Sequence[Member]) -> list[RefinedTorus]:
-    return [m.torus for m in members if isinstance(m.torus, RefinedTorus)]
+def _refined(members: Sequence[Member]) -> list[FamilyTorus]:
+    return [m.torus for m in members if isinstance(m.torus, FamilyTorus)]
 
 
 def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
@@ -524,7 +526,7 @@ def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
     return why
 
 
-def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedTorus]:
+def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[FamilyTorus]:
     """The torus of the first energy, or the one member there is, and one a little above.
 
     Both are below the goal, or at it.
@@ -533,7 +535,7 @@ def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedToru
     begin = Level(plan.first, plan.harmonic)
     known = _refined(kept.members)
 
-    def near_rest(level: Level, amplitudes: Mapping[int, float]) -> RefinedTorus:
+    def near_rest(level: Level, amplitudes: Mapping[int, float]) -> FamilyTorus:
         tolerance = plan.tolerance
         return first_at(
             level, plan.chain, amplitudes, ratio, tolerance=tolerance, progress=progress
@@ -547,7 +549,7 @@ def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedToru
     return [first, near_rest(above, raised)]
 
 
-def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[RefinedTorus], str]:
+def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[FamilyTorus], str]:
     """The torus of the first energy, and the next one, by a family from a small part of it.
 
     With why there is no next one. Raises NotInFamily where that family does not reach the energy.

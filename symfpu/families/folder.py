@@ -21,9 +21,11 @@ from symfpu.families.continuation import (
     Event,
     Level,
     Member,
+    linear_by_mode,
     member,
     series_member,
 )
+from symfpu.families.extrapolation import FamilyTorus
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_folder import (
     event_entry,
@@ -38,8 +40,7 @@ from symfpu.families.normal_way import NormalWay
 from symfpu.files.progress import Progress
 from symfpu.files.writing import write_text
 from symfpu.normal.frequencies import NormalFrequencies
-from symfpu.numbers.typed import Number, exact, integer, seed_modes
-from symfpu.refinement.tori import RefinedTorus
+from symfpu.numbers.typed import Number, exact, integer
 from symfpu.tori.torus import QTorus
 
 Json = dict[str, Any]
@@ -76,8 +77,8 @@ class Plan:
     @property
     def first(self) -> float:
         """Energy of the first member: that of the starting amplitudes in the linear chain."""
-        linear = self.chain.frequencies()
-        return sum((float(linear[q - 1]) * a) ** 2 / 2 for q, a in self.start.items())
+        linear = linear_by_mode(self.chain, self.start)
+        return sum((linear[q] * a) ** 2 / 2 for q, a in self.start.items())
 
     @property
     def level(self) -> Level:
@@ -103,6 +104,7 @@ class Plan:
         return {
             "N": chain.N,
             **chain.typed_law,
+            **({"ends": chain.ends} if chain.periodic else {}),
             "seeds": list(self.seeds),
             "ratio": ratio,
             "ratio_of": "mode energies" if self.energies else "amplitudes",
@@ -129,7 +131,7 @@ def checked_family(
     normal: int | None,
 ) -> Plan:
     """The arguments of `family`, checked; normal : as of the Plan."""
-    chosen = tuple(sorted(seed_modes(seeds, chain.N)))
+    chosen = tuple(sorted(chain.seeds_of(seeds)))
     first, goal = _checked_energies(from_energy, to_energy, order)
     if amplitude_ratio is not None and energy_ratio is not None:
         allowed = "only one of amplitude_ratio and energy_ratio"
@@ -139,12 +141,15 @@ def checked_family(
         raise InputError("multipliers", multipliers, "False for more than one seed", advice)
     if amplitude_ratio is not None:
         ratio = _checked_ratio("amplitude_ratio", amplitude_ratio, chosen)
+        _require_free(ratio)
     else:
+        _require_different_energies(chosen, energy_ratio)
         ratio = _checked_ratio("energy_ratio", energy_ratio, chosen)
-    linear = {q: float(chain.frequencies()[q - 1]) for q in chosen}
+    linear = linear_by_mode(chain, chosen)
     weights = ratio
     if amplitude_ratio is None:
-        weights = {q: math.sqrt(x) / linear[q] for q, x in ratio.items()}
+        shares = {q: _share_of_seed(chain, q) for q in chosen}
+        weights = {q: math.sqrt(x / shares[q]) / linear[q] for q, x in ratio.items()}
     energy = sum((linear[q] * w) ** 2 / 2 for q, w in weights.items())
     scale = math.sqrt(float(first) / energy)
     start = {q: w * scale for q, w in weights.items()}
@@ -163,6 +168,26 @@ def checked_family(
         chosen=from_energy is not None,
         normal=normal,
     )
+
+
+def _share_of_seed(chain: Chain, q: int) -> float:
+    """The part of a wave's energy that is in the mode of its seed; the rest is in the mode -q."""
+    return 0.5 if chain.periodic and 2 * q != chain.N else 1.0
+
+
+def _require_different_energies(seeds: tuple[int, ...], given: object) -> None:
+    """InputError for opposite seeds of a ring, which have the same E_q."""
+    if any(-q in seeds for q in seeds):
+        allowed = "a ratio of modes of different energies: E_q = E_(-q) on a ring"
+        raise InputError("energy_ratio", given, allowed, "give amplitude_ratio")
+
+
+def _require_free(ratio: dict[int, float]) -> None:
+    """InputError for opposite seeds of a ring of equal amplitudes."""
+    if any(ratio.get(-q) == a for q, a in ratio.items()):
+        allowed = "different amplitudes of opposite seeds: with equal ones they stand"
+        advice = "follow Chain(N // 2, ...) with fixed ends and unfold its tori"
+        raise InputError("amplitude_ratio", ratio, allowed, advice)
 
 
 def _checked_energies(
@@ -267,7 +292,7 @@ class Kept:
             )
         for k in range(count):
             torus = self._torus(k)
-            if isinstance(torus, RefinedTorus):
+            if isinstance(torus, FamilyTorus):
                 normal = self._normal(folder, torus, entries[k])
                 multipliers = self.plan.multipliers
                 self.members.append(member(torus, multipliers=multipliers, normal=normal))
@@ -280,7 +305,7 @@ class Kept:
             self.normal.known = [read_modes(folder, int(known_at))]
 
     def _normal(
-        self, folder: Path, torus: RefinedTorus, entry: Json | None
+        self, folder: Path, torus: FamilyTorus, entry: Json | None
     ) -> NormalFrequencies | None:
         """Of a member in the folder; InputError where the record of it is damaged."""
         try:
@@ -289,7 +314,7 @@ class Kept:
             advice = f"{RECORD} is damaged; choose another folder"
             raise InputError("folder", str(folder), "a family", advice) from error
 
-    def _torus(self, index: int) -> RefinedTorus | QTorus:
+    def _torus(self, index: int) -> FamilyTorus | QTorus:
         """A member that the record counts.
 
         InputError where its file is not there, BundleError where it is damaged.
@@ -304,7 +329,7 @@ class Kept:
             raise InputError("folder", str(self.folder), allowed, advice) from error
         ours = self.plan.chain, self.plan.seeds
         if (
-            not isinstance(torus, (RefinedTorus, QTorus))
+            not isinstance(torus, FamilyTorus | QTorus)
             or (torus.chain, torus.seeds) != ours
         ):
             advice = f"{self._file(index).name} is another torus; choose another folder"
@@ -323,14 +348,14 @@ class Kept:
         del self.members[number:]
         self.events = [event for event in self.events if event.after < number - 1]
 
-    def measured(self, torus: RefinedTorus) -> Member:
+    def measured(self, torus: FamilyTorus) -> Member:
         """A torus as the next member, with all that is asked for."""
         normal = self.normal.of(torus) if self.normal else None
         return member(torus, multipliers=self.plan.multipliers, normal=normal)
 
     def add(self, found: Member, events: list[Event | NormalEvent]) -> None:
         """The member first, then the record that counts it: a run may be stopped at any time."""
-        if self.folder is not None and isinstance(found.torus, (RefinedTorus, QTorus)):
+        if self.folder is not None and isinstance(found.torus, FamilyTorus | QTorus):
             save(
                 self._file(len(self.members)),
                 found.torus,

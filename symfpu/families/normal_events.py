@@ -21,6 +21,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from symfpu.action_angle.newton_twist import NoTwist, action_turn
+from symfpu.families.extrapolation import in_doubles
 from symfpu.families.normal_zeros import (
     PLACE,
     SHARE,
@@ -50,6 +52,9 @@ from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 
 STABILITY, RESONANCE = "stability", "resonance"
 RESONANCE_LENGTH = 4  # sum |nu_i| up to which a resonance that is crossed is an event
+TURNED = (
+    1e-6  # of det d ln I / d ln A at the members, what may be left of it where it is zero
+)
 MET = 1e-8  # distance up to which a resonance was crossed, and not jumped over
 ROUGH = 1e-6  # of the way, from which an event is said to be interpolated
 # where two frequencies are nearer than this, relative, D is not computed but interpolated
@@ -168,7 +173,8 @@ class Stretch:
         near, far = sorted((low, high), key=lambda end: abs(end.place - place))
         calm = far if near is wild else near
         if _own(resonance, wild.normal):
-            return self._event(STABILITY, resonance, place, bracket.width, begins=begins)
+            place, error = self._turned(bracket)
+            return self._event(STABILITY, resonance, place, error, begins=begins)
         size = (2 * _real(low.normal)[resonance.modes[0]]) ** 2
         for start, known in ((place, near), (place, far), (calm.place, calm)):
             if met := self._met(Meeting(known.modes, resonance), start, bracket, size):
@@ -204,6 +210,27 @@ class Stretch:
             return located(of, bracket, gap**2)
         except Failed:
             return bracket.secant(), bracket.width
+
+    def _turned(self, bracket: Bracket) -> tuple[float, float]:
+        """The place where the actions turn, and its error; D interpolated where they do not.
+
+        There a direction meets a frequency of the torus, where no determinant tells it from shifts
+        of the angles.
+        """
+
+        def of(place: float) -> float:
+            return action_turn(in_doubles(self._curve.torus(place)))
+
+        low, high = bracket.low, bracket.high
+        try:
+            turn = Bracket(low, high, of(low), of(high))
+            place = zero_of(of, turn)
+            left = abs(of(place))
+        except (*Failed, NoTwist, ValueError):
+            return bracket.secant(), bracket.width
+        if left > TURNED * turn.largest:  # no zero, but a turn of the amplitudes
+            return bracket.secant(), bracket.width
+        return place, max(PLACE * bracket.width, turn.error(place, left))
 
     def _crossing(self, resonance: ParametricResonance) -> Iterator[NormalEvent]:
         """Where the distance is zero: two onsets if both are hyperbolic there, none if it jumps."""
@@ -319,7 +346,7 @@ def _own(resonance: ParametricResonance, wild: NormalFrequencies) -> bool:
     """Whether a hyperbolic direction is locked to a frequency of the torus: sigma = nu.omega.
 
     There shifts of the angles are solutions, too: directions next to them cannot be told from
-    these, no determinant leaves them out, and the onset is interpolated.
+    these, and no determinant leaves them out.
     """
     if resonance.kind != PARAMETRIC:
         return False

@@ -15,7 +15,7 @@ from symfpu.files.writing import write_text
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_again
 from symfpu.normal.modes import NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.resonances import ParametricResonance
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.normal.search import Solution
 
 Json = dict[str, Any]
 RECORD = "line.json"
@@ -67,7 +67,7 @@ def normal_entry(found: NormalFrequencies | None) -> Json | None:
     }
 
 
-def normal_from(entry: Json | None, torus: QuasiPeriodic) -> NormalFrequencies | None:
+def normal_from(entry: Json | None, torus: Solution) -> NormalFrequencies | None:
     """The same again; KeyError, TypeError or ValueError for what is none."""
     if entry is None:
         return None

@@ -6,18 +6,15 @@ Standing waves of a ring are found with fixed ends and unfolded.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from symfpu.families.continuation import extrapolated
+from symfpu.families.extrapolation import extrapolated, in_doubles
 from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import followed_modes
 from symfpu.refinement.conditions import AmplitudeLine, Condition
-from symfpu.refinement.equation import Floats
 from symfpu.refinement.tori import (
     NoTorus,
     refine_at_amplitudes,
@@ -131,12 +128,8 @@ class Line:
             return self._known[near[0]]
         last, before = near
         ratio = (part - last) / (last - before)
-        earlier, later = self._known[before], self._known[last]
-        if isinstance(earlier, RingTorus) and isinstance(later, RingTorus):
-            return _waves_extrapolated(earlier, later, ratio)
-        assert isinstance(earlier, QuasiPeriodic)
-        assert isinstance(later, QuasiPeriodic)
-        return extrapolated(earlier.in_doubles(), later.in_doubles(), ratio)
+        earlier, later = (in_doubles(self._known[p]) for p in (before, last))
+        return extrapolated(earlier, later, ratio)
 
     def modes_at(
         self, n: int, modes: tuple[int, ...], before: list[NormalModes]
@@ -151,17 +144,3 @@ class Line:
         for none in missing.values():
             raise none
         return found
-
-
-def _waves_extrapolated(before: RingTorus, last: RingTorus, ratio: float) -> RingTorus:
-    """The guess on the line through two tori of waves, `ratio` of their distance beyond."""
-    known = dict(zip(map(tuple, before.harmonics.tolist()), before.sines, strict=True))
-    earlier: Floats = np.array(
-        [known.get(tuple(nu), 0.0) for nu in last.harmonics.tolist()]
-    )
-    pairs = zip(before.frequencies, last.frequencies, strict=True)
-    exact_part = Fraction(ratio)
-    frequencies = tuple(b + exact_part * (b - a) for a, b in pairs)
-    return replace(
-        last, frequencies=frequencies, sines=last.sines + ratio * (last.sines - earlier)
-    )

@@ -23,6 +23,7 @@ from symfpu.paper.printed import FIG9_BREATHER
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import frequency_orders, solve_amplitudes
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.verdict import Assessment, assess
 
 Floats = NDArray[np.float64]
@@ -129,6 +130,7 @@ def scheme_limit(
     beyond = next(k for k, gap in enumerate(gaps) if gap < 0)
     omega = limit_frequency(chain, seed, rates[beyond - 1], rates[beyond])
     last = chosen[beyond - 1].torus
+    assert isinstance(last, QuasiPeriodic)
     by_harmonic = np.argsort(last.harmonics[:, 0])
     orbit = periodic_orbit(chain, seed, omega, last.cosines[by_harmonic])
     amplitudes = tuple(m.amplitudes[seed] for m in chosen)

@@ -11,7 +11,7 @@ from symfpu.breathers.floquet import ELLIPTIC, TRIVIAL
 from symfpu.errors import InputError
 from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
-from symfpu.localization.floors import spectrum_floor
+from symfpu.plots.spectra import spectrum_of_torus
 from symfpu.plots.style import (
     MARK,
     QUIET,
@@ -54,12 +54,13 @@ def family_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     """
     found = require(result, Family, A_FAMILY, ADVICE)
     energies = _energies(found)
-    linear = found.chain.frequencies()
+    pairs = zip(found.chain.mode_numbers, found.chain.frequencies(), strict=True)
+    linear = dict(pairs)
     smallest = np.inf
     with axes_for(ax) as axes:
         for i, q in enumerate(found.seeds):
             rates = np.array([float(m.torus.frequencies[i]) for m in found.members])
-            shifts = (rates - linear[q - 1]) / linear[q - 1]
+            shifts = (rates - linear[q]) / linear[q]
             axes.plot(shifts, energies, label=f"$q = {q}$", **_look(i, found))
             _cross_doubtful(axes, found, shifts, energies)
             largest = float(np.abs(shifts).max())
@@ -193,8 +194,8 @@ def family_spectra(result: Any, ax: Axes | None = None) -> Axes:
     """Average spectra of some members from the first to the last, normalised.
 
     result : what `family` gave; dimensionless (Eq. harmonicene). ax : axes of matplotlib; default
-        new ones. Modes at or below the `spectrum_floor` of their member are rounding, and not
-        drawn. Returns the axes. Raises InputError.
+        new ones. Modes at or below the floor of their member, as in `spectrum`, are rounding, and
+        not drawn. Returns the axes. Raises InputError.
 
     >>> from matplotlib.figure import Figure
     >>> from symfpu import Chain, family
@@ -208,10 +209,11 @@ def family_spectra(result: Any, ax: Axes | None = None) -> Axes:
     with axes_for(ax) as axes:
         for i, k in enumerate(np.unique(places)):
             m = found.members[k]
-            spectrum = np.asarray(m.torus.average_spectrum(), dtype=float)
-            known = np.flatnonzero(spectrum > spectrum_floor(m.torus))
-            shares = spectrum[known] / spectrum.sum()
-            axes.plot(known + 1, shares, label=f"$H$ = {m.energy:.2g}", **look(i))
+            drawn = spectrum_of_torus(m.torus)
+            known = drawn.energies > drawn.floor
+            modes, shares = np.array(drawn.modes)[known], drawn.energies[known]
+            label = f"$H$ = {m.energy:.2g}"
+            axes.plot(modes, shares / drawn.energies.sum(), label=label, **look(i))
         axes.set_yscale("log")
         whole_numbers(axes.xaxis)
         axes.set_xlabel("$q$")

@@ -137,21 +137,24 @@ def _fit_height(axes: Axes, shown: Sequence[Spectrum]) -> None:
 
 
 def _spectrum_of(result: object) -> Spectrum:
-    if isinstance(result, QuasiPeriodic):
-        energies = np.asarray(result.average_spectrum(), dtype=float)
-        chain = result.chain
-        floor = spectrum_floor(result)
-        return Spectrum(chain, result.seeds, chain.mode_numbers, energies, floor)
-    if isinstance(result, RingTorus):
-        energies = result.average_spectrum()
-        chain = result.chain
-        floor = np.full(len(energies), EPS**2 * energies.sum())
-        return Spectrum(chain, result.seeds, chain.mode_numbers, energies, floor)
+    if isinstance(result, (QuasiPeriodic, RingTorus)):
+        return spectrum_of_torus(result)
     if isinstance(result, Orbit):
         return _spectrum_of_orbit(result)
     allowed = "a torus, a breather or an orbit with averages, or a sequence of them"
     advice = "pass what solve_amplitudes, refine or integrate gave"
     raise InputError("results", type(result).__name__, allowed, advice)
+
+
+def spectrum_of_torus(torus: QuasiPeriodic | RingTorus) -> Spectrum:
+    """With what of it is rounding: of waves of a ring EPS^2 times the sum of all energies."""
+    energies = np.asarray(torus.average_spectrum(), dtype=float)
+    chain = torus.chain
+    if isinstance(torus, RingTorus):
+        floor = np.full(len(energies), EPS**2 * energies.sum())
+    else:
+        floor = spectrum_floor(torus)
+    return Spectrum(chain, torus.seeds, chain.mode_numbers, energies, floor)
 
 
 def _spectrum_of_orbit(orbit: Orbit) -> Spectrum:

@@ -237,7 +237,7 @@ def theorem_text(proof: RuleForAllN) -> str:
     sets = f"every set of {s} seed" + "s" * (s > 1)
     where = "on"
     if s >= degree_of(proof.model, proof.order):
-        where = f"where {s} of the seeds are on one of"
+        where = f"at most where {s} of the seeds are on one of"
         sets = f"every set of {s} or more seeds"
     start = f"{proof.model} chains: for every N and {sets}, to order {proof.order},"
     if proof.verdict == "undecided":

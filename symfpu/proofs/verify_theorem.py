@@ -685,7 +685,7 @@ def sentence(claim: Theorem, verdict: str, exceptional: int, count: int, gaps: i
     sets = f"every set of {claim.s} seed{plural}"
     where = "on"
     if claim.s >= claim.degree(claim.order):
-        where = f"where {claim.s} of the seeds are on one of"
+        where = f"at most where {claim.s} of the seeds are on one of"
         sets = f"every set of {claim.s} or more seeds"
     start = f"{claim.model} chains: for every N and {sets}, to order {claim.order},"
     if verdict == "undecided":

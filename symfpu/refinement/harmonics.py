@@ -35,20 +35,25 @@ def known_rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats
 
 
 def chosen_harmonics(
-    known: Mapping[tuple[int, ...], Floats], functions: int, s: int, tolerance: float
+    known: Mapping[tuple[int, ...], Floats],
+    functions: int,
+    s: int,
+    tolerance: float,
+    most: int = MOST_HARMONICS,
 ) -> tuple[Ints, bool]:
     """Harmonics whose coefficients are expected above the tolerance.
 
     The second result says whether more would not fit.
 
-    functions : of the angles, those of half of the bonds, or the one of a ring's waves.
+    functions : of the angles, those of half of the bonds, or the one of a ring's waves. most : of
+    the harmonics.
     """
     size = {nu: float(np.abs(row).max()) for nu, row in known.items()}
     largest = max(size.values())
     heights = {
         nu: float(np.log(x / largest)) for nu, x in size.items() if x > 1e-16 * largest
     }
-    return within_reach(heights, functions, s, float(-np.log(tolerance)))
+    return within_reach(heights, functions, s, float(-np.log(tolerance)), most)
 
 
 def within_reach(

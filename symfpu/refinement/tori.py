@@ -20,7 +20,7 @@ from symfpu.errors import InputError, SymfpuError
 from symfpu.files.checkpoint import checkpoint_path
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.arithmetic import text
-from symfpu.numbers.typed import Number, exact
+from symfpu.numbers.typed import Number, exact, integer
 from symfpu.refinement.conditions import (
     Amplitude,
     Condition,
@@ -38,7 +38,7 @@ from symfpu.refinement.digits import (
     resumed,
 )
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
-from symfpu.refinement.harmonics import chosen_harmonics, known_rows
+from symfpu.refinement.harmonics import MOST_HARMONICS, chosen_harmonics, known_rows
 from symfpu.refinement.invariance import DIGITS, InvarianceEquation, long, rational
 from symfpu.refinement.kept_sweeps import SweepsFile, require_digits_beside, unkept
 from symfpu.refinement.newton import Iterate, NewtonStep, newton
@@ -145,6 +145,7 @@ def refine(
     digits: int,
     file: Path | str | None = ...,
     tolerance: float = ...,
+    most_harmonics: int = ...,
     progress: Progress | None = ...,
 ) -> PreciseTorus: ...
 @overload
@@ -161,6 +162,7 @@ def refine(
     digits: int | None = None,
     file: Path | str | None = None,
     tolerance: float = TOLERANCE,
+    most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
 ) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
     """The torus with the same frequencies that solves the equations of motion.
@@ -176,6 +178,7 @@ def refine(
         it, one to more digits, too.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration,
         dimensionless; harmonics are added until it is reached.
+    most_harmonics : how many may be taken, if their lattice fits; memory grows with them.
     progress : called as (label, NO_FRACTION) on every step.
 
     Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a
@@ -191,13 +194,17 @@ def refine(
     """
     _require_torus(torus)
     require_digits_beside(file, digits)
+    how: dict[str, Any] = {
+        "tolerance": tolerance,
+        "most_harmonics": most_harmonics,
+        "progress": progress,
+    }
     if digits is not None:
-        how: dict[str, Any] = {"tolerance": tolerance, "progress": progress}
         return _of_digits(torus, digits, None, file, **how)
     if isinstance(torus, RingTorus):
         require_independent(torus)
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
-    refined = refined_torus(torus, conditions, tolerance=tolerance, progress=progress)
+    refined = refined_torus(torus, conditions, **how)
     return replace(refined, frequencies=tuple(torus.frequencies))
 
 
@@ -209,6 +216,7 @@ def refine_at_amplitudes(
     digits: int,
     file: Path | str | None = ...,
     tolerance: float = ...,
+    most_harmonics: int = ...,
     progress: Progress | None = ...,
 ) -> PreciseTorus: ...
 @overload
@@ -217,6 +225,7 @@ def refine_at_amplitudes(
     amplitudes: Mapping[int, Number],
     *,
     tolerance: float = ...,
+    most_harmonics: int = ...,
     progress: Progress | None = ...,
 ) -> RefinedRingTorus: ...
 @overload
@@ -225,6 +234,7 @@ def refine_at_amplitudes(
     amplitudes: Mapping[int, Number],
     *,
     tolerance: float = ...,
+    most_harmonics: int = ...,
     progress: Progress | None = ...,
 ) -> RefinedTorus: ...
 def refine_at_amplitudes(
@@ -234,6 +244,7 @@ def refine_at_amplitudes(
     digits: int | None = None,
     file: Path | str | None = None,
     tolerance: float = TOLERANCE,
+    most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
 ) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
     """The torus with the given amplitude of every seed; its frequencies are found.
@@ -242,6 +253,7 @@ def refine_at_amplitudes(
     amplitudes : A_q by seed, exact numbers, dimensionless; of cos(theta_q) in Q_q.
     digits, file : as of `refine`; so many digits of the frequencies, too.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration.
+    most_harmonics : as of `refine`.
     progress : called as (label, NO_FRACTION) on every step.
 
     As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, also for a
@@ -254,7 +266,11 @@ def refine_at_amplitudes(
     """
     _require_torus(torus)
     given = tuple(_by_seed("amplitudes", amplitudes, torus, signed=True).values())
-    how: dict[str, Any] = {"tolerance": tolerance, "progress": progress}
+    how: dict[str, Any] = {
+        "tolerance": tolerance,
+        "most_harmonics": most_harmonics,
+        "progress": progress,
+    }
     require_digits_beside(file, digits)
     if digits is not None:
         return _of_digits(torus, digits, given, file, **how)
@@ -274,6 +290,7 @@ def _of_digits(
     file: Path | str | None,
     *,
     tolerance: float,
+    most_harmonics: int,
     progress: Progress | None,
 ) -> PreciseTorus:
     """The torus of the same frequencies, or of given amplitudes, with digits."""
@@ -282,7 +299,11 @@ def _of_digits(
         raise InputError("digits", digits, allowed, "leave it out")
     require_digits(torus.chain, digits)
     path = None if file is None else checkpoint_path(file)
-    how: dict[str, Any] = {"tolerance": tolerance, "progress": progress}
+    how: dict[str, Any] = {
+        "tolerance": tolerance,
+        "most_harmonics": most_harmonics,
+        "progress": progress,
+    }
     near: QuasiPeriodic
     if amplitudes is not None:
         near = _at_amplitudes(torus, amplitudes, **how)
@@ -319,6 +340,7 @@ def refine_at_energy(
     amplitude_ratio: Mapping[int, Number] | None = ...,
     energy_ratio: Mapping[int, Number] | None = ...,
     tolerance: float = ...,
+    most_harmonics: int = ...,
     progress: Progress | None = ...,
 ) -> RefinedRingTorus: ...
 @overload
@@ -330,6 +352,7 @@ def refine_at_energy(
     amplitude_ratio: Mapping[int, Number] | None = ...,
     energy_ratio: Mapping[int, Number] | None = ...,
     tolerance: float = ...,
+    most_harmonics: int = ...,
     progress: Progress | None = ...,
 ) -> RefinedTorus: ...
 def refine_at_energy(
@@ -340,6 +363,7 @@ def refine_at_energy(
     amplitude_ratio: Mapping[int, Number] | None = None,
     energy_ratio: Mapping[int, Number] | None = None,
     tolerance: float = TOLERANCE,
+    most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
 ) -> RefinedTorus | RefinedRingTorus:
     """The torus with the given energy and ratio of amplitudes or mode energies.
@@ -354,6 +378,7 @@ def refine_at_energy(
         seeds averaged over the torus, on a ring not of opposite ones, whose E_q are equal. Left
         out, the amplitudes keep the ratio they have in `torus`.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration.
+    most_harmonics : as of `refine`.
     progress : called as (label, NO_FRACTION) on every step.
 
     As `refine`, Eq. eqmo with the s frequencies among the unknowns. Raises InputError, and
@@ -396,7 +421,13 @@ def refine_at_energy(
         Energy(long(value), bool(harmonic)),
         *ratio_conditions(torus.seeds, numbers, energies=energy_ratio is not None),
     ]
-    return refined_torus(torus, conditions, tolerance=tolerance, progress=progress)
+    return refined_torus(
+        torus,
+        conditions,
+        tolerance=tolerance,
+        most_harmonics=most_harmonics,
+        progress=progress,
+    )
 
 
 def _require_torus(torus: object) -> None:
@@ -457,6 +488,7 @@ def refined_torus(
     conditions: Sequence[Condition],
     *,
     tolerance: float = ...,
+    most_harmonics: int = ...,
     progress: Progress | None = ...,
 ) -> RefinedRingTorus: ...
 @overload
@@ -465,6 +497,7 @@ def refined_torus(
     conditions: Sequence[Condition],
     *,
     tolerance: float = ...,
+    most_harmonics: int = ...,
     progress: Progress | None = ...,
 ) -> RefinedTorus: ...
 def refined_torus(
@@ -472,6 +505,7 @@ def refined_torus(
     conditions: Sequence[Condition],
     *,
     tolerance: float = TOLERANCE,
+    most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
 ) -> RefinedTorus | RefinedRingTorus:
     """The torus near a guess that meets as many conditions as it has angles.
@@ -483,6 +517,7 @@ def refined_torus(
         raise InputError(
             "tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more"
         )
+    most = integer(most_harmonics, "most_harmonics", len(torus.seeds))
     kind = WAVES if isinstance(torus, RingTorus) else COSINES
     tell = progress or unheard
     chain, seeds = torus.chain, torus.seeds
@@ -494,7 +529,7 @@ def refined_torus(
     for attempt in range(ROUNDS):
         least = tolerance * MARGIN / 10**attempt
         functions = kind.functions(chain)
-        harmonics, full = chosen_harmonics(known, functions, len(seeds), least)
+        harmonics, full = chosen_harmonics(known, functions, len(seeds), least, most)
         equation = kind.equation(chain, seeds, harmonics)
         rows = [known.get(tuple(nu), none) for nu in harmonics.tolist()]
         cosines = np.array(rows, dtype=np.longdouble)
@@ -510,11 +545,14 @@ def refined_torus(
         if residual <= tolerance:
             return refined
         if full or residual > before / 2:
-            reason = "as many harmonics as fit" if full else "more harmonics change nothing"
+            reason = "more harmonics change nothing"
+            if full:
+                reason = f"as many harmonics as fit (most_harmonics={most})"
             left = (
                 f"leave a residual of {residual:.2g}, above the tolerance {tolerance:.0e}"
             )
-            return replace(refined, warnings=(_because(f"{reason} {left}", refined),))
+            doubt = _because(f"{reason} {left}", refined)
+            return replace(refined, warnings=(doubt,))
         before, shifts = residual, found.shifts
         known = known_rows(harmonics, np.asarray(found.cosines))
     warning = f"the residual is {residual:.2g} after {ROUNDS} choices of harmonics"

@@ -21,10 +21,10 @@ from symfpu.refinement.conditions import Amplitude, Condition, Energy, Frequency
 from symfpu.refinement.invariance import long
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import NoTorus, refined_torus, shifts_of
-from symfpu.series.travelling import travelling_waves
 from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.short_waves import plain_waves, shifts_by_squares
 
-TRIAL = 1e-9  # relative shift of the frequency of the series whose first correction is read
+LEAST_FREQUENCY = 1e-9  # of a guess
 REACH = 0.3  # relative change of the amplitude from a guess that stays on the family
 SMALLEST_PART = 1 / 256  # of the way from rest, in one step
 Target = Callable[[float], Condition]  # of the part of the way that is gone
@@ -94,18 +94,12 @@ def _linear(chain: Chain, q: int) -> float:
 
 def _curvature(chain: Chain, q: int) -> float:
     """c of omega = Omega + c A^2 + ..., the lowest order of the series."""
-    trial = exact(_linear(chain, q) * (1 + TRIAL), "frequency")
-    series = travelling_waves(chain, (q,), (trial,), 2 // chain.degree_step)
-    _, slopes = series.frequency_terms([0.0])
-    return float(slopes[:, 0, 0].sum())
+    return float(shifts_by_squares(chain, (q,))[0, 0])
 
 
 def _plain(chain: Chain, q: int, omega: Fraction, A: float) -> RingTorus:
     """The wave of the seed alone."""
-    one = np.ones((1, 1), dtype=np.int64)
-    sines = np.array([np.sign(q) * A])
-    modes = np.array([q])
-    return RingTorus(chain, (q,), (omega,), {q: 0.0}, {q: A}, one, modes, sines)
+    return plain_waves(chain, (omega,), {q: A})
 
 
 def _of_amplitude(chain: Chain, q: int, A: Fraction) -> tuple[RingTorus, Target]:
@@ -145,7 +139,7 @@ _SOUGHT = {
 
 def _positive(omega: float) -> Fraction:
     """A guess of a frequency, which must not be negative."""
-    return exact(max(omega, TRIAL), "frequency")
+    return exact(max(omega, LEAST_FREQUENCY), "frequency")
 
 
 def _walk(end: RingTorus, target: Target, progress: Progress | None) -> RefinedRingTorus:

@@ -1,109 +1,97 @@
-"""The classes that a file may name: nothing else is made of what is in it."""
+"""The classes that a file may name: nothing else is made of what is in it.
+
+A class is named with its module, which is imported when a file names the class: the verbs that open
+files need not wait for all rooms.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from importlib import import_module
 from typing import Any
 
-from symfpu.action_angle.foretold import ForetoldIndices
-from symfpu.action_angle.twist import Twist
-from symfpu.borders.atlas import Atlas
-from symfpu.borders.laws import BorderLaw
-from symfpu.breathers.floquet import Floquet
-from symfpu.dynamics.alignment import AlignmentIndices
-from symfpu.dynamics.orbits import Orbit
-from symfpu.families.continuation import Event, Member
-from symfpu.families.family import Family
-from symfpu.families.normal_events import NormalEvent
-from symfpu.families.normal_family import NormalFamily
-from symfpu.integrable.discriminant import Edges
-from symfpu.integrable.invariants import TodaInvariants
-from symfpu.integrable.torus import TodaTorus
-from symfpu.localization.growth import GroupGrowth, GrowthExponents
-from symfpu.localization.laws import ProfileFit, ProfileLine
-from symfpu.localization.profiles import ProfileDistance
-from symfpu.localization.recurrence import Recurrence
-from symfpu.localization.trials import ProfileInvariance, Trend
-from symfpu.normal.frequencies import NormalFrequencies
-from symfpu.normal.modes import NormalDivisor, NormalMode, NormalModes
-from symfpu.normal.resonances import ParametricResonance
-from symfpu.proofs.certificates import (
-    PropagationProof,
-    RuleException,
-    Undecided,
-    Vanishing,
-    Witness,
-)
-from symfpu.proofs.every_length import DecidedFlat
-from symfpu.proofs.flats import Flat
-from symfpu.proofs.sweeps import Sweep, SweepCase
-from symfpu.proofs.theorem import RuleForAllN
-from symfpu.series.sample import EnergyChanges, FrequencyChanges, SampledSeries
-from symfpu.series.series import ResiduePoint
-from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
-from symfpu.spectral.mapping import FrequencyMap
-from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
-from symfpu.tori.amplitudes import AmplitudeHistory
-from symfpu.tori.resummation import PadeSum
-from symfpu.tori.torus import RootCertificate
-from symfpu.tori.verdict import Assessment, LargestTerm
-
 # results that a user keeps; series and solutions have formats of their own (symfpu.bundles)
-RESULTS: tuple[type[Any], ...] = (
-    AlignmentIndices,
-    AmplitudeHistory,
-    Assessment,
-    Atlas,
-    BorderLaw,
-    EnergyChanges,
-    Event,
-    Family,
-    Floquet,
-    ForetoldIndices,
-    FrequencyAnalysis,
-    FrequencyChanges,
-    FrequencyMap,
-    GroupGrowth,
-    GrowthExponents,
-    Member,
-    NormalEvent,
-    NormalFamily,
-    NormalModes,
-    Orbit,
-    PadeSum,
-    ProfileDistance,
-    ProfileFit,
-    ProfileInvariance,
-    ProfileLine,
-    PropagationProof,
-    Recurrence,
-    RootCertificate,
-    RuleForAllN,
-    SampledSeries,
-    Sweep,
-    SweepRows,
-    TodaInvariants,
-    TodaTorus,
-    Trend,
-    Twist,
-)
+RESULTS = {
+    "AlignmentIndices": "symfpu.dynamics.alignment",
+    "AmplitudeHistory": "symfpu.tori.amplitudes",
+    "Assessment": "symfpu.tori.verdict",
+    "Atlas": "symfpu.borders.atlas",
+    "BorderLaw": "symfpu.borders.laws",
+    "EnergyChanges": "symfpu.series.sample",
+    "Event": "symfpu.families.continuation",
+    "Family": "symfpu.families.family",
+    "Floquet": "symfpu.breathers.floquet",
+    "ForetoldIndices": "symfpu.action_angle.foretold",
+    "FrequencyAnalysis": "symfpu.spectral.analysis",
+    "FrequencyChanges": "symfpu.series.sample",
+    "FrequencyMap": "symfpu.spectral.mapping",
+    "GroupGrowth": "symfpu.localization.growth",
+    "GrowthExponents": "symfpu.localization.growth",
+    "Member": "symfpu.families.continuation",
+    "NormalEvent": "symfpu.families.normal_events",
+    "NormalFamily": "symfpu.families.normal_family",
+    "NormalModes": "symfpu.normal.modes",
+    "Orbit": "symfpu.dynamics.orbits",
+    "PadeSum": "symfpu.tori.resummation",
+    "ProfileDistance": "symfpu.localization.profiles",
+    "ProfileFit": "symfpu.localization.laws",
+    "ProfileInvariance": "symfpu.localization.trials",
+    "ProfileLine": "symfpu.localization.laws",
+    "PropagationProof": "symfpu.proofs.certificates",
+    "Recurrence": "symfpu.localization.recurrence",
+    "RootCertificate": "symfpu.tori.torus",
+    "RuleForAllN": "symfpu.proofs.theorem",
+    "SampledSeries": "symfpu.series.sample",
+    "Sweep": "symfpu.proofs.sweeps",
+    "SweepRows": "symfpu.sweeps.rows",
+    "TodaInvariants": "symfpu.integrable.invariants",
+    "TodaTorus": "symfpu.integrable.torus",
+    "Trend": "symfpu.localization.trials",
+    "Twist": "symfpu.action_angle.twist",
+}
 # what they hold
-PARTS: tuple[type[Any], ...] = (
-    DecidedFlat,
-    Edges,
-    Flat,
-    LargestTerm,
-    NormalDivisor,
-    NormalFrequencies,
-    NormalMode,
-    ParametricResonance,
-    ResiduePoint,
-    RuleException,
-    SpectralLine,
-    SweepCase,
-    SweepFailure,
-    SweepRow,
-    Undecided,
-    Vanishing,
-    Witness,
-)
-CLASSES = {kind.__name__: kind for kind in (*RESULTS, *PARTS)}
+PARTS = {
+    "DecidedFlat": "symfpu.proofs.every_length",
+    "Edges": "symfpu.integrable.discriminant",
+    "Flat": "symfpu.proofs.flats",
+    "LargestTerm": "symfpu.tori.verdict",
+    "NormalDivisor": "symfpu.normal.modes",
+    "NormalFrequencies": "symfpu.normal.frequencies",
+    "NormalMode": "symfpu.normal.modes",
+    "ParametricResonance": "symfpu.normal.resonances",
+    "ResiduePoint": "symfpu.series.series",
+    "RuleException": "symfpu.proofs.certificates",
+    "SpectralLine": "symfpu.spectral.analysis",
+    "SweepCase": "symfpu.proofs.sweeps",
+    "SweepFailure": "symfpu.sweeps.rows",
+    "SweepRow": "symfpu.sweeps.rows",
+    "Undecided": "symfpu.proofs.certificates",
+    "Vanishing": "symfpu.proofs.certificates",
+    "Witness": "symfpu.proofs.certificates",
+}
+
+
+class ByName(Mapping[str, type[Any]]):
+    """Classes by name. modules : the module of each."""
+
+    def __init__(self, modules: Mapping[str, str]) -> None:
+        self._modules = modules
+
+    def __getitem__(self, name: str) -> type[Any]:
+        found: type[Any] = getattr(import_module(self._modules[name]), name)
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._modules)
+
+    def __len__(self) -> int:
+        return len(self._modules)
+
+
+CLASSES = ByName(RESULTS | PARTS)
+
+
+def is_result(value: Any) -> bool:
+    """Whether a file may hold this by itself."""
+    kind = type(value)
+    return RESULTS.get(kind.__name__) == kind.__module__

@@ -14,7 +14,7 @@ from symfpu.bundles.tree import OWN_FORMAT, value_of, write_tree
 from symfpu.errors import InputError
 from symfpu.files.archive import Archive, Json
 from symfpu.frames.tabled import Gridded, Tabled
-from symfpu.saved.classes import CLASSES, RESULTS
+from symfpu.saved.classes import CLASSES, is_result
 
 
 def save(
@@ -48,7 +48,7 @@ def save(
     if isinstance(result, OWN_FORMAT):
         notes: dict[str, Any] = {"verdict": verdict, "command": command}
         return save_solution(path, result, **notes, created=created)
-    if not isinstance(result, RESULTS):
+    if not is_result(result):
         allowed = "a series, a solution or another result"
         raise InputError("result", type(result).__name__, allowed, _advice(result))
     file = named_path(path)
@@ -89,7 +89,7 @@ def load(path: Path | str) -> Bundle:
 def _other_result(archive: Archive, body: Json) -> Any:
     """The result of a document; ValueError and the like where it is none."""
     result = value_of(archive, body, CLASSES)
-    if not isinstance(result, RESULTS):
+    if not is_result(result):
         raise ValueError(f"{type(result).__name__} is no result")
     _require_consistent(result)
     return result

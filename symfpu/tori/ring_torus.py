@@ -13,7 +13,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csr_matrix
 
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
@@ -104,6 +103,8 @@ class RingTorus(Shown, Gridded):
     @cached_property
     def _to_modes(self) -> tuple[Any, Any]:
         """What e^(-i nu.theta) and its conjugate give to Q_q; sparse, (waves, modes)."""
+        from scipy.sparse import csr_matrix
+
         N, numbers = self.chain.N, self.chain.mode_numbers
         place = np.full(N, -1)
         place[np.array(numbers)] = np.arange(N - 1)

@@ -15,8 +15,6 @@ from symfpu import (
     normal_modes,
     refine,
     torus_at_amplitudes,
-    travelling_torus,
-    travelling_waves,
 )
 from symfpu.action_angle.foretold import flow_of, settled_text
 from symfpu.dynamics.alignment import random_frame
@@ -142,13 +140,10 @@ def test_bad_input_is_refused(change, name):
         foretold_indices(**arguments)
 
 
-def test_what_is_no_refined_torus_of_fixed_ends_is_refused():
+def test_what_is_no_refined_torus_is_refused():
     series = torus_at_amplitudes(CHAIN, {2: "0.5"}, 2)
     with pytest.raises(InputError, match="refine it first"):
         foretold_indices(series, 1e3)
-    ring = travelling_torus(travelling_waves(Chain(8, alpha="0.3", ends="periodic"), (1,), ("0.77",), 3))
-    with pytest.raises(InputError):
-        foretold_indices(ring, 1e3)
 
 
 def test_normal_modes_of_another_torus_some_of_them_or_hyperbolic_ones_are_refused():

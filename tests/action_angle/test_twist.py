@@ -16,8 +16,6 @@ from symfpu import (
     refine_at_amplitudes,
     toda_torus,
     torus_at_amplitudes,
-    travelling_torus,
-    travelling_waves,
     twist,
 )
 from symfpu.action_angle import precise_twist
@@ -160,6 +158,3 @@ def test_what_is_not_refined_is_refused():
     rough = FourierTorus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines)
     with pytest.raises(InputError, match="refine"):
         twist(rough)
-    waves = travelling_waves(Chain(8, alpha="0.3", ends="periodic"), (1,), ("0.766",), 4)
-    with pytest.raises(InputError, match="fixed ends"):
-        twist(travelling_torus(waves))

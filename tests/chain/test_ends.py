@@ -52,7 +52,7 @@ RESULTS = {
     "TwistAtRest",
 }
 TAKE_RINGS = {"travelling_waves", "integrate", "alignment_indices", "seconds_needed"}
-TAKE_RINGS |= {"toda_gaps", "toda_invariants", "toda_torus", "travelling_breather"}
+TAKE_RINGS |= {"family", "toda_gaps", "toda_invariants", "toda_torus", "travelling_breather"}
 TAKE_RINGS |= {"packet_state", "particle_state", "random_state", "read_state", "normal_frequency_series"}
 
 

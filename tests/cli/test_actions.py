@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from symfpu import Chain, actions, breather_at_amplitude, save, travelling_torus, travelling_waves, twist
+from symfpu import Chain, actions, breather_at_amplitude, refine, save, travelling_torus, travelling_waves, twist
 from symfpu.cli.main import main
 
 
@@ -34,10 +34,11 @@ def test_lines_for_a_reader(kept, capsys):
 
 
 @pytest.mark.long
-def test_a_ring_has_actions_alone(tmp_path, capsys):
-    waves = travelling_waves(Chain(8, alpha="0.3", ends="periodic"), (1,), ("0.766",), 4)
-    file = save(tmp_path / "ring.symfpu", travelling_torus(waves))
-    assert main(["actions", str(file), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert "twist" not in found
-    assert float(found["actions"]["1"]) > 0
+def test_a_ring_has_actions_alone_until_it_is_refined(tmp_path, capsys):
+    waves = travelling_torus(travelling_waves(Chain(8, alpha="0.3", ends="periodic"), (1,), ("0.7658",), 2))
+    for torus, keys in ((waves, set()), (refine(waves), {"twist", "twist_method"})):
+        file = save(tmp_path / f"ring{len(keys)}.symfpu", torus)
+        assert main(["actions", str(file), "--json"]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert {"twist", "twist_method"} & found.keys() == keys
+        assert float(found["actions"]["1"]) > 0

@@ -17,6 +17,7 @@ from symfpu.bundles.bundle import save
 from symfpu.chain.chain import Chain
 from symfpu.cli.main import main
 from symfpu.normal.search import _Search
+from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from tests.tolerances import COMMANDED_SECONDS, FORETOLD, GALI_SLOPE, VOLUME_BY_SCHEME
@@ -198,6 +199,15 @@ def test_what_the_torus_foretells_stands_beside(capsys, tmp_path):
         rows = list(csv.DictReader(stream))
     apart = [abs(float(row["log10 GALI_3"]) - float(row["foretold log10 GALI_3"])) for row in rows]
     assert max(apart) < FORETOLD
+
+
+def test_waves_of_a_ring_foretell(capsys, tmp_path):
+    file = tmp_path / "wave"
+    save(file, travelling_breather(Chain(5, beta=1, ends="periodic"), 1, amplitude="0.4"))
+    arguments = ["--time", "300", "--vectors", "3", "--frames", "1", "--step", "0.05", "--foretold", "--json"]
+    code, out, _ = run(capsys, "gali", str(file), *arguments)
+    assert code == 0
+    assert json.loads(out)["foretold"]["largest_difference"] < FORETOLD
 
 
 def test_only_tori_foretell(capsys, kept):

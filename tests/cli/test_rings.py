@@ -87,6 +87,16 @@ def test_breather_finds_a_wave_with_its_multipliers(capsys, tmp_path):
     assert (code, "seed -2" in out) == (0, True)
 
 
+def test_family_follows_waves(capsys):
+    words = ["family", "-N", 8, "--beta", 1, "--ends", "periodic", "--seeds=1,-3", "--amplitude-ratio", "1,2"]
+    code, out, _ = run(capsys, *words, "--from-energy", "0.01", "--to-energy", "0.012", "--json")
+    record = json.loads(out)
+    assert (code, record["ends"], record["seeds"]) == (0, "periodic", [-3, 1])
+    assert [float(m["amplitudes"]["-3"]) / float(m["amplitudes"]["1"]) for m in record["members"]] == pytest.approx(
+        [2] * len(record["members"])
+    )
+
+
 def test_propagate(capsys):
     code, out, _ = run(capsys, "propagate", "-N", 16, "--ends", "periodic", "--seeds=1,-3", "--order", 2)
     assert (code, out) == (0, "D_0 = {1, 3}\nD_1 = {2, 4, 6}\nD_2 = {5, 7}\n")
@@ -97,7 +107,7 @@ def test_propagate(capsys):
 REFUSED = {
     "export FILE --lang c -o exported.c": "docs/chains.md",
     "breather -N 8 --seed 1 --amplitude 0.1 --alpha 1 --ends periodic --digits 30": "docs/chains.md",
-    "family -N 8 --seeds 1 --to-energy 0.1 --alpha 1 --ends periodic": "--ends",
+    "family -N 8 --seeds 1 --to-energy 0.1 --alpha 1 --ends periodic --method appendix-a --order 4": "docs/chains.md",
     "prove -N 8 --seeds 1 --order 2 --ends periodic": "--ends",
     "sweep --order 1 --ends periodic": "--ends",
     "solve -N 8 --seeds 1 --order 2 --alpha 1 --omega 0.77 --ends round": "'fixed' or 'periodic'",

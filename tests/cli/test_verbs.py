@@ -8,12 +8,15 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from typer.main import get_group
 
 import symfpu.cli
 from symfpu.cli.main import main
 from symfpu.cli.verbs import VERBS, app
 
 FOUNDATIONS = {"chains", "choices", "__init__", "keeping", "main", "pictures", "starts", "terminal", "theorems", "verbs"}
+MODULES = {verb.module for verb in VERBS.values()}
+HEAVY = {"numba", "scipy", "scipy.optimize", "scipy.sparse", "matplotlib", "sympy", "pandas"}
 SOLVE = ["solve", "-N", "8", "--alpha", "0.3", "--seeds", "1", "--omega", "0.3905", "--order", "4"]
 SHORT = {
     "solve": SOLVE,
@@ -47,20 +50,37 @@ print("loaded:", *(name for name in heavy if name in sys.modules))
     assert (code, loaded) == ("0", "loaded:"), finished.stderr
 
 
-def test_the_version_loads_no_verb():
-    code = "import sys; from symfpu.cli.main import main; main(['--version']); print(*sys.modules)"
-    loaded = python("-c", code).stdout.split()
-    assert not {f"symfpu.cli.{module}" for module in VERBS.values()} & set(loaded)
+@pytest.mark.parametrize("option", ["--version", "--help"])
+def test_the_version_and_the_help_load_no_verb(option):
+    code = f"import sys; from symfpu.cli.main import main; main(['{option}']); print(*sys.modules)"
+    loaded = set(python("-c", code).stdout.split())
+    assert "symfpu.cli.main" in loaded
+    assert not {f"symfpu.cli.{module}" for module in MODULES} & loaded
+    assert not HEAVY & loaded
+
+
+def test_all_verbs_together_load_nothing_heavy_before_they_run():
+    names = [f"symfpu.cli.{module}" for module in sorted(MODULES)]
+    loaded = set(python("-c", f"import sys, {', '.join(names)}; print(*sys.modules)").stdout.split())
+    assert set(names) <= loaded
+    assert not (HEAVY - {"scipy"}) & loaded  # certify needs its linear algebra, which is light
+
+
+def test_the_help_says_of_each_verb_what_its_own_help_begins_with():
+    for name, verb in VERBS.items():
+        import_module(f"symfpu.cli.{verb.module}")
+        own = get_group(app).commands[name].help
+        assert own.split("\n\n")[0].replace("\n", " ") == verb.line
 
 
 def test_the_table_has_every_module_and_every_verb():
     files = {path.stem for path in Path(symfpu.cli.__file__).parent.glob("*.py")}
-    assert set(VERBS.values()) == files - FOUNDATIONS
-    for module in set(VERBS.values()):
+    assert files - FOUNDATIONS == MODULES
+    for module in MODULES:
         import_module(f"symfpu.cli.{module}")
     registered = {info.callback: info.name for info in app.registered_commands}
     homes = {name or function.__name__: function.__module__ for function, name in registered.items()}
-    assert homes == {verb: f"symfpu.cli.{module}" for verb, module in VERBS.items()}
+    assert homes == {name: f"symfpu.cli.{verb.module}" for name, verb in VERBS.items()}
 
 
 def test_the_help_has_the_verbs_in_the_order_of_the_table(capsys):

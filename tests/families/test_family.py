@@ -14,7 +14,8 @@ from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
 from symfpu.families import continuation
-from symfpu.families.continuation import first_torus, member
+from symfpu.families.beginnings import first_torus
+from symfpu.families.continuation import member
 from symfpu.families.family import Family, NotInFamily, family, member_at_energy, member_at_frequency
 from symfpu.refinement.conditions import Crossing
 from symfpu.refinement.tori import NoTorus, refine_at_energy, shifts_of

@@ -16,6 +16,7 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, RunInterrupted
 from symfpu.families.family import family
 from symfpu.files.archive import BundleError
+from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
 from tests.bundles.test_bundle import same
 from tests.families.cases import ROUND, RUNS, whole
@@ -30,7 +31,7 @@ def alike(found, other):
     """Members bit for bit: tori, energies, residuals, multipliers; and the events."""
     assert len(found.members) == len(other.members)
     for m, n in zip(found.members, other.members, strict=True):
-        if isinstance(m.torus, RefinedTorus):
+        if isinstance(m.torus, RefinedTorus | RefinedRingTorus):
             assert same(m.torus, n.torus)
         else:
             assert same((m.torus.frequencies, m.torus.cosines), (n.torus.frequencies, n.torus.cosines))

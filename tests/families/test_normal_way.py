@@ -18,7 +18,7 @@ from symfpu.files.archive import BundleError
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.reports.family import family_table
-from tests.tolerances import BESIDE_AN_ONSET, GROWTH_BY_FLOQUET, NORMAL_CONVERGED, ONSET
+from tests.tolerances import BESIDE_AN_ONSET, FIXED_ENERGY, GROWTH_BY_FLOQUET, NORMAL_CONVERGED, ONSET
 
 UNSTABLE = Chain(4, alpha="0.5")
 ARGUMENTS = (UNSTABLE, (2,), "1")
@@ -83,6 +83,22 @@ def test_events_are_found_beyond_a_fold():
     assert unstable[1] == unstable[0] + 1
 
 
+def zero_by_floquet(near, A):
+    """Off A_1 = A, where the logarithm of the pair of multipliers next to the trivial one is zero: its square is linear there, and the
+    curvature is taken out by two distances."""
+
+    def squared(a):
+        multipliers = floquet(refine_at_amplitudes(near, {1: repr(a)}, tolerance=1e-10)).multipliers
+        logarithms = np.log(multipliers[np.argsort(np.abs(multipliers - 1))][2:4])
+        return float((logarithms**2).real.mean())
+
+    off = []
+    for h in (1e-3, 5e-4):
+        below, above = squared(A - h), squared(A + h)
+        off.append(h * (below + above) / (below - above))
+    return (4 * off[1] - off[0]) / 3
+
+
 @pytest.mark.long
 def test_normal_frequencies_go_through_a_fold_of_the_energy():
     """N = 16, beta = 1, seed 1, whose energy turns at 0.8127149. Floquet's multipliers count the same hyperbolic directions on every
@@ -101,9 +117,10 @@ def test_normal_frequencies_go_through_a_fold_of_the_energy():
             growth = np.log(floquet(m.torus).multipliers[np.isclose(floquet(m.torus).multipliers.imag, 0)].real.max())
             assert locked.imag == pytest.approx(growth * float(m.torus.frequency) / (2 * np.pi), rel=GROWTH_BY_FLOQUET)
     located = [e for e in found.normal_events if e.resonance.modes != (11,)]
-    [interpolated] = [e for e in found.normal_events if e.resonance.modes == (11,)]
-    assert interpolated.after == fold.after
-    assert interpolated.energy == pytest.approx(fold.energy, rel=BESIDE_AN_ONSET)
+    [locked_on] = [e for e in found.normal_events if e.resonance.modes == (11,)]
+    assert locked_on.after == fold.after
+    assert locked_on.energy == pytest.approx(fold.energy, rel=FIXED_ENERGY)
+    assert abs(zero_by_floquet(found.members[fold.after].torus, locked_on.amplitudes[1])) < ONSET
     assert [e.begins for e in located] == [True, True, False]
     assert located[-1].after > fold.after
     for event in located:

@@ -130,6 +130,25 @@ def test_the_printed_time_is_not_above_the_one_checked(tmp_path):
     assert "stays, for 9.99e2 units of time" in lines[1]
 
 
+@pytest.mark.parametrize("kept", [0, 1])
+def test_a_point_or_a_torus_of_fewer_angles_is_refused(kept, tmp_path):
+    """Its residual is small, at rest or as a single mode; but it is not what the sentence says."""
+    data = copy.deepcopy(residual())
+    for row in data["torus"]:
+        if row[1] or not kept:
+            row[2:] = [0] * len(row[2:])
+    data["residual"] = [1, 0]
+    refused(sealed(data), tmp_path, "nothing moves with the angle")
+
+
+def test_rounded_frequencies_are_not_called_exact(tmp_path):
+    data = copy.deepcopy(residual())
+    data["residual"] = [8, 0]
+    assert "with frequencies near " in checked(sealed(data), tmp_path)[0]
+    data["omega"] = ["1", "7/4"]
+    assert "with frequencies 1.00000000000, 1.75000000000, leaves" in checked(sealed(data), tmp_path)[0]
+
+
 def test_a_frame_without_a_claim_is_refused(tmp_path):
     data = copy.deepcopy(residual())
     data["weights"] = [1]
@@ -168,5 +187,7 @@ def test_packed_products_are_those_of_the_definition():
 
 
 def test_no_number_of_it_is_rounded():
-    tree = ast.parse(Path(check_torus.__file__).read_text())
-    assert not [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, float)]
+    files = sorted(Path(check_torus.__file__).parent.glob("*.py"))
+    assert len(files) > 5
+    tree = [node for file in files for node in ast.walk(ast.parse(file.read_text()))]
+    assert not [node for node in tree if isinstance(node, ast.Constant) and isinstance(node.value, float)]

@@ -7,7 +7,7 @@ import random
 
 import pytest
 
-from symfpu import prove_for_all_N
+from symfpu import coupling_sequence, excitation_sequence, prove_for_all_N
 from symfpu.proofs import verify_theorem
 from symfpu.proofs.reading import CertificateError
 from symfpu.proofs.verify_theorem import verify
@@ -35,13 +35,20 @@ def test_theorems_verify_and_say_the_same_sentence(tmp_path):
 
 
 def test_of_larger_sets_the_exceptions_are_those_of_their_parts():
-    """Theorem 5: flats are of three seeds, and a larger set is exceptional where three of its seeds are."""
+    """Theorem 5: flats are of three seeds, and a larger set can be exceptional only where three of its seeds are."""
     proof = prove_for_all_N("beta", 3, 1)
     assert (
-        "3 or more seeds, to order 1, the propagation rule holds except where 3 of the seeds are on one of 708 of 10180 flats"
+        "3 or more seeds, to order 1, the propagation rule holds except at most where 3 of the seeds are on one of 708 of 10180 flats"
         in proof.theorem
     )
     assert verify_theorem.sentence(verify_theorem.Theorem("beta", 3, 1), "refuted", 708, 10180, 0) == proof.theorem
+
+
+def test_a_larger_set_may_obey_the_rule_though_three_of_its_seeds_do_not():
+    """Mode 7 is the exception of 1, 2, 6; as a fourth seed it is none."""
+    for seeds, obeys in (((1, 2, 6), False), ((1, 2, 6, 7), True)):
+        rule = excitation_sequence(8, seeds, 1, model="beta")
+        assert (rule == coupling_sequence(8, seeds, 1, model="beta")) is obeys
 
 
 def test_no_flat_can_be_left_out_doubled_or_invented(tmp_path):

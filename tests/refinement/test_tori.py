@@ -20,6 +20,7 @@ from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.tori import NoTorus, refine, refine_at_amplitudes, refine_at_energy, shifts_of
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.tolerances import (
     ALLOWANCE,
     BREATHER_HARMONICS,
@@ -408,3 +409,21 @@ def test_every_step_is_reported():
     assert sum(line.startswith("step") for line in lines) >= len(torus.steps) >= 1
     assert lines[0].split()[1] == "harmonics,"
     assert lines[-1].startswith("residual")
+
+
+def test_fewer_harmonics_than_a_torus_needs_are_said_and_leave_a_residual():
+    """The limit is an argument: with 60 of the harmonics the same torus is left with a doubt."""
+    near = torus_at_amplitudes(Chain(N=8, alpha="0.3"), {1: "0.4", 2: "0.2"}, order=4)
+    whole, few = refine(near), refine(near, most_harmonics=60)
+    assert len(few.harmonics) <= 60 < len(whole.harmonics)
+    assert whole.verdict == "torus"
+    assert few.verdict == "doubtful"
+    assert few.residual() > whole.residual()
+    assert "most_harmonics=60" in few.warnings[0]
+
+
+@pytest.mark.parametrize("count", [0, 1.5, "many", True])
+def test_a_number_of_harmonics_is_whole_and_one_a_seed_at_least(count):
+    near = torus_at_amplitudes(Chain(N=8, alpha="0.3"), {1: "0.4"}, order=4)
+    with pytest.raises(InputError, match="most_harmonics"):
+        refine(near, most_harmonics=count)

@@ -1,7 +1,9 @@
 """Every public result comes back from its file as it was; what is damaged, forged or foreign is refused."""
 
 import json
+import tomllib
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,12 +18,13 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.files.archive import BundleError, digest_of, write_archive
 from symfpu.proofs.sweeps import Sweep, SweepCase
-from symfpu.saved.classes import PARTS, RESULTS
+from symfpu.saved.classes import CLASSES, PARTS, RESULTS
 from symfpu.saved.results import load, save
 from tests.bundles.test_bundle import same
 from tests.test_pickle import RESULTS as CASES
 from tests.test_pickle import public_classes
 
+ROOT = Path(symfpu.__file__).parent.parent
 WITHOUT = {
     "AtlasBorder": "made of the rows of Atlas",
     "Bundle": "what a file held",
@@ -47,13 +50,27 @@ SAVED = [name for name in CASES if name.partition(",")[0] in public_classes() - 
 
 
 def test_every_public_result_is_saved_or_has_a_reason():
-    kept = (*RESULTS, *OWN_FORMAT)
+    kept = (*(CLASSES[name] for name in RESULTS), *OWN_FORMAT)
     assert {name for name in public_classes() if not issubclass(getattr(symfpu, name), kept)} == set(WITHOUT)
 
 
 def test_the_list_has_no_class_that_is_not_needed():
-    assert len({kind.__name__ for kind in (*RESULTS, *PARTS)}) == len(RESULTS) + len(PARTS)
-    assert {kind.__name__ for kind in RESULTS} <= public_classes()
+    assert len(CLASSES) == len(RESULTS) + len(PARTS)
+    assert set(RESULTS) <= public_classes()
+
+
+def test_a_class_is_named_with_the_module_that_defines_it():
+    assert {name: kind.__module__ for name, kind in CLASSES.items()} == {**RESULTS, **PARTS}
+    assert all(kind.__name__ == name for name, kind in CLASSES.items())
+
+
+def test_the_modules_of_the_classes_are_of_floors_below():
+    """They are named as text, which the contract of imports does not see."""
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    floors = [layer.split(" | ") for layer in contracts[0]["layers"]]
+    own = next(number for number, rooms in enumerate(floors) if "saved" in rooms)
+    below = {room for rooms in floors[own + 1 :] for room in rooms}
+    assert {module.split(".")[1] for module in (*RESULTS.values(), *PARTS.values())} <= below
 
 
 @pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in SAVED])

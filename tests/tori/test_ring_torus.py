@@ -192,7 +192,7 @@ def test_other_objects_are_refused():
 
 SERIES_OR_TORUS = {"series", "torus", "solution", "orbit", "result", "found"}
 TAKE_WAVES = {"actions", "travelling_torus", "pade_poles", "save", "refine", "refine_at_amplitudes", "refine_at_energy", "floquet"}
-TAKE_WAVES |= {"normal_modes", "solve_normal_frequency"}
+TAKE_WAVES |= {"foretold_indices", "normal_modes", "solve_normal_frequency", "twist"}
 OTHERS = {"path": "never_written", "language": "c", "folder": "never_written", "q": 1, "order": 2, "frequencies": ("0.4",)}
 
 

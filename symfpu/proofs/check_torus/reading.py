@@ -1,0 +1,17 @@
+"""The file of a certificate of tori."""
+
+from pathlib import Path
+
+from symfpu.proofs.reading import Json, Kind, read_kind
+
+FORMAT = "symfpu torus certificate"
+KEYS = {
+    "format", "schema", "N", "coefficients", "seeds", "omega", "bits", "torus", "residual",
+    "frame_bits", "rate_bits", "directions", "weights", "stay", "digest",
+}  # fmt: skip
+KIND = Kind(FORMAT, 1, KEYS, largest_file=2**28)
+
+
+def read_certificate(path: Path) -> Json:
+    """A certificate from its file."""
+    return read_kind(path, KIND)

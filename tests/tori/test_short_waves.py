@@ -1,0 +1,32 @@
+"""Small travelling waves: their shifts are those of the published normal form, their series falls as it should."""
+
+import numpy as np
+import pytest
+
+from symfpu.chain.chain import Chain
+from symfpu.errors import ResonantDivisor
+from symfpu.tori.short_waves import shifts_by_squares, short_waves
+from tests.action_angle.test_at_rest import published_hessian
+from tests.tolerances import SLOPE, TODA_LINEAR
+
+
+@pytest.mark.parametrize(("alpha", "beta"), [(0.3, 0.0), (0.0, 0.5), (0.3, 0.2)])
+@pytest.mark.parametrize(("N", "seeds"), [(7, (1, -2)), (9, (2, -3)), (11, (2, -1, 1))])
+def test_shifts_are_those_of_the_published_form(N, seeds, alpha, beta):
+    """d omega / d I, with I_j = Omega_j A_j^2 / 2; read next to the linear frequencies."""
+    chain = Chain(N, alpha=str(alpha), beta=str(beta), ends="periodic")
+    linear = 2 * np.abs(np.sin(np.pi * np.array(seeds) / N))
+    expected = published_hessian(N, alpha, beta, seeds) * linear / 2
+    assert shifts_by_squares(chain, seeds) == pytest.approx(expected, rel=TODA_LINEAR, abs=TODA_LINEAR * np.abs(expected).max())
+
+
+def test_short_waves_miss_their_equations_by_the_order():
+    """Degree 3 in the amplitudes is met: what is left over the force falls as the third power; the frequencies miss the fourth."""
+    chain = Chain(8, alpha="0.3", ends="periodic")
+    left = [short_waves(chain, {1: A, -2: A / 2}, 2).residual() for A in (0.1, 0.05)]
+    assert np.log2(left[0] / left[1]) == pytest.approx(3, abs=SLOPE)
+
+
+def test_opposite_waves_that_drive_each_other_are_refused():
+    with pytest.raises(ResonantDivisor, match="driven in resonance"):
+        short_waves(Chain(8, beta=1, ends="periodic"), {2: 0.2, -2: 0.1}, 2)
