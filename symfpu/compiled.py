@@ -17,9 +17,16 @@ from collections.abc import Callable
 from typing import Any
 
 import numba
+from numba.core.registry import cpu_target
 
 CONFIG: Any = numba.config
 JIT = not CONFIG.DISABLE_JIT  # with NUMBA_DISABLE_JIT=1 loops run as Python, slowly
+
+
+def vector_bits() -> int:
+    """How wide the vectors are that loops are compiled for: 512 with AVX-512, else 256 or less."""
+    _, _, features = cpu_target.target_context.codegen().magic_tuple()
+    return 512 if "+avx512f" in features.split(",") else 256
 
 
 def compiled(*, keep: bool = True, **options: Any) -> Callable[[Callable[..., Any]], Any]:

@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.grading import Ints, canonical_count, monomial_count
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.uncompiled import TILE
 
 Floats = NDArray[np.float64]
 Bonds = TypeVar("Bonds")
@@ -334,7 +333,7 @@ class DenseRing(ABC, Generic[Bonds]):
             self.grading.first_row,
             np.array(splits, dtype=np.int64).reshape(-1, 2),
         )
-        tiles = np.arange(rows // 2, rows, TILE)
+        tiles = np.arange(rows // 2, rows, self._one_seed.TILE)
 
         def task(part: tuple[int, int]) -> int:
             slice_, first = part

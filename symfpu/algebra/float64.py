@@ -1,8 +1,10 @@
 """The ring of doubles: coefficients rounded to 53 bits, scaled by powers of two.
 
 All arrays of degree d carry the factor 2^(-x (d - 1)) with one exponent x for the whole series.
-Whenever a degree leaves 2^-200 .. 2^200, x is moved and everything stored is rescaled; scaling by
-powers of two is exact, so order 250 neither overflows nor loses a digit.
+Whenever a degree leaves 2^-200 .. 2^200, x is moved to where that degree is nearest to one, and
+everything stored is rescaled; scaling by powers of two is exact, so order 1000 neither overflows
+nor loses a digit. A step of x moves degree d by d - 1 powers, which from degree 400 on may be too
+many.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from symfpu.algebra.dense import Bonds, DenseRing, Floats, ValuesRing
 from symfpu.algebra.grading import Ints
 
 SAFE_EXPONENT = 200
+SMALLEST_NORMAL = np.finfo(np.float64).tiny
 
 
 class DoublesRing(DenseRing[Bonds]):
@@ -54,9 +57,15 @@ class Float64Ring(DoublesRing[Floats], ValuesRing):
         size = int(np.frexp(largest)[1])
         if degree == 1 or largest == 0.0 or abs(size) <= SAFE_EXPONENT:
             return
-        shift = round(size / (degree - 1)) or int(np.sign(size))
-        self.exponent += shift
-        self._rescale(degree, shift)
+        shift = round(size / (degree - 1))
+        if shift:  # else one step of the exponent would lead further away
+            self.exponent += shift
+            self._rescale(degree, shift)
+
+    def _store(self, target: Floats, degree: int, rows: Ints, values: Floats) -> None:
+        """Subnormal numbers, which have lost digits and take a hundred products' time, as zero."""
+        kept = np.abs(values) >= SMALLEST_NORMAL
+        super()._store(target, degree, rows, np.where(kept, values, 0.0))
 
     def _rescale(self, degree: int, shift: int) -> None:
         """Multiply everything stored of degree d by 2^(-shift (d - 1))."""

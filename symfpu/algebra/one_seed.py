@@ -9,8 +9,10 @@ module imports numba.
 
 from __future__ import annotations
 
+import platform
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
@@ -18,9 +20,16 @@ from numba.extending import intrinsic
 
 from symfpu.algebra import uncompiled
 from symfpu.algebra.kernels import as_doubles, reduce_lanes
-from symfpu.algebra.uncompiled import TILE
-from symfpu.compiled import JIT, compiled
+from symfpu.compiled import JIT, compiled, vector_bits
 
+# rows of a result that are summed at once: eight vectors, of 512 bits or two halves of 256 a row,
+# hide the time that a sum takes, and leave registers for the factors
+TILE = 8 if vector_bits() == 512 else 4
+
+X86 = platform.machine() in ("x86_64", "AMD64")
+FLUSH = np.uint32(0x8040)  # subnormal results, and subnormal factors, as zero
+
+_untyped: Any = cgutils
 INT64 = ir.IntType(64)
 DOUBLE = ir.DoubleType()
 
@@ -49,9 +58,8 @@ class _Tile:
     """Sums in registers, one for each row of a tile, in the code that is written."""
 
     def __init__(self, builder: Any, results: _Rows, o: Any, count: int) -> None:
-        untyped: Any = cgutils
         self.builder, self.results, self.o = builder, results, o
-        self.sums = [untyped.alloca_once(builder, results.vector) for _ in range(count)]
+        self.sums = [_untyped.alloca_once(builder, results.vector) for _ in range(count)]
         for t, place in enumerate(self.sums):
             builder.store(results.load(o, t), place, align=8)
 
@@ -121,8 +129,47 @@ def _convolution(tile: int) -> Any:
     return code
 
 
-add_tile: Any = _convolution(TILE) if JIT else uncompiled.add_tile
-add_one_row: Any = _convolution(1) if JIT else uncompiled.add_one_row
+convolution: Any = _convolution if JIT else uncompiled.convolution
+add_tile: Any = convolution(TILE)
+add_one_row: Any = convolution(1)
+
+
+@intrinsic
+def _control_code(_context: Any) -> Any:
+    """The control word of the processor's floating-point vectors; 0 where it is no x86."""
+
+    def generate(_target: Any, builder: Any, _signature: Any, _args: Any) -> Any:
+        if not X86:
+            return ir.IntType(32)(0)
+        place = _untyped.alloca_once(builder, ir.IntType(32))
+        _control_call(builder, "llvm.x86.sse.stmxcsr", place)
+        return builder.load(place)
+
+    return types.uint32(), generate
+
+
+@intrinsic
+def _set_control_code(_context: Any, control: Any) -> Any:
+    """Sets that word."""
+
+    def generate(target: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        if X86:
+            place = _untyped.alloca_once_value(builder, args[0])
+            _control_call(builder, "llvm.x86.sse.ldmxcsr", place)
+        return target.get_dummy_value()
+
+    return types.void(types.uint32), generate
+
+
+def _control_call(builder: Any, name: str, place: Any) -> None:
+    pointer = ir.IntType(8).as_pointer()
+    signature = ir.FunctionType(ir.VoidType(), [pointer])
+    function = _untyped.get_or_insert_function(builder.module, signature, name)
+    builder.call(function, [builder.bitcast(place, pointer)])
+
+
+control: Any = _control_code if JIT else uncompiled.control
+set_control: Any = _set_control_code if JIT else uncompiled.set_control
 
 
 @compiled()
@@ -136,36 +183,63 @@ def _add_terms(lanes, left, i, right, j, first, last, out, o):  # type: ignore[n
 
 
 @compiled()
+def _zero_rows(values, start, degree):  # type: ignore[no-untyped-def]
+    """How many rows of a degree are zero before the first that is not; after the last as many."""
+    for n in range(degree + 1):
+        for lane in range(values.shape[1]):
+            if values[start + n, lane] != 0.0:
+                return n
+    return degree + 1
+
+
+@compiled()
 def convolve(lanes, left, right, out, splits, starts, tiles, moduli=None, limit=0):  # type: ignore[no-untyped-def]
     """out[p] += sum of left_d[m] right_e[p - m] over all splits (d, e) of a degree.
 
-    Returns the number of multiply-adds.
+    Returns the number of multiply-adds. Sums below the smallest normal number become zero: a
+    processor takes a hundred times as long for them.
 
-    lanes : a tuple whose length is the row's. left, right : (rows of all degrees, lanes). out :
+    lanes : a tuple whose length is the row's. left, right : (rows of all degrees, lanes), each
+    degree the same from both ends; rows of zeros there are passed over: high harmonics. out :
     (rows of this degree, lanes). starts : (degrees,) first row of each. tiles : first rows of the
     tiles to fill. moduli, limit : as of `kernels.multiply`; a split has fewer products than that.
     """
+    before = control()
+    set_control(before | FLUSH)
+    count = _convolve(lanes, left, right, out, splits, starts, tiles, moduli, limit)
+    set_control(before)
+    return count * len(lanes)
+
+
+@compiled()
+def _convolve(lanes, left, right, out, splits, starts, tiles, moduli, limit):  # type: ignore[no-untyped-def]
+    """The sums, and how many products of rows they have."""
     count = 0
     pending = 1
     for split in range(len(splits)):
         d, e = splits[split, 0], splits[split, 1]
+        i, j = starts[d], starts[e]
+        # rows of both factors that are not zero, as many at either end
+        low, lowest = _zero_rows(left, i, d), _zero_rows(right, j, e)
+        high, highest = d - low, e - lowest
+        if low > d or lowest > e:
+            continue
         if moduli is not None:
             added = min(d, e) + 1
             if pending + added > limit:
                 _reduce_tiles(out, tiles, moduli)
                 pending = 1
             pending += added
-        i, j = starts[d], starts[e]
         for p in tiles:
             # terms that all rows of the tile have
-            first, last = max(0, p + TILE - 1 - e), min(d, p)
+            first, last = max(low, p + TILE - 1 - highest), min(high, p - lowest)
             whole = p + TILE <= len(out) and first <= last
             if whole:
                 shared = last + 1 - first
                 add_tile(lanes, left, i + first, right, j + p - first, shared, out, p)
                 count += TILE * shared
             for t in range(p, min(p + TILE, len(out))):
-                begin, end = max(0, t - e), min(d, t)
+                begin, end = max(low, t - highest), min(high, t - lowest)
                 if whole:
                     count += _add_terms(
                         lanes, left, i, right, j + t, begin, first - 1, out, t
@@ -174,7 +248,7 @@ def convolve(lanes, left, right, out, splits, starts, tiles, moduli=None, limit=
                 count += _add_terms(lanes, left, i, right, j + t, begin, end, out, t)
     if moduli is not None:
         _reduce_tiles(out, tiles, moduli)
-    return count * len(lanes)
+    return count
 
 
 @compiled()

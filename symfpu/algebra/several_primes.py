@@ -24,6 +24,10 @@ from symfpu.algebra.words import ResidueBasis
 
 PRODUCTS = 128  # that sums may have between two reductions, at least
 EXACT = 2**52  # integers below it are exact in doubles, and so are their remainders
+# why the ring has no cosines, reciprocals or matrix products of its own
+_OWNER = (
+    "integers are transformed and rounded by the fixed-point ring that owns these residues"
+)
 LANES = 32  # of a row: four registers of AVX-512, eight of AVX2
 
 
@@ -75,13 +79,13 @@ class SeveralPrimesRing(ValuesRing):
         return np.zeros((0, 0)), np.zeros((0, 0))
 
     def _cosines(self, angles: Ints) -> Floats:
-        raise NotImplementedError
+        raise NotImplementedError(_OWNER)
 
     def _reciprocal(self, number: int) -> float:
-        raise NotImplementedError
+        raise NotImplementedError(_OWNER)
 
     def _matrix_product(self, left: Floats, right: Floats) -> Floats:
-        raise NotImplementedError
+        raise NotImplementedError(_OWNER)
 
     def _keep_in_range(self, degree: int, modes: Floats) -> None:
         """Residues do not grow."""

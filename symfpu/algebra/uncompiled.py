@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-TILE = 4  # rows of a result that are summed at once
 SPLIT = 2.0**27 + 1  # cuts a double into two halves whose products are exact
 
 
@@ -53,21 +52,28 @@ def multiply_row(
         out[o + table[t + n]] += product
 
 
-def add_tile(
-    lanes: Any, left: Any, i: int, right: Any, j: int, count: int, out: Any, o: int
-) -> None:
-    """out[o + t] += sum of left[i + n] right[j + t - n] over n < count, for t of a tile."""
-    for t in range(TILE):
-        add_one_row(lanes, left, i, right, j + t, count, out, o + t)
+def convolution(tile: int) -> Any:
+    """The function that sums a tile of so many rows."""
+
+    def add(
+        lanes: Any, left: Any, i: int, right: Any, j: int, count: int, out: Any, o: int
+    ) -> None:
+        """out[o + t] += sum of left[i + n] right[j + t - n] over n < count, for t < tile."""
+        factors = left[i : i + count].astype(np.float64)
+        for t in range(tile):
+            backwards = right[j + t + 1 - count : j + t + 1][::-1]
+            out[o + t] += (factors * backwards).sum(axis=0)
+
+    return add
 
 
-def add_one_row(
-    lanes: Any, left: Any, i: int, right: Any, j: int, count: int, out: Any, o: int
-) -> None:
-    """out[o] += sum of left[i + n] right[j - n] over n < count."""
-    backwards = right[j + 1 - count : j + 1][::-1]
-    factors = left[i : i + count].astype(np.float64)
-    out[o] += (factors * backwards).sum(axis=0)
+def control() -> Any:
+    """The processor's way with subnormal numbers, which NumPy's loops leave alone."""
+    return np.uint32(0)
+
+
+def set_control(word: Any) -> None:
+    """Nothing is set."""
 
 
 def _exact_product(a: Any, b: Any) -> tuple[Any, Any]:

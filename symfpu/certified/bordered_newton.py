@@ -114,9 +114,7 @@ def with_change(orbit: RoundedOrbit, change: Floats) -> tuple[tuple[int, ...], .
 
 
 def as_integers(values: Floats, bits: int) -> NDArray[Any]:
-    """Doubles in units 2^-bits."""
-    unit = 2**bits
-    found = np.empty(values.shape, dtype=object)
-    for place, x in np.ndenumerate(values):
-        found[place] = round(Fraction(x) * unit) if x else 0
-    return found
+    """Doubles in units 2^-bits, to the nearest."""
+    ratios = [x.as_integer_ratio() for x in values.ravel().tolist()]
+    rounded = [((n << bits + 1) + d) // (2 * d) if n else 0 for n, d in ratios]
+    return np.array(rounded, dtype=object).reshape(values.shape)

@@ -27,7 +27,7 @@ from symfpu.proofs.every_length import DecidedFlat, decided_flat
 from symfpu.proofs.families import equation_text, mode_text
 from symfpu.proofs.flats import MOST_SEEDS, Arrangement, Flat, degree_of, flats, last_order
 from symfpu.proofs.seed_sums import without_odd_sums
-from symfpu.sweeps.workers import worker_processes
+from symfpu.sweeps.workers import executor_of
 
 FORMAT, SCHEMA = "symfpu rule for all N certificate", 2
 MODELS = ("alpha", "beta")
@@ -270,7 +270,7 @@ def prove_for_all_N(
     seeds_number: int,
     order: int,
     *,
-    executor: Executor | None = None,
+    executor: Any = None,
     file: Path | str | None = None,
     progress: Progress | None = None,
 ) -> RuleForAllN:
@@ -279,8 +279,8 @@ def prove_for_all_N(
     model : 'alpha' or 'beta'. seeds_number : s, 1 to 3. All are dimensionless.
     order : the last k, 1 up to the last whose certificate can be checked: in alpha 200, 12 and 4
         for s = 1, 2 and 3, in beta 100, 6 and 2.
-    executor : any concurrent.futures.Executor; default a pool of processes where flats are many,
-        which a script must start under `if __name__ == "__main__":`.
+    executor : any concurrent.futures.Executor, or a client of dask; default a pool of processes
+        where flats are many, which a script must start under `if __name__ == "__main__":`.
     file : JSON lines, one for each decided flat; an existing file of the same theorem is
         continued.
     progress : called as (label, fraction done).
@@ -312,9 +312,9 @@ def prove_for_all_N(
         all_flats = flats(model, s, last, told)
         asked = _with_odd_sums(model, last, all_flats)
         todo = [flat for flat in asked if flat not in kept.decided]
-        pool = executor
-        if pool is None and len(todo) > FEW:
-            pool = stack.enter_context(worker_processes(math.ceil(len(todo) / BATCH)))
+        pool = None
+        if executor is not None or len(todo) > FEW:
+            pool = stack.enter_context(executor_of(executor, math.ceil(len(todo) / BATCH)))
         for batch in _decided(pool, model, last, todo):
             kept.append(batch)
             told("flats", len(kept.decided) / len(asked))

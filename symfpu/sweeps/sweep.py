@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Future
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from symfpu.sweeps.rows import Json, SweepFailure, SweepRow, SweepRows
 from symfpu.sweeps.rows_file import RowsFile, head_of, in_order, key_of, read_rows
 from symfpu.sweeps.running import Call, finished
 from symfpu.sweeps.values import argument_value, error_value, result_value
-from symfpu.sweeps.workers import worker_processes
+from symfpu.sweeps.workers import executor_of
 
 Case = Mapping[str, Any]
 Memory = Callable[..., float]
@@ -168,7 +168,7 @@ class Computed:
                 yield _failed(call, error)
         if not due:
             return
-        with _pool(self.executor, len(due)) as pool:
+        with executor_of(self.executor, len(due)) as pool:
             task = partial(answer, self.function)
             for call, future in finished(pool, task, due, self.limit):
                 row = self._row(call, future)
@@ -224,16 +224,6 @@ def built(arguments: Json) -> Json:
 
 def _failed(call: Call, error: Exception) -> SweepRow:
     return SweepRow(call.case, None, SweepFailure(**error_value(error)))
-
-
-@contextmanager
-def _pool(executor: Any, calls: int) -> Iterator[Executor]:
-    """The executor given, that of a client of dask, or processes of our own."""
-    if executor is not None:
-        yield executor.get_executor() if hasattr(executor, "get_executor") else executor
-        return
-    with worker_processes(calls) as pool:
-        yield pool
 
 
 def _limit(memory: Memory | None, within: int | None) -> int:

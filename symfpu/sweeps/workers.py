@@ -156,6 +156,16 @@ def worker_processes(tasks: int) -> Iterator[ProcessWorkers]:
     pool.shutdown()
 
 
+@contextmanager
+def executor_of(given: Any, tasks: int) -> Iterator[Executor]:
+    """The executor given, that of a client of dask, or processes of our own."""
+    if given is None:
+        with worker_processes(tasks) as pool:
+            yield pool
+    else:
+        yield given.get_executor() if hasattr(given, "get_executor") else given
+
+
 class Worker:
     """A process and its pipe, started when it is first asked, and again after it died."""
 

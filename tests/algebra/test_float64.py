@@ -1,6 +1,7 @@
 """The ring of doubles against the symbolic ring and against the slow mode-space series, coefficient by coefficient."""
 
 import math
+from fractions import Fraction
 from itertools import pairwise
 
 import mpmath
@@ -123,6 +124,19 @@ def test_high_orders_do_not_overflow():
         series.coefficients(1, 250)
     terms = [np.abs(series.harmonic_terms([0.2], k)[1]).max() for k in range(251)]
     assert 0 < terms[250] < terms[100] < terms[1]
+
+
+def test_a_degree_is_moved_only_nearer_to_one():
+    """A step of the exponent moves degree 450 by 449 powers: 2^210 stays, 2^300 becomes 2^-149."""
+    for size, exponent in ((190, 0), (210, 0), (-210, 0), (300, 1), (-300, -1)):
+        ring = Float64Ring(CosineModes(8, (1,), Grading(1, 450)))
+        ring.put(1, ring.seed_terms())
+        modes = np.zeros((226, 7))
+        modes[-1, 0] = np.ldexp(0.5, size)
+        ring.put(450, modes)
+        tables, _, unit = ring.results()
+        assert unit == Fraction(2) ** exponent
+        assert tables[1][-1, 0] == np.ldexp(0.5, size - 449 * exponent)
 
 
 @pytest.mark.parametrize("cubic", [False, True])

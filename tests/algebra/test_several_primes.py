@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from symfpu.algebra import kernels, one_seed, uncompiled
+from symfpu.algebra import kernels, one_seed
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.several_primes import EXACT, largest_prime, products_between_reductions
 from symfpu.algebra.words import ResidueBasis
@@ -55,7 +55,7 @@ def test_the_largest_sums_of_one_seed_stay_exact():
     values, moduli = factors(grading, ResidueBasis(100, largest_prime(top)))
     splits = np.array([(d, top - d) for d in range(1, top)])
     first = int(grading.canonical(top)[0])
-    tiles = np.arange(first, top + 1, uncompiled.TILE)
+    tiles = np.arange(first, top + 1, one_seed.TILE)
     ours, counts = np.zeros((2, top + 1, WIDTH))
     lanes, ones = (0.0,) * WIDTH, np.ones(values.shape)
     one_seed.convolve(lanes, values, values, ours, splits, grading.first_row, tiles, moduli, products_between_reductions(top))

@@ -266,3 +266,16 @@ def test_processes_decide_as_this_one_does():
     """So many flats that worker processes share them."""
     with ThreadPoolExecutor(1) as pool:
         assert repr(prove_for_all_N("alpha", 2, 5)) == repr(prove_for_all_N("alpha", 2, 5, executor=pool))
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_client_of_dask_decides_and_another_goes_on(tmp_path):
+    distributed = pytest.importorskip("distributed", reason="the optional extra 'dask' is not installed")
+    local = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    file, alone = tmp_path / "flats.jsonl", prove_for_all_N("alpha", 2, 2)
+    with distributed.LocalCluster(**local) as cluster, distributed.Client(cluster) as client:
+        assert prove_for_all_N("alpha", 2, 2, executor=client, file=file).certificate() == alone.certificate()
+        lines = file.read_text().splitlines(keepends=True)
+        file.write_text("".join(lines[:-3]))
+        assert prove_for_all_N("alpha", 2, 2, executor=client, file=file).certificate() == alone.certificate()
+    assert sorted(file.read_text().splitlines(keepends=True)) == sorted(lines)
