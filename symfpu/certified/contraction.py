@@ -275,7 +275,7 @@ class Attempt:
         bounds = self.outside.copy()
         inner = np.abs(product) + np.abs(A) @ errors + lost
         bounds[block] = inner * self.scales[block] * UPWARDS
-        return bounds
+        return np.asarray(bounds)
 
     def tail(self) -> float:
         """The same for all columns beyond `columns`."""
