@@ -13,13 +13,16 @@ from pathlib import Path
 from typing import Any
 
 from symfpu import Atlas, AtlasBorder, Chain, atlas, read_atlas
+from symfpu.borders.laws import power_law
 from symfpu.errors import InputError
 
 HERE = Path(__file__).parent
 FILE = HERE / "data" / "atlas.jsonl"
+NEWTON_FILE = HERE / "data" / "newton.jsonl"
 PAGE = HERE / "atlas.md"
 SERIES = ("ratio", "poles")
-LENGTHS = (8, 16, 32, 64, 128, 256)
+LENGTHS = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
+LONG = 32  # from here on fits without the resonances of short chains
 MODELS: dict[str, dict[str, str]] = {
     "alpha=1": {"alpha": "1"},
     "beta=1": {"beta": "1"},
@@ -33,6 +36,16 @@ ORDERS = {
 EXTENSIVE = {"alpha=1": 4, "beta=1": 3}
 PARTS = {"1/32": (32, 64, 128, 256), "1/16": (16, 32, 64, 128)}
 REACH = 2
+FLACH_LENGTHS = (8, 12, 16, 24, 32)
+FLACH_SEEDS = ("2", "3")
+NEWTON_PARTS = {"1/8": (8, 16, 32), "1/16": (16, 32, 64), "1/32": (32, 64, 128)}
+NEWTON_HOW: dict[str, Any] = {
+    "order": 2,
+    "borders": ["newton"],
+    "places": ["1e-6"],
+    "reach": 10**6,
+    "most_harmonics": 12000,
+}
 PICTURES = ("atlas-alpha.png", "atlas-beta.png", "atlas-map.png")
 
 
@@ -49,8 +62,7 @@ def grids() -> Iterator[dict[str, Any]]:
                     borders += ("stability",)
                 yield grid(chain, [f"{place}:1"], ORDERS[1][model], borders)
             two = (*SERIES, "newton") if N <= 32 and model != TODA else SERIES
-            packets = ["low:2"] if model == TODA else ["low:2", "high:2"]
-            yield grid(chain, packets, ORDERS[2][model], two)
+            yield grid(chain, ["low:2", "high:2"], ORDERS[2][model], two)
     for model, order in EXTENSIVE.items():
         for part, lengths in PARTS.items():
             for N in lengths:
@@ -58,6 +70,9 @@ def grids() -> Iterator[dict[str, Any]]:
         seeds = [str(q) for q in range(1, 16)]
         order = max(ORDERS[1][model])
         yield grid(Chain(16, **MODELS[model]), seeds, (order,), (*SERIES, "fold"))
+    for N in FLACH_LENGTHS:
+        chain = Chain(N, **MODELS["beta=1"])
+        yield grid(chain, list(FLACH_SEEDS), (8,), (*SERIES, "stability"))
 
 
 def grid(
@@ -72,6 +87,10 @@ def make_data() -> None:
     for number, arguments in enumerate(grids(), 1):
         found = atlas(**arguments, reach=REACH, file=FILE)
         print(number, found, flush=True)
+    for part, lengths in NEWTON_PARTS.items():
+        for model in EXTENSIVE:
+            chains = [Chain(N, **MODELS[model]) for N in lengths]
+            print(atlas(chains, [f"low:{part}"], **NEWTON_HOW, file=NEWTON_FILE))
 
 
 def tables(found: Atlas) -> dict[str, str]:
@@ -80,6 +99,8 @@ def tables(found: Atlas) -> dict[str, str]:
         "laws": laws_table(found),
         "folds": folds_table(found),
         "packets": packets_table(found),
+        "flach": flach_table(found),
+        "newton": newton_table(found),
     }
 
 
@@ -89,10 +110,16 @@ def rows_of(head: list[str], rows: list[list[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def exponent(found: Atlas, packet: str, border: str, model: str, **how: Any) -> str:
+def exponent(
+    found: Atlas, packet: str, border: str, model: str, least: int = 0, **how: Any
+) -> str:
     """A fitted power of N with its error, or why there is none."""
     try:
         law = found.law(packet, border, model=model, **how)
+        long = [
+            pair for pair in zip(law.lengths, law.energies, strict=True) if pair[0] >= least
+        ]
+        law = power_law([N for N, _ in long], [H for _, H in long])
     except InputError:
         return ""
     return f"{law.exponent:.2f} ± {law.error:.2f}"
@@ -105,7 +132,9 @@ def laws_table(found: Atlas) -> str:
         "packet",
         "ratio",
         "Padé poles",
-        "the same, lower order",
+        f"ratio, N >= {LONG}",
+        f"poles, N >= {LONG}",
+        "poles, lower order",
         "fold",
         "stability",
     ]
@@ -114,6 +143,7 @@ def laws_table(found: Atlas) -> str:
         for packet in ("low:1", "middle:1", "high:1", "low:2", "high:2"):
             orders = ORDERS[int(packet[-1])][model]
             cells = [exponent(found, packet, name, model) for name in SERIES]
+            cells += [exponent(found, packet, name, model, LONG) for name in SERIES]
             lower = exponent(found, packet, "poles", model, order=orders[-1])
             cells.append(lower if len(orders) > 1 else "")
             cells += [
@@ -193,6 +223,57 @@ def packets_table(found: Atlas) -> str:
                 size = f"{poles[N].energy / unit(model, N, s):.3g}"
                 rows.append([model, part, str(N), str(s), *cells, size])
     return rows_of(head, rows)
+
+
+def flach_table(found: Atlas) -> str:
+    """Where breathers of beta lose stability, as 6 beta H N/pi^2, published: 1 + O(1/N^2)."""
+    head = ["N", *(f"seed {q}" for q in ("1", *FLACH_SEEDS)), "published"]
+    by_seed = [
+        chosen(found, packet, "stability", "beta=1") for packet in ("low:1", *FLACH_SEEDS)
+    ]
+    rows = []
+    for N in FLACH_LENGTHS:
+        cells = [
+            f"{6 * seed[N].energy * N / math.pi**2:.3f}" if N in seed else ""
+            for seed in by_seed
+        ]
+        rows.append([str(N), *cells, "1 + O(1/N^2)"])
+    return rows_of(head, rows)
+
+
+def newton_table(found: Atlas) -> str:
+    """How far Newton's tori of packets that grow with the chain were followed."""
+    head = ["model", "M", "N", "s", "H/N by ratio", "H/N, last torus", "harmonics"]
+    head += ["with more", "residual", "change", "what ends the search"]
+    rows = read_atlas(NEWTON_FILE).rows.rows
+    cells = []
+    for row in rows:
+        chain, packet, result = row.case["chain"], row.case["packet"], row.result
+        model = "alpha=1" if chain["alpha"] != "0" else "beta=1"
+        N, end = int(chain["N"]), result["borders"]["newton"]
+        names = (packet, f"low:{len(result['modes'])}")
+        by_name = [chosen(found, name, "ratio", model).get(N) for name in names]
+        ratio = by_name[0] or by_name[1]
+        sharper = end["confirmed"]
+        cells.append(
+            (
+                (model, -N / len(result["modes"]), N),
+                [
+                    model,
+                    packet.partition(":")[2],
+                    str(N),
+                    str(len(result["modes"])),
+                    f"{ratio.energy / N:.3g}" if ratio else "",
+                    f"{end['energy'] / N:.3g}",
+                    str(result["newton"][-1]["harmonics"]),
+                    str(sharper.get("harmonics", "")),
+                    f"{sharper['residual']:.1e}" if "residual" in sharper else "",
+                    f"{sharper['change']:.0e}" if "change" in sharper else "",
+                    end["failure"],
+                ],
+            )
+        )
+    return rows_of(head, [line for _, line in sorted(cells)])
 
 
 def with_tables(text: str, found: Atlas) -> str:

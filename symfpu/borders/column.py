@@ -86,6 +86,7 @@ def _newton_borders(
             reach * max(point.place for point in points),
             most_harmonics=most_harmonics,
             losses=[name for name in asked if name in LOSSES],
+            confirm=NEWTON in asked,
         )
     except SymfpuError as error:
         none = {"none": f"{type(error).__name__}: {error}"}

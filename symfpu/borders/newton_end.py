@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 
 from symfpu.borders.fold import MOST_UNKNOWNS, sheet_of
+from symfpu.borders.last_torus import confirmation, vanishing_divisor
 from symfpu.borders.point import ENERGY, Ray
 from symfpu.breathers.floquet import floquet
 from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
+from symfpu.refinement.resonances import NearResonance
 from symfpu.refinement.tori import (
     NoTorus,
     RefinedTorus,
@@ -24,7 +26,8 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import short
 
-FACTOR = 1.25  # of the place, at most, from one torus to the next
+FACTOR = 1.25  # of the place, at most, from one torus to the next, if a loss is looked for
+WIDE_FACTOR = 1.6  # and if none is
 LOSS_WIDTH = 1.01  # ratio of the places between which something is lost
 LEAST_FACTOR = 1.01  # a step below which the torus before is the last
 TOLERANCE = 1e-9  # of the residual, as of what `normal_modes` takes
@@ -35,7 +38,8 @@ MOST_HARMONICS = 400
 NEWTON, FOLD, STABILITY = "newton", "fold", "stability"
 TOO_MANY = "more harmonics than allowed"
 NOT_FOLLOWED = "followed as far as asked"
-SEARCH_ENDS = (TOO_MANY, NOT_FOLLOWED)
+NOT_SMALL = "the residual stays above the tolerance"
+SEARCH_ENDS = (TOO_MANY, NOT_FOLLOWED, NOT_SMALL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +94,14 @@ class NewtonEnd:
 
     reason : of Newton's method; SEARCH_ENDS are limits of the search, not of the tori. above : the
     place at which there is none. points : of all tori. losses : by name, FOLD or STABILITY.
+    confirmed : the last torus with more harmonics, as `confirmation` gives it.
     """
 
     reason: str
     above: float
     points: tuple[RefinedPoint, ...] = field(repr=False)
     losses: Mapping[str, Loss]
+    confirmed: Json = field(default_factory=dict)
 
     @property
     def last(self) -> RefinedPoint:
@@ -112,8 +118,16 @@ class NewtonEnd:
             return {"none": f"not looked for above {MOST_UNKNOWNS} coefficients of a torus"}
         return {"none": f"kept up to {self.last.place:.6g}: {self.reason}"}
 
+    def _vanishing(self) -> NearResonance | None:
+        """The divisor in the way, where it was Newton's method that ended."""
+        if self.reason in SEARCH_ENDS or len(self.points) < 2:
+            return None
+        before, last = ((p.place, p.torus) for p in self.points[-2:])
+        return vanishing_divisor(before, last, self.above)
+
     def _newton(self) -> Json:
-        near = self.last.torus.near_resonances[:1]
+        vanishing = self._vanishing()
+        near = [vanishing] if vanishing else self.last.torus.near_resonances[:1]
         return {
             "place": short(self.last.place),
             "energy": short(float(self.last.torus.energy())),
@@ -122,7 +136,9 @@ class NewtonEnd:
             "mode": near[0].mode if near else None,
             "harmonic": list(map(int, near[0].harmonic)) if near else None,
             "divisor": short(float(near[0].divisor)) if near else None,
+            "vanishes": vanishing is not None,
             "slopes": [short(x) for x in _slopes(self.points)],
+            "confirmed": dict(self.confirmed),
         }
 
 
@@ -134,17 +150,20 @@ def newton_end(
     *,
     most_harmonics: int = MOST_HARMONICS,
     losses: Sequence[str] = (),
+    confirm: bool = False,
 ) -> NewtonEnd:
     """The tori of a ray from one of the series on, each from the one before.
 
     guess : a torus of the series; begin : its place; end : where the tori are left. losses : of
-    FOLD and STABILITY, what is looked for on the way.
+    FOLD and STABILITY, what is looked for on the way. confirm : whether the last torus is found
+    with more harmonics, too.
 
     Raises what `refine_at_energy` raises at the first of them.
     """
     points: list[RefinedPoint] = []
     lost: dict[str, Loss] = {}
-    for found in _followed(ray, guess, begin, end, most_harmonics):
+    factor = FACTOR if losses else WIDE_FACTOR
+    for found in _followed(ray, guess, begin, end, most_harmonics, factor):
         if isinstance(found, _Stop):
             stop = found
             break
@@ -152,7 +171,15 @@ def newton_end(
         for name in losses:
             if name not in lost and (loss := _loss(name, points)):
                 lost[name] = _located(ray, TESTS[name], loss)
-    return NewtonEnd(stop.reason, stop.above, tuple(points), lost)
+    confirmed = _confirmed(ray, points[-1]) if confirm else {}
+    return NewtonEnd(stop.reason, stop.above, tuple(points), lost, confirmed)
+
+
+def _confirmed(ray: Ray, last: RefinedPoint) -> Json:
+    def refined(sharper: float) -> RefinedTorus:
+        return _refined(ray, last.torus, last.place, sharper * TOLERANCE)
+
+    return confirmation(last.torus, refined)
 
 
 def _loss(name: str, points: Sequence[RefinedPoint]) -> Loss | None:
@@ -226,12 +253,17 @@ class _Stop:
 
 
 def _followed(
-    ray: Ray, guess: QuasiPeriodic, place: float, end: float, most: int
+    ray: Ray,
+    guess: QuasiPeriodic,
+    place: float,
+    end: float,
+    most: int,
+    widest: float,
 ) -> Iterator[RefinedPoint | _Stop]:
     """The tori as they come, then why there is no further one."""
     torus = _refined(ray, guess, place)
     yield RefinedPoint(place, torus)
-    factor = FACTOR
+    factor = widest
     while place < end:
         following = min(place * factor, end)
         try:
@@ -242,24 +274,26 @@ def _followed(
                 return
             factor = math.sqrt(factor)
             continue
-        if len(torus.harmonics) > most:
-            yield _Stop(TOO_MANY, following)
+        if len(torus.harmonics) > most or torus.warnings:
+            yield _Stop(NOT_SMALL if torus.warnings else TOO_MANY, following)
             return
         place = following
-        factor = min(FACTOR, factor**1.5)
+        factor = min(widest, factor**1.5)
         yield RefinedPoint(place, torus)
     yield _Stop(NOT_FOLLOWED, math.inf)
 
 
-def _refined(ray: Ray, guess: QuasiPeriodic, place: float) -> RefinedTorus:
+def _refined(
+    ray: Ray, guess: QuasiPeriodic, place: float, tolerance: float = TOLERANCE
+) -> RefinedTorus:
     name = f"{place:.8g}"
     if ray.by == ENERGY:
         equal = dict.fromkeys(ray.seeds, 1)
         return refine_at_energy(
-            guess, name, harmonic=False, energy_ratio=equal, tolerance=TOLERANCE
+            guess, name, harmonic=False, energy_ratio=equal, tolerance=tolerance
         )
     amplitudes = dict.fromkeys(ray.seeds, name)
-    return refine_at_amplitudes(guess, amplitudes, tolerance=TOLERANCE)
+    return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance)
 
 
 def _slopes(points: tuple[RefinedPoint, ...]) -> list[float]:

@@ -234,10 +234,13 @@ class Attempt:
         self.free_count = int((self.inside.n <= free).sum())
         self.force, self.force_errors = part.matrix(self.rows, self.inside)
         # of a column to the weight nu^n of its place
-        growth = self.rows.n[:, None] - self.inside.n
-        self.scales = part.nu**growth
+        powers = part.nu ** np.arange(-self.columns, last + 1.0)
+        self.scales = powers[self.rows.n[:, None] - self.inside.n + self.columns]
         # a divisor that may be zero makes the bounds huge, and the attempt fail
         self.diagonal = np.maximum(abs(self.divisors) - self.errors, SMALLEST_DIVISOR)
+        # above the rows of |I - A DF| that no block changes
+        sizes = (np.abs(self.force) + self.force_errors) / self.diagonal[:, None]
+        self.outside = sizes * self.scales * UPWARDS
 
     def importance(self) -> Floats:
         """How much the rows with free weights fail to be dominated by the diagonal."""
@@ -260,7 +263,6 @@ class Attempt:
     def defect(self, block: Ints, inverse: Ints) -> Floats:
         """Above the entries of |I - A DF|, columns up to `columns`, in units of nu^n."""
         A = np.ldexp(inverse.astype(float), -INVERSE_BITS)
-        bounds = (np.abs(self.force) + self.force_errors) / self.diagonal[:, None]
         full, errors = self.force[block], self.force_errors[block]
         own = np.arange(len(block))
         full[own, block] += self.divisors[block]
@@ -270,8 +272,10 @@ class Attempt:
         product[own, block] += 1
         size = np.abs(A) @ np.abs(full)
         lost = (len(block) + 4) * ROUNDOFF * (size + 1)
-        bounds[block] = np.abs(product) + np.abs(A) @ errors + lost
-        return np.asarray(bounds * self.scales * UPWARDS)
+        bounds = self.outside.copy()
+        inner = np.abs(product) + np.abs(A) @ errors + lost
+        bounds[block] = inner * self.scales[block] * UPWARDS
+        return np.asarray(bounds)
 
     def tail(self) -> float:
         """The same for all columns beyond `columns`."""

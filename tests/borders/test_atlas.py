@@ -2,18 +2,23 @@
 
 import json
 import math
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from symfpu import Atlas, Chain, assess, atlas, breather_at_energy, floquet, read_atlas, sweep, torus_at_energy
+from symfpu.borders import newton_end
 from symfpu.borders.column import atlas_column
+from symfpu.borders.last_torus import SHARPER, vanishing_divisor
 from symfpu.borders.laws import power_law
-from symfpu.borders.newton_end import FACTOR, LOSS_WIDTH, NOT_FOLLOWED, TOLERANCE, TOO_MANY
+from symfpu.borders.newton_end import LOSS_WIDTH, NOT_FOLLOWED, TOLERANCE, TOO_MANY, WIDE_FACTOR
 from symfpu.borders.packets import packet_modes
 from symfpu.borders.search import WIDTH
 from symfpu.chain.commensurability import frequency_rank
 from symfpu.errors import InputError
+from symfpu.refinement.resonances import NearResonance
 from symfpu.sweeps.rows import SweepRow, SweepRows
 from symfpu.sweeps.this_process import ThisProcess
 from tests.tolerances import LOCATED, ROUNDING, SIX_DIGITS
@@ -122,17 +127,50 @@ def test_newton_follows_tori_to_the_end_of_the_search():
     assert found["failure"] == NOT_FOLLOWED
     places = np.array([torus["place"] for torus in tori])
     assert places[[0, -1]] == pytest.approx([0.01, 0.02], rel=SIX_DIGITS)
-    assert (places[1:] / places[:-1]).max() <= FACTOR * (1 + 2 * SIX_DIGITS)
+    assert (places[1:] / places[:-1]).max() <= WIDE_FACTOR * (1 + 2 * SIX_DIGITS)
     for torus in tori:
         assert torus["energy"] == pytest.approx(torus["place"], rel=SIX_DIGITS)
         assert torus["residual"] < TOLERANCE
     assert found["energy"] == tori[-1]["energy"]
+    confirmed = found["confirmed"]
+    assert confirmed["harmonics"] > tori[-1]["harmonics"]
+    assert confirmed["residual"] < TOLERANCE * SHARPER
+    assert 0 < confirmed["change"] < TOLERANCE
+    assert confirmed["failure"] == ""
 
 
 def test_newton_stops_at_the_most_harmonics():
     column = atlas_column(BETA, "1", 4, ("newton",), places=["0.01"], reach=100, most_harmonics=14)
     assert column["borders"]["newton"]["failure"] == TOO_MANY
     assert all(torus["harmonics"] <= 14 for torus in column["newton"])
+
+
+def with_divisors(**divisors):
+    """What has near resonances of mode 1 to 3, without a torus."""
+    near = [NearResonance(int(name[1]), (1,), size, 0.1 * int(name[1])) for name, size in divisors.items()]
+    return SimpleNamespace(near_resonances=tuple(near))
+
+
+def test_a_divisor_vanishes_where_the_line_through_two_tori_does():
+    before = (1.0, with_divisors(q1=0.2, q2=0.2, q3=0.1))
+    last = (2.0, with_divisors(q1=0.1, q2=0.11, q3=0.2))
+    assert vanishing_divisor(before, last, 4.01).mode == 1
+    assert vanishing_divisor(before, last, 3.99) is None
+    assert vanishing_divisor(before, last, 6.0).mode == 2  # of both the one with the larger coefficient
+
+
+def test_a_torus_with_a_residual_above_the_tolerance_is_not_followed(monkeypatch):
+    refined = newton_end._refined
+
+    def doubtful(*arguments):
+        torus = refined(*arguments)
+        return replace(torus, warnings=("full",)) if float(torus.energy()) > 0.015 else torus
+
+    monkeypatch.setattr(newton_end, "_refined", doubtful)
+    column = atlas_column(BETA, "1", 4, ("newton",), places=["0.01"], reach=100)
+    found = column["borders"]["newton"]
+    assert found["failure"] == newton_end.NOT_SMALL
+    assert found["energy"] < 0.015
 
 
 def test_newton_begins_below_the_nearest_pole_where_no_point_is_asked_for():
