@@ -30,7 +30,9 @@ def main() -> None:
     from symfpu import plots
 
     torus = refine(torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.2"}, 6))
-    foretold = foretold_indices(torus, LAST_TIME, vectors=VECTORS, normal=normal_modes(torus))
+    foretold = foretold_indices(
+        torus, LAST_TIME, vectors=VECTORS, normal=normal_modes(torus)
+    )
     observed = alignment_indices(
         torus.chain, *torus.state(0.0), INTEGRATED_TO, vectors=VECTORS, step=STEP, frames=1
     )
