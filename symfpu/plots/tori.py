@@ -19,7 +19,7 @@ Solution = QuasiPeriodic | RingTorus
 
 POINTS = 2000  # of a section
 ORBITS = 48  # that rule a torus of two angles
-AROUND = 120  # points of each of them
+AROUND = 120  # steps of each of them, even: faces of a surface take two
 LEAST_SPAN = 0.1  # of the amplitudes, that the axes of a section have at least
 TURNS = 60  # of an orbit on a torus of more angles
 SOLUTION = "a solution: a torus or a breather"
@@ -194,7 +194,7 @@ def _surface(found: Solution) -> tuple[Floats, Floats]:
     turn = 2 * np.pi / float(found.frequencies[0])
     if len(found.seeds) > 2:
         return _one_orbit(found, np.linspace(0, TURNS * turn, TURNS * AROUND))
-    times = np.linspace(0, turn, AROUND)
+    times = np.linspace(0, turn, AROUND + 1)
     if len(found.seeds) == 1:
         return _one_orbit(found, times)
     plain = found if isinstance(found, RingTorus) else found.in_doubles()

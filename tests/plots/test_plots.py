@@ -341,6 +341,16 @@ def test_small_divisors_of_a_ring_are_those_of_its_series(ax):
         plots.small_divisors(cases.ring(), ax)
 
 
+def test_faces_of_a_torus_have_as_many_corners(ax3, monkeypatch):
+    """matplotlib fills the corners that some faces lack with what the memory holds."""
+    drawn = []
+    monkeypatch.setattr(ax3, "plot_surface", lambda *parts, rstride, cstride, **style: drawn.append((parts[0].shape, rstride, cstride)))
+    plots.torus(cases.torus(), ax=ax3)
+    ((rows, columns), down, across), *others = drawn
+    assert (rows - 1) % down == 0 == (columns - 1) % across
+    assert others == []
+
+
 def test_a_torus_of_a_ring_is_seen_along_modes_of_different_wave_length(ax3):
     plots.torus(cases.ring(), ax3)
     assert "Q_{1}" in ax3.get_xlabel()
