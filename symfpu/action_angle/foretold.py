@@ -45,7 +45,7 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.torus import Solution, second_order
+from symfpu.normal.torus import Solution, require_refined, second_order
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import double, integer
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
@@ -327,11 +327,7 @@ def _checked(solution: object) -> Solution:
         require_solution(solution, "solution")
         assert isinstance(solution, QuasiPeriodic)
         torus = solution
-    residual = torus.residual()
-    if not residual <= REFINED:
-        given = f"a torus whose residual is {residual:.2g}"
-        allowed = f"one that solves the equations of motion to {REFINED:.0e}"
-        raise InputError("solution", given, allowed, "refine it first: refine(solution)")
+    require_refined(torus, REFINED)
     return _in_doubles(torus)
 
 

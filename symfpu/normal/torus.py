@@ -51,12 +51,17 @@ def checked_solution(solution: object) -> Solution:
         assert isinstance(solution, QuasiPeriodic)
         require_fixed_ends(solution.chain)
         torus = solution.in_doubles()
-    residual = torus.residual()
-    if not residual <= REFINED:
-        given = f"a torus whose residual is {residual:.2g}"
-        allowed = f"one that solves the equations of motion to {REFINED:.0e}"
-        raise InputError("solution", given, allowed, "refine it first: refine(solution)")
+    require_refined(torus, REFINED)
     return torus
+
+
+def require_refined(torus: Solution, level: float) -> None:
+    """InputError for a torus whose relative residual is above a level."""
+    residual = torus.residual()
+    if not residual <= level:
+        given = f"a torus whose residual is {residual:.2g}"
+        allowed = f"one that solves the equations of motion to {level:.0e}"
+        raise InputError("solution", given, allowed, "refine it first: refine(solution)")
 
 
 def checked_modes(torus: Solution, modes: Iterable[int] | None) -> tuple[int, ...]:
