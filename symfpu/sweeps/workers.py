@@ -158,12 +158,18 @@ def worker_processes(tasks: int) -> Iterator[ProcessWorkers]:
 
 @contextmanager
 def executor_of(given: Any, tasks: int) -> Iterator[Executor]:
-    """The executor given, that of a client of dask, or processes of our own."""
+    """The executor given, that of a dask client, or processes of our own; InputError for others."""
     if given is None:
         with worker_processes(tasks) as pool:
             yield pool
-    else:
-        yield given.get_executor() if hasattr(given, "get_executor") else given
+        return
+    executor = given.get_executor() if hasattr(given, "get_executor") else given
+    if not isinstance(executor, Executor):
+        allowed = "a concurrent.futures.Executor or a client of dask"
+        raise InputError(
+            "executor", given, allowed, "leave it out for processes of this machine"
+        )
+    yield executor
 
 
 class Worker:

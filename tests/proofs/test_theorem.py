@@ -268,6 +268,11 @@ def test_processes_decide_as_this_one_does():
         assert repr(prove_for_all_N("alpha", 2, 5)) == repr(prove_for_all_N("alpha", 2, 5, executor=pool))
 
 
+def test_what_runs_nothing_is_refused():
+    with pytest.raises(InputError, match="executor = 3: allowed is a concurrent"):
+        prove_for_all_N("beta", 1, 2, executor=3)
+
+
 @pytest.mark.filterwarnings("ignore")
 def test_a_client_of_dask_decides_and_another_goes_on(tmp_path):
     distributed = pytest.importorskip("distributed", reason="the optional extra 'dask' is not installed")
