@@ -760,3 +760,7 @@ FALL_BY_AN_ANGLE = 10.0
 # Height of a line of Fig. 9's trajectory and its coefficient on the 4-torus, which is 1e-3 of the largest coordinate away, 1/9
 # of it by the fifth angle: 2.3e-3 measured.
 COMBINATION_HEIGHT = 0.02
+
+# Radius of a proved energy over the bound of the residual: speeds, summed over particles, over the least |nu.omega| of the box
+# of harmonics that H can have: 19 to 114 measured.
+ENERGY_OF_TORUS = 300.0

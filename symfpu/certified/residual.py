@@ -12,19 +12,26 @@ from typing import Any
 import mpmath
 
 from symfpu.certified.growth import rounded_up
-from symfpu.certified.rounded_torus import RoundedTorus, residual_of, rounded_torus
+from symfpu.certified.rounded_torus import (
+    GUARD_BITS,
+    RoundedTorus,
+    residual_of,
+    rounded_torus,
+)
 from symfpu.certified.series import Series
+from symfpu.certified.torus_energy import Energy, energy_of
 from symfpu.chain.chain import Chain
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.arithmetic import with_digits
 from symfpu.numbers.one_sided import above
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 FORMAT = "symfpu torus certificate"
-SCHEMA = 1
+SCHEMA = 2
 SLACK = Fraction(1025, 1024)
 SHOWN_BITS = 53
 
@@ -51,6 +58,8 @@ class ResidualProof(Tabled):
     bound : above |x_j'' - force on x_j| of every particle j at all angles of the torus, mpf: the
         largest of `particles`, shape (N-1,), each the sum of the sizes of all coefficients.
     relative : above bound over the largest of the particles' accelerations, mpf.
+    energy, energy_radius : at all angles |H - energy| <= energy_radius, mpf; None where nu.omega
+        is zero for a harmonic that H can have.
     harmonics : of the torus, one of each pair +-nu. digits : of the torus that was given; the
         theorem is about its coefficients rounded some 20 bits below the last digit.
     body : the certificate without its digest. Dimensionless. Ours: docs/tori-proofs.md.
@@ -60,7 +69,7 @@ class ResidualProof(Tabled):
     >>> guess = torus_at_amplitudes(Chain(N=4, alpha="0.3"), amplitudes, order=4)
     >>> prove_residual(refine_at_amplitudes(guess, amplitudes, digits=30))
     ResidualProof(N=4, alpha=0.3, omega_1=0.76..., omega_2=1.41..., 30 digits: residual below
-    ... of every particle at all angles, ... of the largest acceleration)
+    ... of every particle at all angles, H within ..., ... of the largest acceleration)
     """
 
     chain: Chain
@@ -69,6 +78,8 @@ class ResidualProof(Tabled):
     bound: Any
     particles: tuple[Any, ...] = field(repr=False)
     relative: Any
+    energy: Any
+    energy_radius: Any
     harmonics: int
     digits: int
     body: Body = field(repr=False)
@@ -84,12 +95,16 @@ class ResidualProof(Tabled):
     @property
     def _text(self) -> str:
         size = above(self.bound, 3)
-        return f"residual below {size} of every particle at all angles"
+        energy = "" if self.energy is None else f", H within {above(self.energy_radius, 3)}"
+        return f"residual below {size} of every particle at all angles{energy}"
 
     @property
     def theorem(self) -> str:
         """What is proved, in one sentence."""
-        return f"{torus_text(self.chain, self.seeds, self.frequencies)}: {self._text}"
+        energy = "" if self.energy is None else f" of {self.energy}"
+        return (
+            f"{torus_text(self.chain, self.seeds, self.frequencies)}: {self._text}{energy}"
+        )
 
     @property
     def omega(self) -> dict[int, Fraction]:
@@ -151,6 +166,7 @@ def residual_proof(torus: RoundedTorus, found: list[Fraction]) -> ResidualProof:
     """The result of the norms of a residual."""
     bounds = [rounded_up(x * SLACK) for x in found]
     bound = max(bounds)
+    energy = stated_energy(torus, energy_of(torus, found))
     return ResidualProof(
         chain=torus.chain,
         seeds=torus.seeds,
@@ -158,10 +174,28 @@ def residual_proof(torus: RoundedTorus, found: list[Fraction]) -> ResidualProof:
         bound=shown(bound),
         particles=tuple(shown(x) for x in bounds),
         relative=shown(bound) / root_mean_square(torus) * (1 + mpmath.mpf(2) ** -40),
+        energy=energy and in_digits(energy.middle, torus.digits),
+        energy_radius=energy and shown(energy.radius),
         harmonics=harmonics_of(torus),
         digits=torus.digits,
-        body=residual_body(torus, bound),
+        body=residual_body(torus, bound, energy),
     )
+
+
+def stated_energy(torus: RoundedTorus, found: Energy | None) -> Energy | None:
+    """With a middle of so many places as the torus, and a radius of few bits."""
+    if found is None:
+        return None
+    unit = Fraction(1, 1 << (torus.bits + GUARD_BITS))
+    middle = round(found.middle / unit) * unit
+    apart = found.radius + abs(middle - found.middle)
+    return Energy(middle, rounded_up(SLACK * apart))
+
+
+def in_digits(x: Fraction, digits: int) -> Any:
+    """mpf of a dyadic number, exact, that prints so many digits."""
+    with mpmath.workprec(max(SHOWN_BITS, abs(x.numerator).bit_length())):
+        return with_digits(mpmath.mpf(x.numerator) / x.denominator, digits)
 
 
 def shown(x: Fraction) -> Any:
@@ -218,7 +252,7 @@ def nonzero(series: Series) -> list[tuple[tuple[int, ...], int]]:
     return found
 
 
-def residual_body(torus: RoundedTorus, bound: Fraction) -> Body:
+def residual_body(torus: RoundedTorus, bound: Fraction, energy: Energy | None) -> Body:
     """The certificate of a residual without its digest; what concerns a stay is empty."""
     potential = torus.chain.potential
     assert potential.degree is not None
@@ -233,6 +267,7 @@ def residual_body(torus: RoundedTorus, bound: Fraction) -> Body:
         "bits": torus.bits,
         "torus": cosine_rows(torus.particles),
         "residual": dyadic_pair(bound),
+        "energy": [dyadic_pair(x) for x in energy or ()],
         "frame_bits": 0,
         "rate_bits": 0,
         "directions": [],

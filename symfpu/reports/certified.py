@@ -8,6 +8,7 @@ import mpmath
 
 from symfpu.certified.residual import ResidualProof
 from symfpu.certified.stay import StayProof
+from symfpu.numbers.one_sided import above
 from symfpu.numbers.typed import decimal
 from symfpu.reports.tables import fifteen_digits
 
@@ -19,6 +20,8 @@ def residual_proof_record(proof: ResidualProof) -> dict[str, Any]:
     return _head(proof) | {
         "bound": _text(proof.bound),
         "relative": _text(proof.relative),
+        "energy": None if proof.energy is None else str(proof.energy),
+        "energy_radius": None if proof.energy is None else _text(proof.energy_radius),
     }
 
 
@@ -68,8 +71,15 @@ def residual_proof_text(proof: ResidualProof) -> str:
             f"  the residual of the equations of motion is below {mpmath.nstr(proof.bound, 3)} "
             f"of every particle at all angles,",
             f"  {mpmath.nstr(proof.relative, 3)} of the largest acceleration",
+            f"  {_energy_text(proof)}",
         ]
     )
+
+
+def _energy_text(proof: ResidualProof) -> str:
+    if proof.energy is None:
+        return "of its energy nothing is proved: a harmonic of it has nu.omega = 0"
+    return f"H is within {above(proof.energy_radius, 3)} of {proof.energy} at all angles"
 
 
 def stay_text(proof: StayProof) -> str:

@@ -15,9 +15,10 @@ from symfpu.certified.series import Series, product
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.refinement.tori import refine, refine_at_amplitudes
+from symfpu.reports.certified import residual_proof_text
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.quasiperiodic import FourierTorus
-from tests.tolerances import TORUS_RESIDUAL
+from tests.tolerances import ENERGY_OF_TORUS, TORUS_RESIDUAL
 
 AMPLITUDES = {1: "0.2", 2: "0.1"}
 LAWS = {"alpha": {"alpha": "0.3"}, "beta": {"beta": "1/2"}, "both": {"alpha": "1/3", "beta": "0.2"}}
@@ -89,6 +90,53 @@ def test_a_torus_with_one_coefficient_off_has_that_much_more_of_it():
     found = prove_residual(off).bound
     assert change / 10 < found < 10 * change
     assert prove_residual(exact).bound < TORUS_RESIDUAL
+
+
+def energy_at(torus, a, b):
+    """H of the rounded torus at the angles pi a, pi b."""
+    rounded = rounded_torus(torus)
+    x, p = [0] * (torus.chain.N + 1), [0] * (torus.chain.N + 1)
+    for j, series in enumerate(rounded.particles, start=1):
+        for nu, c in entries(series):
+            turn = nu[0] * a + nu[1] * b
+            x[j] += c * mpmath.cospi(turn)
+            p[j] -= c * rate(torus, nu) * mpmath.sinpi(turn)
+    r = [x[j + 1] - x[j] for j in range(torus.chain.N)]
+    terms = {1: Fraction(1), **rounded.couplings}
+    stored = sum(mpmath.mpf(c.numerator) / c.denominator * s ** (k + 1) / (k + 1) for k, c in terms.items() for s in r)
+    return sum(v**2 for v in p) / 2 + stored
+
+
+@pytest.mark.parametrize("digits", [None, 30])
+@pytest.mark.parametrize(("law", "N"), [("alpha", 3), ("beta", 4), ("both", 3)])
+def test_the_energy_is_within_its_radius_at_all_angles(law, N, digits):
+    """And the radius is that of a conserved quantity: as small as what the torus leaves of the equations."""
+    exact = torus(law, N) if digits is None else refine(torus(law, N), digits=digits)
+    with mpmath.workdps(60):
+        found = prove_residual(exact)
+        for a, b in [(0, 0), ("0.3", "1.1"), ("1.7", "0.45"), ("0.9", "0.2")]:
+            assert abs(energy_at(exact, mpmath.mpf(a), mpmath.mpf(b)) - found.energy) <= found.energy_radius
+        assert found.energy_radius < ENERGY_OF_TORUS * found.bound
+
+
+def test_a_moved_coefficient_shows_in_the_radius_of_the_energy():
+    exact = torus()
+    moved = exact.cosines.copy()
+    moved[exact.harmonics.tolist().index([2, 0]), 1] += 1e-6
+    off = FourierTorus(exact.chain, exact.seeds, exact.frequencies, exact.harmonics, moved, exact.phases)
+    with mpmath.workdps(30):
+        found = prove_residual(off)
+        values = [energy_at(off, mpmath.mpf(k) / 8, mpmath.mpf(3 * k) / 8) for k in range(16)]
+        assert max(values) - min(values) <= 2 * found.energy_radius
+        assert max(values) - min(values) > 1e6 * prove_residual(exact).energy_radius
+
+
+def test_nothing_is_said_of_an_energy_with_a_harmonic_that_does_not_turn():
+    resonant = replace(torus().in_doubles(), frequencies=(Fraction(1), Fraction(7, 4)))
+    found = prove_residual(resonant)
+    assert found.energy is None
+    assert found.energy_radius is None
+    assert "nothing is proved" in residual_proof_text(found)
 
 
 def test_digits_of_the_torus_are_those_of_the_bound():

@@ -49,9 +49,12 @@ def refused(data, folder, reason=""):
 
 
 def test_both_kinds_are_theorems(tmp_path):
-    assert len(checked(residual(), tmp_path)) == 1
+    of_residual, of_energy = checked(residual(), tmp_path)
+    assert "leaves" in of_residual
+    assert "H of that torus is within" in of_energy
     lines = checked(stay(), tmp_path)
-    assert "every orbit that starts on this torus stays, for 1.00e3 units of time" in lines[1]
+    assert lines[1] == of_energy
+    assert "every orbit that starts on this torus stays, for 1.00e3 units of time" in lines[2]
 
 
 @pytest.mark.parametrize("make", [residual, stay])
@@ -69,6 +72,10 @@ def test_no_altered_number_passes(make, tmp_path):
 
 CLAIMS = {
     "a smaller residual": lambda d: d["residual"].__setitem__(0, d["residual"][0] // 2),
+    "a smaller radius of the energy": lambda d: d["energy"].__setitem__(1, halved(d["energy"][1])),
+    "another energy": lambda d: d["energy"][0].__setitem__(0, -d["energy"][0][0]),
+    "an energy without a radius": lambda d: d["energy"].pop(),
+    "a radius below zero": lambda d: d["energy"][1].__setitem__(0, -d["energy"][1][0]),
     "a longer time": lambda d: d["stay"].__setitem__(0, "100000"),
     "a smaller weighted distance": lambda d: d["stay"].__setitem__(1, halved(d["stay"][1])),
     "a smaller distance": lambda d: d["stay"].__setitem__(2, halved(d["stay"][2])),
@@ -93,13 +100,15 @@ CLAIMS = {
     "a harmonic twice": lambda d: d["torus"].append(d["torus"][0]),
     "a negative time": lambda d: d["stay"].__setitem__(0, "-1"),
     "a boolean": lambda d: d["weights"].__setitem__(0, True),
-    "another schema": lambda d: d.__setitem__("schema", 2),
+    "another schema": lambda d: d.__setitem__("schema", 1),
     "a key more": lambda d: d.__setitem__("more", 1),
 }
 
 
 REASONS = {
     "a smaller residual": "the residual may be",
+    "a smaller radius of the energy": "the energy may be",
+    "another energy": "the energy may be",
     "a longer time": "the distance may be reached",
     "a smaller weighted distance": "the distance may be reached",
     "a smaller distance": "stretches may differ",
@@ -127,7 +136,7 @@ def test_the_printed_time_is_not_above_the_one_checked(tmp_path):
     data = copy.deepcopy(stay())
     data["stay"][0] = "9999/10"
     lines = checked(sealed(data), tmp_path)
-    assert "stays, for 9.99e2 units of time" in lines[1]
+    assert "stays, for 9.99e2 units of time" in lines[2]
 
 
 @pytest.mark.parametrize("kept", [0, 1])
@@ -146,6 +155,8 @@ def test_rounded_frequencies_are_not_called_exact(tmp_path):
     data["residual"] = [8, 0]
     assert "with frequencies near " in checked(sealed(data), tmp_path)[0]
     data["omega"] = ["1", "7/4"]
+    refused(sealed(data), tmp_path, "a harmonic of the energy does not turn")
+    data["energy"] = []
     assert "with frequencies 1.00000000000, 1.75000000000, leaves" in checked(sealed(data), tmp_path)[0]
 
 

@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 from symfpu.proofs.check_torus.claim import Claim, read_claim
+from symfpu.proofs.check_torus.energy import check_energy
 from symfpu.proofs.check_torus.residual import check_residual, residuals
 from symfpu.proofs.check_torus.stay import check_stay
 from symfpu.proofs.reading import Json, dyadic, need
@@ -16,6 +17,7 @@ def check_certificate(data: Json) -> list[str]:
     found = residuals(claim)
     check_residual(found, stated)
     lines = [residual_text(claim, data, stated)]
+    lines += check_energy(claim, found, data["energy"])
     if data["stay"]:
         return [*lines, *check_stay(data, claim, found)]
     empty = not (data["directions"] or data["weights"])
