@@ -20,6 +20,7 @@ from symfpu.cli.chains import (
     PotentialOption,
     chain_of,
 )
+from symfpu.cli.keeping import output_named
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     DigitsOption,
@@ -27,7 +28,6 @@ from symfpu.cli.terminal import (
     SolutionOption,
     one_of,
     optional,
-    path_named,
     print_json,
     progress_bar,
     say,
@@ -35,7 +35,6 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
-from symfpu.files.writing import output_file
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.reports.solution import solution_record, solution_text
@@ -82,7 +81,7 @@ def breather(
     one_of({"omega": omega, "amplitude": amplitude, "energy": energy})
     if places is not None:
         require_fixed_ends(chain)
-    file = None if output is None else output_file(path_named("output", output))
+    file = output_named(output)
     picture = picture_named(plot)
     doubts = (DOUBLE_ENERGY,) if energy is not None and places is not None else ()
     with progress_bar("Newton's method") as advance:

@@ -14,6 +14,7 @@ from symfpu.certified.stability_proof import StabilityProof, prove_stability
 from symfpu.certified.stay import TIME, StayProof, prove_stay
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.cli.chains import solution_of
+from symfpu.cli.keeping import output_named
 from symfpu.cli.terminal import (
     CertificateOption,
     FileArgument,
@@ -26,7 +27,6 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.files.writing import output_file
 from symfpu.reports.certified import (
     residual_proof_record,
     residual_proof_text,
@@ -98,7 +98,7 @@ def certify(
     assert isinstance(solution, QuasiPeriodic)
     of_breather = {"amplitude": amplitude, "energy": energy, "half_width": half_width}
     of_torus = {"time": time, "residual": residual or None}
-    target = None if output is None else output_file(path_named("output", output))
+    target = output_named(output)
     with progress_bar("proof") as advance:
         advance("proof", NO_FRACTION)
         if len(solution.seeds) == 1:

@@ -19,7 +19,7 @@ from symfpu.cli.chains import (
     solution_of,
 )
 from symfpu.cli.choices import choice
-from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
+from symfpu.cli.keeping import SaveOption, file_named, keep, output_named, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
@@ -44,7 +44,7 @@ from symfpu.errors import InputError
 from symfpu.families.family import METHODS, Family, family
 from symfpu.families.normal_events import RESONANCE_LENGTH
 from symfpu.figures.family import draw_family
-from symfpu.files.writing import output_file, output_folder
+from symfpu.files.writing import output_folder
 from symfpu.numbers.counted import counted
 from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.harmonics import MOST_HARMONICS
@@ -136,7 +136,7 @@ def refine_file(
         raise InputError(
             "harmonic", True, "an --energy that it says something about", "give --energy E"
         )
-    kept = None if output is None else output_file(path_named("output", output))
+    kept = output_named(output)
     how: dict[str, Any] = {"tolerance": number("tolerance", tolerance)}
     how["most_harmonics"] = most_harmonics
     with progress_bar("Newton's method") as advance:

@@ -11,7 +11,7 @@ import typer
 
 from symfpu.bundles.bundle import save
 from symfpu.cli.chains import chain_of
-from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
+from symfpu.cli.keeping import SaveOption, file_named, keep, output_named, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.runs import StepOption, TimeOption
 from symfpu.cli.starts import (
@@ -41,7 +41,6 @@ from symfpu.cli.verbs import app
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
-from symfpu.files.writing import output_file
 from symfpu.numbers.typed import part
 from symfpu.reports.tables import text_table
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine, frequency_analysis
@@ -123,7 +122,7 @@ def frequencies(
     above = part(number("level", level), "level")
     log = None if rows is None else path_named("file", rows)
     _refuse_for_others(energies is None, rows, output, angles)
-    target = None if output is None else output_file(path_named("output", output))
+    target = output_named(output)
     with progress_bar("frequencies", lambda: _kept(log)) as advance:
         found: FrequencyAnalysis | FrequencyMap
         if energies is None:

@@ -1,4 +1,4 @@
-"""The option --save: the result of a verb as a file, for `symfpu show` and for `load`."""
+"""Files of a verb: --save keeps its whole result, for `symfpu show` and for `load`."""
 
 from __future__ import annotations
 
@@ -27,6 +27,11 @@ def file_named(text: str | None) -> Path | None:
     if text is None:
         return None
     return output_file(path_named("save", text), "save", "choose another with --save")
+
+
+def output_named(text: str | None) -> Path | None:
+    """The same of the option --output."""
+    return None if text is None else output_file(path_named("output", text))
 
 
 def keep(result: Any, file: Path | None, context: typer.Context) -> None:

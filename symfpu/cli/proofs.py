@@ -13,7 +13,7 @@ from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.cli.chains import BondsIfGiven, BondsOption, EndsOption, PotentialOption
 from symfpu.cli.choices import choice
-from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
+from symfpu.cli.keeping import SaveOption, file_named, keep, output_named, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     NOTHING_KEPT,
@@ -140,7 +140,7 @@ def prove(
 
     Exit code 1 where it stays undecided.
     """
-    file = None if output is None else output_file(path_named("output", output))
+    file = output_named(output)
     if all_N:
         refuse_case({"N": bonds, "seeds": seeds, "potential": potential, "points": points})
         kept = None if log is None else path_named("file", log)
@@ -261,7 +261,7 @@ def sweep(
     log = None
     if file is not None:
         log = output_file(path_named("file", file), "file", "choose another with --file")
-    summary = None if markdown is None else output_file(path_named("output", markdown))
+    summary = output_named(markdown)
     saved = file_named(kept_file)
     with progress_bar("seed sets", lambda: _kept(log)) as advance:
         result = sweep_propagation(

@@ -18,6 +18,7 @@ from symfpu.cli.chains import (
     PotentialOption,
     chain_of,
 )
+from symfpu.cli.keeping import output_named
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     HarmonicOption,
@@ -27,7 +28,6 @@ from symfpu.cli.terminal import (
     by_seed,
     one_of,
     optional,
-    path_named,
     print_json,
     progress_bar,
     say,
@@ -39,7 +39,6 @@ from symfpu.cli.tori import print_solution
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.files.writing import output_file
 from symfpu.reports.solution import solution_record
 from symfpu.reports.torus import assessment_text, torus_record
 from symfpu.saved.results import save
@@ -165,7 +164,7 @@ def solve(
         coordinate_order=optional("coordinate-order", coordinate_order),
         digits=optional("digits", digits),
     )
-    file = None if output is None else output_file(path_named("output", output))
+    file = output_named(output)
     picture = picture_named(plot)
     with progress_bar("series") as advance:
         torus, assessment, record = _found(chain, chosen, wish, advance)

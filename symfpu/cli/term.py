@@ -13,12 +13,12 @@ from symfpu.chain.length import label_entry, mode_label
 from symfpu.chain.symbols import chosen_symbol, coordinate_symbol
 from symfpu.cli.chains import AlphaOption, BetaOption, PotentialOption, chain_of
 from symfpu.cli.choices import choice
+from symfpu.cli.keeping import output_named
 from symfpu.cli.terminal import (
     JsonOption,
     OrderOption,
     mode_named,
     optional,
-    path_named,
     print_json,
     progress_bar,
     say,
@@ -26,7 +26,6 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
-from symfpu.files.writing import output_file
 from symfpu.notebook import latex_lines
 from symfpu.numbers.typed import decimal
 from symfpu.reports.solution import frequencies_record
@@ -127,7 +126,7 @@ def term(
     _require_form(form, frequency, omega)
     places = optional("digits", digits)
     chosen = None if omega is None else omega.split(",")
-    file = None if output is None else output_file(path_named("output", output))
+    file = output_named(output)
     ring = RINGS.get(form or "") if frequency else None
     with progress_bar("series") as advance:
         series = lindstedt(
