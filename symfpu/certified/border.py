@@ -71,6 +71,22 @@ class Border:
         return sum(bounds, flint.arb(0)) * power_of_two(-self.equation_places)
 
 
+def residual_of(balls: BondBalls, fixed: Fixed, equation_places: int) -> Any:
+    """G at an orbit."""
+    orbit = balls.orbit
+    if fixed.kind == FREQUENCY:
+        return flint.arb(0)
+    if fixed.kind == AMPLITUDE:
+        c = power_of_two(-orbit.bits) * orbit.rows[1][orbit.seed - 1]
+        return c - ball(fixed.value) * unit_of_amplitude(balls)
+    return (balls.mean_energy() - ball(fixed.value)) * power_of_two(-equation_places)
+
+
+def unit_of_amplitude(balls: BondBalls) -> Any:
+    """c_s[1] of A = 1."""
+    return (balls.linear[balls.orbit.seed - 1] * 2 / balls.orbit.chain.N).sqrt()
+
+
 def power_of_two(exponent: int) -> Any:
     """2^exponent as a ball."""
     return flint.arb(2) ** exponent
@@ -90,9 +106,8 @@ def border_of(balls: BondBalls, fixed: Fixed) -> Border:
         change = ball(width) * power_of_two(unknown_places)
         return Border(fixed, unknown_places, 0, zero, change, 0, none, zero, 1)
     if fixed.kind == AMPLITUDE:
-        unit = (balls.linear[orbit.seed - 1] * 2 / orbit.chain.N).sqrt()
-        c = power_of_two(-orbit.bits) * orbit.rows[1][orbit.seed - 1]
-        residual, change = c - ball(fixed.value) * unit, ball(fixed.half_width) * unit
+        residual = residual_of(balls, fixed, 0)
+        change = ball(fixed.half_width) * unit_of_amplitude(balls)
         return Border(fixed, unknown_places, 0, residual, change, 1, none, zero, 0)
     return energy_border(balls, fixed, unknown_places)
 
@@ -115,7 +130,7 @@ def energy_border(balls: BondBalls, fixed: Fixed, unknown_places: int) -> Border
         fixed=fixed,
         unknown_places=unknown_places,
         equation_places=places,
-        residual=(balls.mean_energy() - ball(fixed.value)) * unit,
+        residual=residual_of(balls, fixed, places),
         change=ball(fixed.half_width) * unit,
         of_seed=0,
         rows=rows,

@@ -16,7 +16,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from symfpu.certified.bond_balls import BondBalls
-from symfpu.certified.border import Border, Fixed, border_of
+from symfpu.certified.border import Border, Fixed, border_of, residual_of
 from symfpu.certified.contraction import Attempt, LinearPart, first_free
 from symfpu.certified.existence_bounds import linear_part, strip
 from symfpu.certified.rounded_orbit import RoundedOrbit
@@ -25,7 +25,9 @@ Floats = NDArray[np.float64]
 
 SLOPES_LEFT = 1e-13  # norm of the slopes that the matrix leaves out
 SWEEPS = 40
-LAST_UNITS = 1000  # of the last place: a correction below them was the last one
+LAST_UNITS = (
+    1000  # of the last place: a correction is the last one if the next is below them
+)
 FREQUENCY_BITS = 8  # of omega beyond those of the orbit
 LONGER = 1.5  # times the harmonics of the orbit, of those that corrections may add
 
@@ -70,17 +72,19 @@ def fixed_orbit(orbit: RoundedOrbit, fixed: Fixed) -> RoundedOrbit:
     At the working precision of python-flint. It ends where corrections stop falling.
     """
     balls = BondBalls(orbit, strip(orbit))
-    matrix = bordered_matrix(balls, border_of(balls, fixed))
+    border = border_of(balls, fixed)
+    matrix = bordered_matrix(balls, border)
     last, least = math.ceil(LONGER * orbit.harmonics), math.inf
     for _ in range(SWEEPS):
-        border = border_of(balls, fixed)
         size, larger = corrected(balls, border, matrix, last)
         if not size < least / 2:
             break
+        expected = size * size / least if math.isfinite(least) else size
         least, orbit = size, larger
-        if size < LAST_UNITS * 2.0**-orbit.bits:
+        if expected < LAST_UNITS * 2.0**-orbit.bits:
             break
         balls = BondBalls(orbit, strip(orbit))
+        border = replace(border, residual=residual_of(balls, fixed, border.equation_places))
     return orbit
 
 
