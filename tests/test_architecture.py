@@ -66,8 +66,8 @@ def test_the_way_is_one(step):
 CHECKERS = {
     "reading": set(),
     "rounding": set(),
-    "verify": {"reading"},
-    "verify_theorem": {"reading", "verify"},
+    "check_propagation": {"reading"},
+    "check_every_length": {"reading", "check_propagation"},
     "check_torus": {"reading", "rounding"},
     "check_existence": {"reading", "rounding"},
     "check_stability": {"reading", "rounding", "check_existence"},

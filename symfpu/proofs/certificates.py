@@ -197,7 +197,7 @@ class PropagationProof(Shown, Tabled):
     def certificate(self) -> dict[str, Any]:
         """The certificate as plain integers, strings, lists and dictionaries.
 
-        `symfpu.proofs.verify` checks it by another route.
+        `symfpu.proofs.check_propagation` checks it by another route.
         """
         rule = [list(modes) for modes in self.rule]
         actual = [list(modes) for modes in self.actual]

@@ -11,15 +11,13 @@ from typing import NamedTuple
 
 from symfpu.files.formats import format_of, opened_by
 from symfpu.proofs import (
+    check_every_length,
     check_existence,
+    check_propagation,
     check_stability,
     check_torus,
-    verify,
-    verify_theorem,
 )
 from symfpu.proofs.reading import CertificateError, Json, verified
-
-PROPAGATION = "symfpu propagation certificate"
 
 
 class Checker(NamedTuple):
@@ -30,7 +28,9 @@ class Checker(NamedTuple):
 
 
 CHECKERS: dict[str, Checker] = {
-    PROPAGATION: Checker(verify.read_certificate, verify.check_certificate),
+    check_propagation.FORMAT: Checker(
+        check_propagation.read_certificate, check_propagation.check_certificate
+    ),
     check_existence.FORMAT: Checker(
         check_existence.read_certificate, check_existence.check_certificate
     ),
@@ -40,8 +40,8 @@ CHECKERS: dict[str, Checker] = {
     check_stability.FORMAT: Checker(
         check_stability.read_certificate, check_stability.check_certificate
     ),
-    verify_theorem.FORMAT: Checker(
-        verify_theorem.read_theorem, verify_theorem.check_theorem
+    check_every_length.FORMAT: Checker(
+        check_every_length.read_theorem, check_every_length.check_theorem
     ),
 }
 
@@ -69,5 +69,5 @@ def checker_of(path: Path) -> Checker:
         raise CertificateError(f"{error.strerror}: {path}") from error
     advice = opened_by(kind)
     if kind in CHECKERS or advice is None:
-        return CHECKERS.get(kind, CHECKERS[PROPAGATION])
+        return CHECKERS.get(kind, CHECKERS[check_propagation.FORMAT])
     raise CertificateError(f"its format is {kind!r}: {advice}")

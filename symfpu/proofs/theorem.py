@@ -155,7 +155,7 @@ class RuleForAllN(Tabled):
     def certificate(self) -> dict[str, Any]:
         """The certificate as plain integers, strings, lists and dictionaries.
 
-        `symfpu.proofs.verify_theorem` checks it by another route.
+        `symfpu.proofs.check_every_length` checks it by another route.
         """
         listed = self._listed()
         points = [point for found in listed for point in found.points]

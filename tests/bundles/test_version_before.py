@@ -13,7 +13,7 @@ from symfpu.dynamics.alignment import alignment_indices
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import text
-from symfpu.proofs.verify import verify
+from symfpu.proofs.check_propagation import verify
 from symfpu.series.lindstedt import lindstedt
 from tests.tolerances import AMPLITUDE, COEFFICIENT
 

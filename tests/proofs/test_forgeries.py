@@ -1,4 +1,4 @@
-"""Certificates of the prover, checked by symfpu.proofs.verify as they are and with every field altered, the digest made to fit."""
+"""Certificates of the prover, checked as they are and with every field altered, the digest made to fit."""
 
 import copy
 import hashlib
@@ -7,8 +7,8 @@ import json
 import pytest
 
 from symfpu.proofs.certificates import prove_propagation
+from symfpu.proofs.check_propagation import verify
 from symfpu.proofs.reading import CertificateError
-from symfpu.proofs.verify import verify
 
 CASES = {
     "proved": (9, (2, 4), 3, "alpha"),

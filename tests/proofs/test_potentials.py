@@ -12,10 +12,10 @@ from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import coupling_sequence
 from symfpu.errors import InputError
 from symfpu.proofs.certificates import prove_propagation
+from symfpu.proofs.check_propagation import NAMED_POTENTIALS, verify
 from symfpu.proofs.leading import leading_term, leading_terms, lemma_holds
 from symfpu.proofs.reading import CertificateError
 from symfpu.proofs.sweeps import sweep_propagation
-from symfpu.proofs.verify import NAMED_POTENTIALS, verify
 from symfpu.series.lindstedt import lindstedt
 from tests.proofs.test_forgeries import alterations, is_valid, sealed
 

@@ -16,14 +16,14 @@ from symfpu import RuleForAllN, prove_for_all_N, prove_propagation
 from symfpu.cli.main import main
 from symfpu.errors import InputError
 from symfpu.proofs.certificates import random_point
+from symfpu.proofs.check_every_length import read_claim
+from symfpu.proofs.check_propagation import MODELS, Budget, Case, Point, Recursion
 from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.decided_file import DecidedFile
 from symfpu.proofs.every_length import decided_flat
 from symfpu.proofs.flats import Flat, last_order
 from symfpu.proofs.plus_terms import BOTH, MINUS, PLUS, PlusResidues, PlusTerms, sign_product, splits
 from symfpu.proofs.reading import CertificateError
-from symfpu.proofs.verify import MODELS, Budget, Case, Point, Recursion
-from symfpu.proofs.verify_theorem import read_claim
 
 ROOT = Path(__file__).parents[2]
 

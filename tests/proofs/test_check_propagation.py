@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from symfpu.proofs.check_propagation import MODELS, SYMBOLS, Budget, Case, Point, Recursion, couplings, verify
 from symfpu.proofs.reading import CertificateError
-from symfpu.proofs.verify import MODELS, SYMBOLS, Budget, Case, Point, Recursion, couplings, verify
 
 
 def delta(total, target):

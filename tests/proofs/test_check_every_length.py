@@ -8,9 +8,9 @@ import random
 import pytest
 
 from symfpu import coupling_sequence, excitation_sequence, prove_for_all_N
-from symfpu.proofs import verify_theorem
+from symfpu.proofs import check_every_length
+from symfpu.proofs.check_every_length import verify
 from symfpu.proofs.reading import CertificateError
-from symfpu.proofs.verify_theorem import verify
 
 
 def written(path, data):
@@ -41,7 +41,7 @@ def test_of_larger_sets_the_exceptions_are_those_of_their_parts():
         "3 or more seeds, to order 1, the propagation rule holds except at most where 3 of the seeds are on one of 708 of 10180 flats"
         in proof.theorem
     )
-    assert verify_theorem.sentence(verify_theorem.Theorem("beta", 3, 1), "refuted", 708, 10180, 0) == proof.theorem
+    assert check_every_length.sentence(check_every_length.Theorem("beta", 3, 1), "refuted", 708, 10180, 0) == proof.theorem
 
 
 def test_a_larger_set_may_obey_the_rule_though_three_of_its_seeds_do_not():
@@ -133,13 +133,13 @@ def test_every_altered_number_of_longer_proofs_is_refused(tmp_path, model, s, or
 
 def test_residues_are_refused_when_altered(tmp_path):
     data = prove_for_all_N("alpha", 2, 4).certificate()
-    claim = verify_theorem.read_claim(data)
-    evidence = verify_theorem.read_evidence(data, claim, len(data["flats"]))
+    claim = check_every_length.read_claim(data)
+    evidence = check_every_length.read_evidence(data, claim, len(data["flats"]))
     i = data["witnesses"][0][0]
     flat = tuple(data["flats"][i])
 
     def check(found, points):
-        verify_theorem.check_flat(claim, flat, found, points)
+        check_every_length.check_flat(claim, flat, found, points)
 
     check(evidence[i], data["points"])
     (mode, order), (point, residue, powers) = next(iter(evidence[i].witnesses.items()))
