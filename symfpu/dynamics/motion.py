@@ -19,8 +19,8 @@ from symfpu.dynamics.wells import beyond_walls
 from symfpu.numbers.arithmetic import Numbers
 
 Floats = NDArray[np.float64]
-# orbits moved as lanes: all take as long as two to three alone, six of a closed law
-FEWEST, FEWEST_CLOSED = 4, 6
+# orbits moved as lanes: all take as long as two to four alone, six of a law that takes them singly
+FEWEST, FEWEST_SINGLY = 4, 6
 CLOSED = 16  # a tension by exponentials and logarithms, in those of a polynomial, about
 
 
@@ -39,10 +39,10 @@ class Motion:
 
         self.chain, self.scheme, self.bounds = chain, scheme, bounds
         together = 1 if scheme.in_modes else LANES
-        self.fewest = FEWEST if self.polynomial else FEWEST_CLOSED
         self.parts = parted(len(bounds), together, workers)
         self.entry, self.kicks, self.drifts = scheme.merged(step)
         self.law = chain.law()
+        self.fewest = FEWEST_SINGLY if hasattr(self.law, "tension_loop") else FEWEST
         self.Omega = np.concatenate([[0.0], chain.frequencies()])
         self.unit = (2 * chain.N) ** 0.5
         self.ends = chain.kind_of_ends

@@ -3,7 +3,8 @@
 Importing this module imports numba.
 
 No fast-math: what comes out does not depend on how loops are cut into vectors, nor on how many
-orbits go together as lanes (symfpu.numbers.lanes). Indices are unsigned, since an index that may
+orbits go together as lanes (symfpu.numbers.lanes); laws of bonds are inlined, since a loop that
+calls is not cut into vectors. Indices are unsigned, since an index that may
 be negative costs a comparison. Every step ends with a look at the state: a loop stops after the
 first one with a bond stretch out of bounds or not a number, and returns the number of steps
 before it.

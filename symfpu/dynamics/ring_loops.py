@@ -1,7 +1,7 @@
 """The compiled loops of orbits of a ring, as those of symfpu.dynamics.orbit_loops for fixed ends.
 
 Importing this module imports numba. The sites are 0 .. N, and site N is site 0 again: the bond
-that closes the ring is like every other one.
+that closes the ring is like every other one, and laws are inlined as there.
 """
 
 from __future__ import annotations

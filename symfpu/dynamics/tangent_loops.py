@@ -64,8 +64,8 @@ def move_orbit(
     """A kick and a drift of the orbit, and the slopes of its impulses before them.
 
     Bond j has the tension V'(r), its slope is V''(r). forces : room for the impulses of the bonds
-    and for their slopes, (N,) each. Two loops, which the compiler can vectorise: neither reads what
-    it has just written beside it.
+    and for their slopes, (N,) each. Two loops, which the compiler can vectorise, laws included:
+    neither reads what it has just written beside it.
     """
     tension, stiffness = forces
     bonds = np.uint64(len(tension))

@@ -240,5 +240,7 @@ def _first(reached: Callable[[float], bool], low: float, high: float) -> float:
         middle = (
             math.sqrt(max(low, 1e-200) * high) if high > 2 * low else 0.5 * (low + high)
         )
+        if middle in (low, high):  # nothing is between them
+            break
         low, high = (low, middle) if reached(middle) else (middle, high)
     return high

@@ -35,6 +35,10 @@ def expm2(x: Any) -> Any:
     """e^x - 1 - x without cancellation."""
     if _multiprecision(x):
         return _EXPM2(x)
+    if isinstance(x, float):  # the same, without the cost of small arrays
+        number = float(x)
+        value = expm2_series(number) if abs(number) < 1 else np.expm1(number) - number
+        return np.float64(value)
     small = np.where(np.abs(x) < 1, x, 0 * x)
     far = np.where(np.abs(x) < 1, 0 * x, x)
     return np.where(np.abs(x) < 1, expm2_series(small), np.expm1(far) - far)

@@ -200,6 +200,22 @@ def _teach(operation: Callable[..., Any], instruction: str) -> None:
 _teach(operator.add, "fadd")
 _teach(operator.sub, "fsub")
 _teach(operator.mul, "fmul")
+_teach(operator.truediv, "fdiv")
+
+
+@_intrinsic
+def _negative(context, value):  # type: ignore[no-untyped-def]
+    def build(target, builder, signature, values):  # type: ignore[no-untyped-def]
+        return builder.fneg(*values)
+
+    return _LANES(_LANES), build
+
+
+@overload(operator.neg)
+def _neg(value):  # type: ignore[no-untyped-def]
+    if isinstance(value, LanesType):
+        return lambda value: _negative(value)
+    return None
 
 
 @_intrinsic

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
-from symfpu.dynamics.motion import FEWEST_CLOSED, Motion, parted
+from symfpu.dynamics.motion import FEWEST_SINGLY, Motion, parted
 from symfpu.dynamics.orbits import integrate
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.dynamics.starts import random_state
@@ -34,12 +34,12 @@ def require_equal(many, alone, place):
 @pytest.mark.parametrize("ends", ["fixed", "periodic"])
 @pytest.mark.parametrize("law", LAWS)
 def test_each_has_the_bits_that_it_has_alone(law, ends):
-    """A part full of lanes, and one that is filled up; polynomials of all lanes at once, closed laws lane after lane."""
+    """A part full of lanes, and one that is filled up; laws of all lanes at once, and one of an expression, lane after lane."""
     chain = Chain(7, potential=law, ends=ends)
-    Q, P = states(chain, LANES + FEWEST_CLOSED)
+    Q, P = states(chain, LANES + FEWEST_SINGLY)
     many = integrate(chain, Q, P, 12.0, **RUN)
-    assert many.Q.shape == (len(many.times), LANES + FEWEST_CLOSED, 6)
-    for place in (0, LANES - 1, LANES, LANES + FEWEST_CLOSED - 1):
+    assert many.Q.shape == (len(many.times), LANES + FEWEST_SINGLY, 6)
+    for place in (0, LANES - 1, LANES, LANES + FEWEST_SINGLY - 1):
         require_equal(many, integrate(chain, Q[place], P[place], 12.0, **RUN), place)
 
 
