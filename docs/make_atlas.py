@@ -39,6 +39,18 @@ REACH = 2
 FLACH_LENGTHS = (8, 12, 16, 24, 32)
 FLACH_SEEDS = ("2", "3")
 NEWTON_PARTS = {"1/8": (8, 16, 32), "1/16": (16, 32, 64), "1/32": (32, 64, 128)}
+ODD = (9, 17, 33, 65)
+OTHER_MIDDLES = (33, 34, 65, 66, 129, 130)  # lengths that are no multiples of 4
+MIDDLE_LENGTH, FROM_MIDDLE = 128, ("66", "68", "72")
+OTHER_MODELS: dict[str, dict[str, str]] = {
+    "alpha=1, beta=1": {"alpha": "1", "beta": "1"},
+    "alpha=1/4, beta=1": {"alpha": "1/4", "beta": "1"},
+    "beta=-1": {"beta": "-1"},
+}
+LABELS = ("alpha=1, beta=1", "alpha=0.25, beta=1", "beta=-1")  # of the same in the data
+DOUBLINGS = (8, 16, 32, 64)
+MORE_SEEDS = {"low:3": (5, 4), "low:4": (4, 3)}  # orders for alpha and beta
+EIGHT = {"1/16": 128, "1/32": 256}  # with eight seeds, whose series are long
 NEWTON_HOW: dict[str, Any] = {
     "order": 2,
     "borders": ["newton"],
@@ -66,13 +78,44 @@ def grids() -> Iterator[dict[str, Any]]:
     for model, order in EXTENSIVE.items():
         for part, lengths in PARTS.items():
             for N in lengths:
-                yield grid(Chain(N, **MODELS[model]), [f"low:{part}"], (order,), SERIES)
+                eight = part in EIGHT and EIGHT[part] == N
+                borders = ("ratio",) if eight else SERIES
+                yield grid(Chain(N, **MODELS[model]), [f"low:{part}"], (order,), borders)
         seeds = [str(q) for q in range(1, 16)]
         order = max(ORDERS[1][model])
         yield grid(Chain(16, **MODELS[model]), seeds, (order,), (*SERIES, "fold"))
     for N in FLACH_LENGTHS:
         chain = Chain(N, **MODELS["beta=1"])
         yield grid(chain, list(FLACH_SEEDS), (8,), (*SERIES, "stability"))
+    yield from more_grids()
+
+
+def more_grids() -> Iterator[dict[str, Any]]:
+    """Whether the laws hold for other couplings, at odd lengths, and for more seeds."""
+    for N in DOUBLINGS:
+        for model, couplings in OTHER_MODELS.items():
+            chain, fold = (
+                Chain(N, **couplings),
+                () if "-" in model and N < LONG else ("fold",),
+            )
+            yield grid(chain, ["low:1"], (8, 6), (*SERIES, *fold))
+            yield grid(chain, ["high:1"], (8, 6), SERIES)
+    for model in EXTENSIVE:
+        orders = ORDERS[1][model]
+        for N in OTHER_MIDDLES:
+            yield grid(Chain(N, **MODELS[model]), ["middle:1"], orders, SERIES)
+        for seed in FROM_MIDDLE:
+            yield grid(Chain(MIDDLE_LENGTH, **MODELS[model]), [seed], orders, SERIES)
+        for N in ODD:
+            chain = Chain(N, **MODELS[model])
+            fold = ("fold",) if model == "alpha=1" or N >= LONG else ()
+            yield grid(chain, ["low:1"], orders, (*SERIES, *fold))
+            yield grid(chain, ["high:1"], orders, SERIES)
+            yield grid(chain, ["low:2", "high:2"], ORDERS[2][model], SERIES)
+        for packet in MORE_SEEDS:
+            for N in DOUBLINGS[1:]:
+                order = MORE_SEEDS[packet][model == "beta=1"]
+                yield grid(Chain(N, **MODELS[model]), [packet], (order,), SERIES)
 
 
 def grid(
@@ -97,6 +140,9 @@ def tables(found: Atlas) -> dict[str, str]:
     """The tables of the page by name."""
     return {
         "laws": laws_table(found),
+        "couplings": couplings_table(found),
+        "odd": odd_table(found),
+        "middle": middle_table(found),
         "folds": folds_table(found),
         "packets": packets_table(found),
         "flach": flach_table(found),
@@ -116,10 +162,13 @@ def exponent(
     """A fitted power of N with its error, or why there is none."""
     try:
         law = found.law(packet, border, model=model, **how)
-        long = [
-            pair for pair in zip(law.lengths, law.energies, strict=True) if pair[0] >= least
+        pairs = zip(law.lengths, law.energies, strict=True)
+        kept = [
+            (N, H)
+            for N, H in pairs
+            if least <= N and (N % 2 == 0 or "middle" not in packet)
         ]
-        law = power_law([N for N, _ in long], [H for _, H in long])
+        law = power_law([N for N, _ in kept], [H for _, H in kept])
     except InputError:
         return ""
     return f"{law.exponent:.2f} ± {law.error:.2f}"
@@ -152,6 +201,76 @@ def laws_table(found: Atlas) -> str:
             if any(cells):
                 rows.append([model, packet, *cells])
     return rows_of(head, rows)
+
+
+def couplings_table(found: Atlas) -> str:
+    """Exponents of other couplings and of more seeds, N from 8 or 16 to 64."""
+    head = ["model", "packet", "order", "ratio", "Padé poles", "fold", "H by ratio, N = 64"]
+    cases = [(name, packet) for name in LABELS for packet in ("low:1", "high:1")]
+    cases += [(name, packet) for name in EXTENSIVE for packet in MORE_SEEDS]
+    rows = []
+    for model, packet in cases:
+        cells = [exponent(found, packet, name, model) for name in (*SERIES, "fold")]
+        last = chosen(found, packet, "ratio", model)[DOUBLINGS[-1]]
+        rows.append([model, packet, str(last.order), *cells, energy(last)])
+    return rows_of(head, rows)
+
+
+def odd_table(found: Atlas) -> str:
+    """H at odd lengths over the power of N between the even neighbours in the atlas, less 1."""
+    head = ["model", "packet", "border", *(f"N = {N}" for N in ODD[1:])]
+    rows = []
+    for model in EXTENSIVE:
+        for packet in ("low:1", "high:1", "low:2", "high:2"):
+            for name in (*SERIES, "fold"):
+                by_length = chosen(found, packet, name, model)
+                cells = [departure(by_length, N) for N in ODD[1:]]
+                if any(cells):
+                    rows.append([model, packet, name, *cells])
+    return rows_of(head, rows)
+
+
+def departure(by_length: dict[int, AtlasBorder], N: int) -> str:
+    """Of one length from the power of N between its even neighbours, in percent."""
+    below = max((M for M in by_length if M % 2 == 0 and M < N), default=0)
+    above = min((M for M in by_length if M % 2 == 0 and M > N), default=0)
+    if N not in by_length or not below or not above:
+        return ""
+    law = math.log(by_length[above].energy / by_length[below].energy) / math.log(
+        above / below
+    )
+    between = by_length[below].energy * (N / below) ** law
+    return f"{100 * (by_length[N].energy / between - 1):+.1f} %"
+
+
+def middle_table(found: Atlas) -> str:
+    """H of seeds at a distance m from the middle of the band."""
+    head = [
+        "model",
+        "N",
+        "N mod 4",
+        "seed",
+        "m = q - N/2",
+        "H by ratio",
+        "H by poles",
+        "H/m",
+    ]
+    rows = []
+    for model in EXTENSIVE:
+        for N in (32, 64, 128, 256, *OTHER_MIDDLES):
+            rows += [middle_row(found, model, N, "middle:1")]
+        rows += [middle_row(found, model, MIDDLE_LENGTH, seed) for seed in FROM_MIDDLE]
+    rows.sort(key=lambda row: (row[0], float(row[4]), int(row[1])))
+    return rows_of(head, rows)
+
+
+def middle_row(found: Atlas, model: str, N: int, packet: str) -> list[str]:
+    """One line of it."""
+    ratio, poles = (chosen(found, packet, name, model)[N] for name in SERIES)
+    (q,) = poles.modes
+    m = q - N / 2
+    sizes = [energy(ratio), energy(poles), f"{poles.energy / m:.3g}"]
+    return [model, str(N), str(N % 4), str(q), f"{m:g}", *sizes]
 
 
 def chosen(found: Atlas, packet: str, border: str, model: str) -> dict[int, AtlasBorder]:
@@ -216,11 +335,14 @@ def packets_table(found: Atlas) -> str:
         for part, lengths in PARTS.items():
             ratio, poles = (chosen(found, f"low:{part}", name, model) for name in SERIES)
             for N in lengths:
-                if N not in ratio or N not in poles:
+                if N not in ratio:
                     continue
-                s = len(poles[N].modes)
-                cells = [f"{border[N].energy / N:.3g}" for border in (ratio, poles)]
-                size = f"{poles[N].energy / unit(model, N, s):.3g}"
+                s = len(ratio[N].modes)
+                cells = [
+                    f"{border[N].energy / N:.3g}" if N in border else ""
+                    for border in (ratio, poles)
+                ]
+                size = f"{poles[N].energy / unit(model, N, s):.3g}" if N in poles else ""
                 rows.append([model, part, str(N), str(s), *cells, size])
     return rows_of(head, rows)
 
