@@ -42,13 +42,25 @@ def report(data: Json, case: Case, verdict: str, zeros: int, steps: int) -> list
     """What was checked."""
     unsure = sorted({e["mode"] for e in data["undecided"]})
     primes = [e["prime"] for e in data["points"]]
-    chain = f"{law(data)}, N = {case.N}, seeds {case.seeds}, orders to {case.order}"
     excited = f"{len(data['excited'])} modes excited"
     return [
-        f"{chain}: rule, orders and exceptions follow; {verdict}",
+        f"theorem: {sentence(data, case, verdict)}",
         f"{excited}: residues computed again, modulo {primes}, in {steps} steps",
         f"{zeros} zeros before: by couplings or identity; undecided, not checked: modes {unsure}",
     ]
+
+
+def sentence(data: Json, case: Case, verdict: str) -> str:
+    """What is proved of the rule."""
+    chain = f"in the {law(data)}, N = {case.N}, seeds {case.seeds}, to order {case.order}"
+    unsure = {e["mode"] for e in data["undecided"]}
+    modes = [e["mode"] for e in data["exceptions"] if e["mode"] not in unsure]
+    says = {
+        "proved": "holds",
+        "refuted": f"does not hold, at modes {modes}",
+        "undecided": "is not decided",
+    }
+    return f"{chain}, the propagation rule {says[verdict]}, for generic frequencies"
 
 
 def law(data: Json) -> str:
