@@ -1,5 +1,7 @@
-"""Every notebook runs in under a minute of processor time, and its sliders move; all but the first one by `make long`."""
+"""Every notebook runs in under a minute of processor time, and its sliders move, by `make long`; what they import is there."""
 
+import ast
+import importlib
 import os
 import re
 import subprocess
@@ -36,6 +38,23 @@ print("seconds:", seconds)
 
 def test_there_are_notebooks():
     assert NOTEBOOKS
+
+
+def imported(source):
+    """Pairs (module, name) that the import statements of a cell ask for; lines of magics do not count."""
+    plain = "\n".join(line for line in source.splitlines() if not line.lstrip().startswith(("%", "!")))
+    for statement in ast.walk(ast.parse(plain)):
+        if isinstance(statement, ast.ImportFrom):
+            yield from ((statement.module, alias.name) for alias in statement.names)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.name)
+def test_what_a_notebook_imports_is_there(path):
+    cells = nbformat.read(path, as_version=4).cells
+    asked = [pair for cell in cells if cell.cell_type == "code" for pair in imported(cell.source)]
+    assert asked
+    for module, name in asked:
+        assert hasattr(importlib.import_module(module), name), f"{module} has no {name}"
 
 
 def marked(path):
