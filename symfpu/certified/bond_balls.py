@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import Any
 
 import flint
+import numpy as np
 
 from symfpu.certified.force_series import ball as ball
 from symfpu.certified.force_series import force_series
@@ -29,20 +30,16 @@ class BondBalls:
     """The stretches of all bonds along an orbit, at the working precision of python-flint."""
 
     def __init__(self, orbit: RoundedOrbit, nu: Fraction) -> None:
-        self.orbit, N = orbit, orbit.chain.N
+        self.orbit, self.layout = orbit, orbit.layout
         self.strip, self.nu = nu, ball(nu)
-        cosines = [flint.arb.cos_pi_fmpq(flint.fmpq(k, 2 * N)) for k in range(4 * N)]
-        self.table = flint.arb_mat(
-            [[cosines[q * (2 * j + 1) % (4 * N)] for j in range(N)] for q in range(1, N)]
-        )
+        self.table = self.layout.table()
         unit = flint.arb(2) ** -orbit.bits
         self.stretches = self.on_bonds([[unit * x for x in row] for row in orbit.rows])
         self.norms = [self.norm(bond) for bond in self.stretches]
         largest = max(float(size.upper()) for size in self.norms)
         self.force = force_series(orbit.chain, largest, orbit.bits + SPARE_BITS // 2)
         self.squared = ball(orbit.omega) ** 2
-        half = [flint.fmpq(q, 2 * N) for q in range(1, N)]
-        self.linear = [4 * flint.arb.sin_pi_fmpq(x) ** 2 for x in half]
+        self.linear = self.layout.squares()
 
     def on_bonds(self, rows: list[list[Any]]) -> list[Series]:
         """sum_q c_q cos(q theta_j) of every bond; rows are harmonics, columns modes."""
@@ -50,11 +47,13 @@ class BondBalls:
         return [list(bond) for bond in zip(*by_harmonic, strict=True)]
 
     def of_modes(self, bonds: list[Series]) -> list[list[Any]]:
-        """(2/N) sum_j cos(q theta_j) f_j; rows are harmonics, columns modes."""
+        """share sum_j cos(q theta_j) f_j; rows are harmonics, columns modes."""
         harmonics = max(map(len, bonds))
         padded = [bond + [flint.arb(0)] * (harmonics - len(bond)) for bond in bonds]
-        scaled = self.table * flint.arb_mat(padded) * (flint.arb(2) / self.orbit.chain.N)
+        scaled = self.table * flint.arb_mat(padded) * ball(self.layout.share)
         rows: list[list[Any]] = scaled.transpose().tolist()
+        for n, q in np.argwhere(~self.layout.allowed(harmonics - 1)).tolist():
+            rows[n][q] = flint.arb(0)  # by symmetry, or where a wave has no equation
         return rows
 
     def norm(self, series: Series) -> Any:
@@ -66,9 +65,8 @@ class BondBalls:
 
     def polynomials(self, couplings: dict[int, Fraction]) -> list[Series]:
         """sum couplings[k] r_j^k of every bond."""
-        N = self.orbit.chain.N
-        half = [_polynomial(bond, couplings) for bond in self.stretches[: (N + 1) // 2]]
-        return reflected(half, N, self.orbit.seed)
+        first = self.stretches[: self.layout.independent]
+        return self.layout.all_bonds([_polynomial(bond, couplings) for bond in first])
 
     def forces(self) -> list[Series]:
         """phi(r_j) of every bond, without what `force` leaves out."""
@@ -117,18 +115,14 @@ class BondBalls:
         for bond, size, other in zip(self.stretches, self.norms, series, strict=True):
             lost = flint.arb(0, 2 * size * self.force.left_out(size, 0))
             total += mean_of_product(bond, other) + lost
-        return total
+        return total * self.layout.copies
 
     def at_rest(self) -> list[Any]:
         """The stretches at t = 0."""
         return [sum(bond, flint.arb(0)) for bond in self.stretches]
 
-    def energy(self, radius: Any) -> Any:
-        """H at t = 0, where no stretch is further than the radius from that of the orbit."""
-        return self.energy_within([radius] * self.orbit.chain.N)
-
     def energy_within(self, radii: list[Any]) -> Any:
-        """The same with a radius for each bond."""
+        """H at t = 0 of fixed ends, every stretch within its radius of that of the orbit."""
         total = flint.arb(0)
         for r, size, radius in zip(self.at_rest(), self.norms, radii, strict=True):
             x = size + radius
@@ -136,13 +130,24 @@ class BondBalls:
             total += self.force.potential(r + flint.arb(0, radius)) + lost
         return total
 
+    def mean_energy_within(self, radius: Any) -> Any:
+        """The mean of sum_j (V + r V'/2), every series within the radius of that of the orbit.
+
+        The derivative of V + r V'/2 is 0 at r = 0, so at most r times a bound of its derivative.
+        """
+        reached = [size + radius for size in self.norms]
+        slopes = (x * self.force.virial_slope_bound(x) for x in reached)
+        off = radius * self.layout.copies * sum(slopes, flint.arb(0))
+        return self.mean_energy() + flint.arb(0, off)
+
+    def unit_of_amplitude(self) -> Any:
+        """c_s[1] of A = 1."""
+        return (self.linear[self.layout.place] * ball(self.layout.of_amplitude)).sqrt()
+
     def amplitude(self, radius: Any) -> Any:
-        """A = sqrt(N/2) c_seed[1] / Omega_seed with c within the radius."""
-        seed = self.orbit.seed
-        c = flint.arb(2) ** -self.orbit.bits * self.orbit.rows[1][seed - 1]
-        around = flint.arb(0, radius)
-        half = ball(Fraction(self.orbit.chain.N, 2))
-        return (c + around) * (half / self.linear[seed - 1]).sqrt()
+        """A with c_s[1] within the radius."""
+        c = flint.arb(2) ** -self.orbit.bits * self.orbit.rows[1][self.layout.place]
+        return (c + flint.arb(0, radius)) / self.unit_of_amplitude()
 
 
 def _polynomial(series: Series, couplings: dict[int, Fraction]) -> Series:
@@ -175,17 +180,6 @@ def _powers(series: Series, highest: int) -> list[Any]:
     while len(powers) <= highest:
         powers.append(powers[-1] * factor)
     return powers
-
-
-def reflected(half: list[Series], N: int, seed: int) -> list[Series]:
-    """Of all bonds from those of the first half, N even or odd.
-
-    Bond N-1-j is at t what bond j is at t, or half a period later where the seed is odd.
-    """
-    others = half[: N // 2]
-    if seed % 2:
-        others = [[-a if n % 2 else a for n, a in enumerate(bond)] for bond in others]
-    return [*half, *reversed(others)]
 
 
 def product(a: Series, b: Series) -> Series:

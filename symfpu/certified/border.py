@@ -68,7 +68,8 @@ class Border:
         if self.fixed.kind != ENERGY:
             return flint.arb(0)
         bounds = (balls.force.virial_slope_bound(x + radius) for x in balls.norms)
-        return sum(bounds, flint.arb(0)) * power_of_two(-self.equation_places)
+        total = sum(bounds, flint.arb(0)) * balls.layout.copies
+        return total * power_of_two(-self.equation_places)
 
 
 def residual_of(balls: BondBalls, fixed: Fixed, equation_places: int) -> Any:
@@ -77,14 +78,9 @@ def residual_of(balls: BondBalls, fixed: Fixed, equation_places: int) -> Any:
     if fixed.kind == FREQUENCY:
         return flint.arb(0)
     if fixed.kind == AMPLITUDE:
-        c = power_of_two(-orbit.bits) * orbit.rows[1][orbit.seed - 1]
-        return c - ball(fixed.value) * unit_of_amplitude(balls)
+        c = power_of_two(-orbit.bits) * orbit.rows[1][orbit.layout.place]
+        return c - ball(fixed.value) * balls.unit_of_amplitude()
     return (balls.mean_energy() - ball(fixed.value)) * power_of_two(-equation_places)
-
-
-def unit_of_amplitude(balls: BondBalls) -> Any:
-    """c_s[1] of A = 1."""
-    return (balls.linear[balls.orbit.seed - 1] * 2 / balls.orbit.chain.N).sqrt()
 
 
 def power_of_two(exponent: int) -> Any:
@@ -100,14 +96,14 @@ def border_of(balls: BondBalls, fixed: Fixed) -> Border:
         n**2 * abs(x) / linear[q] for n, row in enumerate(rows) for q, x in enumerate(row)
     ]
     unknown_places = round(math.log2(max(column)))
-    none, zero = [[flint.arb(0)] * (orbit.chain.N - 1)], flint.arb(0)
+    none, zero = [[flint.arb(0)] * orbit.layout.modes], flint.arb(0)
     if fixed.kind == FREQUENCY:
         width = 2 * orbit.omega * fixed.half_width + fixed.half_width**2
         change = ball(width) * power_of_two(unknown_places)
         return Border(fixed, unknown_places, 0, zero, change, 0, none, zero, 1)
     if fixed.kind == AMPLITUDE:
         residual = residual_of(balls, fixed, 0)
-        change = ball(fixed.half_width) * unit_of_amplitude(balls)
+        change = ball(fixed.half_width) * balls.unit_of_amplitude()
         return Border(fixed, unknown_places, 0, residual, change, 1, none, zero, 0)
     return energy_border(balls, fixed, unknown_places)
 
@@ -116,7 +112,8 @@ def energy_border(balls: BondBalls, fixed: Fixed, unknown_places: int) -> Border
     """That of a given energy."""
     series, lost = balls.virial_gradients()
     rows = balls.of_modes(series)
-    half = flint.arb(balls.orbit.chain.N) / 4
+    lost *= balls.layout.copies
+    half = ball(balls.layout.copies / balls.layout.share / 2)
     for n, row in enumerate(rows):
         rows[n] = [x * half * (1 if n else 2) for x in row]
     size = max(abs(float(x)) for row in rows for x in row)

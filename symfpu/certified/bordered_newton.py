@@ -40,7 +40,7 @@ class BorderedMatrix:
         count = attempt.count
         diagonal = np.diag(attempt.divisors[:count])
         self.places, self.omega = attempt.inside, part.omega
-        self.linear = part.chain.frequencies()
+        self.linear = part.layout.frequencies()
         self.factors = scipy.linalg.lu_factor(attempt.force[:count] + diagonal)
 
     def solve(self, of_border: float, rows: Floats) -> tuple[float, Floats]:
@@ -110,7 +110,7 @@ def corrected(
 def with_change(orbit: RoundedOrbit, change: Floats) -> tuple[tuple[int, ...], ...]:
     """The integers with a change of the coefficients, without the last rows of zeros."""
     length = max(len(change), len(orbit.rows))
-    table = np.zeros((length, orbit.chain.N - 1), dtype=object)
+    table = np.zeros((length, orbit.layout.modes), dtype=object)
     table[: len(orbit.rows)] = orbit.rows
     table[: len(change)] += as_integers(change, orbit.bits)
     kept = max(n for n, row in enumerate(table) if any(row))

@@ -17,14 +17,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain.chain import Chain
+from symfpu.certified.layout import ROUNDOFF, Layout
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 INVERSE_BITS = 8
 WEIGHT_BITS = 6
-ROUNDOFF = 2.0**-53
 UPWARDS = 1 + 1e-9  # more than sums of so many positive doubles lose
 SMALLEST_DIVISOR = 1e-14
 MARGIN = 1e-12  # relative, more than the divisors beyond all resonances lose
@@ -53,14 +52,9 @@ class Places:
         return bool(self.q[0] == 0)
 
 
-def places_of(chain: Chain, seed: int, harmonics: int, *, bordered: bool = False) -> Places:
+def places_of(layout: Layout, harmonics: int, *, bordered: bool = False) -> Places:
     """Those that the symmetry allows."""
-    n, q = np.indices((harmonics + 1, chain.N - 1))
-    q += 1
-    allowed = (q - n * seed) % 2 == 0
-    if chain.potential.even:
-        allowed &= n % 2 == 1
-    harmonic, mode = np.nonzero(allowed)
+    harmonic, mode = np.nonzero(layout.allowed(harmonics))
     first = [0] if bordered else []
     return Places(
         np.append(first, harmonic).astype(int), np.append(first, mode + 1).astype(int)
@@ -72,8 +66,8 @@ class BorderLine:
     """The row and the column of an unknown frequency in doubles, with bounds of their rounding.
 
     unit : omega^2 of 1. of_seed, rows, row_errors, corner : derivatives of the equation by c_s[1]
-        alone, by every c_q[n], shape (.., N-1), and by the unknown; nu^n times any later one is
-        below `beyond`. column : of F_q[n] by the unknown, shape (H+1, N-1).
+        alone, by every c_q[n], shape (.., modes), and by the unknown; nu^n times any later one is
+        below `beyond`. column : of F_q[n] by the unknown, shape (H+1, modes).
     """
 
     seed: int
@@ -107,12 +101,11 @@ def at(table: Floats, places: Places) -> Floats:
 class LinearPart:
     """DF at the orbit, its slopes cut after K harmonics.
 
-    slopes : g_0, g_1/2, .. of every bond in doubles, shape (K+1, N). rest : above the sum over
+    slopes : g_0, g_1/2, .. of every bond in doubles, shape (K+1, bonds). rest : above the sum over
         bonds of the norms of what is left out.
     """
 
-    chain: Chain
-    seed: int
+    layout: Layout
     omega: float
     nu: float
     slopes: Floats
@@ -126,7 +119,7 @@ class LinearPart:
 
     def divisors(self, places: Places) -> Floats:
         """lambda_q[n] = 1 - n^2 omega^2 / Omega_q^2."""
-        linear = self.chain.frequencies()[places.q - 1]
+        linear = self.layout.frequencies()[places.q - 1]
         divisors = np.asarray(1 - (places.n * self.omega / linear) ** 2)
         if self.border is not None:
             divisors[0] = self.border.corner
@@ -134,28 +127,22 @@ class LinearPart:
 
     def divisor_errors(self, places: Places) -> Floats:
         """Above the rounding of the divisors."""
-        linear = self.chain.frequencies()[places.q - 1]
+        linear = self.layout.frequencies()[places.q - 1]
         return np.asarray(16 * ROUNDOFF * (1 + (places.n * self.omega / linear) ** 2))
 
     @cached_property
     def coupling(self) -> Floats:
-        """By harmonic of the slope, what couples two modes; shape (K+1, N-1, N-1)."""
-        N = self.chain.N
-        angles = (np.arange(N) + 0.5) * np.pi / N
-        table = np.cos(np.outer(np.arange(2 * N - 1), angles))
-        sums = self.slopes @ table.T / N
-        q = np.arange(1, N)
-        return np.asarray(sums[:, abs(q[:, None] - q)] + sums[:, q[:, None] + q])
+        """By harmonic of the slope, what couples two modes; shape (K+1, modes, modes)."""
+        return self._couplings[0]
 
     @cached_property
     def coupling_errors(self) -> Floats:
-        """Above the rounding of the couplings of a harmonic, shape (K+1,).
+        """Above the rounding of the couplings of a harmonic, shape (K+1,)."""
+        return self._couplings[1]
 
-        The angles have 4 units of rounding times their size, below 2 pi N.
-        """
-        N = self.chain.N
-        units = 8 * (8 * N + N)
-        return np.asarray(units * ROUNDOFF * np.abs(self.slopes).sum(axis=1) / N)
+    @cached_property
+    def _couplings(self) -> tuple[Floats, Floats]:
+        return self.layout.coupling(self.slopes)
 
     def matrix(self, rows: Places, columns: Places) -> tuple[Floats, Floats]:
         """Derivatives of the anharmonic force, and a bound of their rounding."""
@@ -197,7 +184,7 @@ class Contraction:
         one by one. block : places of the block among those up to `columns`. inverse : integers.
     weights : integers v of the places up to `free`.
     linear : Z0 + Z1, above the norm of I - A DF with slopes cut. spread : above
-        sum_q nu^-n |A e_q[n]| for every n; 2/N times it bounds A on what a bond gives.
+        sum_q nu^-n |A e_q[n]| for every n; the share of a bond times it bounds A on what one gives.
     columns_of_inverse : above |A e| nu^-n by place, up to `columns`; beyond, those of every mode
         are below `beyond`.
     of_frequency : above |A d^2 F/dm dc h| / (|m| |h|), where the frequency is an unknown, else 0.
@@ -220,14 +207,13 @@ class Attempt:
     """Bounds for cutoffs that are given."""
 
     def __init__(self, part: LinearPart, free: int) -> None:
-        chain, seed = part.chain, part.seed
         self.part, self.free, self.columns = part, free, free + part.K
         bordered = part.border is not None
         last = self.columns + part.K
         if part.border is not None:
             last = max(last, len(part.border.column) - 1)
-        self.inside = places_of(chain, seed, self.columns, bordered=bordered)
-        self.rows = places_of(chain, seed, last, bordered=bordered)
+        self.inside = places_of(part.layout, self.columns, bordered=bordered)
+        self.rows = places_of(part.layout, last, bordered=bordered)
         self.divisors = part.divisors(self.rows)
         self.errors = part.divisor_errors(self.rows)
         self.count = len(self.inside.n)
@@ -281,19 +267,18 @@ class Attempt:
         """The same for all columns beyond `columns`."""
         part, K = self.part, self.part.K
         n = self.columns + 1 - K
-        linear = part.chain.frequencies()
+        linear = part.layout.frequencies()
         if n * part.omega <= linear[-1] * (1 + 1e-9):
             return math.inf
         least = self._beyond(n)
         growth = part.nu ** np.arange(K + 1) + part.nu ** -np.arange(K + 1.0)
         growth[0] = 1.0
-        sizes = np.abs(part.coupling) + part.coupling_errors[:, None, None]
-        sums = np.einsum("k,kpq->pq", growth, sizes) / least[:, None]
-        return float(sums.sum(axis=0).max() * UPWARDS)
+        sums = part.layout.beyond(growth, part.slopes) / least[:, None]
+        return float(part.layout.together(sums).max() * UPWARDS)
 
     def _beyond(self, n: int) -> Floats:
         """Below |lambda_q| of every harmonic from n on, which is above all resonances."""
-        ratio = n * self.part.omega / self.part.chain.frequencies()
+        ratio = n * self.part.omega / self.part.layout.frequencies()
         return np.asarray((ratio**2 - 1) * (1 - MARGIN) - MARGIN)
 
     def weights(self, defect: Floats) -> Ints | None:
@@ -358,7 +343,8 @@ class Attempt:
             tail += norms[0] * self._farthest_of_equation()
         linear = max(float(of_columns.max()), tail) * UPWARDS
         sums = np.bincount(self.inside.n[first:], weights=norms[first:])
-        spread = max(float(sums.max()), float(beyond.sum())) * UPWARDS
+        of_beyond = float(self.part.layout.together(beyond))
+        spread = max(float(sums.max()), of_beyond) * UPWARDS
         return Contraction(
             part=self.part,
             places=self.inside,
@@ -386,7 +372,7 @@ class Attempt:
         """A places -n^2 unit/Omega_q^2 h_q[n], from norms |A e| / |e| by place."""
         if self.part.border is None:
             return 0.0
-        squares = self.part.chain.frequencies() ** 2
+        squares = self.part.layout.frequencies() ** 2
         n, q = self.inside.n[1:], self.inside.q[1:]
         inside = float((norms[1:] * n**2 / squares[q - 1]).max())
         outside = float((beyond * (self.columns + 1) ** 2 / squares).max())
@@ -408,7 +394,7 @@ def perron(matrix: Floats) -> tuple[Floats, float]:
 
 def first_free(part: LinearPart) -> int:
     """The last harmonic with free weights to begin with, above all resonances."""
-    top = float(part.chain.frequencies()[-1]) / part.omega
+    top = float(part.layout.frequencies()[-1]) / part.omega
     return math.ceil(FIRST_FREE * top) + 2
 
 

@@ -11,13 +11,14 @@ import json
 import math
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import compress
 from pathlib import Path
 from typing import Any
 
 import flint
 import mpmath
 
-from symfpu.certified.bond_balls import SPARE_BITS, Rows
+from symfpu.certified.bond_balls import SPARE_BITS, BondBalls, Rows
 from symfpu.certified.border import AMPLITUDE, ENERGY, FREQUENCY, Fixed
 from symfpu.certified.bordered_newton import fixed_orbit
 from symfpu.certified.contraction import INVERSE_BITS, WEIGHT_BITS
@@ -41,10 +42,12 @@ from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.one_sided import above, below, rational
 from symfpu.numbers.typed import Number, decimal, exact
+from symfpu.refinement.ring_tori import require_travelling
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 FORMAT = "symfpu existence certificate"
-SCHEMA = 2
+SCHEMA = 3
 ROOM = 2  # times the radius of the stated intervals of A and H
 MORE_DIGITS = "more digits may help: periodic_orbit_digits(orbit, 40)"
 MORE_HARMONICS = (
@@ -55,7 +58,7 @@ GIVEN = "give amplitude= or energy= instead of it"
 NO_ORBIT = "more digits of it do not help: Newton's method, periodic_orbit, finds orbits"
 HALF_A_RING = (
     "a standing breather of a ring, odd about two particles, is that of half the ring with fixed "
-    "ends; there are no proofs of travelling waves"
+    "ends; of travelling waves travelling_breather makes orbits"
 )
 SHORTER = "a shorter segment can: a half width of"
 HALVINGS = 60
@@ -81,9 +84,10 @@ class NoExistenceProof(SymfpuError):
 class ExistenceProof(Tabled):
     """A theorem: the chain has a periodic orbit of this frequency near the computed one.
 
-    chain, seed : the model and the mode. fixed : "frequency", "amplitude" or "energy", what the
-        orbit has exactly; value : that, a fraction; half_width : of the interval of values about
-        it that a segment of the family has, else 0.
+    chain, seed : the model and the mode; of a ring the orbit is a travelling wave.
+    fixed : "frequency", "amplitude" or "energy", what the orbit has exactly; value : that, a
+        fraction; half_width : of the interval of values about it that a segment of the family
+        has, else 0.
     frequency, frequency_radius : omega, exact where it is fixed and its radius 0; else the middle
         and the radius of an interval that holds it.
     radius : above the distance of the true orbit from the computed one: of every stretch of a
@@ -125,9 +129,14 @@ class ExistenceProof(Tabled):
     digits: int
     body: dict[str, Any] = field(repr=False)
 
+    @property
+    def kind(self) -> str:
+        """Of orbit, in words."""
+        return "travelling wave" if self.chain.periodic else "periodic orbit"
+
     def __repr__(self) -> str:
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        found = f"a periodic orbit within {above(self.radius, 2)} of the computed one"
+        found = f"a {self.kind} within {above(self.radius, 2)} of the computed one"
         only = f"the only one within {below(self.unique, 2)}"
         case = f"{chain}, seed {self.seed}, {self.condition}"
         return f"ExistenceProof({case}: {found}, {only}; {', '.join(self.intervals)})"
@@ -137,7 +146,7 @@ class ExistenceProof(Tabled):
         """What is proved, in one sentence."""
         joined = "for" if self.half_width else "with"
         return (
-            f"{self.chain!r} has a periodic orbit of seed {self.seed} {joined} {self.condition} "
+            f"{self.chain!r} has a {self.kind} of seed {self.seed} {joined} {self.condition} "
             f"within {above(self.radius, 2)} of the computed one, and no other of its symmetry "
             f"within {below(self.unique, 2)}"
         )
@@ -209,7 +218,7 @@ def interval_text(middle: Any, radius: float) -> str:
 
 
 def prove_existence(
-    orbit: QuasiPeriodic,
+    orbit: QuasiPeriodic | RingTorus,
     *,
     amplitude: Number | None = None,
     energy: Number | None = None,
@@ -218,8 +227,9 @@ def prove_existence(
     """A proof that the chain has a periodic orbit near the computed one, or an error that says why.
 
     orbit : of one angle, of a chain with fixed ends: from `periodic_orbit`,
-        `periodic_orbit_digits`, `breather_at_energy` and their sisters, or a series of one seed.
-        Its phase does not matter. All is dimensionless.
+        `periodic_orbit_digits`, `breather_at_energy` and their sisters, or a series of one seed;
+        or a travelling wave of a ring, from `travelling_breather`. Its phase does not matter. All
+        is dimensionless.
     amplitude, energy : that of the orbit, an exact number: the true orbit has exactly this A or H,
         and its frequency is in an interval. Without them it has exactly the orbit's frequency.
     half_width : of an interval about the frequency, amplitude or energy: a proof for each of its
@@ -264,7 +274,7 @@ def advice_of(linear: float, fixed: Fixed) -> str:
 
 
 def fixed_value(
-    orbit: QuasiPeriodic,
+    orbit: QuasiPeriodic | RingTorus,
     amplitude: Number | None,
     energy: Number | None,
     half_width: Number,
@@ -308,18 +318,18 @@ def on_line(bounds: ProofBounds, line: Line | None) -> ProofBounds:
     return replace(bounds, length=line.length, drift=line.drift)
 
 
-def checked_orbit(orbit: object) -> QuasiPeriodic:
+def checked_orbit(orbit: object) -> QuasiPeriodic | RingTorus:
     """An orbit that the theorem is about; InputError for any other, by name."""
-    if not isinstance(orbit, QuasiPeriodic) or orbit.chain.periodic:
+    if not isinstance(orbit, QuasiPeriodic | RingTorus):
         name, chain = type(orbit).__name__, getattr(orbit, "chain", None)
         given = name if chain is None else f"{name} of {chain!r}"
-        allowed = "a solution of one angle of a chain with fixed ends"
-        odd = chain is not None and chain.periodic
-        advice = HALF_A_RING if odd else "take one from periodic_orbit"
-        raise InputError("orbit", given, allowed, advice)
+        allowed = "a solution of one angle of a chain with fixed ends, or a travelling wave"
+        raise InputError("orbit", given, allowed, "take one from periodic_orbit")
     if len(orbit.seeds) > 1:
         given = f"a torus of {len(orbit.seeds)} angles"
         raise InputError("orbit", given, "a solution of one angle", "take one seed")
+    if isinstance(orbit, RingTorus):
+        require_wave(orbit)
     potential = orbit.chain.potential
     series = potential.degree is not None or potential.growths()
     if not potential.exact or not series:
@@ -327,6 +337,14 @@ def checked_orbit(orbit: object) -> QuasiPeriodic:
         advice = "take poly: with its first coefficients"
         raise InputError("chain", orbit.chain, allowed, advice)
     return orbit
+
+
+def require_wave(orbit: RingTorus) -> None:
+    """InputError for a solution of a ring that stands."""
+    try:
+        require_travelling(orbit)
+    except InputError as error:
+        raise InputError("orbit", error.value, error.allowed, HALF_A_RING) from error
 
 
 def not_small(bounds: ProofBounds) -> tuple[str, float, float, str]:
@@ -397,20 +415,29 @@ def stated_intervals(
 ) -> dict[str, Interval]:
     """That hold A, H and the frequency of the orbit, or of all of a segment."""
     balls, border = bounds.balls, bounds.border
-    bits, seed = balls.orbit.bits, balls.orbit.seed
-    of_seed, of_bonds, of_border = flint.arb(0), [flint.arb(0)] * balls.orbit.chain.N, 0
+    bits, layout = balls.orbit.bits, balls.layout
+    of_seed, of_border = flint.arb(0), 0
     if line is not None:
-        of_seed, of_bonds = abs(line.given.rows[1][seed - 1]) * line.unit, line.at_rest
+        of_seed = abs(line.given.rows[1][layout.place]) * line.unit
         of_border = abs(line.given.of_frequency) * line.unit
     found = {
         "amplitude": stated(balls.amplitude(radius + of_seed), bits),
-        "energy": stated(balls.energy_within([radius + x for x in of_bonds]), bits),
+        "energy": stated(energy_within(balls, radius, line), bits),
     }
     if border is not None:
         weight = flint.arb(int(bounds.found.weights[0])) / 2**WEIGHT_BITS
         around = flint.arb(0, (radius / weight + of_border) * border.unit)
         found["frequency"] = stated((balls.squared + around).sqrt(), bits)
     return found
+
+
+def energy_within(balls: BondBalls, radius: Any, line: Line | None) -> Any:
+    """H where no momentum is left, at t = 0 of fixed ends; of a wave by its mean."""
+    if balls.layout.copies > 1:
+        moved = sum(map(balls.norm, line.stretches), flint.arb(0)) if line else 0
+        return balls.mean_energy_within(radius + moved)
+    of_bonds = line.at_rest if line else [flint.arb(0)] * balls.layout.bonds
+    return balls.energy_within([radius + x for x in of_bonds])
 
 
 Interval = tuple[int, int, int]  # middle, radius, places: units 2^-places
@@ -455,6 +482,7 @@ def certificate_body(
     return {
         "format": FORMAT,
         "schema": SCHEMA,
+        "ends": "travelling" if orbit.chain.periodic else "fixed",
         "N": orbit.chain.N,
         **potential_entries(orbit, bounds.balls.force),
         "seed": orbit.seed,
@@ -501,9 +529,5 @@ def potential_entries(orbit: RoundedOrbit, force: ForceSeries) -> dict[str, Any]
 
 def allowed_rows(orbit: RoundedOrbit, of_harmonics: Rows) -> list[list[int]]:
     """Of every harmonic the coefficients of the modes that the symmetry allows, ascending."""
-    even, rows = orbit.chain.potential.even, []
-    for n, row in enumerate(of_harmonics):
-        first = 0 if n * orbit.seed % 2 else 1
-        absent = even and n % 2 == 0
-        rows.append([] if absent else list(row[first::2]))
-    return rows
+    allowed = orbit.layout.allowed(len(of_harmonics) - 1).tolist()
+    return [list(compress(*pair)) for pair in zip(of_harmonics, allowed, strict=True)]

@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from symfpu.certified.bond_balls import BondBalls
 from symfpu.certified.border import Border, Fixed, border_of
 from symfpu.certified.contraction import (
-    ROUNDOFF,
     BorderLine,
     Contraction,
     LinearPart,
     contraction,
 )
 from symfpu.certified.force_series import ball
+from symfpu.certified.layout import ROUNDOFF
 from symfpu.certified.rounded_orbit import RoundedOrbit
 
 Floats = NDArray[np.float64]
@@ -67,7 +67,7 @@ class ProofBounds:
         """Z2 for points within the radius of the middle."""
         bounds = (self.balls.force.curvature_bound(x + radius) for x in self.balls.norms)
         total = sum(bounds, flint.arb(0))
-        of_bonds = total * 2 / self.balls.orbit.chain.N * flint.arb(self.found.spread)
+        of_bonds = total * ball(self.balls.layout.share) * flint.arb(self.found.spread)
         if self.border is None:
             return of_bonds
         condition = flint.arb(float(self.found.columns_of_inverse[0]))
@@ -99,7 +99,7 @@ def proof_bounds(orbit: RoundedOrbit, fixed: Fixed) -> tuple[ProofBounds | None,
         found, linear = contraction(linear_part(balls, cut, border))
         if found is None:
             return None, linear
-        share = 2 / orbit.chain.N * found.spread * found.part.rest
+        share = float(orbit.layout.share) * found.spread * found.part.rest
         if share <= CUT_SHARE:
             break
         cut *= CUT_SHARE / (2 * share)
@@ -129,18 +129,18 @@ def linear_part(balls: BondBalls, cut: float, border: Border | None = None) -> L
         rest += balls.norm(left)
     omega = float(orbit.omega)
     line = None if border is None else border_line(balls, border)
-    return LinearPart(orbit.chain, orbit.seed, omega, nu, kept, double_above(rest), line)
+    return LinearPart(orbit.layout, omega, nu, kept, double_above(rest), line)
 
 
 def border_line(balls: BondBalls, border: Border) -> BorderLine:
     """The row and the column of an unknown frequency in doubles."""
-    rows, linear = balls.orbit.floats, balls.orbit.chain.frequencies()
+    rows, linear = balls.orbit.floats, balls.layout.frequencies()
     unit = float(border.unit)
     n = np.arange(len(rows))[:, None]
     middles = np.array([[float(x.mid()) for x in row] for row in border.rows])
     errors = np.array([[double_above(x.rad()) for x in row] for row in border.rows])
     return BorderLine(
-        seed=balls.orbit.seed,
+        seed=balls.layout.place + 1,
         unit=unit,
         of_seed=border.of_seed,
         rows=middles,
@@ -156,7 +156,7 @@ def newton_step(
 ) -> tuple[Any, Any]:
     """Y, above the norm of A F, and its part from harmonics that the orbit does not have."""
     total, beyond = norm_of_image(balls, found, balls.residual())
-    lost = balls.forces_left_out() * 2 / balls.orbit.chain.N * flint.arb(found.spread)
+    lost = balls.forces_left_out() * ball(balls.layout.share) * flint.arb(found.spread)
     if border is not None:
         lost += abs(border.residual) * float(found.columns_of_inverse[0])
     return total + lost, beyond
@@ -175,7 +175,7 @@ def norm_of_image(
         of_harmonic = flint.arb(0)
         for q, value in enumerate(row, 1):
             norm = float(found.beyond[q - 1]) if n > last else norms.get((n, q), 0.0)
-            of_harmonic += abs(value) * norm  # places without a norm are zero by symmetry
+            of_harmonic += abs(value) * norm  # places without a norm are not allowed
         total += of_harmonic * power
         if n > harmonics:
             beyond += of_harmonic * power

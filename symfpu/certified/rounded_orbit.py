@@ -5,7 +5,8 @@ c_q = sqrt(2/N) Omega_q Q_q has no roots in its equations,
     F_q[n] = (1 - n^2 omega^2 / Omega_q^2) c_q[n] + (2/N) sum_j cos(q theta_j) phi(r_j)[n],
 
 with r_j = sum_q c_q cos(q theta_j), theta_j = (j + 1/2) pi / N and phi(r) = V'(r) - r. Integers
-times 2^-bits are the c_q[n] that the symmetry of a q-breather allows. Ours.
+times 2^-bits are the c_q[n] that the symmetry of a q-breather allows. Of a wave on a ring they are
+the harmonics of its one function r, each in the column of its mode. Ours.
 """
 
 from __future__ import annotations
@@ -20,11 +21,13 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import unknowns
+from symfpu.certified.layout import Layout, layout_of
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers
+from symfpu.refinement.ring_tori import wave_coefficients
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
 
 DOUBLE_DIGITS = 16
 SPARE_DIGITS = 6  # of the integers beyond those of the orbit
@@ -36,7 +39,7 @@ ADVICE = "take one from periodic_orbit, breather_at_amplitude or periodic_orbit_
 
 @dataclass(frozen=True)
 class RoundedOrbit:
-    """A periodic orbit as integers; rows are harmonics 0 .. H, columns modes 1 .. N-1.
+    """A periodic orbit as integers; rows are harmonics 0 .. H, columns the modes of its layout.
 
     omega : the frequency, exact. rows : c_q[n] 2^bits. digits : of the orbit that was rounded.
     """
@@ -54,8 +57,13 @@ class RoundedOrbit:
         return len(self.rows) - 1
 
     @cached_property
+    def layout(self) -> Layout:
+        """Which unknowns it has."""
+        return layout_of(self.chain, self.seed)
+
+    @cached_property
     def floats(self) -> NDArray[np.float64]:
-        """c in doubles, shape (H+1, N-1)."""
+        """c in doubles, shape (H+1, modes)."""
         scaled = [[math.ldexp(x, -self.bits) for x in row] for row in self.rows]
         return np.array(scaled)
 
@@ -68,20 +76,22 @@ class RoundedOrbit:
         return {k: coupling for k, coupling in found.items() if coupling}
 
 
-def rounded_orbit(orbit: QuasiPeriodic) -> RoundedOrbit:
+def rounded_orbit(orbit: QuasiPeriodic | RingTorus) -> RoundedOrbit:
     """The integers nearest to an orbit; what is below their last place is left out."""
-    chain, (seed,) = orbit.chain, orbit.seeds
     digits = orbit.digits or DOUBLE_DIGITS
-    cosines = orbit.by_harmonic()
     with mpmath.workdps(digits + 2 * SPARE_DIGITS):
-        stretches = _scaled(chain, cosines)
+        if isinstance(orbit, RingTorus):
+            stretches = _of_wave(orbit)
+        else:
+            stretches = _scaled(orbit.chain, orbit.by_harmonic())
         largest = max(abs(x) for x in stretches.flat)
         if not largest:
             raise InputError("orbit", "the chain at rest", "an orbit that moves", ADVICE)
         _, exponent = math.frexp(float(largest))
         bits = math.ceil((digits + SPARE_DIGITS) * math.log2(10)) - exponent
-        rows = _allowed(chain, seed, stretches, bits, FORBIDDEN * largest)
-    return RoundedOrbit(chain, seed, orbit.frequency, bits, rows, digits)
+        layout = layout_of(orbit.chain, orbit.seed)
+        rows = _allowed(layout, stretches, bits, FORBIDDEN * largest)
+    return RoundedOrbit(orbit.chain, orbit.seed, orbit.frequency, bits, rows, digits)
 
 
 def _scaled(chain: Chain, cosines: Numbers) -> Numbers:
@@ -92,22 +102,33 @@ def _scaled(chain: Chain, cosines: Numbers) -> Numbers:
     return np.asarray(as_mpf * np.array(units, dtype=object))
 
 
+def _of_wave(torus: RingTorus) -> Numbers:
+    """N^(-1/2) Omega_m c[n] of a wave at harmonic n, in the column of its folded mode m."""
+    N, layout = torus.chain.N, layout_of(torus.chain, torus.seed)
+    harmonics, coefficients = wave_coefficients(torus)
+    table = np.full((int(harmonics.max()) + 1, layout.modes), mpmath.mpf(0))
+    for n, c in zip(harmonics[:, 0].tolist(), coefficients[:, 0].tolist(), strict=True):
+        m = n * torus.seed % N
+        if m:
+            unit = torus.chain.linear_frequency(m) / mpmath.sqrt(N)
+            table[n, min(m, N - m) - 1] = unit * c
+    return table
+
+
 def _allowed(
-    chain: Chain, seed: int, stretches: Numbers, bits: int, tolerance: mpmath.mpf
+    layout: Layout, stretches: Numbers, bits: int, tolerance: mpmath.mpf
 ) -> tuple[tuple[int, ...], ...]:
     """Integers at the places that the symmetry allows, without the last rows of zeros."""
     table = np.zeros(stretches.shape, dtype=object)
-    places = unknowns(chain, seed, len(stretches) - 1)
-    kept = np.zeros(stretches.shape, dtype=bool)
-    kept[places] = True
+    kept = layout.allowed(len(stretches) - 1)
     outside = max((abs(x) for x in stretches[~kept]), default=0)
     if outside > tolerance:
         allowed = (
             "an orbit with the symmetry of a q-breather, c_q[n] = 0 for odd q - n seed"
         )
         raise InputError("orbit", f"{float(outside):.3g} outside", allowed, ADVICE)
-    for place in zip(*places, strict=True):
-        table[place] = int(mpmath.nint(mpmath.ldexp(stretches[place], bits)))
+    for n, q in np.argwhere(kept).tolist():
+        table[n, q] = int(mpmath.nint(mpmath.ldexp(stretches[n, q], bits)))
     last = max(n for n, row in enumerate(table) if any(row))
     return tuple(tuple(row) for row in table[: last + 1].tolist())
 

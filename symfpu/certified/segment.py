@@ -19,6 +19,7 @@ from symfpu.certified.border import Border, power_of_two
 from symfpu.certified.bordered_newton import as_integers, bordered_matrix
 from symfpu.certified.contraction import WEIGHT_BITS, Contraction
 from symfpu.certified.existence_bounds import norm_of_image
+from symfpu.certified.force_series import ball
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +32,7 @@ class Direction:
 
 def direction(balls: BondBalls, border: Border) -> Direction:
     """Of the family, by s."""
-    zeros = np.zeros((1, balls.orbit.chain.N - 1))
+    zeros = np.zeros((1, balls.layout.modes))
     of_frequency, rows = bordered_matrix(balls, border).solve(float(border.change), zeros)
     bits, harmonics = balls.orbit.bits, balls.orbit.harmonics
     integers = as_integers(rows[: harmonics + 1], bits)
@@ -62,7 +63,7 @@ class Line:
         self.drift = (
             of_coefficients
             + of_condition * float(found.columns_of_inverse[0])
-            + lost * 2 / balls.orbit.chain.N * flint.arb(found.spread)
+            + lost * ball(balls.layout.share) * flint.arb(found.spread)
         )
 
     def _length(self, balls: BondBalls, found: Contraction) -> Any:
@@ -93,9 +94,9 @@ class Line:
 
     def _of_condition(self, balls: BondBalls, border: Border) -> Any:
         """DG t + dG/ds."""
-        seed, given = balls.orbit.seed - 1, self.given
+        place, given = balls.layout.place, self.given
         total = flint.arb(
-            border.corner * given.of_frequency + border.of_seed * given.rows[1][seed]
+            border.corner * given.of_frequency + border.of_seed * given.rows[1][place]
         )
         for slopes, row in zip(border.rows, given.rows, strict=False):
             total += sum(

@@ -16,6 +16,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from symfpu.certified.border import FREQUENCY
 from symfpu.certified.enclosures import (
     ADVICE,
@@ -27,8 +29,10 @@ from symfpu.certified.enclosures import (
 from symfpu.certified.existence import ExistenceProof, prove_existence
 from symfpu.certified.exponent_bounds import RoundedZero, Slopes
 from symfpu.certified.exponents import guesses
+from symfpu.certified.layout import layout_of
 from symfpu.certified.rounded_orbit import RoundedOrbit
 from symfpu.certified.sectors import Sector, sectors_of
+from symfpu.chain.chain import require_fixed_ends
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
@@ -209,6 +213,7 @@ def prove_stability(
     0.02488... .. 0.02488...)
     """
     proof = solution if isinstance(solution, ExistenceProof) else prove_existence(solution)
+    require_fixed_ends(proof.chain)
     require_exact_frequency(proof)
     orbit = orbit_of(proof)
     sectors = sectors_of(orbit.chain, orbit.seed)
@@ -242,15 +247,14 @@ def require_exact_frequency(proof: ExistenceProof) -> None:
 
 def orbit_of(proof: ExistenceProof) -> RoundedOrbit:
     """The integers that a proof of existence is about."""
-    chain, seed, even = proof.chain, proof.seed, proof.chain.potential.even
-    rows = []
-    for n, values in enumerate(proof.body["orbit"]):
-        row = [0] * (chain.N - 1)
-        if not (even and n % 2 == 0):
-            row[(0 if n * seed % 2 else 1) :: 2] = values
-        rows.append(tuple(row))
-    bits, digits = proof.body["bits"], proof.digits
-    return RoundedOrbit(chain, seed, proof.frequency, bits, tuple(rows), digits)
+    chain, seed, given = proof.chain, proof.seed, proof.body["orbit"]
+    allowed = layout_of(chain, seed).allowed(len(given) - 1)
+    table = np.zeros(allowed.shape, dtype=object)
+    table[allowed] = [x for row in given for x in row]
+    rows = tuple(map(tuple, table.tolist()))
+    return RoundedOrbit(
+        chain, seed, proof.frequency, proof.body["bits"], rows, proof.digits
+    )
 
 
 def proved_exponent(

@@ -52,7 +52,7 @@ def existence_text(proof: ExistenceProof) -> str:
     return "\n".join(
         [
             f"{chain}, seed {proof.seed}, {proof.condition}: proved",
-            f"  a periodic orbit {given} exists within {above(proof.radius, 2)} "
+            f"  a {proof.kind} {given} exists within {above(proof.radius, 2)} "
             f"of the computed one, the only one within {below(proof.unique, 2)},",
             f"  analytic for |Im omega t| < log {proof.nu}",
             *(f"  {interval}" for interval in proof.intervals),

@@ -18,7 +18,9 @@ from symfpu.certified.bond_balls import SPARE_BITS, BondBalls
 from symfpu.certified.contraction import Attempt, places_of
 from symfpu.certified.existence import NoExistenceProof, prove_existence
 from symfpu.certified.existence_bounds import linear_part, strip
+from symfpu.certified.layout import layout_of
 from symfpu.certified.rounded_orbit import rounded_orbit
+from symfpu.certified.stability_proof import prove_stability
 from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.from_expression import from_expression
 from symfpu.errors import InputError
@@ -27,6 +29,7 @@ from symfpu.proofs.reading import dyadic
 from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.ring_torus import unfold
 from symfpu.tori.verdict import assess
 from tests.tolerances import FREE, PROVED_FREQUENCY, PROVED_RADIUS, SAME_BOUNDS, SAME_DERIVATIVE, SAME_FREQUENCY, SQUEEZED
 
@@ -87,7 +90,7 @@ def rows_of(found, key, length):
     """Rows of a certificate as a table of mpf, those of harmonics beyond the length left out."""
     chain, body = found.chain, found.body
     table = np.zeros((length, chain.N - 1), dtype=object)
-    places = places_of(chain, found.seed, len(body[key]) - 1)
+    places = places_of(layout_of(chain, found.seed), len(body[key]) - 1)
     values = (x for row in body[key] for x in row)
     for n, q, x in zip(places.n, places.q, values, strict=True):
         if n < length:
@@ -170,11 +173,27 @@ def test_a_segment_too_long_says_how_long_one_may_be():
     assert prove_existence(orbit("alpha"), amplitude="0.4", half_width=0.9 * share * 1e-2)
 
 
-@pytest.mark.parametrize("name", EACH)
+WAVES = {
+    "wave": (Chain(16, alpha="0.3", ends="periodic"), 1, {"amplitude": "0.5"}, {}),
+    "wave, mirrored": (Chain(9, alpha="0.3", beta="1/5", ends="periodic"), -4, {"amplitude": "0.3"}, {"amplitude": "0.3"}),
+    "wave, long period": (Chain(7, beta=1, ends="periodic"), 2, {"energy": "0.1"}, {"energy": "0.1"}),
+    "wave, three particles": (Chain(3, potential="toda:1/2", ends="periodic"), 1, {"amplitude": "0.3"}, {}),
+    "wave, shortest": (Chain(8, beta=-1, ends="periodic"), 4, {"amplitude": "0.3"}, {"amplitude": "0.3"}),
+    "wave, harmonics at rest": (Chain(6, alpha="0.4", ends="periodic"), 2, {"energy": "0.03"}, {"energy": "0.03"}),
+}
+
+
+@cache
+def wave_proof(name):
+    chain, seed, made, given = WAVES[name]
+    return prove_existence(travelling_breather(chain, seed, **made), **given)
+
+
+@pytest.mark.parametrize("name", [*EACH, *WAVES])
 def test_the_checker_agrees_in_every_bound(name, tmp_path):
-    found = proof(name)
+    found = wave_proof(name) if name in WAVES else proof(name)
     theorem, *_ = checked(found, tmp_path)
-    assert f"N = {found.chain.N} bonds" in theorem
+    assert f"N = {found.chain.N} {'particles' if name in WAVES else 'bonds'}" in theorem
     data = json.loads((tmp_path / "proof.json").read_text())
     claim = check_existence.read_claim(data)
     inverse = check_existence.read_inverse(data, claim)
@@ -241,10 +260,69 @@ def orbit_cut(cosines):
     return replace(whole, cosines=cosines, harmonics=np.arange(len(cosines))[:, None])
 
 
+def cnoidal(N, q, kappa, modulus):
+    """Omega and the stretch of the Toda ring's periodic wave: theta -> d + log(1 + s (dn^2(K theta/pi) - E/K)) / kappa.
+
+    Toda, Theory of Nonlinear Lattices, with the pressure that makes the mean stretch zero: an overall stretch d is a stiffer spring.
+    """
+    K, E = mpmath.ellipk(modulus), mpmath.ellipe(modulus)
+    turned = mpmath.ellipfun("sn", 2 * K * q / N, m=modulus)
+    s = 1 / (1 / turned**2 - 1 + E / K)
+
+    def tension(theta):
+        return mpmath.log(1 + s * (mpmath.ellipfun("dn", K * theta / mpmath.pi, m=modulus) ** 2 - E / K)) / kappa
+
+    points = 128
+    values = [tension(2 * mpmath.pi * k / points) for k in range(points)]
+    d = -mpmath.fsum(values) / points
+    omega = mpmath.pi * mpmath.sqrt(s) / K * mpmath.exp(kappa * d / 2)
+    angles = [2 * mpmath.pi * k / points for k in range(points)]
+    cosines = [2 * mpmath.fsum(v * mpmath.cos(n * x) for v, x in zip(values, angles, strict=True)) / points for n in range(30)]
+    return omega, cosines
+
+
+@pytest.mark.parametrize(("N", "q"), [(16, 1), (9, 4), (12, -2)])
+def test_the_wave_of_the_toda_ring_is_where_the_theorem_says(N, q):
+    """Against Jacobi's elliptic functions: frequency given to 40 places, amplitude and stretch from the closed form."""
+    with mpmath.workdps(50):
+        omega, cosines = cnoidal(N, abs(q), mpmath.mpf(1), mpmath.mpf("0.3"))  # toda:1/2 has exp(r)
+        wave = travelling_breather(Chain(N, potential="toda:1/2", ends="periodic"), q, frequency=mpmath.nstr(omega, 40))
+        found = prove_existence(wave)
+        linear = 2 * mpmath.sin(mpmath.pi * abs(q) / N)
+        A = mpmath.sqrt(N) * cosines[1] / linear
+        assert abs(A) > 0.05
+        sign = 1 if A * found.amplitude > 0 else -1  # half a period of the phase
+        assert abs(sign * A - found.amplitude) < found.amplitude_radius < 1e-12
+        claim = check_existence.read_claim(json.loads(json.dumps(found.certificate())))
+        ours = {n: mpmath.ldexp(c, -claim.bits) for (n, _), c in claim.orbit.items()}
+        distance = mpmath.fsum(abs(sign**n * cosines[n] - ours.get(n, 0)) for n in range(1, 30) if n * q % N)
+        assert 0 < distance < found.radius
+        assert all(abs(cosines[n]) < 1e-20 for n in range(1, 30) if n * q % N == 0)
+
+
+def test_the_wave_has_the_energy_of_its_particles():
+    for name in WAVES:
+        chain, seed, made, _ = WAVES[name]
+        H = travelling_breather(chain, seed, **made).energy()
+        assert abs(float(wave_proof(name).energy) - H) < 1e-13 * abs(H)
+
+
+def test_members_of_a_segment_of_waves_are_in_its_intervals(tmp_path):
+    chain, seed, made, _ = WAVES["wave"]
+    width = Fraction(1, 10**5)
+    found = prove_existence(travelling_breather(chain, seed, **made), amplitude="0.5", half_width=width)
+    assert "for every amplitude A" in checked(found, tmp_path)[0]
+    for s in (-1, Fraction(1, 3), 1):
+        member = travelling_breather(chain, seed, amplitude=Fraction("0.5") + s * width)
+        assert abs(member.frequency - found.frequency) < found.frequency_radius
+        assert abs(member.energy() - float(found.energy)) < found.energy_radius
+
+
 def test_what_the_theorem_is_not_about_is_refused():
-    ring = travelling_breather(Chain(6, alpha="0.3", ends="periodic"), 1, amplitude="0.1")
     with pytest.raises(InputError, match="half the ring with fixed ends"):
-        prove_existence(ring)
+        prove_existence(unfold(orbit("alpha")))
+    with pytest.raises(InputError, match="a chain with fixed ends"):
+        prove_stability(travelling_breather(Chain(6, alpha="0.3", ends="periodic"), 1, amplitude="0.1"))
     with pytest.raises(InputError, match="polynomial"):
         prove_existence(breather_at_amplitude(Chain(4, potential=from_expression("1 - cos(r)")), 1, "0.1"))
     torus = solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3905", "0.7663"), 2))

@@ -68,6 +68,7 @@ THEOREMS = {
     "amplitude": "has a periodic orbit of amplitude A = 1/5",
     "energy": "has a periodic orbit of energy H = ",
     "curve": "has for every amplitude A from 199/1000 to 201/1000, on one analytic curve, a periodic orbit",
+    "wave": "r^4/4 has a periodic orbit of amplitude A = 1/2, a travelling wave r_j(t) =",
     "stability": "is linearly stable",
     "residual": "leaves |x'' - force| <= ",
     "stay": "leaves |x'' - force| <= ",

@@ -25,11 +25,16 @@ from symfpu.proofs.check_existence.theorem import check_contraction
 from symfpu.proofs.check_existence.wording import decimal_interval, theorem_text
 from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.reading import CertificateError
+from symfpu.refinement.travelling_breather import travelling_breather
 from tests.proofs.test_forgeries import sealed
 
 
 def both():
     return breather_at_amplitude(Chain(3, alpha="0.3", beta="1/7"), 1, "0.3")
+
+
+def wave():
+    return travelling_breather(Chain(5, alpha="0.3", beta="1/7", ends="periodic"), 1, amplitude="0.3")
 
 
 MADE = {
@@ -39,6 +44,8 @@ MADE = {
     "segment of amplitude": lambda: prove_existence(both(), amplitude="0.3", half_width="1e-5"),
     "segment of frequency": lambda: prove_existence(both(), half_width="1e-6"),
     "segment of energy": lambda: prove_existence(both(), energy="0.0453646", half_width="1e-6"),
+    "wave": lambda: prove_existence(wave()),
+    "segment of waves": lambda: prove_existence(wave(), amplitude="0.3", half_width="1e-5"),
 }
 
 
@@ -144,7 +151,7 @@ FORGERIES = {
     "no strip": (("nu",), lambda _: "1", "nu is not"),
     "fewer free harmonics": (("free",), lambda _: 1, "wrong number of weights|block"),
     "another kind": (("format",), lambda _: "symfpu propagation certificate", "not a symfpu existence certificate"),
-    "a later version": (("schema",), lambda _: 3, "supports schema"),
+    "a later version": (("schema",), lambda _: 4, "supports schema"),
 }
 
 
@@ -172,6 +179,19 @@ OF_KINDS = {
     "a narrower interval of A": ("segment of energy", ("amplitude", 1), lambda m: m // 3, "amplitude of the orbit"),
     "a narrower interval of H": ("segment of amplitude", ("energy", 1), lambda m: m // 3, "H may be outside"),
     "a smaller radius": ("segment of amplitude", ("radius", 0), lambda m: m // 2, "exceeds r"),
+    "a wave for an orbit": ("frequency", ("ends",), lambda _: "travelling", "wrong length"),
+    "an orbit for a wave": ("wave", ("ends",), lambda _: "fixed", "wrong length"),
+    "other ends": ("wave", ("ends",), lambda _: "free", "neither"),
+    "a larger ring": ("wave", ("N",), lambda N: N + 1, "exceeds r|not below|wrong length"),
+    "a wave of another seed": ("wave", ("seed",), lambda _: 2, "exceeds r|not below|block"),
+    "a wave of no seed": ("wave", ("seed",), lambda _: 0, "mode 0"),
+    "a wave of a seed too large": ("wave", ("seed",), lambda _: 3, "out of its range"),
+    "a wave of another amplitude": ("wave", ("amplitude", 0), lambda m: m + m // 10**12, "amplitude"),
+    "a wave of another energy": ("wave", ("energy", 0), lambda m: m + m // 10**12, "H may be outside"),
+    "a wave of a narrower energy": ("wave", ("energy", 1), lambda m: m // 8, "H may be outside"),
+    "another harmonic of a wave": ("wave", ("orbit", 2), entry(0, lambda c: c + c // 10**10), "exceeds r"),
+    "waves of a narrower H": ("segment of waves", ("energy", 1), lambda m: m // 8, "H may be outside"),
+    "waves of a wider segment": ("segment of waves", ("half_width",), lambda _: "1/30000", "exceeds r|not below 1"),
 }
 
 
@@ -192,7 +212,7 @@ def test_forgeries_with_a_digest_that_fits_are_refused(name, tmp_path):
 
 
 NO_ORBIT = {
-    "format": "symfpu existence certificate", "schema": 2, "N": 2, "coefficients": ["0"] * 5 + ["1"], "growths": [],
+    "format": "symfpu existence certificate", "schema": 3, "ends": "fixed", "N": 2, "coefficients": ["0"] * 5 + ["1"], "growths": [],
     "degree": 7, "seed": 1, "fixed": "frequency", "value": "9/10", "half_width": "0", "omega": "9/10", "nu": "17/16",
     "bits": 80, "orbit": ["", packed([2**50])], "scales": [], "direction": [], "direction_frequency": 0,
     "slope_harmonics": 1, "free": 2, "block": [[1, 1]], "inverse_bits": 20, "inverse": [packed([1762313])],

@@ -23,11 +23,11 @@ class Bonds:
     """Stretches, forces and slopes of all bonds along the orbit, P = bits + GUARD places."""
 
     def __init__(self, claim: Claim, harmonics: int) -> None:
-        self.claim, N = claim, claim.N
+        self.claim, self.shape = claim, claim.shape
         self.places = claim.bits + GUARD
         degree = max(claim.force.couplings)
         self.norm = Norm(claim.nu, max(degree * claim.harmonics, harmonics) + 1)
-        self.cosines = Cosines(N, self.places)
+        self.cosines = Cosines(claim.N, self.places)
         self.arithmetic = FixedPoint(self.places, self.norm)
         self.stretches = self.on_bonds(claim.orbit)
         self.sizes = [self.size(stretch) for stretch in self.stretches]
@@ -41,7 +41,7 @@ class Bonds:
 
     def on_bonds(self, coefficients: dict[Place, int]) -> list[Series]:
         """sum_q c_q cos(q theta_j) of every bond."""
-        return [self.stretch(coefficients, j) for j in range(self.claim.N)]
+        return [self.stretch(coefficients, j) for j in range(self.shape.bonds)]
 
     def stretch(self, coefficients: dict[Place, int], j: int) -> Series:
         """Of bond j: the c are exact, the cosines off by COSINE_UNITS."""
@@ -50,7 +50,7 @@ class Bonds:
         for n in range(max(n for n, _ in coefficients) + 1):
             modes = claim.allowed(n)
             row = [coefficients[n, q] for q in modes]
-            cosines = [self.cosines.bond(q, j) for q in modes]
+            cosines = [self.shape.on_bond(self.cosines, q, j) for q in modes]
             total = sum(c * x for c, x in zip(row, cosines, strict=True))
             values.append(total >> claim.bits)
             off = COSINE_UNITS * (sum(map(abs, row)) >> claim.bits) + COSINE_UNITS + 1
@@ -88,7 +88,7 @@ class Bonds:
 
     def linear(self, q: int) -> tuple[Fraction, Fraction]:
         """Below and above Omega_q^2."""
-        middle = 2 * (1 << self.places) - 2 * self.cosines.of(2 * q)
+        middle = self.shape.squared(self.cosines, q)
         off, unit = 2 * COSINE_UNITS, 1 << self.places
         need(middle > off, "places do not resolve Omega_1")
         return Fraction(middle - off, unit), Fraction(middle + off, unit)
@@ -102,8 +102,8 @@ class Divisors:
         self.one = 1 << places
         self.least, self.most = {}, {}
         self.inverse_below, self.inverse_above = {}, {}
-        for q in range(1, claim.N):
-            linear = 2 * self.one - 2 * cosines.of(2 * q)  # Omega_q^2
+        for q in claim.shape.modes:
+            linear = claim.shape.squared(cosines, q)
             off = 2 * COSINE_UNITS
             need(linear > off, "places do not resolve Omega_1")
             self.inverse_below[q] = self.one**2 // (linear + off)  # of 1/Omega_q^2

@@ -14,6 +14,7 @@ from symfpu.proofs.check_existence.fixed_point import (
 )
 from symfpu.proofs.check_existence.inverse import BORDER, Inverse, Packed
 from symfpu.proofs.reading import need
+from symfpu.proofs.rounding import up
 
 LARGEST_DERIVATIVE = 2**20  # an entry of DF that the packed product expects
 
@@ -37,7 +38,7 @@ class Bounds:
 
     def check_beyond(self) -> None:
         """Beyond `free` every harmonic is above all modes: |lambda| grows from there on."""
-        for q in range(1, self.claim.N):
+        for q in self.claim.shape.modes:
             _, high = self.divisors.between(self.inverse.free + 1, q)
             need(high < 0, f"harmonic {self.inverse.free + 1} is not above mode {q}")
 
@@ -63,9 +64,12 @@ class Bounds:
         It is (1/N) sum_j (cos((q-q') theta_j) + cos((q+q') theta_j)) g_j[k], off by `losses[k]`.
         """
         N, K = self.claim.N, self.inverse.slope_harmonics
+        self.losses = [0] * (K + 1)
+        if self.claim.shape.travelling:
+            return
         cosines = Cosines(N, COARSE)
         tables = [[cosines.bond(p, j) for j in range(N)] for p in range(2 * N - 1)]
-        self.sums, self.losses = [], []
+        self.sums = []
         for k in range(K + 1):
             column = [slope[k] for slope in self.slopes]
             row = []
@@ -74,10 +78,12 @@ class Bounds:
                 row.append((total >> COARSE) // N)
             self.sums.append(row)
             size = sum(map(abs, column)) * COSINE_UNITS // N
-            self.losses.append(2 * ((size >> COARSE) + 3))
+            self.losses[k] = 2 * ((size >> COARSE) + 3)
 
     def coupling(self, k: int, q: int, p: int) -> int:
-        """Of modes q and p by harmonic k of the slopes."""
+        """Of modes q and p by harmonic k of the slopes; of a wave that of its slope alone."""
+        if self.claim.shape.travelling:
+            return self.slopes[0][k]
         row = self.sums[k]
         return row[abs(q - p)] + row[q + p]
 
@@ -129,7 +135,8 @@ class Bounds:
         for (n, q), size in self.norms.items():
             if (n, q) != BORDER:
                 sums[n] += size
-        beyond = sum(self.beyond(q) for q in range(1, self.claim.N))
+        shape = self.claim.shape
+        beyond = shape.together([self.beyond(q) for q in shape.modes])
         return max([*sums, beyond])
 
     def beyond(self, q: int) -> int:
@@ -140,8 +147,8 @@ class Bounds:
     # the bounds
 
     def of_bonds(self, total: Fraction) -> Fraction:
-        """Above |A (2/N) sum_j cos(q theta_j) f_j| where the norms of the f_j add up to total."""
-        return Fraction(2 * self.spread, self.claim.N * self.unit) * total
+        """Above |A share sum_j cos(q theta_j) f_j| where the norms of the f_j add up to total."""
+        return self.claim.shape.share * Fraction(self.spread, self.unit) * total
 
     def residual(self) -> Fraction:
         """Y, above |A F| at every orbit of the line, of one orbit at that."""
@@ -190,7 +197,7 @@ class Bounds:
         total = 0
         for n in range(longest):
             forces = [f.values[n] if n < len(f.values) else 0 for f in series]
-            size = sum(map(abs, forces)) * COSINE_UNITS * 2 // claim.N
+            size = up(sum(map(abs, forces)) * COSINE_UNITS * claim.shape.share)
             off = (size >> bonds.places) + 4
             of_harmonic = 0
             for q in claim.allowed(n):
@@ -208,10 +215,10 @@ class Bounds:
         return Fraction(total, unit) + self.of_bonds(Fraction(errors, 1 << bonds.places))
 
     def force_of_mode(self, q: int, forces: list[int]) -> int:
-        """(2/N) sum_j cos(q theta_j) f_j of one harmonic, in units of the bonds."""
-        cosines = self.bonds.cosines
-        total = sum(cosines.bond(q, j) * f for j, f in enumerate(forces))
-        return (2 * total // self.claim.N) >> self.bonds.places
+        """share sum_j cos(q theta_j) f_j of one harmonic, in units of the bonds."""
+        cosines, shape = self.bonds.cosines, self.claim.shape
+        total = sum(shape.on_bond(cosines, q, j) * f for j, f in enumerate(forces))
+        return (total * shape.share).__floor__() >> self.bonds.places
 
     def linear(self) -> Fraction:
         """Z0 + Z1, above |I - A DF| at the orbit."""
@@ -296,19 +303,20 @@ class Bounds:
 
     def of_tail(self) -> Fraction:
         """The same for every column beyond `last`: it meets rows beyond `free` alone."""
-        modes = range(1, self.claim.N)
+        shape = self.claim.shape
+        columns = shape.modes[:1] if shape.travelling else shape.modes  # one slope for all
+        return max(
+            shape.together([self.of_pair(q, p) for q in shape.modes]) for p in columns
+        )
+
+    def of_pair(self, q: int, p: int) -> Fraction:
+        """Of a row of mode q and a column of mode p, beyond all that are taken one by one."""
         powers = self.norm.powers
         growths = [powers[0]] + [x + powers[0] for x in powers[1:]]
-        worst = Fraction(0)
-        for p in modes:
-            total = Fraction(0)
-            for q in modes:
-                sizes = (abs(self.coupling(k, q, p)) for k in range(len(self.sums)))
-                weighted = sum(g * x for g, x in zip(growths, sizes, strict=False))
-                divisor = self.divisors.size(self.inverse.free + 1, q)
-                total += Fraction(weighted, divisor << POWER_PLACES)
-            worst = max(worst, total)
-        return worst
+        sizes = (abs(self.coupling(k, q, p)) for k in range(len(self.losses)))
+        weighted = sum(g * x for g, x in zip(growths, sizes, strict=False))
+        divisor = self.divisors.size(self.inverse.free + 1, q)
+        return Fraction(weighted, divisor << POWER_PLACES)
 
     def curvature(self, radius: Fraction) -> Fraction:
         """Z2, above |A (DF(x + b) - DF(x))| / |b| for |b| up to the radius."""
@@ -330,7 +338,7 @@ class Bounds:
                 size = norm * n * n * self.divisors.inverse_above[q] * one
                 worst = max(worst, size // v + 1)
         n = inverse.last + 1  # beyond it n^2 / |lambda| falls
-        for q in range(1, self.claim.N):
+        for q in self.claim.shape.modes:
             size = self.beyond(q) * n * n * self.divisors.inverse_above[q]
             worst = max(worst, size)
         weight = Fraction(inverse.weights[BORDER], one)

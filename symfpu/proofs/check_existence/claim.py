@@ -1,12 +1,13 @@
 """The claim of a certificate: a chain, a frequency, an orbit, and what it has exactly."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from symfpu.proofs.check_existence.reading import MOST_BITS, unpacked
+from symfpu.proofs.check_existence.shape import Shape, read_shape
 from symfpu.proofs.reading import Json, fraction, need, whole
 
-LARGEST_N = 512
 MOST_HARMONICS = 4096
 HIGHEST_DEGREE = 200
 FARTHEST_SCALE = 400  # binary places
@@ -98,9 +99,8 @@ class Claim(NamedTuple):
     equation is multiplied by 2^-equation_places. direction, of_frequency : of a segment 2^bits.
     """
 
-    N: int
+    shape: Shape
     force: Force
-    seed: int
     omega: Fraction
     nu: Fraction
     bits: int
@@ -124,42 +124,39 @@ class Claim(NamedTuple):
         """omega^2 where the unknown is 1."""
         return Fraction(2) ** -self.unknown_places
 
-    def allowed(self, n: int) -> range:
+    @property
+    def N(self) -> int:
+        """Bonds of the chain."""
+        return self.shape.N
+
+    def allowed(self, n: int) -> Sequence[int]:
         """The modes that the symmetry of the orbit leaves at a harmonic."""
-        return allowed_modes(self.N, self.seed, self.force, n)
-
-
-def allowed_modes(N: int, seed: int, force: Force, n: int) -> range:
-    """Those with q - n seed even; only odd harmonics where V is even."""
-    if force.even and n % 2 == 0:
-        return range(0)
-    return range(1 if n * seed % 2 else 2, N, 2)
+        return self.shape.allowed(n)
 
 
 def read_claim(data: Json) -> Claim:
     """The claim, its sizes bounded."""
-    N = whole(data["N"], 2, LARGEST_N, "N")
-    seed = whole(data["seed"], 1, N - 1, "seed")
     bits = whole(data["bits"], 1, MOST_BITS, "bits")
     force = read_force(data)
+    shape = read_shape(data, even=force.even)
     omega, nu = fraction(data["omega"], "omega"), fraction(data["nu"], "nu")
     need(omega > 0, "omega is not positive")
     need(1 < nu <= 2, "nu is not in 1 < nu <= 2")
     need(nu.denominator <= 2**20, "nu has too large a denominator")
     rows = data["orbit"]
     whole(len(rows), 2, MOST_HARMONICS, "the number of harmonics")
-    orbit = read_rows(rows, N, seed, force)
-    need(orbit.get((1, seed)), "the seed has no amplitude")
-    condition, segment = read_condition(data, omega), read_segment(data, N, seed, force)
+    orbit = read_rows(rows, shape)
+    need(orbit.get(shape.place), "the seed has no amplitude")
+    condition, segment = read_condition(data, omega), read_segment(data, shape)
     harmonics = len(rows) - 1
-    return Claim(N, force, seed, omega, nu, bits, orbit, harmonics, *condition, *segment)
+    return Claim(shape, force, omega, nu, bits, orbit, harmonics, *condition, *segment)
 
 
-def read_rows(rows: Any, N: int, seed: int, force: Force) -> dict[Place, int]:
+def read_rows(rows: Any, shape: Shape) -> dict[Place, int]:
     """Coefficients by place; rows are harmonics, with the modes that the symmetry allows."""
     found = {}
     for n, text in enumerate(rows):
-        modes, row = allowed_modes(N, seed, force, n), unpacked(text, f"harmonic {n}")
+        modes, row = shape.allowed(n), unpacked(text, f"harmonic {n}")
         need(len(row) == len(modes), f"wrong length of harmonic {n}")
         for q, value in zip(modes, row, strict=True):
             found[n, q] = whole(value, -(2**4000), 2**4000, "a coefficient")
@@ -228,9 +225,7 @@ def read_condition(data: Json, omega: Fraction) -> tuple[str, Fraction, Fraction
     return fixed, value, width, unknown, equation
 
 
-def read_segment(
-    data: Json, N: int, seed: int, force: Force
-) -> tuple[dict[Place, int], int]:
+def read_segment(data: Json, shape: Shape) -> tuple[dict[Place, int], int]:
     """The direction of a segment; none of a single orbit."""
     rows = data["direction"]
     of_frequency = whole(data["direction_frequency"], -(2**4000), 2**4000, "a direction")
@@ -239,4 +234,4 @@ def read_segment(
         need(rows == [] and of_frequency == 0, "a direction without a segment")
     else:
         need(len(rows) >= 2, "a segment without a direction")
-    return read_rows(rows, N, seed, force), of_frequency
+    return read_rows(rows, shape), of_frequency

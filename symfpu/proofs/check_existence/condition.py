@@ -41,10 +41,12 @@ class Condition(NamedTuple):
     def by(self, n: int, q: int, claim: Claim, bonds: Bonds) -> tuple[int, int]:
         """Ends of the derivative of G by c_q[n], COARSE places."""
         if claim.fixed != ENERGY:
-            own = self.of_seed << COARSE if (n, q) == (1, claim.seed) else 0
+            own = self.of_seed << COARSE if (n, q) == claim.shape.place else 0
             return own, own
         values = [f.values[n] if n < len(f.values) else 0 for f in self.slopes]
-        total = sum(bonds.cosines.bond(q, j) * f for j, f in enumerate(values))
+        total = sum(
+            bonds.shape.on_bond(bonds.cosines, q, j) * f for j, f in enumerate(values)
+        )
         error = sum(map(abs, values)) * COSINE_UNITS
         off = (error >> bonds.places) + 1 + self.errors(n, bonds)
         drop = bonds.places - COARSE + (1 if n else 0)
@@ -71,7 +73,7 @@ class Condition(NamedTuple):
     def along(self, claim: Claim, bonds: Bonds) -> Fraction:
         """Above |DG t + dG/ds|, t the direction of a segment."""
         unit = 1 << claim.bits
-        of_seed = self.of_seed * Fraction(claim.direction[1, claim.seed], unit)
+        of_seed = self.of_seed * Fraction(claim.direction[claim.shape.place], unit)
         constant = of_seed + self.corner * Fraction(claim.of_frequency, unit)
         ends = [constant - x for x in self.change]
         if claim.fixed == ENERGY:
@@ -84,7 +86,7 @@ class Condition(NamedTuple):
         if claim.fixed != ENERGY:
             return Fraction(0)
         slopes = (claim.force.virial_slope_bound(x + radius) for x in bonds.sizes)
-        return self.scale * sum(slopes, Fraction(0))
+        return self.scale * claim.shape.copies * sum(slopes, Fraction(0))
 
 
 def condition_of(claim: Claim, bonds: Bonds) -> Condition:
@@ -92,7 +94,7 @@ def condition_of(claim: Claim, bonds: Bonds) -> Condition:
     scale = Fraction(2) ** -claim.equation_places
     if claim.fixed == AMPLITUDE:
         low, high = scaled_root(claim, bonds)
-        c = Fraction(claim.orbit[1, claim.seed], 1 << claim.bits)
+        c = Fraction(claim.orbit[claim.shape.place], 1 << claim.bits)
         residual = max(abs(c - claim.value * x) for x in (low, high))
         change = claim.half_width * low, claim.half_width * high
         return Condition(residual, change, 1, 0, [], scale)
@@ -105,7 +107,8 @@ def condition_of(claim: Claim, bonds: Bonds) -> Condition:
 
 
 def gradients(claim: Claim, bonds: Bonds, scale: Fraction) -> list[Series]:
-    """scale times the derivative of V + r V'/2 along every bond."""
+    """scale times the derivative of V + r V'/2 along every bond, for all bonds that move as it."""
+    scale *= claim.shape.copies
     terms = {k: scale * c for k, c in claim.force.virial_terms().items()}
     rests = [scale * claim.force.virial_left_out(size) for size in bonds.sizes]
     return bonds.combinations(terms, rests)
@@ -117,7 +120,8 @@ def mean_energy(claim: Claim, bonds: Bonds) -> Interval:
     terms = {k: c * (Fraction(1, k + 1) + Fraction(1, 2)) for k, c in couplings}
     rests = [2 * claim.force.left_out(size, 0) for size in bonds.sizes]
     factors = bonds.combinations({1: Fraction(1), **terms}, rests)
-    return sum_of_means(bonds.stretches, factors, bonds)
+    ends = sum_of_means(bonds.stretches, factors, bonds)
+    return ends[0] * claim.shape.copies, ends[1] * claim.shape.copies
 
 
 def sum_of_means(some: list[Series], others: list[Series], bonds: Bonds) -> Interval:
@@ -134,9 +138,9 @@ def sum_of_means(some: list[Series], others: list[Series], bonds: Bonds) -> Inte
 
 
 def scaled_root(claim: Claim, bonds: Bonds) -> Interval:
-    """Ends of sqrt(2/N) Omega_s."""
+    """Ends of c_s[1] where A is 1."""
     places = bonds.places
-    low, high = (x * Fraction(2, claim.N) for x in bonds.linear(claim.seed))
+    low, high = (x * claim.shape.of_amplitude for x in bonds.linear(claim.shape.place[1]))
     least = isqrt((low * 4**places).__floor__())
     most = isqrt(up(high * 4**places)) + 1
     return Fraction(least, 1 << places), Fraction(most, 1 << places)
@@ -154,6 +158,18 @@ def energy_between(claim: Claim, bonds: Bonds, radii: list[Fraction]) -> Interva
         lost = x * claim.force.left_out(x, 0)
         least, most = least + low - lost, most + high + lost
     return least, most
+
+
+def mean_energy_between(claim: Claim, bonds: Bonds, radius: Fraction) -> Interval:
+    """Ends of the mean of sum_j (V + r V'/2), every series within the radius of that of the orbit.
+
+    The derivative of V + r V'/2 is 0 at r = 0, so at most r times a bound of its own derivative.
+    """
+    least, most = mean_energy(claim, bonds)
+    reached = [size + radius for size in bonds.sizes]
+    slopes = (x * claim.force.virial_slope_bound(x) for x in reached)
+    off = radius * claim.shape.copies * sum(slopes, Fraction(0))
+    return least - off, most + off
 
 
 def polynomial_between(

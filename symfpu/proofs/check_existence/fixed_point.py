@@ -17,7 +17,7 @@ class Cosines:
     def __init__(self, N: int, places: int) -> None:
         w = places + GUARD_OF_COSINES
         pi = pi_times(w)
-        self.N = N
+        self.N, self.one = N, 1 << places
         self.quarter = [
             cosine_of(pi * k // (2 * N), w) >> GUARD_OF_COSINES for k in range(N + 1)
         ]

@@ -8,12 +8,12 @@ from symfpu.proofs.reading import Json, Kind, need, read_kind, whole
 
 FORMAT = "symfpu existence certificate"
 KEYS = {
-    "format", "schema", "N", "coefficients", "growths", "degree", "seed", "fixed", "value",
+    "format", "schema", "ends", "N", "coefficients", "growths", "degree", "seed", "fixed", "value",
     "half_width", "omega", "nu", "bits", "orbit", "scales", "direction", "direction_frequency",
     "slope_harmonics", "free", "block", "inverse_bits", "inverse", "weight_bits", "weights",
     "radius", "unique", "amplitude", "energy", "frequency", "digest",
 }  # fmt: skip
-KIND = Kind(FORMAT, 2, KEYS)
+KIND = Kind(FORMAT, 3, KEYS)
 MOST_BITS = 4096
 DIGITS = {c: k for k, c in enumerate(chr(k) for k in range(33, 127) if chr(k) not in '"\\')}
 BASE = len(DIGITS) // 2

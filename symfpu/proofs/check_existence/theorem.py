@@ -5,10 +5,10 @@ from fractions import Fraction
 from symfpu.proofs.check_existence.bonds import Bonds
 from symfpu.proofs.check_existence.bounds import Bounds
 from symfpu.proofs.check_existence.claim import AMPLITUDE, Claim, read_claim
-from symfpu.proofs.check_existence.condition import energy_between
+from symfpu.proofs.check_existence.condition import energy_between, mean_energy_between
 from symfpu.proofs.check_existence.inverse import BORDER, Inverse, read_inverse
 from symfpu.proofs.check_existence.reading import stated
-from symfpu.proofs.check_existence.wording import theorem_text
+from symfpu.proofs.check_existence.wording import elsewhere, theorem_text
 from symfpu.proofs.reading import Json, dyadic, need
 from symfpu.proofs.rounding import scientific
 
@@ -34,15 +34,16 @@ def check_certificate(data: Json) -> list[str]:
         theorem_text(claim, data, radius, unique),
         f"Y = {scientific(Y)}, Z0 + Z1 = {scientific(linear)}, "
         f"Z2 = {scientific(bounds.curvature(unique + length))}: recomputed with integers",
-        f"unfolded, x_(2N-j) = -x_j, it is a periodic orbit of the ring of {2 * claim.N} particles",
+        elsewhere(claim),
     ]
 
 
 def check_cost(claim: Claim, inverse: Inverse) -> None:
     """Checking takes minutes at most: products of series, and entries of I - A DF."""
-    products = claim.N * max(claim.force.couplings) ** 2 * claim.harmonics**2
+    modes = len(claim.shape.allowed(1))
+    products = claim.shape.bonds * max(claim.force.couplings) ** 2 * claim.harmonics**2
     width = 2 * inverse.slope_harmonics + 1
-    entries = (inverse.last + 1) * width * claim.N**2
+    entries = (inverse.last + 1) * width * modes**2 * 4
     need(max(products, entries) <= MOST_STEPS, "checking it would take too many steps")
 
 
@@ -66,26 +67,26 @@ def check_contraction(
 
 def check_seed(claim: Claim, radius: Fraction) -> None:
     """The orbit is not at rest: its seed moves with the frequency itself."""
-    size, moved = (
-        abs(claim.orbit[1, claim.seed]),
-        abs(claim.direction.get((1, claim.seed), 0)),
-    )
+    place = claim.shape.place
+    size, moved = abs(claim.orbit[place]), abs(claim.direction.get(place, 0))
     need(Fraction(size - moved, 1 << claim.bits) > radius, "the amplitude may be zero")
 
 
 def check_amplitude(
     claim: Claim, bonds: Bonds, ends: tuple[Fraction, Fraction], radius: Fraction
 ) -> None:
-    """A = sqrt(N/2) c / Omega of the seed, compared by squares; c has one sign."""
+    """A = sqrt(N/2) c / Omega of the seed, on a ring sqrt(N) c / Omega; compared by squares.
+
+    c has one sign.
+    """
     low, high = ends
-    place = 1, claim.seed
+    place = claim.shape.place
     c = Fraction(claim.orbit[place], 1 << claim.bits)
     radius += Fraction(abs(claim.direction.get(place, 0)), 1 << claim.bits)
     if c < 0:
         c, low, high = -c, -high, -low
-    least, most = bonds.linear(claim.seed)
-    half = Fraction(claim.N, 2)
-    smallest, largest = (c - radius) ** 2 * half / most, (c + radius) ** 2 * half / least
+    least, most = (x * claim.shape.of_amplitude for x in bonds.linear(place[1]))
+    smallest, largest = (c - radius) ** 2 / most, (c + radius) ** 2 / least
     inside = low > 0 and low**2 <= smallest and largest <= high**2
     need(inside, "the amplitude of the orbit may be outside the stated interval")
     if claim.fixed == AMPLITUDE:
@@ -95,13 +96,17 @@ def check_amplitude(
 def check_energy(
     claim: Claim, bonds: Bonds, ends: tuple[Fraction, Fraction], radius: Fraction
 ) -> None:
-    """H = sum_j V(r_j) at t = 0, where all momenta vanish."""
-    radii = [radius] * claim.N
-    if claim.direction:
-        for j, stretch in enumerate(bonds.on_bonds(claim.direction)):
+    """H = sum_j V(r_j) at t = 0, where all momenta vanish; of a wave by its mean."""
+    directions = bonds.on_bonds(claim.direction) if claim.direction else []
+    if claim.shape.travelling:
+        radius += sum(map(bonds.size, directions))
+        least, most = mean_energy_between(claim, bonds, radius)
+    else:
+        radii = [radius] * claim.N
+        for j, stretch in enumerate(directions):
             moved, error = bonds.at_rest(stretch)
             radii[j] += abs(moved) + error
-    least, most = energy_between(claim, bonds, radii)
+        least, most = energy_between(claim, bonds, radii)
     need(ends[0] <= least and most <= ends[1], "H may be outside the stated interval")
 
 

@@ -14,7 +14,8 @@ SIGNS = {FREQUENCY: "frequency omega", AMPLITUDE: "amplitude A", ENERGY: "energy
 
 def theorem_text(claim: Claim, data: Json, radius: Fraction, unique: Fraction) -> str:
     """What has been proved, in one sentence."""
-    start = f"theorem: the chain of N = {claim.N} bonds with fixed ends and {law(claim.force)} has"
+    start = f"theorem: {chain_of(claim)} and {law(claim.force)} has"
+    moving = "even in time" if not claim.shape.travelling else wave_of(claim)
     where = "of the certificate" if not claim.half_width else "of a line in the certificate"
     only = (
         "it is the only one"
@@ -22,12 +23,34 @@ def theorem_text(claim: Claim, data: Json, radius: Fraction, unique: Fraction) -
         else "it and its frequency are the only ones"
     )
     return (
-        f"{start} {orbits(claim)}, even in time, whose bond stretches "
+        f"{start} {orbits(claim)}, {moving}, whose bond stretches "
         f"differ from those {where} by at most {scientific(radius)} at all times "
-        f"and in the strip |Im omega t| <= log({claim.nu}); with the symmetry of seed {claim.seed} "
+        f"and in the strip |Im omega t| <= log({claim.nu}); with the symmetry of seed "
+        f"{claim.shape.seed} "
         f"{only} within {scientific(unique, rounded=floor)} in the weighted norm; "
         f"{', '.join(stated_intervals(claim, data))}"
     )
+
+
+def chain_of(claim: Claim) -> str:
+    """The chain, without its law."""
+    if claim.shape.travelling:
+        return f"the ring of N = {claim.N} particles with as many bonds"
+    return f"the chain of N = {claim.N} bonds with fixed ends"
+
+
+def wave_of(claim: Claim) -> str:
+    """How a wave moves."""
+    phase = f"omega t - 2 pi ({claim.shape.seed}) (j + 1/2)/{claim.N}"
+    return f"a travelling wave r_j(t) = r({phase}) of an even function r"
+
+
+def elsewhere(claim: Claim) -> str:
+    """Of which other chain it is an orbit."""
+    if claim.shape.travelling:
+        return "reflected, x_(N-j) -> -x_j, it is a wave of the opposite seed"
+    ring = f"the ring of {2 * claim.N} particles"
+    return f"unfolded, x_(2N-j) = -x_j, it is a periodic orbit of {ring}"
 
 
 def orbits(claim: Claim) -> str:

@@ -42,13 +42,16 @@ def orbit_of(data: Json) -> Orbit:
     """The numbers of a certificate of existence that has been checked."""
     claim = check_existence.read_claim(data)
     need(not claim.bordered, "stability needs an orbit of exact frequency")
+    need(not claim.shape.travelling, "stability is proved with fixed ends")
     need(not claim.force.growths, "stability needs a polynomial potential")
     rows = [[0] * claim.N for _ in range(claim.harmonics + 1)]
     for (n, q), c in claim.orbit.items():
         rows[n][q] = c
     radius = dyadic(data["radius"], "radius")
     couplings = claim.force.couplings
-    return Orbit(claim.N, couplings, claim.seed, claim.omega, claim.bits, rows, radius)
+    return Orbit(
+        claim.N, couplings, claim.shape.seed, claim.omega, claim.bits, rows, radius
+    )
 
 
 class Sector(NamedTuple):
