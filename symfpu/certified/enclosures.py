@@ -145,8 +145,7 @@ def slopes_of(orbit: RoundedOrbit, radius: Fraction, cut: float, reach: float) -
         moved = flint.arb(0)
         for bond in balls.stretches:
             size = balls.norm(bond) + ball(radius)
-            for k, c in orbit.powers.items():
-                moved += ball(abs(c) * radius) * k * (k - 1) * size ** (k - 2)
+            moved += balls.force.curvature_bound(size) * ball(radius)
         lost = part.rest + double_above(moved)
     sizes = 2 * np.abs(part.slopes).sum(axis=1)
     tails = np.append(np.cumsum(sizes[::-1])[::-1], 0.0)

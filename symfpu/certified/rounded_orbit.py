@@ -12,7 +12,6 @@ the harmonics of its one function r, each in the column of its mode. Ours.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -66,14 +65,6 @@ class RoundedOrbit:
         """c in doubles, shape (H+1, modes)."""
         scaled = [[math.ldexp(x, -self.bits) for x in row] for row in self.rows]
         return np.array(scaled)
-
-    @cached_property
-    def powers(self) -> dict[int, Fraction]:
-        """The coefficients of phi by power of r, of a polynomial potential."""
-        potential = self.chain.potential
-        degree = potential.degree or 2
-        found = {k: potential.coefficient(k + 1) for k in range(2, degree)}
-        return {k: coupling for k, coupling in found.items() if coupling}
 
 
 def rounded_orbit(orbit: QuasiPeriodic | RingTorus) -> RoundedOrbit:
@@ -131,8 +122,3 @@ def _allowed(
         table[n, q] = int(mpmath.nint(mpmath.ldexp(stretches[n, q], bits)))
     last = max(n for n, row in enumerate(table) if any(row))
     return tuple(tuple(row) for row in table[: last + 1].tolist())
-
-
-def smallest_harmonics(rows: Sequence[Sequence[int]]) -> int:
-    """Of the last row in bits: how much of the integers the last harmonic still has."""
-    return max(abs(x) for x in rows[-1]).bit_length()

@@ -236,13 +236,10 @@ def prove_stability(
 
 
 def require_exact_frequency(proof: ExistenceProof) -> None:
-    """The theorem is about one orbit of an exact frequency, of a polynomial potential."""
+    """The theorem is about one orbit of an exact frequency."""
     if proof.fixed != FREQUENCY or proof.half_width:
         advice = "prove existence without amplitude=, energy= and half_width="
         raise InputError("solution", proof, "an orbit of an exact frequency", advice)
-    if proof.chain.potential.degree is None:
-        allowed = "a polynomial potential with exact coefficients"
-        raise InputError("chain", proof.chain, allowed, "take poly: with its first ones")
 
 
 def orbit_of(proof: ExistenceProof) -> RoundedOrbit:

@@ -4,6 +4,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from symfpu.proofs import check_existence
+from symfpu.proofs.check_existence.claim import Force
 from symfpu.proofs.reading import CertificateError, Json, check_kind, dyadic, need
 
 Place = tuple[int, int]  # harmonic n, mode q
@@ -12,11 +13,11 @@ Place = tuple[int, int]  # harmonic n, mode q
 class Orbit(NamedTuple):
     """What the certificate of existence has proved: an orbit within `radius` of these numbers.
 
-    couplings : of phi(r) = V'(r) - r by power of r. rows : c_q[n] 2^bits by harmonic, all modes.
+    force : phi(r) = V'(r) - r. rows : c_q[n] 2^bits by harmonic, all modes.
     """
 
     N: int
-    couplings: dict[int, Fraction]
+    force: Force
     seed: int
     omega: Fraction
     bits: int
@@ -26,7 +27,7 @@ class Orbit(NamedTuple):
     @property
     def even(self) -> bool:
         """Whether V is even."""
-        return all(k % 2 for k in self.couplings)
+        return self.force.even
 
 
 def check_existence_of(data: Json) -> str:
@@ -43,14 +44,12 @@ def orbit_of(data: Json) -> Orbit:
     claim = check_existence.read_claim(data)
     need(not claim.bordered, "stability needs an orbit of exact frequency")
     need(not claim.shape.travelling, "stability is proved with fixed ends")
-    need(not claim.force.growths, "stability needs a polynomial potential")
     rows = [[0] * claim.N for _ in range(claim.harmonics + 1)]
     for (n, q), c in claim.orbit.items():
         rows[n][q] = c
     radius = dyadic(data["radius"], "radius")
-    couplings = claim.force.couplings
     return Orbit(
-        claim.N, couplings, claim.shape.seed, claim.omega, claim.bits, rows, radius
+        claim.N, claim.force, claim.shape.seed, claim.omega, claim.bits, rows, radius
     )
 
 

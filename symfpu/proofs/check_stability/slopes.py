@@ -51,25 +51,29 @@ def product(a: Series, b: Series) -> Series:
 
 
 def slope(orbit: Orbit, r: Series) -> Series:
-    """phi'(r) = sum k c_k r^(k-1)."""
+    """phi'(r) = sum k c_k r^(k-1), up to the degree that is used; the rest is an error."""
     power, total, error = Series([1 << FINE], 0), [0], 0
-    for k in range(2, max(orbit.couplings) + 1):
+    couplings = orbit.force.couplings
+    for k in range(2, max(couplings) + 1):
         power = product(power, r)
-        c = k * orbit.couplings.get(k, Fraction(0))
+        c = k * couplings.get(k, Fraction(0))
         total += [0] * (len(power.values) - len(total))
         for n, x in enumerate(power.values):
             total[n] += x * c.numerator // c.denominator
         error += up(power.error * abs(c)) + len(power.values)
-    return Series(total, error)
+    left_out = orbit.force.left_out(size_of(r), 1)
+    return Series(total, error + up(left_out * (1 << FINE)))
+
+
+def size_of(r: Series) -> Fraction:
+    """Above sum |a_n|, in few places."""
+    return Fraction(up(Fraction(r.size * ONE, 1 << FINE)), ONE)
 
 
 def moved_slope(orbit: Orbit, r: Series) -> Fraction:
     """Above |phi'(r*) - phi'(r)| for |r* - r| up to the radius of the orbit."""
-    size = Fraction(r.size, 1 << FINE) + orbit.radius
-    size = Fraction(up(size * ONE), ONE)
-    terms = orbit.couplings.items()
-    steepest = sum((abs(c) * k * (k - 1) * size ** (k - 2) for k, c in terms), Fraction(0))
-    return steepest * orbit.radius
+    size = Fraction(up((size_of(r) + orbit.radius) * ONE), ONE)
+    return orbit.force.curvature_bound(size) * orbit.radius
 
 
 class Slopes:
