@@ -32,7 +32,6 @@ from symfpu.certified.exponents import guesses
 from symfpu.certified.layout import layout_of
 from symfpu.certified.rounded_orbit import RoundedOrbit
 from symfpu.certified.sectors import Sector, sectors_of
-from symfpu.chain.chain import require_fixed_ends
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
@@ -212,8 +211,8 @@ def prove_stability(
     StabilityProof(N=6, beta=1, seed 4, omega=1.9005...: linearly unstable, growth rate in
     0.02488... .. 0.02488...)
     """
+    require_no_ring(solution)
     proof = solution if isinstance(solution, ExistenceProof) else prove_existence(solution)
-    require_fixed_ends(proof.chain)
     require_exact_frequency(proof)
     orbit = orbit_of(proof)
     sectors = sectors_of(orbit.chain, orbit.seed)
@@ -233,6 +232,15 @@ def prove_stability(
         gaps=gaps,
         body=body,
     )
+
+
+def require_no_ring(solution: object) -> None:
+    """Waves of a ring are proved to exist, and no more."""
+    chain = getattr(solution, "chain", None)
+    if chain is not None and chain.periodic:
+        given, allowed = f"a wave of {chain!r}", "a breather of a chain with fixed ends"
+        advice = "prove_existence takes waves; normal_modes has their frequencies"
+        raise InputError("solution", given, allowed, advice)
 
 
 def require_exact_frequency(proof: ExistenceProof) -> None:

@@ -15,11 +15,11 @@ the mean over time is the sum of squares over harmonics.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import product
-from math import factorial, prod
-from typing import Any
+from itertools import islice
+from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,16 +28,17 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.localization.laws import middle_modes, packet_width, positive
-from symfpu.numbers.typed import seed_modes
+from symfpu.localization.packet_loops import Ways, rows_that_meet, squares_of_products
+from symfpu.numbers.typed import integer, seed_modes
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Parts = tuple[int, ...]  # subsets, as bits, that make up another one
-Paths = list[tuple[Integers, Floats]]
 
 LAST_GROUP = 3  # whose middle mode is given unless others are asked for
 ROWS = 2**14  # products of seeds at a time
-MOST_WORK = 5 * 10**9  # multiplications: two minutes
+MOST_WORK = 10**13  # multiplications: ten minutes to half an hour
+MOST_WAITING = 2**22  # products whose harmonics others have, that are held one by one
 # of Omega^2: a divisor below it cannot be told from zero in doubles
 LEAST_DIVISOR = 1e-12
 
@@ -60,6 +61,20 @@ class Recursion:
         products = sum(len(parts) for ways in self.splits.values() for parts, _ in ways)
         return products << (self.degree - 1)
 
+    def ways(self) -> Ways:
+        """As `squares_of_products` takes them; parts of one factor, U = 1, are left out."""
+        places = {subset: place for place, subset in enumerate(self.splits)}
+        kept = [
+            ([places[part] for part in parts if part.bit_count() > 1], g)
+            for ways in self.splits.values()
+            for parts, g in ways
+        ]
+        parts = np.full((len(kept), max(2, *(len(row) for row, _ in kept))), -1)
+        for filled, (row, _) in zip(parts, kept, strict=True):
+            filled[: len(row)] = row
+        first = np.cumsum([0, *map(len, self.splits.values())])
+        return np.array(list(places)), first, np.array([g for _, g in kept]), parts
+
 
 def packet_energies(
     chain: Chain,
@@ -67,6 +82,7 @@ def packet_energies(
     specific_energy: float,
     modes: Sequence[int] | None = None,
     *,
+    workers: int = 1,
     progress: Progress | None = None,
 ) -> Floats:
     """Mean energies E_q on the torus with seeds 1 .. s of equal energies, by the leading terms.
@@ -78,7 +94,7 @@ def packet_energies(
     chain : of any potential with c_3, or with c_4 where it is even; N up to thousands.
     s : how many seeds, 1 .. N-1. specific_energy : eps = E/N, each seed has E/s. modes : beyond the
         seeds, default the middle ones of D_1, D_2, D_3. All is dimensionless.
-    progress : called as (label, fraction), once a mode.
+    workers : threads; sums to rounding the same. progress : called as (label, fraction).
 
     Returns energies (n,), in the order of the modes; 0.0 for a mode that is not excited. Exact to
     rounding; the true torus differs by terms of higher order in lambda, of `packet_parameter`.
@@ -92,28 +108,54 @@ def packet_energies(
     chain, s = _chain(chain), packet_width(chain, s)
     share = chain.N * positive(specific_energy, "specific_energy") / s
     chosen = _modes(chain, s, modes)
-    tell = progress or unheard
+    heard, workers = progress or unheard, integer(workers, "workers", 1)
     energies = np.zeros(len(chosen))
     for place, q in enumerate(chosen):
-        tell(f"mode {q}", place / len(chosen))
-        energies[place] = _energy(chain, s, share, q)
+
+        def tell(done: float, label: str = f"mode {q}", before: int = place) -> None:
+            heard(label, (before + done) / len(chosen))
+
+        energies[place] = _energy(chain, s, share, q, workers, tell)
     return energies
 
 
-def _energy(chain: Chain, s: int, share: float, q: int) -> float:
+def _energy(
+    chain: Chain,
+    s: int,
+    share: float,
+    q: int,
+    workers: int,
+    tell: Callable[[float], None],
+) -> float:
     """E_q with the energy E/s in each seed: w_n^2 = E_n/2."""
     degree = _degree(chain, s, q)
     recursion = _recursion(chain, s, degree)
     _check_work(recursion, q)
-    total = 0.0
-    meeting: list[tuple[Integers, Floats]] = []
     # a seed that is subtracted can take the place of one that another product has twice
     least_pairs = 1 if q < (degree - 1) * s else 2
-    for seeds, turned in packet_products(s, degree, q):
-        paths = _paths(recursion, seeds, turned)
-        total += _squares(recursion, seeds, paths, least_pairs, meeting)
-    total += _cross_terms(meeting)
-    return float(total / 2 * (share / 2) ** degree)
+    _check_keys(s, degree - 2 * least_pairs, q)
+    ways = recursion.ways()
+
+    def summed(batch: tuple[Integers, bool]) -> tuple[float, Integers, Floats]:
+        seeds, turned = np.ascontiguousarray(batch[0]), batch[1]
+        room = rows_that_meet(seeds, least_pairs) << (degree - 1)
+        keys, meeting = np.empty(room, dtype=np.int64), np.empty((room, 3))
+        rules = s, recursion.frequencies, ways, least_pairs, LEAST_DIVISOR
+        own, written, near = squares_of_products(seeds, turned, *rules, keys, meeting)
+        if near:
+            raise _resonant(recursion)
+        return own, keys[:written], meeting[:written]
+
+    count, done, total = max(product_count(s, degree, q), 1), 0, 0.0
+    meetings, batches = Meetings(), packet_products(s, degree, q)
+    with ThreadPoolExecutor(workers) as pool:
+        while some := list(islice(batches, workers)):
+            tell(done / count)
+            for own, keys, meeting in pool.map(summed, some):
+                total += own
+                meetings.add(keys, meeting)
+            done += sum(len(seeds) for seeds, _ in some)
+    return float((total + meetings.total()) / 2 * (share / 2) ** degree)
 
 
 def packet_products(s: int, degree: int, q: int) -> Iterator[tuple[Integers, bool]]:
@@ -172,122 +214,44 @@ def _extended(rows: Integers, lacking: Integers, left: int) -> Integers:
     return np.column_stack([np.repeat(rows, counts, axis=0), following])
 
 
-def _squares(
-    recursion: Recursion,
-    seeds: Integers,
-    paths: Paths,
-    least_pairs: int,
-    meeting: list[tuple[Integers, Floats]],
-) -> float:
-    """Sum over signs of (1 + (nu/Omega_q)^2) c^2; c^2 without its share of equal arrangements.
+class Meetings:
+    """What products with the same harmonic add to the sum of their squares.
 
-    With the last sign + : turning all signs changes nothing. Products whose harmonics other
-    products may have, too, are added to `meeting`: those with so many pairs of opposite factors.
+    Held by harmonic, each with its opposite: sums of c, of the shares of c^2, and the weight.
     """
-    own = recursion.frequencies[seeds]
-    equal = _equal(seeds)
-    alike = _ranks(equal)
-    paired = _pairs(equal) >= least_pairs
-    _, squared = paths[0]
-    total = 0.0
-    for free in product((1, -1), repeat=recursion.degree - 1):
-        signs = np.array((*free, 1))
-        driving: Floats = _subset_sums(own * signs)
-        values = np.zeros(len(seeds))
-        for rows, squares in paths:
-            values[rows] += _values(recursion, squares, driving[:, rows])
-        same = _ranks(equal & (signs[:, None] == signs))
-        weight = 1 + driving[-1] ** 2 / squared[-1, 0]
-        total += 2 * float(np.sum(weight * values**2 / (same * alike)))
-        if paired.any():
-            row = _net(seeds[paired], equal[paired], signs)
-            columns = np.array([values / same, same / alike, weight])[:, paired].T
-            meeting += [(row, columns), (np.sort(-row), columns)]
-    return total
 
+    def __init__(self) -> None:
+        self.keys = np.zeros(0, dtype=np.int64)
+        self.columns = np.zeros((0, 3))
+        self._later: list[tuple[Integers, Floats]] = []
+        self._waiting = 0
 
-def _paths(recursion: Recursion, seeds: Integers, turned: bool) -> Paths:
-    """The ways in which r seeds make up the mode: the rows, and Omega_m^2 of every subset.
+    def add(self, keys: Integers, columns: Floats) -> None:
+        """More of them; summed up where many wait."""
+        self._later.append((keys, columns))
+        self._waiting += len(keys)
+        if self._waiting > max(MOST_WAITING, len(self.keys)):
+            self._sum_up()
 
-    turned : which seed like the last one is subtracted.
-    """
-    if not turned:
-        sums = _subset_sums(seeds)
-        return [(np.arange(len(seeds)), recursion.frequencies[sums] ** 2)]
-    found = []
-    for column in range(recursion.degree - 1, -1, -1):
-        (rows,) = np.nonzero(seeds[:, column] == seeds[:, -1])
-        signed = seeds[rows]
-        signed[:, column] *= -1
-        sums = np.abs(_subset_sums(signed))
-        found.append((rows, recursion.frequencies[sums] ** 2))
-    return [path for path in found if len(path[0])]
+    def _sum_up(self) -> None:
+        keys = np.concatenate([self.keys, *(keys for keys, _ in self._later)])
+        columns = np.concatenate([self.columns, *(found for _, found in self._later)])
+        self._later, self._waiting = [], 0
+        if not len(keys):
+            return
+        order = np.argsort(keys, kind="stable")
+        keys, columns = keys[order], columns[order]
+        first = np.flatnonzero(np.diff(keys, prepend=-1))
+        self.keys = keys[first]
+        sums = np.add.reduceat(columns[:, :2], first, axis=0)
+        self.columns = np.column_stack([sums, columns[first, 2]])
 
-
-def _values(recursion: Recursion, squared: Floats, driving: Floats) -> Floats:
-    """U of all factors together, by row."""
-    divisors = squared - driving**2
-    found: dict[int, Floats] = {}
-    for subset, ways in recursion.splits.items():
-        if not ways:  # one factor
-            found[subset] = np.ones(squared.shape[1])
-            continue
-        least = np.abs(divisors[subset]) < LEAST_DIVISOR * squared[subset]
-        if least.any():
-            raise _resonant(recursion)
-        summed = sum(g * prod(found[part] for part in parts) for parts, g in ways)
-        found[subset] = -squared[subset] / divisors[subset] * summed
-    return found[len(squared) - 1]
-
-
-def _cross_terms(meeting: Sequence[tuple[Integers, Floats]]) -> float:
-    """What products with the same harmonic add to the sum of their squares."""
-    if not meeting:
-        return 0.0
-    rows = np.concatenate([row for row, _ in meeting])
-    value, share, weight = np.concatenate([columns for _, columns in meeting]).T
-    _, first, place = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    place = place.ravel()
-    sums = np.bincount(place, value * share)
-    squares = np.bincount(place, value**2 * share)
-    return float(np.sum(weight[first] * (sums**2 - squares)))
-
-
-def _subset_sums(values: Any) -> Any:
-    """Sums over every subset of the columns, as bits; (2^r, rows)."""
-    rows, degree = values.shape
-    sums = np.zeros((2**degree, rows), dtype=values.dtype)
-    for i in range(degree):
-        sums[1 << i : 2 << i] = sums[: 1 << i] + values[:, i]
-    return sums
-
-
-def _equal(seeds: Integers) -> NDArray[np.bool_]:
-    """Which factors of a product are of the same seed; (rows, r, r)."""
-    return np.asarray(seeds[:, :, None] == seeds[:, None, :])
-
-
-def _ranks(equal: NDArray[np.bool_]) -> Floats:
-    """Product of m! over numbers m of equal factors, by row."""
-    upto = np.tril(np.ones(equal.shape[1:], dtype=bool))
-    places = np.sum(equal & upto, axis=2)
-    return np.asarray(np.prod(places, axis=1, dtype=np.float64))
-
-
-def _pairs(equal: NDArray[np.bool_]) -> Integers:
-    """How many pairs of equal factors can be taken out of each row at once."""
-    upto = np.tril(np.ones(equal.shape[1:], dtype=bool))
-    place = np.sum(equal & upto, axis=2)
-    return np.asarray(np.sum(place % 2 == 0, axis=1))
-
-
-def _net(seeds: Integers, equal: NDArray[np.bool_], signs: Integers) -> Integers:
-    """The harmonic of each row, as its seeds with signs once opposite ones are gone; sorted."""
-    upto = np.tril(np.ones(equal.shape[1:], dtype=bool))
-    net = np.sum(equal * signs, axis=2)
-    place = np.sum(equal & upto, axis=2)
-    kept = place <= np.abs(net)
-    return np.sort(np.where(kept, seeds * np.sign(net), 0), axis=1)
+    def total(self) -> float:
+        """Over all harmonics and their opposites; key 0 is its own opposite."""
+        self._sum_up()
+        sums, squares, weights = self.columns.T
+        times = np.where(self.keys == 0, 2.0, 1.0)
+        return float(np.sum(2 * weights * (times * sums**2 - squares)))
 
 
 def _recursion(chain: Chain, s: int, degree: int) -> Recursion:
@@ -383,13 +347,20 @@ def product_count(s: int, degree: int, q: int) -> int:
 
 
 def _check_work(recursion: Recursion, q: int) -> None:
-    """InputError for sums that would take more than minutes."""
+    """InputError for sums that would take more than half an hour."""
     count = product_count(recursion.width, recursion.degree, q)
     work = count * recursion.work
     if work > MOST_WORK:
         needed = f"mode {q}: {count:.3g} products of {recursion.degree} seeds"
         allowed = f"what takes {MOST_WORK:.0e} multiplications ({work:.1e} here)"
         raise InputError("modes", needed, allowed, "take fewer seeds, or an earlier group")
+
+
+def _check_keys(s: int, factors: int, q: int) -> None:
+    """InputError where a harmonic that products share has no 64-bit number."""
+    if (2 * s + 2) ** max(factors, 0) >= 2**63:
+        allowed = f"what has harmonics of at most {factors} factors in 64 bits"
+        raise InputError("modes", q, allowed, "take fewer seeds, or an earlier group")
 
 
 def _resonant(recursion: Recursion) -> InputError:

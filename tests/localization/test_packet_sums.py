@@ -86,6 +86,18 @@ def test_longer_chains_differ_by_one_over_the_width(kind):
     assert 1.5 < first / second < 2.5
 
 
+def test_threads_add_up_to_the_same():
+    chain, modes = Chain(512, beta="0.3"), [130, 192]
+    assert packet_energies(chain, 32, 1e-6, modes).tolist() == packet_energies(chain, 32, 1e-6, modes, workers=3).tolist()
+
+
+def test_wide_packets_of_the_third_group():
+    """Against sums by arrays of all signs at once, the route before compiled loops: N = 1024 and 2048, beta = 0.3, mode 6s."""
+    for N, expected in ((1024, 7.9710615e-36),):
+        found = packet_energies(Chain(N, beta="0.3"), N // 16, 1.5625e-6, [6 * N // 16])
+        assert found == pytest.approx([expected], rel=1e-7)
+
+
 def test_energies_go_with_powers_of_the_energy():
     modes = middle_modes(BETA, 2)[:2]
     ratio = packet_energies(BETA, 2, 2e-4, modes) / packet_energies(BETA, 2, 1e-4, modes)
@@ -107,7 +119,11 @@ def test_products_are_counted_and_make_up_the_mode(s, degree, q):
 def test_a_run_tells_its_modes():
     heard = []
     packet_energies(ALPHA, 3, 1e-6, [5, 8], progress=lambda label, fraction: heard.append((label, fraction)))
-    assert heard == [("mode 5", 0.0), ("mode 8", 0.5)]
+    assert [label for label, _ in heard] == sorted(label for label, _ in heard)
+    assert heard[0] == ("mode 5", 0.0)
+    assert dict(reversed(heard))["mode 8"] == 0.5
+    assert [fraction for _, fraction in heard] == sorted(fraction for _, fraction in heard)
+    assert heard[-1][1] < 1
     assert packet_energies(Chain(2, alpha=1), 1, 1e-6).shape == (0,)
 
 
@@ -117,7 +133,9 @@ REFUSED = {
     "no energy": lambda: packet_energies(ALPHA, 3, 0.0),
     "no number": lambda: packet_energies(ALPHA, 3, math.nan),
     "a ring": lambda: packet_energies(Chain(16, alpha=1, ends="periodic"), 3, 1e-6),
-    "minutes of work": lambda: packet_energies(Chain(4096, beta=1), 512, 1e-6, [2048]),
+    "an hour of work": lambda: packet_energies(Chain(4096, beta=1), 512, 1e-6, [3072]),
+    "harmonics without a number": lambda: packet_energies(Chain(80_000, beta=1), 4000, 1e-6, [20_000]),
+    "no workers": lambda: packet_energies(ALPHA, 3, 1e-6, workers=0),
     "no chain": lambda: packet_energies("chain", 3, 1e-6),
 }
 

@@ -17,7 +17,7 @@ SIZES = (64, 128, 256, 512, 1024)
 
 
 def law(levels, factors=1.0, line=ALPHA):
-    shape = (len(SIZES), torus_laws.GROUPS[line.chains[0].model])
+    shape = (len(SIZES), torus_laws.GROUPS)
     return torus_laws.TorusLaw(line, SIZES, np.broadcast_to(levels, shape), np.broadcast_to(factors, shape))
 
 
@@ -68,7 +68,7 @@ def test_tori_of_both_models(monkeypatch):
     monkeypatch.setattr(torus_laws, "SIZES", {"alpha": (64, 128), "beta": (64, 128)})
     alpha, beta = torus_laws.torus_law(ALPHA), torus_laws.torus_law(BETA)
     assert alpha.factors[0] == pytest.approx([15.98, 40.47, 48.65], rel=THREE_DIGITS)
-    assert beta.factors[1] == pytest.approx([2.684, 0.6279], rel=THREE_DIGITS)
+    assert beta.factors[1] == pytest.approx([2.684, 0.6279, 0.05283], rel=THREE_DIGITS)
     assert alpha.steps[0] == pytest.approx([-0.2089, -0.2909, -0.2616], abs=THREE_DIGITS)
     table = torus_laws.factors_table({"alpha": alpha, "beta": beta})
     assert table.count("C_1") == 2
@@ -82,4 +82,7 @@ def test_the_page_has_these_tables():
     for model, found in laws.items():
         for k, (exponent, last) in enumerate(zip(found.exponents, found.steps[-1], strict=True), 1):
             assert f"| {model} | D_{k} | {exponent:.3f} | {last:.3f} |" in page
-        assert torus_laws.invariance_claim(found, random()).verdict == HOLDS
+    verdicts = {model: torus_laws.invariance_claim(found, random()) for model, found in laws.items()}
+    assert verdicts["alpha"].verdict == HOLDS
+    assert verdicts["beta"].verdict == PARTLY
+    assert "but D_3 moves yet" in verdicts["beta"].ours

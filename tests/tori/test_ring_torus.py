@@ -2,6 +2,7 @@
 
 import inspect
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from symfpu import (
     pade_poles,
     solve_amplitudes,
     toda_torus,
+    travelling_breather,
     travelling_torus,
     travelling_waves,
     unfold,
@@ -22,6 +24,7 @@ from symfpu import (
 from symfpu.chain import bonds
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import DOUBLES
+from symfpu.tori.ring_torus import anharmonic_accelerations
 from tests.tolerances import (
     AMPLITUDE,
     GRID_AVERAGE,
@@ -176,6 +179,24 @@ def test_poles_of_the_frequencies_of_opposite_waves_are_those_of_the_standing_wa
         pade_poles(travelling_torus(waves), 1, {1: 0.3})
 
 
+def test_waves_of_long_rings_keep_their_digits():
+    """Neighbours move nearly alike: forces by differences of positions would be off by 1e-11 of themselves."""
+    chain = ring(1024, beta=1)
+    wave = travelling_breather(chain, 1, energy="1e-5")
+    assert wave.residual() < ROUNDING
+    assert not wave.warnings
+    Q = wave.mode_coordinates(0.3)
+    together = anharmonic_accelerations(chain, Q) - chain.frequencies() ** 2 * Q
+    assert np.abs(chain.accelerations(Q) - together).max() < 1e-9 * np.abs(together).max()
+
+
+def test_beyond_the_wall_of_a_potential_the_residual_is_infinite():
+    chain = Chain(5, potential="lj:12,6", ends="periodic")
+    wave = travelling_breather(chain, 1, amplitude="0.01")
+    far = replace(wave, sines=500 * wave.sines)
+    assert far.residual() == np.inf
+
+
 def test_other_objects_are_refused():
     found = torus(5, (1,), (1e-3,), 4, beta=1)
     with pytest.raises(InputError, match="travelling_waves"):
@@ -192,7 +213,7 @@ def test_other_objects_are_refused():
 
 SERIES_OR_TORUS = {"series", "torus", "solution", "orbit", "result", "found"}
 TAKE_WAVES = {"actions", "travelling_torus", "pade_poles", "save", "refine", "refine_at_amplitudes", "refine_at_energy", "floquet"}
-TAKE_WAVES |= {"foretold_indices", "normal_modes", "solve_normal_frequency", "twist"}
+TAKE_WAVES |= {"foretold_indices", "normal_modes", "prove_existence", "solve_normal_frequency", "twist"}
 OTHERS = {"path": "never_written", "language": "c", "folder": "never_written", "q": 1, "order": 2, "frequencies": ("0.4",)}
 
 
