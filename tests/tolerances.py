@@ -767,3 +767,12 @@ ENERGY_OF_TORUS = 300.0
 # Units in the last place of e^x - 1 and log(1 + x) of compiled loops: their last sum 0.5, rounding of squares and of reduced
 # arguments up to 0.5 at x = 0.35, where the result is a quarter of what is rounded; 1.04 measured there, below 0.8 elsewhere.
 PLACES_OF_EXPONENTIALS = 1.1
+
+# Amplitude of a proved orbit of doubles: its radius is some roundings, times the weight of the norm.
+OF_DOUBLES = 1e-12
+# What a wave does not have, by 128 points of a function that is analytic: exp(-128) of it would be left, and fifty digits.
+NO_HARMONIC = 1e-20
+# A figure kept with eight digits.
+EIGHT_DIGITS = 1e-7
+# Forces by differences of neighbours in a ring of 1024: rounding of positions over Omega_1^2 = 4e-5, 1e-11; well beyond doubles' own.
+LEAST_BY_NEIGHBOURS, MOST_BY_NEIGHBOURS = 1e-13, 1e-9

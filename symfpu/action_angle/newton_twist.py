@@ -23,11 +23,11 @@ from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.harmonics import unit_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.newton import responses
-from symfpu.refinement.ring_tori import wave_coefficients
 from symfpu.refinement.tori import shifts_of
 from symfpu.refinement.waves import WaveEquation
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.travelling import wave_coefficients
 
 
 class NoTwist(SymfpuError):

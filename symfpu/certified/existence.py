@@ -42,9 +42,9 @@ from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.one_sided import above, below, rational
 from symfpu.numbers.typed import Number, decimal, exact
-from symfpu.refinement.ring_tori import require_travelling
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.travelling import require_travelling
 
 FORMAT = "symfpu existence certificate"
 SCHEMA = 3

@@ -24,9 +24,9 @@ from symfpu.certified.layout import Layout, layout_of
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers
-from symfpu.refinement.ring_tori import wave_coefficients
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.travelling import wave_coefficients
 
 DOUBLE_DIGITS = 16
 SPARE_DIGITS = 6  # of the integers beyond those of the orbit

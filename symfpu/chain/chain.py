@@ -28,7 +28,6 @@ from symfpu.numbers.arithmetic import (
     DOUBLES,
     Arithmetic,
     Numbers,
-    arithmetic_of,
 )
 from symfpu.numbers.typed import Number, decimal, integer, rational
 
@@ -351,10 +350,22 @@ class Chain:
 
     def accelerations(self, Q: ArrayLike) -> Numbers:
         """Second time derivative of every mode coordinate Q (Eq. eqmo); shapes (..., N-1)."""
-        r = self.stretches(Q)
-        numbers = arithmetic_of(r)
-        tension = bonds.tension(self.law(numbers), r)
-        return self.kind_of_ends.coordinates(self.kind_of_ends.forces(tension), numbers)
+        Q, numbers = self.kind_of_ends.state(Q, "Q")
+        linear = self.frequencies(numbers) ** 2 * Q
+        return np.asarray(self.anharmonic_accelerations(Q) - linear)
+
+    def anharmonic_accelerations(self, Q: ArrayLike) -> Numbers:
+        """The same without the linear part, -Omega_q^2 Q_q.
+
+        Q : mode coordinates, shapes (..., N-1), as that of the result.
+        """
+        Q, numbers = self.kind_of_ends.state(Q, "Q")
+        r, law = self.kind_of_ends.stretches_of_modes(Q, numbers), self.law(numbers)
+        if numbers is DOUBLES:
+            tension = bonds.anharmonic_tension(law, r)
+        else:
+            tension = bonds.tension(law, r) - r
+        return self.kind_of_ends.forces_on_modes(tension, numbers)
 
     def B(self, q: int, l: int, m: int) -> int:
         """Coupling of three modes q, l, m (Eq. transa), by selection rule.

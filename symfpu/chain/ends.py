@@ -77,6 +77,16 @@ class Ends(ABC):
         """Forces on the particles, from the tensions of the N bonds."""
 
     @abstractmethod
+    def stretches_of_modes(self, Q: Numbers, numbers: Arithmetic) -> Numbers:
+        """Stretches r_j of mode coordinates; in doubles without differences of neighbours, which
+        move nearly alike in long waves.
+        """
+
+    @abstractmethod
+    def forces_on_modes(self, tension: Numbers, numbers: Arithmetic) -> Numbers:
+        """Forces on the mode coordinates, from the tensions of the N bonds; likewise."""
+
+    @abstractmethod
     def state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
         """Mode coordinates or momenta as an array, and its arithmetic.
 
@@ -159,6 +169,29 @@ class FixedEnds(Ends):
     def forces(self, tension: Numbers) -> Numbers:
         return np.diff(tension, axis=-1)
 
+    def stretches_of_modes(self, Q: Numbers, numbers: Arithmetic) -> Numbers:
+        """sqrt(2/N) sum_q Omega_q Q_q cos((j + 1/2) q pi / N), a cosine transform."""
+        from scipy.fft import dct
+
+        if numbers is not DOUBLES:
+            return self.stretches(self.positions(Q, numbers))
+        scaled = np.concatenate([np.zeros_like(Q[..., :1]), self._linear * Q], axis=-1)
+        return np.asarray(dct(scaled, type=3, norm="ortho", axis=-1))
+
+    def forces_on_modes(self, tension: Numbers, numbers: Arithmetic) -> Numbers:
+        """Minus the transpose."""
+        from scipy.fft import dct
+
+        if numbers is not DOUBLES:
+            return self.coordinates(self.forces(tension), numbers)
+        cosines = dct(tension, type=2, norm="ortho", axis=-1)
+        return np.asarray(-self._linear * cosines[..., 1:])
+
+    @property
+    def _linear(self) -> Numbers:
+        """Omega_q in doubles."""
+        return np.asarray(2 * np.sin(np.pi * np.arange(1, self.N) / (2 * self.N)))
+
     def state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
         return self._real(values, argument, self.N - 1, "put the modes last")
 
@@ -208,6 +241,18 @@ class PeriodicEnds(Ends):
 
     def forces(self, tension: Numbers) -> Numbers:
         return np.asarray(tension - np.roll(tension, 1, axis=-1))
+
+    def stretches_of_modes(self, Q: Numbers, numbers: Arithmetic) -> Numbers:
+        return self.positions(self._differences * Q, numbers)
+
+    def forces_on_modes(self, tension: Numbers, numbers: Arithmetic) -> Numbers:
+        return -self._differences.conj() * self.coordinates(tension, numbers)
+
+    @property
+    def _differences(self) -> Numbers:
+        """Of neighbours in a wave: e^(2 pi i q / N) - 1 = 2 i sin(pi q / N) e^(i pi q / N)."""
+        half = np.pi * np.array(self.modes) / self.N
+        return np.asarray(2j * np.sin(half) * np.exp(1j * half))
 
     def state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
         self._require_doubles(values, argument)

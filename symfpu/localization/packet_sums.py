@@ -28,7 +28,6 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.localization.laws import middle_modes, packet_width, positive
-from symfpu.localization.packet_loops import Ways, rows_that_meet, squares_of_products
 from symfpu.numbers.typed import integer, seed_modes
 
 Floats = NDArray[np.float64]
@@ -61,7 +60,7 @@ class Recursion:
         products = sum(len(parts) for ways in self.splits.values() for parts, _ in ways)
         return products << (self.degree - 1)
 
-    def ways(self) -> Ways:
+    def ways(self) -> tuple[Integers, Integers, Floats, Integers]:
         """As `squares_of_products` takes them; parts of one factor, U = 1, are left out."""
         places = {subset: place for place, subset in enumerate(self.splits)}
         kept = [
@@ -128,12 +127,14 @@ def _energy(
     tell: Callable[[float], None],
 ) -> float:
     """E_q with the energy E/s in each seed: w_n^2 = E_n/2."""
+    from symfpu.localization.packet_loops import rows_that_meet, squares_of_products
+
     degree = _degree(chain, s, q)
     recursion = _recursion(chain, s, degree)
     _check_work(recursion, q)
     # a seed that is subtracted can take the place of one that another product has twice
     least_pairs = 1 if q < (degree - 1) * s else 2
-    _check_keys(s, degree - 2 * least_pairs, q)
+    check_keys(s, degree - 2 * least_pairs, q)
     ways = recursion.ways()
 
     def summed(batch: tuple[Integers, bool]) -> tuple[float, Integers, Floats]:
@@ -356,7 +357,7 @@ def _check_work(recursion: Recursion, q: int) -> None:
         raise InputError("modes", needed, allowed, "take fewer seeds, or an earlier group")
 
 
-def _check_keys(s: int, factors: int, q: int) -> None:
+def check_keys(s: int, factors: int, q: int) -> None:
     """InputError where a harmonic that products share has no 64-bit number."""
     if (2 * s + 2) ** max(factors, 0) >= 2**63:
         allowed = f"what has harmonics of at most {factors} factors in 64 bits"

@@ -23,10 +23,10 @@ import numpy as np
 from symfpu.normal.linearised import Linearised, Mask, Values, of_both_signs
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.invariance import DIGITS, long
-from symfpu.refinement.ring_tori import wave_coefficients
 from symfpu.refinement.tori import shifts_of
 from symfpu.refinement.waves import WaveEquation
 from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.travelling import wave_coefficients
 
 LARGEST = 2.0  # of |lambda|
 

@@ -25,12 +25,12 @@ from symfpu.normal.resonances import resonances_of
 from symfpu.normal.torus import LENGTH, second_order
 from symfpu.numbers.arithmetic import DOUBLES, GUARD_DIGITS, MULTIPRECISION
 from symfpu.numbers.typed import integer
-from symfpu.refinement.ring_tori import require_travelling
 from symfpu.series.arguments import digits_of
 from symfpu.series.series import LindstedtSeries
 from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
+from symfpu.tori.travelling import require_travelling
 
 STEPS, STEPS_DIGITS = 30, 60  # with doubles, with digits
 LARGEST_MOVE = 0.1  # of sigma, relative, away from the guess

@@ -11,13 +11,13 @@ import numpy as np
 from symfpu.errors import InputError
 from symfpu.numbers.counted import counted
 from symfpu.refinement.conditions import seed_amplitudes
-from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.lattice import dilated
 from symfpu.refinement.newton import Iterate, NewtonStep
 from symfpu.refinement.resonances import NearResonance, near_resonances
 from symfpu.refinement.waves import WaveEquation
 from symfpu.series.travelling_divisors import resonant
 from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.travelling import signs_of
 
 SUSPECT = 1e-9  # of nu.omega, below which it is decided exactly
 LOW = 4.0  # sum |nu_i| of the harmonics that are looked at beside those of the guess
@@ -68,32 +68,6 @@ class RefinedRingTorus(RingTorus):
         doubts = "".join(f"; {warning}" for warning in self.warnings)
         left = f"residual {self.residual():.2g}{nearest}{doubts}"
         return f"RefinedRingTorus({chain}, {rates}, {found}, {quality}, {left})"
-
-
-def require_travelling(torus: RingTorus) -> None:
-    """InputError for waves of a ring that are no function of the phases of its seeds alone."""
-    own = torus.harmonics @ np.array(torus.seeds)
-    if ((own - torus.modes) % torus.chain.N).any():
-        allowed = "travelling waves: each harmonic nu in the mode nu.seeds, modulo N"
-        advice = "refine the solution with fixed ends and unfold it"
-        raise InputError("torus", "a torus of standing waves", allowed, advice)
-
-
-def wave_coefficients(torus: RingTorus) -> tuple[Ints, Floats]:
-    """The harmonics, and the coefficients (H, 1) of `WaveEquation`, as they stand."""
-    signs = _signs(torus.harmonics @ np.array(torus.seeds), torus.chain.N)
-    found: dict[tuple[int, ...], float] = {}
-    for nu, c in zip(torus.harmonics.tolist(), signs * torus.sines, strict=True):
-        sign = -1 if next((n for n in nu if n), 1) < 0 else 1
-        key = tuple(sign * n for n in nu)
-        found[key] = found.get(key, 0.0) + float(c)
-    harmonics = np.array(list(found), dtype=np.int64).reshape(-1, len(torus.seeds))
-    return harmonics, np.array(list(found.values()))[:, None]
-
-
-def _signs(modes: Ints, N: int) -> Ints:
-    """Of sin(pi m / N)."""
-    return np.where(modes // N % 2 == 0, 1, -1)
 
 
 def require_independent(torus: RingTorus) -> None:
@@ -153,7 +127,7 @@ def refined_waves(
         amplitudes=dict(zip(seeds, amplitudes, strict=True)),
         harmonics=harmonics,
         modes=modes,
-        sines=_signs(modes, N) * found.cosines[moving, 0].astype(float),
+        sines=signs_of(modes, N) * found.cosines[moving, 0].astype(float),
         steps=found.steps,
         near_resonances=near,
     )

@@ -48,12 +48,11 @@ from symfpu.refinement.ring_tori import (
     driven_in_resonance,
     refined_waves,
     require_independent,
-    require_travelling,
-    wave_coefficients,
 )
 from symfpu.refinement.waves import WaveEquation
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.travelling import require_travelling, wave_coefficients
 
 # residual of the equations of motion, relative to the largest acceleration, that ends the search
 # for harmonics

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.grading import Ints
-from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.frames.attributes import RADIANS, attributes
@@ -241,7 +240,7 @@ class RingTorus(Shown, Gridded):
         linear = 2 * np.sin(np.pi * self.modes / self.chain.N)
         for theta in self._angle_grid(number):
             Q = self._sums(theta)
-            anharmonic = anharmonic_accelerations(self.chain, Q)
+            anharmonic = self.chain.anharmonic_accelerations(Q)
             off = self._sums(theta, linear**2 - self._rates**2) - anharmonic
             if not np.isfinite(off).all():
                 return math.inf
@@ -303,15 +302,6 @@ class RingTorus(Shown, Gridded):
             rows=("wave",),
             across="seed",
         )
-
-
-def anharmonic_accelerations(chain: Chain, Q: Waves) -> Waves:
-    """Of the modes of a ring, (..., N-1), by V'(r) - r; differences are taken mode by mode."""
-    half = np.pi * np.array(chain.mode_numbers) / chain.N
-    difference = 2j * np.sin(half) * np.exp(1j * half)
-    stretches = chain.positions(difference * Q)
-    tension = bonds.anharmonic_tension(chain.law(), stretches)
-    return np.asarray(-difference.conj() * chain.modes(tension))
 
 
 def _rate(nu: list[int], frequencies: tuple[Fraction, ...]) -> Fraction:

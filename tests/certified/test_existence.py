@@ -31,7 +31,18 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.ring_torus import unfold
 from symfpu.tori.verdict import assess
-from tests.tolerances import FREE, PROVED_FREQUENCY, PROVED_RADIUS, SAME_BOUNDS, SAME_DERIVATIVE, SAME_FREQUENCY, SQUEEZED
+from tests.tolerances import (
+    FREE,
+    NO_HARMONIC,
+    OF_DOUBLES,
+    PROVED_FREQUENCY,
+    PROVED_RADIUS,
+    SAME_BOUNDS,
+    SAME_DERIVATIVE,
+    SAME_FREQUENCY,
+    SQUEEZED,
+    THOUSAND_ROUNDINGS,
+)
 
 FIG9 = Chain(N=32, alpha="0.33")
 CASES = {
@@ -292,19 +303,19 @@ def test_the_wave_of_the_toda_ring_is_where_the_theorem_says(N, q):
         A = mpmath.sqrt(N) * cosines[1] / linear
         assert abs(A) > 0.05
         sign = 1 if A * found.amplitude > 0 else -1  # half a period of the phase
-        assert abs(sign * A - found.amplitude) < found.amplitude_radius < 1e-12
+        assert abs(sign * A - found.amplitude) < found.amplitude_radius < OF_DOUBLES
         claim = check_existence.read_claim(json.loads(json.dumps(found.certificate())))
         ours = {n: mpmath.ldexp(c, -claim.bits) for (n, _), c in claim.orbit.items()}
         distance = mpmath.fsum(abs(sign**n * cosines[n] - ours.get(n, 0)) for n in range(1, 30) if n * q % N)
         assert 0 < distance < found.radius
-        assert all(abs(cosines[n]) < 1e-20 for n in range(1, 30) if n * q % N == 0)
+        assert all(abs(cosines[n]) < NO_HARMONIC for n in range(1, 30) if n * q % N == 0)
 
 
 def test_the_wave_has_the_energy_of_its_particles():
     for name in WAVES:
         chain, seed, made, _ = WAVES[name]
         H = travelling_breather(chain, seed, **made).energy()
-        assert abs(float(wave_proof(name).energy) - H) < 1e-13 * abs(H)
+        assert abs(float(wave_proof(name).energy) - H) < THOUSAND_ROUNDINGS * abs(H)
 
 
 def test_members_of_a_segment_of_waves_are_in_its_intervals(tmp_path):
