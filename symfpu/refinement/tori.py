@@ -544,7 +544,7 @@ def refined_torus(
         if residual <= tolerance:
             return refined
         if full or residual > before / 2:
-            reason = "more harmonics change nothing"
+            reason = "more harmonics change nothing and"
             if full:
                 reason = f"as many harmonics as fit (most_harmonics={most})"
             left = (
