@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.certified.layout import ROUNDOFF, Layout
+from symfpu.certified.room import require_room
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -34,6 +35,7 @@ LARGEST_WEIGHT, LARGEST_ENTRY = 2.0**40, 2**52
 POWERS = 60
 FIRST_FREE, WIDENING, WIDENINGS = 1.3, 1.3, 5  # harmonics, in units of the highest mode
 FIRST_BLOCK, SMALLEST_GROWTH, LARGEST_BLOCK = 8, 4, 400
+MATRICES = 7  # of rows by columns, that are there at once
 
 
 @dataclass(frozen=True)
@@ -214,6 +216,7 @@ class Attempt:
             last = max(last, len(part.border.column) - 1)
         self.inside = places_of(part.layout, self.columns, bordered=bordered)
         self.rows = places_of(part.layout, last, bordered=bordered)
+        require_room(part.layout.chain.N, len(self.rows.n), len(self.inside.n), MATRICES)
         self.divisors = part.divisors(self.rows)
         self.errors = part.divisor_errors(self.rows)
         self.count = len(self.inside.n)

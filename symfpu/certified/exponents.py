@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.certified.room import require_room
 from symfpu.certified.rounded_orbit import RoundedOrbit
 from symfpu.certified.sectors import Sector
 from symfpu.chain import bonds
@@ -28,6 +29,7 @@ STEP = 0.1  # over the square root of the largest stiffness of a bond
 ON_CIRCLE = 1e-7  # |log |rho|| below which a multiplier is tried as one of the circle
 INVERSES, NEWTON_STEPS = 5, 3
 CONVERGED = 1e-12
+MATRICES = 7  # of places by places, that are there at once, those of the bounds among them
 
 
 @dataclass(frozen=True)
@@ -151,6 +153,8 @@ class FourierSystem:
         """The nearest one by Newton's method, one inverse for a few steps; None if it is lost."""
         from scipy.linalg import lu_factor, lu_solve
 
+        count = len(self.places[0])
+        require_room(self.sector.N, count, count, MATRICES)
         squared = self.linear[self.places[1] - 1] ** 2
         value, z = guess.value, self.angles(guess, guess.value)
         matrix = self.force + np.diag(1 - z**2 / squared)

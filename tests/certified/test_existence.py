@@ -5,10 +5,12 @@ import re
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from types import SimpleNamespace
 
 import flint
 import mpmath
 import numpy as np
+import psutil
 import pytest
 
 from symfpu.breathers.at_energy import breather_at_energy
@@ -381,3 +383,18 @@ def test_the_amplitude_of_figure_9_given_exactly():
     found = prove_existence(orbit, amplitude="1.27153895251014")
     assert found.radius < PROVED_RADIUS
     assert abs(found.frequency - orbit.frequency) < SAME_FREQUENCY
+
+
+@pytest.mark.parametrize("door", [prove_existence, prove_stability])
+def test_a_proof_that_would_not_fit_is_refused_before_it_is_begun(door, monkeypatch):
+    monkeypatch.setattr(psutil, "virtual_memory", lambda: SimpleNamespace(available=10_000))
+    with pytest.raises(InputError, match="unknowns at once and needs about") as caught:
+        door(orbit("alpha"))
+    assert caught.value.argument == "orbit"
+
+
+def test_a_proof_of_stability_that_would_not_fit_is_refused(monkeypatch):
+    found = prove_existence(orbit("alpha"))
+    monkeypatch.setattr(psutil, "virtual_memory", lambda: SimpleNamespace(available=10_000))
+    with pytest.raises(InputError, match="unknowns at once"):
+        prove_stability(found)
