@@ -57,6 +57,14 @@ class TorusLaw:
         logs = np.log10(self.sizes[:PAPER_SIZES])
         return np.asarray(np.polyfit(logs, self.levels[:PAPER_SIZES], 1)[0])
 
+    @property
+    def limits(self) -> Floats:
+        """Of the factors as N grows, (groups,): steps that shrink go on as they do."""
+        before, last = np.diff(self.factors, axis=0)[-2:]
+        shrinks = np.abs(last) < np.abs(before)
+        ratio = np.divide(last, before, out=np.zeros_like(last), where=shrinks)
+        return np.asarray(self.factors[-1] + last * ratio / (1 - ratio))
+
 
 def torus_law(line: PrintedLine) -> TorusLaw:
     """At the fraction M and eps of a panel of Fig. 4."""
@@ -115,10 +123,10 @@ def factor_claim(law: TorusLaw) -> Claim:
     model = law.line.chains[0].model
     groups = range(1, GROUPS + 1)
     printed = [printed_factor(model, k) for k in groups]
-    found = law.factors[-1]
+    found = law.limits
     power = "lambda^k" if model == "alpha" else "lambda^2k"
-    ours = f"C_k = {_listed(found)} for N = {law.sizes[-1]}, "
-    ours += f"{_listed(law.factors[0])} for N = {law.sizes[0]}: no draws. "
+    ours = f"C_k = {_listed(law.factors[0])} for N = {law.sizes[0]}, {_listed(law.factors[-1])} "
+    ours += f"for N = {law.sizes[-1]}, about {_listed(found)} in the limit: no draws. "
     ours += "The powers of eps, M and lambda are exact, so the slope of middle modes is "
     ours += "log(lambda)/M but for log(C_(k+1)/C_k)"
     off = np.abs(np.log10(found / printed))

@@ -63,6 +63,12 @@ def test_factors_beside_the_printed_ones(factor, verdict):
     assert torus_laws.factor_claim(law(0.0, factor * printed)).verdict == verdict
 
 
+def test_factors_go_on_to_their_limit():
+    """5 + 1/N is half as far at each length; steps that grow have no limit, and the last one stands."""
+    found = law(0.0, np.hstack([5 + 1 / N, N / 64.0, np.ones_like(N)]))
+    assert found.limits == pytest.approx([5.0, 16.0, 1.0], rel=ROUNDING)
+
+
 def test_tori_of_both_models(monkeypatch):
     """Figures of docs/localization.md; the factors are those of asymptotic_group_energy with their corrections."""
     monkeypatch.setattr(torus_laws, "SIZES", {"alpha": (64, 128), "beta": (64, 128)})
