@@ -66,11 +66,12 @@ from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
 from symfpu.refinement.tori import RefinedTorus
 from symfpu.series.all_lengths import SeriesForAllN, ends_reached, in_order
+from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.divisors import SmallDivisor
 from symfpu.series.lindstedt import UNIVERSAL
 from symfpu.series.monomials import shared_grading
 from symfpu.series.rings import FIXED_POINT, RINGS, RingKind
-from symfpu.series.series import LindstedtSeries, ResiduePoint
+from symfpu.series.series import LindstedtSeries
 from symfpu.series.tables import Shapes
 from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution

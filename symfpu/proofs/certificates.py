@@ -33,12 +33,13 @@ from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import integer, seed_modes
 from symfpu.proofs.seed_sums import modes_of_one_parity
+from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.force import force_numbers
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import shared_grading
 from symfpu.series.residues import residue_series
-from symfpu.series.series import LindstedtSeries, ResiduePoint
+from symfpu.series.series import LindstedtSeries
 
 FORMAT = "symfpu propagation certificate"
 SCHEMA, POTENTIALS = 1, 2  # of alpha and beta, of other potentials

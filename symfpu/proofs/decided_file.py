@@ -11,7 +11,7 @@ from symfpu.files.kept_lines import KeptLines
 from symfpu.proofs.certificates import RuleException, Witness
 from symfpu.proofs.every_length import DecidedFlat
 from symfpu.proofs.flats import Flat
-from symfpu.series.series import ResiduePoint
+from symfpu.series.coefficients import ResiduePoint
 
 FORMAT, SCHEMA = "symfpu decided flats", 2
 

@@ -17,7 +17,7 @@ from symfpu.proofs.certificates import RuleException, Witness, random_point
 from symfpu.proofs.flats import Flat, degree_of
 from symfpu.proofs.plus_terms import PlusResidues, PlusTerms
 from symfpu.proofs.seed_sums import chained_modes, modes_of_one_parity
-from symfpu.series.series import ResiduePoint
+from symfpu.series.coefficients import ResiduePoint
 
 ATTEMPTS = 4  # points at which a residue may be zero before a mode counts as undecided
 

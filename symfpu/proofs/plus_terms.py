@@ -17,7 +17,7 @@ from itertools import permutations, product
 from typing import Any
 
 from symfpu.chain.propagation import product_couplings
-from symfpu.series.series import ResiduePoint
+from symfpu.series.coefficients import ResiduePoint
 
 Powers = tuple[int, ...]
 PLUS, MINUS, BOTH = 1, 2, 3  # signs that occur among the products

@@ -9,11 +9,12 @@ from symfpu.algebra.residue import ResidueRing
 from symfpu.chain.chain import Chain
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import integer, seed_modes
+from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.divisors import ResidueDivisors
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import monomial_space
 from symfpu.series.recursion import ring_series
-from symfpu.series.series import LindstedtSeries, ResiduePoint
+from symfpu.series.series import LindstedtSeries
 
 
 def residue_series(

@@ -35,7 +35,7 @@ from symfpu.series.memory import check_size
 from symfpu.series.monomials import shared_grading
 from symfpu.series.recursion import run_recursion
 from symfpu.series.rings import FLOAT64
-from symfpu.series.series import frequency_sums
+from symfpu.series.sums import frequency_sums
 from symfpu.series.tables import DoubleTables, Exponents
 from symfpu.series.travelling_divisors import TravellingDivisors, place_of
 

@@ -16,9 +16,9 @@ from symfpu.algebra.selection import CosineModes
 from symfpu.chain.chain import Chain
 from symfpu.errors import VanishingResidue
 from symfpu.proofs.certificates import random_point
+from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.residues import residue_series
-from symfpu.series.series import ResiduePoint
 
 PRIMES = (97, 65537, nextprime(2**39), 2**40 - 87)
 residues = st.integers(-(2**39), 2**39)

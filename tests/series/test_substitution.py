@@ -14,10 +14,10 @@ from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, ResonantDivisor, VanishingResidue
 from symfpu.proofs.certificates import random_point
+from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.residues import residue_series
 from symfpu.series.sample import sample_series
-from symfpu.series.series import ResiduePoint
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.quasiperiodic import FourierTorus
 from tests.oracles.cases import DEEP, SHALLOW

@@ -1,0 +1,284 @@
+"""Sums over the terms of a series at given amplitudes, in doubles or in many digits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import mpmath
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symfpu.algebra.grading import Ints
+from symfpu.algebra.polynomials import (
+    Polynomial,
+    evaluate,
+    powers_of,
+    rescaled,
+    square_root,
+)
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import (
+    MULTIPRECISION,
+    Numbers,
+    integers,
+    with_digits,
+)
+from symfpu.numbers.mpfr import MPFR, at_the_face, in_mpf, scaled_integers
+from symfpu.series.coefficients import SeriesCoefficients
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SeriesSums(SeriesCoefficients):
+    """A series whose frequencies are chosen, summed."""
+
+    def _numeric(self) -> None:
+        if self.frequencies is None:
+            allowed = "a series with chosen frequencies"
+            raise InputError(
+                "series", "universal form", allowed, "give frequencies= to lindstedt"
+            )
+
+    @cached_property
+    def _kappa(self) -> Any:
+        """The factor |mu|^(1/step) unit of the variables w_i, before the scaled tables apply."""
+        mu = abs(self.chain.small_parameter(self.numbers))
+        root = mu ** (1 / self.chain.degree_step)
+        return root * self.numbers.number(self.unit)
+
+    def _sign(self, order: int) -> float:
+        return -1.0 if self.chain.mu < 0 and order % 2 else 1.0
+
+    @cached_property
+    def seed_factors(self) -> Numbers:
+        """kappa Omega_i / 2: the scaled variables x_i at unit amplitudes; shape (s,)."""
+        linear = self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1]
+        factors = self._kappa / 2 * linear
+        return with_digits(np.asarray(factors), self.digits)
+
+    def scaled_seeds(self, amplitudes: ArrayLike) -> Numbers:
+        """The variables of the scaled tables, kappa Omega_i A_i / 2; shapes (s,)."""
+        with self._context():
+            scaled = self.seed_factors * self.numbers.array(amplitudes)
+            return with_digits(np.asarray(scaled), self.digits)
+
+    def amplitude_terms(self, order: int) -> tuple[Ints, Ints, Numbers]:
+        """mu^k Q_q^(k) with free amplitudes, by canonical monomials.
+
+        The sum over rows of value[., q] x^e cos(nu.theta), x = scaled_seeds(A).
+
+        The summands of Eq. serabs1, for any seeds. Returns harmonics nu (R, s), exponents e (R,
+        s) and values (R, N-1), one row for each canonical monomial.
+        """
+        self._numeric()
+        degree = self.degree(order)
+        nu, index = self.grading.harmonics(degree)
+        with self._context():
+            factor = self._sign(order) / self._kappa
+            linear = self.chain.frequencies(self.numbers)
+            values = self.tables.entries(self.coordinates[order]) * factor / linear
+            oscillates = (nu != 0).any(axis=1)
+            values[oscillates[index]] *= 2
+        return nu[index], self.grading.powers(degree), with_digits(values, self.digits)
+
+    def harmonic_terms(
+        self, amplitudes: ArrayLike, order: int, *, absolute: bool = False
+    ) -> tuple[Ints, Numbers]:
+        """mu^k Q_q^(k) at these seed amplitudes as cosine coefficients.
+
+        The sum over rows of value[., q] cos(nu.theta).
+
+        The sums in brackets of Eq. serabs1, for any seeds. amplitudes : (s,) in the order of the
+        seeds.
+        Returns harmonics (H, s), one of each pair +-nu, and values (H, N-1).
+        absolute : take the modulus of every monomial before they are summed (for S_1 of Eq.
+        serabs2); always doubles.
+        """
+        nu, values = self.harmonic_sums(amplitudes, order, absolute=absolute)
+        return nu, with_digits(at_the_face(values), self.digits)
+
+    def harmonic_sums(
+        self, amplitudes: ArrayLike, order: int, *, absolute: bool = False
+    ) -> tuple[Ints, Numbers]:
+        """`harmonic_terms` for further sums: with digits, values are MPFR's numbers.
+
+        Raises InputError for amplitudes that do not fit the seeds.
+        """
+        self._numeric()
+        shape = np.shape(amplitudes)
+        if shape != (len(self.seeds),):
+            allowed = f"one for each of the seeds {self.seeds}"
+            raise InputError("amplitudes", shape, allowed, "pass a sequence in their order")
+        nu, index = self.grading.harmonics(self.degree(order))
+        by_harmonic = np.argsort(index, kind="stable")
+        starts = np.searchsorted(index[by_harmonic], np.arange(len(nu)))
+        oscillates = (nu != 0).any(axis=1)
+        with self._context():
+            factor = self._sign(order) / self._kappa
+            if absolute or self.digits is None:
+                table = self._doubles(amplitudes, order)[by_harmonic]
+                summands = np.abs(table) if absolute else table
+                values = np.add.reduceat(summands, starts, axis=0)
+                values = values * float(factor) / self.chain.frequencies()
+            else:
+                whole, exponent = self._integers(amplitudes, order)
+                sums = np.add.reduceat(whole[by_harmonic], starts, axis=0)
+                linear = MPFR.array(self.chain.frequencies(MULTIPRECISION))
+                values = scaled_integers(sums, exponent) * MPFR.array(factor)[()] / linear
+            values[oscillates] *= 2
+        return nu, np.abs(values) if absolute else values
+
+    def _doubles(self, amplitudes: ArrayLike, order: int) -> Floats:
+        """Every coefficient of an order times its monomial, as doubles."""
+        values = self.tables.doubles(self.coordinates[order])
+        seeds = self.scaled_seeds(amplitudes).astype(float)
+        powers = self.grading.powers(self.degree(order))
+        monomials = np.prod(seeds**powers, axis=1)
+        return np.asarray(values * monomials[:, None])
+
+    def _integers(
+        self, amplitudes: ArrayLike, order: int
+    ) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+        """The same as integers, and the power of two of their unit."""
+        powers = self.grading.powers(self.degree(order))
+        seeds = self.scaled_seeds(amplitudes)
+        highest = int(powers.max())
+        table = powers_of(list(seeds), highest, mpmath.mpf(1))
+        first = np.array(table[0], dtype=object)
+        monomials = first[powers[:, 0]]
+        for i in range(1, len(seeds)):
+            powers_of_seed = np.array(table[i], dtype=object)
+            monomials = monomials * powers_of_seed[powers[:, i]]
+        whole, exponent = integers(monomials[:, None])
+        products = self.coordinates[order].integers() * whole
+        return products, exponent - self.bits
+
+    def absolute_sums(
+        self, q: int, amplitudes: ArrayLike, *, with_mu: bool = False
+    ) -> tuple[Floats, Floats]:
+        """S_1(k) and S_2(k) of Eqs. serabs2 and serabs3 for Q_q^(k), as doubles.
+
+        k = 0 .. order; shapes (order + 1,) each.
+
+        S_1 adds the moduli of all coefficients, S_2 those of the cosines after the monomials of
+        one harmonic are summed.
+        with_mu : sums of mu^k Q_q^(k) instead, which cannot leave the range of doubles.
+        """
+        column = self._mode(q) - 1
+        sums = np.empty((2, self.order + 1))
+        for k in range(self.order + 1):
+            unit = 1.0 if with_mu else abs(self.chain.mu) ** -float(k)
+            for row, absolute in enumerate((True, False)):
+                _, values = self.harmonic_terms(amplitudes, k, absolute=absolute)
+                moduli = np.abs(values[:, column])
+                sums[row, k] = unit * float(moduli.sum())
+        return sums[0], sums[1]
+
+    def frequency_terms(
+        self, squared_amplitudes: ArrayLike, order: int | None = None
+    ) -> tuple[Numbers, Numbers]:
+        """mu^k omega_q^(k) for k = 0 .. order (default all) at A^2, and the derivatives by A^2.
+
+        squared_amplitudes : (s,). Returns terms (order + 1, s), order 0 being Omega_q, and
+        derivatives (order + 1, s, s) with the last axis for the variable.
+        """
+        self._numeric()
+        top = self.order if order is None else self._order(order)
+        if self.digits is None:
+            squares = np.asarray(squared_amplitudes, dtype=float)
+            return self._frequency_doubles(squares, top)
+        with self._context():
+            point = list(MPFR.array(self.numbers.array(squared_amplitudes)))
+            highest = self.chain.degree_step * top // 2
+            powers = powers_of(point, highest, MPFR.number(Fraction(1)))
+            values, gradients = [], []
+            for polynomials in self._summed_polynomials[: top + 1]:
+                parts = [evaluate(p, powers) for p in polynomials]
+                values.append([value for value, _ in parts])
+                gradients.append([gradient for _, gradient in parts])
+            terms, slopes = in_mpf(MPFR.array(values)), in_mpf(MPFR.array(gradients))
+        return with_digits(terms, self.digits), with_digits(slopes, self.digits)
+
+    @cached_property
+    def _summed_polynomials(self) -> list[list[Polynomial]]:
+        """The same in MPFR's numbers."""
+        return [
+            [{e: MPFR.array(c)[()] for e, c in polynomial.items()} for polynomial in row]
+            for row in self._frequency_polynomials
+        ]
+
+    @cached_property
+    def _frequency_polynomials(self) -> list[list[Polynomial]]:
+        """mu^k omega_q^(k) as polynomials in A^2, by order and seed, in mpf."""
+        slopes = [f**2 for f in self.seed_factors]
+        by_seed = []
+        for i, q in enumerate(self.seeds):
+            squares = [self.squared_polynomial(i, k) for k in range(self.order + 1)]
+            roots = square_root(squares, self._linear(q))
+            by_seed.append(
+                [rescaled(p, slopes, self._sign(k)) for k, p in enumerate(roots)]
+            )
+        return [list(row) for row in zip(*by_seed, strict=True)]
+
+    def _frequency_doubles(self, squares: Floats, top: int) -> tuple[Floats, Floats]:
+        linear = self.chain.frequencies()[np.array(self.seeds) - 1]
+        slope = self.seed_factors**2
+        diagonals, tables = self._frequency_tables
+        return frequency_sums(linear, slope, squares, diagonals[:top], tables[:top])
+
+    @cached_property
+    def _frequency_tables(self) -> tuple[list[Ints], list[Floats]]:
+        """Exponents and coefficients of W by order from 1 on, as `frequency_sums` takes them."""
+        orders = range(1, self.order + 1)
+        diagonals = [self.grading.diagonal(self.chain.degree_step * k) for k in orders]
+        return diagonals, [self._sign(k) * self.corrections[k] for k in orders]
+
+
+def frequency_sums(
+    linear: Floats,
+    slope: Floats,
+    squares: Floats,
+    diagonals: Sequence[Ints],
+    tables: Sequence[Floats],
+) -> tuple[Floats, Floats]:
+    """Terms of omega by order at A^2 and their derivatives, from the tables of W by order.
+
+    linear, slope, squares : (s,), Omega of the seeds, the factor of A^2 in the tables' variables,
+    and A^2. diagonals, tables : of orders 1, 2, ..., exponents and coefficients of W.
+    """
+    s, top = len(linear), len(tables)
+    y = slope * squares
+    terms = np.zeros((top + 1, s))
+    jacobian = np.zeros((top + 1, s, s))
+    terms[0] = linear
+    for k, (e, corrections) in enumerate(zip(diagonals, tables, strict=True), 1):
+        if len(e) == 0:
+            continue
+        table = corrections * linear**2
+        square, square_slope = _polynomial(y, e, table)
+        # [omega^2]^(k) = 2 Omega omega^(k) + sum of omega^(j) omega^(k-j), 0 < j < k
+        earlier = terms[1:k]
+        square -= np.einsum("jq,jq->q", earlier, terms[k - 1 : 0 : -1])
+        products = np.einsum("jq,jqi->qi", earlier, jacobian[k - 1 : 0 : -1])
+        square_slope = square_slope * slope - 2 * products
+        terms[k] = square / (2 * linear)
+        jacobian[k] = square_slope / (2 * linear)[:, None]
+    return terms, jacobian
+
+
+def _polynomial(y: Floats, exponents: Ints, table: Floats) -> tuple[Floats, Floats]:
+    """Values (s,) and derivatives (s, variables) of the polynomials sum_e table[e] y^e."""
+    powers = y**exponents
+    square = np.prod(powers, axis=1) @ table
+    slopes = []
+    for j in range(len(y)):
+        exponent = exponents[:, j]
+        lowered = powers.copy()
+        lowered[:, j] = exponent * y[j] ** np.maximum(exponent - 1, 0)
+        slopes.append(np.prod(lowered, axis=1) @ table)
+    return square, np.stack(slopes, axis=1)
