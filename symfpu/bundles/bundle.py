@@ -15,23 +15,17 @@ import contextlib
 import json
 import os
 import platform
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
-from fractions import Fraction
-from functools import partial
-from math import comb, pi, prod
+from math import pi
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
-import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.algebra.grading import canonical_count
 from symfpu.bundles.entries import (
     UnknownPotential,
-    chain_entries,
-    chain_from,
     number,
     number_entry,
 )
@@ -46,9 +40,8 @@ from symfpu.bundles.rings import (
     travelling_entries,
     travelling_from,
 )
+from symfpu.bundles.series import series_entries, series_from, series_tables
 from symfpu.bundles.solutions import FOURIER, solution_entries, solution_from
-from symfpu.chain.chain import Chain
-from symfpu.chain.length import label_entry, seed_labels
 from symfpu.errors import InputError
 from symfpu.files.archive import (
     DAMAGE,
@@ -63,16 +56,9 @@ from symfpu.files.checkpoint import KINDS
 from symfpu.files.formats import ARCHIVE, BUNDLE, format_of, opened_by
 from symfpu.frames.recorded import Recorded
 from symfpu.numbers.arithmetic import text
-from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
+from symfpu.numbers.typed import integer
 from symfpu.refinement.tori import RefinedTorus
-from symfpu.series.all_lengths import SeriesForAllN, ends_reached, in_order
-from symfpu.series.coefficients import ResiduePoint
-from symfpu.series.divisors import SmallDivisor
-from symfpu.series.lindstedt import UNIVERSAL
-from symfpu.series.monomials import shared_grading
-from symfpu.series.rings import FIXED_POINT, RINGS, RingKind
 from symfpu.series.series import LindstedtSeries
-from symfpu.series.tables import Shapes
 from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.ring_torus import RingTorus
@@ -91,8 +77,6 @@ PACKAGES = (
     "numba",
     "llvmlite",
 )
-Labels = tuple[int, ...]  # of seeds
-RADII = "<f8"
 # schemas that began with these
 SOLUTIONS, POTENTIALS, PROGRAMS, RINGS_OF_PARTICLES = 2, 3, 4, 5
 REFINED_KIND = "refined"  # kind of a torus without a series
@@ -242,8 +226,8 @@ def parts_of(result: Result) -> tuple[Json, dict[str, Array]]:
         return {"series": None, "torus": entries}, members
     series = result if isinstance(result, LindstedtSeries) else result.series
     torus = _torus_entries(result) if isinstance(result, QTorus) else None
-    members, layout = _tables(series)
-    return {"series": _series_entries(series) | layout, "torus": torus}, members
+    members, layout = series_tables(series)
+    return {"series": series_entries(series) | layout, "torus": torus}, members
 
 
 def _schema(result: Result) -> int:
@@ -358,219 +342,9 @@ def _by_seed(entries: Mapping[str, Any], seeds: Sequence[int]) -> dict[int, Any]
     return values
 
 
-# the series
-
-
-def _tables(series: LindstedtSeries) -> tuple[dict[str, Array], Json]:
-    """The flat arrays by name, and what else is needed to cut them into tables again."""
-    corrections = series.corrections[1:]  # order 0 has none
-    parts = {"coordinates": series.coordinates, "corrections": corrections}
-    arrays, layout = series.tables.pack(parts)
-    members = {}
-    for name, tables in arrays.items():
-        dtype = series.tables.dtype if name in parts else tables[0].dtype.str
-        members[name] = _flat(tables, dtype)
-    if series.radii:
-        largest = np.array([radius for radius, _ in series.radii])
-        members["coordinate_radii"] = _flat([largest], RADII)
-        members["correction_radii"] = _flat([radii for _, radii in series.radii], RADII)
-    return members, layout
-
-
-def _flat(parts: Iterable[Array], dtype: str) -> Array:
-    """Row after row, order after order."""
-    rows = [np.empty(0, dtype), *map(np.ravel, parts)]
-    return np.concatenate(rows).astype(dtype, copy=False)
-
-
-def _series_entries(series: LindstedtSeries) -> Json:
-    frequencies = None
-    if series.frequencies is not None:
-        frequencies = [fraction_text(w) for w in series.frequencies]
-    divisors = [asdict(d) | {"size": repr(d.size)} for d in series.smallest_divisors]
-    return {
-        **chain_entries(series.chain),
-        "seeds": list(map(label_entry, series.seeds)),
-        "frequencies": frequencies,
-        "order": series.order,
-        "ring": series.ring,
-        "digits": series.digits,
-        "bits": series.bits,
-        "unit": fraction_text(series.unit),
-        "multiply_adds": str(series.multiply_adds),
-        "smallest_divisors": divisors,
-        "point": _point_entries(series.point),
-    }
-
-
-def _point_entries(point: ResiduePoint | None) -> Json | None:
-    if point is None:
-        return None
-    frequencies = list(map(str, point.frequencies))
-    return {"prime": str(point.prime), "root": str(point.root), "frequencies": frequencies}
-
-
-def _shapes(chain: Chain, seeds: Labels, order: int, most: int) -> tuple[Shapes, Shapes]:
-    """The shapes of the tables of coordinates, and of corrections from order 1 on.
-
-    ValueError as soon as they need more than `most` rows, so that no count grows without bound.
-    """
-    coordinates: Shapes = []
-    corrections: Shapes = []
-    s, columns = len(seeds), _columns(chain, seeds, order)
-    for k in range(order + 1):
-        degree = chain.degree_step * k
-        rows = canonical_count(s, degree + 1)
-        most -= rows
-        if most < 0:
-            raise ValueError(
-                f"order {order} of {s} seeds needs more rows than the file holds"
-            )
-        coordinates.append((rows, columns))
-        if k:
-            diagonal = 0 if degree % 2 else comb(degree // 2 + s - 1, s - 1)
-            corrections.append((diagonal, s))
-    return coordinates, corrections
-
-
-def _columns(chain: Chain, seeds: Labels, order: int) -> int:
-    """Modes of a table of coordinates: all of a chain, or those that are excited for every N."""
-    if not chain.symbolic:
-        return chain.N - 1
-    ends = ends_reached(chain, seeds, order)
-    return ends.low + ends.high
-
-
-def _split(flat: Array, shapes: Iterable[tuple[int, ...]]) -> list[Array]:
-    parts, at = [], 0
-    for shape in shapes:
-        parts.append(flat[at : at + prod(shape)].reshape(shape))
-        at += prod(shape)
-    return parts
-
-
-class _Reader:
-    """Tables of a series out of the flat arrays of a file."""
-
-    def __init__(
-        self, archive: Archive, body: Json, chain: Chain, seeds: Labels, order: int
-    ) -> None:
-        self.archive, self.body, self.order = archive, body, order
-        self.seeds = len(seeds)
-        self.shapes = _shapes(chain, seeds, order, archive.entries("coordinates"))
-        self.tables = _kind(body).tables(None, 0)
-
-    def parts(self) -> Json:
-        """Coordinates, corrections and radii as a series holds them."""
-        coordinates, corrections = self.shapes
-        kept = self._read("coordinates", coordinates) + self._read(
-            "corrections", corrections
-        )
-        members = {}
-        for name, member in self.tables.members(self.body).items():
-            members[name] = self.archive.array(name, *member)
-        tables = self.tables.unpack(kept, self.body, members)
-        count = len(coordinates)
-        none = np.zeros((0, self.seeds))  # order 0 has no corrections
-        return {
-            "coordinates": tuple(tables[:count]),
-            "corrections": (none, *tables[count:]),
-            "radii": self._radii(corrections),
-        }
-
-    def _read(self, name: str, shapes: Shapes) -> list[Array]:
-        stored = self.tables.shapes(name, shapes, self.body)
-        return self._arrays(name, self.tables.dtype, stored)
-
-    def _arrays(self, name: str, dtype: str, shapes: Shapes) -> list[Array]:
-        size = sum(map(prod, shapes))
-        return _split(self.archive.array(name, dtype, size), shapes)
-
-    def _radii(self, shapes: Shapes) -> tuple[Any, ...]:
-        if "coordinate_radii" not in self.archive.digests:
-            return ()
-        largest = self.archive.array("coordinate_radii", RADII, self.order + 1).tolist()
-        of_corrections = self._arrays("correction_radii", RADII, [(0, self.seeds), *shapes])
-        return tuple(zip(largest, of_corrections, strict=True))
-
-
-def _kind(body: Json) -> RingKind:
-    if body["ring"] not in RINGS:
-        raise ValueError(f"no ring {body['ring']!r:.40}")
-    return RINGS[body["ring"]]
-
-
 def _any_series(archive: Archive, body: Json) -> LindstedtSeries | TravellingSeries:
     of_waves = body["ring"] == TRAVELLING
-    return travelling_from(archive, body) if of_waves else _series(archive, body)
-
-
-def _series(archive: Archive, body: Json) -> LindstedtSeries:
-    chain = chain_from(body)
-    seeds = _seeds(chain, body["seeds"])
-    order = integer(body["order"], "order", 0)
-    frequencies = _chosen_frequencies(body, seeds)
-    point, digits = body["point"], body["digits"]
-    kind = _kind(body)
-    expected = (kind.numeric, kind.name == FIXED_POINT.name, kind.exact_point)
-    given = (frequencies is not None, digits is not None, point is not None)
-    if given != expected:
-        raise ValueError(
-            f"frequencies, digits and point do not fit the ring {body['ring']!r:.40}"
-        )
-    if chain.symbolic and kind.name not in UNIVERSAL:
-        raise ValueError(f"no series of the ring {kind.name!r} is one for all N")
-    parts = _Reader(archive, body, chain, seeds, order).parts()
-    series: Callable[..., LindstedtSeries] = LindstedtSeries
-    if chain.symbolic:
-        ends = ends_reached(chain, seeds, order)._asdict()
-        series = partial(SeriesForAllN, **ends)
-    return series(
-        chain=chain,
-        seeds=seeds,
-        frequencies=frequencies,
-        order=order,
-        ring=body["ring"],
-        **parts,
-        grading=shared_grading(len(seeds), 1 + chain.degree_step * order),
-        unit=fraction(body["unit"]),
-        smallest_divisors=tuple(map(_divisor, body["smallest_divisors"])),
-        multiply_adds=int(body["multiply_adds"]),
-        digits=None if digits is None else integer(digits, "digits", 1),
-        bits=integer(body["bits"], "bits", 0),
-        point=point and _point(point),
-    )
-
-
-def _seeds(chain: Chain, entries: Sequence[int | str]) -> Labels:
-    """Seeds as the series has them; InputError for others."""
-    return seed_labels(entries) if chain.symbolic else seed_modes(entries, chain.N)
-
-
-def _chosen_frequencies(body: Json, seeds: tuple[int, ...]) -> tuple[Fraction, ...] | None:
-    """None if none are chosen; ValueError where seeds and frequencies do not go together."""
-    chosen = body["frequencies"]
-    frequencies = None if chosen is None else tuple(fraction(w) for w in chosen)
-    fit = seeds == in_order(seeds)
-    if frequencies is not None:
-        fit = fit and len(frequencies) == len(seeds) and min(frequencies) > 0
-    if not fit:
-        raise ValueError(f"seeds {seeds} and frequencies {chosen} do not go together")
-    return frequencies
-
-
-def _divisor(entry: Json) -> SmallDivisor:
-    size, mode = float(entry["size"]), integer(entry["mode"], "mode", 1)
-    harmonic = tuple(map(int, entry["harmonic"]))
-    return SmallDivisor(size, mode, harmonic, integer(entry["order"], "order", 0))
-
-
-def _point(entry: Json) -> ResiduePoint:
-    prime, root = int(entry["prime"]), int(entry["root"])
-    return ResiduePoint(prime, root, tuple(map(int, entry["frequencies"])))
-
-
-# the torus
+    return travelling_from(archive, body) if of_waves else series_from(archive, body)
 
 
 def _torus_entries(torus: QTorus) -> Json:

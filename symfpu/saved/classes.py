@@ -59,7 +59,7 @@ PARTS = {
     "NormalFrequencies": "symfpu.normal.frequencies",
     "NormalMode": "symfpu.normal.modes",
     "ParametricResonance": "symfpu.normal.resonances",
-    "ResiduePoint": "symfpu.series.series",
+    "ResiduePoint": "symfpu.series.coefficients",
     "RuleException": "symfpu.proofs.certificates",
     "SpectralLine": "symfpu.spectral.analysis",
     "SweepCase": "symfpu.proofs.sweeps",
