@@ -114,7 +114,7 @@ from symfpu.normal.self_consistent import solve_normal_frequency as solve_normal
 from symfpu.families.continuation import Event as Event
 from symfpu.families.continuation import Member as Member
 from symfpu.families.family import Family as Family
-from symfpu.families.family import family as family
+from symfpu.families.following import family as family
 from symfpu.families.family import member_at_energy as member_at_energy
 from symfpu.families.family import member_at_frequency as member_at_frequency
 from symfpu.families.normal_events import NormalEvent as NormalEvent

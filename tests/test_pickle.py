@@ -52,7 +52,8 @@ from symfpu.errors import (
 )
 from symfpu.families.appendix_a import NoFurtherMember, appendix_a
 from symfpu.families.continuation import Event
-from symfpu.families.family import NotInFamily, family, member_at_energy
+from symfpu.families.family import NotInFamily, member_at_energy
+from symfpu.families.following import family
 from symfpu.files.archive import BundleError
 from symfpu.files.checkpoint import Refused
 from symfpu.files.kept_lines import FileFull

@@ -41,7 +41,8 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
-from symfpu.families.family import METHODS, Family, family
+from symfpu.families.family import Family
+from symfpu.families.following import METHODS, family
 from symfpu.families.normal_events import RESONANCE_LENGTH
 from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_folder

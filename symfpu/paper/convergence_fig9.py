@@ -16,7 +16,8 @@ from symfpu.breathers.balance import PeriodicOrbit, breather_at_amplitude, perio
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.continuation import Member
-from symfpu.families.family import Family, family
+from symfpu.families.family import Family
+from symfpu.families.following import family
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import Number
 from symfpu.paper.printed import FIG9_BREATHER

@@ -11,7 +11,7 @@ from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
 from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
-from symfpu.families.family import family
+from symfpu.families.following import family
 
 CHAIN, OMEGA = Chain(32, "0.33"), "0.0981410995944860"
 LENGTHS = (16, 32, 64, 128, 256)

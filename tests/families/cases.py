@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from symfpu.chain.chain import Chain
-from symfpu.families.family import family
+from symfpu.families.following import family
 
 ROUND = Chain(8, alpha="0.4", beta="0.1")
 

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from symfpu.action_angle.newton_twist import action_turn
 from symfpu.chain.chain import Chain
-from symfpu.families.family import family
+from symfpu.families.following import family
 from symfpu.normal.search import followed_modes, normal_modes
 from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.tori.quasiperiodic import FourierTorus

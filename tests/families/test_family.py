@@ -16,7 +16,8 @@ from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
 from symfpu.families import continuation
 from symfpu.families.beginnings import first_torus
 from symfpu.families.continuation import member
-from symfpu.families.family import Family, NotInFamily, family, member_at_energy, member_at_frequency
+from symfpu.families.family import Family, NotInFamily, member_at_energy, member_at_frequency
+from symfpu.families.following import family
 from symfpu.refinement.conditions import Crossing
 from symfpu.refinement.tori import NoTorus, refine_at_energy, shifts_of
 from symfpu.series.lindstedt import lindstedt

@@ -14,7 +14,7 @@ import pytest
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, RunInterrupted
-from symfpu.families.family import family
+from symfpu.families.following import family
 from symfpu.files.archive import BundleError
 from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import RefinedTorus
@@ -132,7 +132,7 @@ def test_a_family_stopped_while_writing_goes_on(moment, tmp_path, monkeypatch):
 @pytest.mark.long
 def test_a_killed_family_goes_on(tmp_path):
     code = (
-        "from symfpu.chain.chain import Chain; from symfpu.families.family import family\n"
+        "from symfpu.chain.chain import Chain; from symfpu.families.following import family\n"
         "family(Chain(8, alpha='0.4', beta='0.1'), (3,), '0.1', multipliers=True, from_energy='0.001', folder='.')"
     )
     process = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(Path.cwd())})

@@ -10,7 +10,8 @@ from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, RunInterrupted
-from symfpu.families.family import family, member_at_energy
+from symfpu.families.family import member_at_energy
+from symfpu.families.following import family
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_family import normal_family
 from symfpu.families.normal_zeros import Bracket, located

@@ -13,7 +13,8 @@ from symfpu.chain.potentials.toda import toda
 from symfpu.cli.main import main
 from symfpu.errors import InputError, ResonantDivisor
 from symfpu.families.beginnings import returned
-from symfpu.families.family import family, member_at_energy, member_at_frequency
+from symfpu.families.family import member_at_energy, member_at_frequency
+from symfpu.families.following import family
 from symfpu.families.normal_events import STABILITY
 from symfpu.families.normal_family import normal_family
 from symfpu.integrable.torus import toda_torus

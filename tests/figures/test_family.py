@@ -6,7 +6,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from symfpu.chain.chain import Chain
-from symfpu.families.family import family
+from symfpu.families.following import family
 from symfpu.figures.family import draw_family
 
 

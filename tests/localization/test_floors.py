@@ -12,7 +12,7 @@ from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.digits import periodic_orbit_digits
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.families.family import family
+from symfpu.families.following import family
 from symfpu.localization.floors import coefficient_errors, spectrum_floor
 from symfpu.localization.laws import fit_profile
 from symfpu.plots.families import family_spectra

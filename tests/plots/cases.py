@@ -12,7 +12,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices
 from symfpu.dynamics.orbits import integrate
-from symfpu.families.family import family
+from symfpu.families.following import family
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_family import NormalFamily
 from symfpu.integrable.invariants import toda_gaps, toda_invariants

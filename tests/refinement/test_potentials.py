@@ -9,7 +9,7 @@ import pytest
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.appendix_a import appendix_a
-from symfpu.families.family import family
+from symfpu.families.following import family
 from symfpu.localization.laws import middle_modes, packet_groups, packet_parameter
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.tori import refine, refine_at_amplitudes, refine_at_energy
