@@ -16,10 +16,10 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from symfpu.certified.bond_balls import BondBalls
-from symfpu.certified.border import Border, Fixed, border_of, residual_of
+from symfpu.certified.border import FREQUENCY, Border, Fixed, border_of, residual_of
 from symfpu.certified.contraction import Attempt, LinearPart, first_free
 from symfpu.certified.existence_bounds import linear_part, strip
-from symfpu.certified.rounded_orbit import RoundedOrbit
+from symfpu.certified.rounded_orbit import DOUBLE_DIGITS, RoundedOrbit
 
 Floats = NDArray[np.float64]
 
@@ -29,7 +29,9 @@ LAST_UNITS = (
     1000  # of the last place: a correction is the last one if the next is below them
 )
 FREQUENCY_BITS = 8  # of omega beyond those of the orbit
-LONGER = 1.5  # times the harmonics of the orbit, of those that corrections may add
+LONGER = (
+    1.5  # times the harmonics of an orbit of doubles, of those that corrections may add
+)
 
 
 class BorderedMatrix:
@@ -74,7 +76,8 @@ def fixed_orbit(orbit: RoundedOrbit, fixed: Fixed) -> RoundedOrbit:
     balls = BondBalls(orbit, strip(orbit))
     border = border_of(balls, fixed)
     matrix = bordered_matrix(balls, border)
-    last, least = math.ceil(LONGER * orbit.harmonics), math.inf
+    longer = LONGER * max(1.0, orbit.digits / DOUBLE_DIGITS)
+    last, least = math.ceil(longer * orbit.harmonics), math.inf
     for _ in range(SWEEPS):
         size, larger = corrected(balls, border, matrix, last)
         if not size < least / 2:
@@ -99,6 +102,8 @@ def corrected(
     of_frequency, change = matrix.solve(-float(border.residual.mid()), -residual)
     change = change[: last + 1]
     rows = with_change(orbit, change)
+    if border.fixed.kind == FREQUENCY:
+        return float(np.abs(change).sum()), replace(orbit, rows=rows)
     step = of_frequency * float(border.unit)
     omega = orbit.omega + Fraction(step) / (2 * orbit.omega)
     places = 2 ** (orbit.bits + FREQUENCY_BITS)

@@ -42,6 +42,7 @@ from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.one_sided import above, below, rational
 from symfpu.numbers.typed import Number, decimal, exact
+from symfpu.series.arguments import digits_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.travelling import require_travelling
@@ -49,10 +50,8 @@ from symfpu.tori.travelling import require_travelling
 FORMAT = "symfpu existence certificate"
 SCHEMA = 3
 ROOM = 2  # times the radius of the stated intervals of A and H
-MORE_DIGITS = "more digits may help: periodic_orbit_digits(orbit, 40)"
-MORE_HARMONICS = (
-    "more harmonics may help: periodic_orbit_digits(orbit, 40) takes what it needs"
-)
+MORE_DIGITS = "more digits may help: digits=40"
+MORE_HARMONICS = "more harmonics may help: digits=40 takes what it needs"
 SMALLER = "an orbit of smaller amplitude is easier"
 GIVEN = "give amplitude= or energy= instead of it"
 NO_ORBIT = "more digits of it do not help: Newton's method, periodic_orbit, finds orbits"
@@ -223,6 +222,7 @@ def prove_existence(
     amplitude: Number | None = None,
     energy: Number | None = None,
     half_width: Number = 0,
+    digits: int | None = None,
 ) -> ExistenceProof:
     """A proof that the chain has a periodic orbit near the computed one, or an error that says why.
 
@@ -234,6 +234,8 @@ def prove_existence(
         and its frequency is in an interval. Without them it has exactly the orbit's frequency.
     half_width : of an interval about the frequency, amplitude or energy: a proof for each of its
         values, of a segment of the family as one analytic curve.
+    digits : of the computed orbit, where Newton's method has to find more than it has; the radius
+        falls with them.
 
     Newton's method and a contraction in a weighted space of Fourier coefficients, every rounding
     bounded (docs/existence.md; ours): the orbit exists, is the only one nearby, and analytic. The
@@ -251,9 +253,9 @@ def prove_existence(
     """
     checked = checked_orbit(orbit)
     fixed = fixed_value(checked, amplitude, energy, half_width)
-    rounded = rounded_orbit(checked)
+    rounded = rounded_orbit(checked, None if digits is None else digits_of(digits))
     with flint.ctx.workprec(rounded.bits + SPARE_BITS):
-        if fixed.kind != FREQUENCY:
+        if fixed.kind != FREQUENCY or digits is not None:
             rounded = fixed_orbit(rounded, fixed)
         bounds, linear = proof_bounds(rounded, fixed)
         if bounds is None:

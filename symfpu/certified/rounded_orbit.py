@@ -67,9 +67,14 @@ class RoundedOrbit:
         return np.array(scaled)
 
 
-def rounded_orbit(orbit: QuasiPeriodic | RingTorus) -> RoundedOrbit:
-    """The integers nearest to an orbit; what is below their last place is left out."""
-    digits = orbit.digits or DOUBLE_DIGITS
+def rounded_orbit(
+    orbit: QuasiPeriodic | RingTorus, digits: int | None = None
+) -> RoundedOrbit:
+    """The integers nearest to an orbit; what is below their last place is left out.
+
+    digits : of the integers, the orbit's own unless more are asked for.
+    """
+    digits = max(orbit.digits or DOUBLE_DIGITS, digits or 0)
     with mpmath.workdps(digits + 2 * SPARE_DIGITS):
         if isinstance(orbit, RingTorus):
             stretches = _of_wave(orbit)

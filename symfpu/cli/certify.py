@@ -53,6 +53,13 @@ HalfWidthOption = Annotated[
         help="Of a breather: one for each value that is no further away.", metavar="W"
     ),
 ]
+DigitsOption = Annotated[
+    int | None,
+    typer.Option(
+        help="Of a breather: Newton's method finds it to so many digits first.",
+        metavar="D",
+    ),
+]
 StabilityOption = Annotated[
     bool,
     typer.Option(
@@ -81,6 +88,7 @@ def certify(
     amplitude: AmplitudeOption = None,
     energy: EnergyOption = None,
     half_width: HalfWidthOption = None,
+    digits: DigitsOption = None,
     stability: StabilityOption = False,
     time: TimeOption = None,
     residual: ResidualOption = False,
@@ -99,7 +107,12 @@ def certify(
     if not wave or stability:
         require_fixed_ends(solution.chain)
     assert isinstance(solution, QuasiPeriodic | RingTorus)
-    of_breather = {"amplitude": amplitude, "energy": energy, "half_width": half_width}
+    of_breather = {
+        "amplitude": amplitude,
+        "energy": energy,
+        "half_width": half_width,
+        "digits": digits,
+    }
     of_torus = {"time": time, "residual": residual or None}
     target = output_named(output)
     with progress_bar("proof") as advance:

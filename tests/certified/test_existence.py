@@ -245,6 +245,27 @@ def test_the_radius_falls_with_the_digits():
         assert 10.0 ** (-digits - 8) < radius < 10.0**-digits
 
 
+@pytest.mark.parametrize("name", ["wave", "wave, mirrored", "wave, long period"])
+@pytest.mark.parametrize("digits", [20, 40])
+def test_the_radius_of_waves_falls_with_the_digits_asked_for(name, digits, tmp_path):
+    chain, seed, made, given = WAVES[name]
+    wave = travelling_breather(chain, seed, **made)
+    found = prove_existence(wave, digits=digits, **given)
+    assert found.radius < 10.0**-digits
+    assert given or found.frequency == wave.frequency
+    assert checked(found, tmp_path)
+
+
+def test_digits_asked_for_are_those_of_the_other_route():
+    """A double refined by the proof's own Newton method, and by the sums of harmonic balance in many digits."""
+    near = orbit("alpha")
+    asked, made = prove_existence(near, digits=40), prove_existence(periodic_orbit_digits(near, 40))
+    assert asked.frequency == made.frequency
+    assert abs(asked.energy - made.energy) < asked.energy_radius + made.energy_radius
+    with pytest.raises(InputError, match="digits"):
+        prove_existence(near, digits=0)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize(("guess", "word"), [(0.786, "converged"), (2.09, "not a torus")])
 def test_spurious_roots_do_not_certify(guess, word):
