@@ -14,7 +14,8 @@ CSS = """
 .picture { width: 100%; height: auto; display: block; }
 .card-title { font-weight: 600; margin: 0 0 4px; }
 .quiet { color: var(--quiet); font-weight: 400; }
-table.seeds { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+table.seeds { border-collapse: collapse; font-variant-numeric: tabular-nums;
+  display: block; max-width: 100%; overflow-x: auto; }
 table.seeds th, table.seeds td { text-align: right; padding: 2px 14px 2px 0;
   white-space: nowrap; }
 table.seeds th { font-weight: 400; color: var(--quiet); }
