@@ -290,18 +290,19 @@ def fixed_value(
         raise InputError("energy", given, "one of the two", "leave one out")
     if amplitude is not None:
         fixed = Fixed(AMPLITUDE, exact(amplitude, "amplitude"), width)
-        return near(fixed, orbit.amplitude, "breather_at_amplitude")
+        return near(fixed, orbit.amplitude, orbit.chain)
     if energy is not None:
         fixed = Fixed(ENERGY, exact(energy, "energy"), width)
-        return near(fixed, orbit.energy(), "breather_at_energy")
+        return near(fixed, orbit.energy(), orbit.chain)
     return Fixed(FREQUENCY, orbit.frequency, width)
 
 
-def near(fixed: Fixed, own: Any, maker: str) -> Fixed:
+def near(fixed: Fixed, own: Any, chain: Chain) -> Fixed:
     """The same where it is about the orbit's own."""
     if abs(float(fixed.value) - float(own)) > NEAR * abs(float(own)):
         allowed = f"about that of the orbit, {float(own):.10g}"
         given = decimal(fixed.value)
+        maker = "travelling_breather" if chain.periodic else f"breather_at_{fixed.kind}"
         raise InputError(fixed.kind, given, allowed, f"take an orbit from {maker}")
     return fixed
 
