@@ -119,7 +119,7 @@ class Bundle(Recorded):
     other : a result that is neither a series nor a solution, or None.
 
     >>> import tempfile
-    >>> from symfpu import lindstedt
+    >>> from symfpu import Chain, lindstedt
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     load(save(f"{folder}/a", lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2)))
     Bundle(LindstedtSeries(N=8, beta=0.1, ...), no torus, no verdict, saved ... by symfpu ...)
@@ -172,7 +172,7 @@ def save(
     stays as it was then.
 
     >>> import tempfile
-    >>> from symfpu.series.lindstedt import lindstedt
+    >>> from symfpu import Chain, lindstedt
     >>> series = lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     load(save(f"{folder}/a", series)).series.seeds
@@ -252,7 +252,7 @@ def load(path: Path | str) -> Bundle:
     for the free memory; OSError for one that is missing or not to be read.
 
     >>> import tempfile
-    >>> from symfpu.series.lindstedt import lindstedt
+    >>> from symfpu import Chain, lindstedt
     >>> series = lindstedt(Chain(N=8, beta="0.1"), (3,), ("1.12",), 2)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     kept = load(save(f"{folder}/breather", series)).series

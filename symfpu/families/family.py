@@ -156,6 +156,7 @@ def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Family
     Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine_at_energy`
     does.
 
+    >>> from symfpu import Chain, family
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> round(float(member_at_energy(tori, "0.0007", harmonic=False).energy()), 12)
     0.0007
@@ -188,6 +189,7 @@ def member_at_frequency(
     They keep the ratio that the family keeps. Eq. eqmo; ours.
     Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine` does.
 
+    >>> from symfpu import Chain, family
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> [torus] = member_at_frequency(tori, 1, "0.3902")
     >>> [round(A, 9) for A in torus.amplitudes.values()]
