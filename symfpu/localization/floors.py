@@ -28,7 +28,7 @@ from symfpu.chain.propagation import excitation_sequence
 from symfpu.chain.tension_terms import highest_product
 from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.lattice import OVERSAMPLING, dilated
+from symfpu.refinement.lattice import dilated, told_apart
 from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.torus import QTorus
@@ -208,9 +208,7 @@ def _left_out(
 ) -> tuple[Ints, Floats, Floats]:
     """Harmonics next to those of the equation, their frequencies, and coefficients by forces."""
     known = set(map(tuple, equation.harmonics.tolist()))
-    around = np.unique(
-        _canonical_signs(dilated(equation.harmonics, OVERSAMPLING / 2)), axis=0
-    )
+    around = np.unique(_canonical_signs(told_apart(equation.harmonics)), axis=0)
     harmonics = around[[nu not in known for nu in map(tuple, around.tolist())]]
     forces = equation.force_at(cosines, harmonics)
     rates = harmonics @ (equation.linear[equation.seed_columns] + shifts)

@@ -8,27 +8,51 @@ from typing import Any
 import numpy as np
 
 from symfpu.refinement.equation import Floats, Ints
-from symfpu.refinement.lattice import Lattice, dilated, without_opposites
+from symfpu.refinement.lattice import (
+    Lattice,
+    dilated,
+    has_holes,
+    low_harmonics,
+    without_opposites,
+)
 
 # harmonics of the slopes that sparse rows hold, and their least height, relative
 MOST_SLOPES, SHARE = 12, 0.1
+LEAST_STEP = 1e-3  # height of those by which further harmonics are reached, relative
 
 
 def largest_slopes(grid: Lattice, spectrum: Floats) -> Ints:
-    """The harmonics of the slopes that sparse rows hold, with both signs.
+    """The harmonics of the slopes that sparse rows hold, with both signs; (k, s).
 
     spectrum : of the slopes, (bonds, points).
+    """
+    return _tallest(grid, spectrum, SHARE)
 
-    They are among all harmonics as large as the chosen ones: where V is even the slopes have even
-    harmonics alone, and the torus odd ones.
+
+def steps_by_slopes(grid: Lattice, spectrum: Floats) -> Ints:
+    """The same with smaller ones: steps from a harmonic to those that it drives."""
+    return _tallest(grid, spectrum, LEAST_STEP)
+
+
+def _tallest(grid: Lattice, spectrum: Floats, share: float) -> Ints:
+    """The largest harmonics of the slopes above a share of the height of the first of all.
+
+    They are among all harmonics as large as the chosen ones, or among low ones where those have
+    holes: where V is even the slopes have even harmonics alone, and the torus odd ones.
     """
     heights = np.abs(spectrum).max(axis=0)
-    nu = without_opposites(dilated(grid.harmonics, 1))
+    nu = without_opposites(_possible(grid.harmonics))
     height = heights[grid.entries(nu)]
     order = np.argsort(-height, kind="stable")
     chosen = nu[order[:MOST_SLOPES]]
-    tall = chosen[heights[grid.entries(chosen)] > SHARE * heights.max()]
+    tall = chosen[heights[grid.entries(chosen)] > share * heights.max()]
     return np.unique(np.concatenate([tall, -tall]), axis=0)
+
+
+def _possible(harmonics: Ints) -> Ints:
+    if has_holes(harmonics):
+        return low_harmonics(harmonics.shape[1])
+    return dilated(harmonics, 1)
 
 
 def shifted(harmonics: Ints, rows: Ints, kappa: Ints) -> tuple[Ints, Ints]:

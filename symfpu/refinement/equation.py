@@ -11,6 +11,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.refinement.lattice import Lattice
+
 Floats = NDArray[Any]
 Ints = NDArray[np.int64]
 Slopes = tuple[Floats, Floats]  # derivatives by coefficients (H, C) and by shifts (s,)
@@ -48,12 +50,24 @@ class TorusEquation(Protocol):
         """Of the anharmonic part of V, in the precision of the cosines; (H, C)."""
         ...
 
+    def force_on(self, grid: Lattice, cosines: Floats) -> Floats:
+        """The same of coefficients at the harmonics of another lattice (M, C), at all of those."""
+        ...
+
+    def linear_at(self, harmonics: Ints) -> Floats:
+        """Omega of every c at other harmonics (M, s); broadcast with (M, C)."""
+        ...
+
     def rounding(self, cosines: Floats, kind: type) -> Floats:
         """What rounding in numbers of a kind makes of the force, about; broadcast with (H, C)."""
         ...
 
     def slopes(self, cosines: Floats) -> Floats:
         """V''(r) - 1 at the points, in doubles."""
+        ...
+
+    def steps(self, slopes: Floats) -> Ints:
+        """The largest harmonics of the slopes, with both signs; (k, s)."""
         ...
 
     def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:

@@ -21,7 +21,12 @@ from numpy.typing import NDArray
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
 from symfpu.numbers.arithmetic import Arithmetic, mpf
-from symfpu.refinement.couplings import largest_slopes, shifted, sparse_rows
+from symfpu.refinement.couplings import (
+    largest_slopes,
+    shifted,
+    sparse_rows,
+    steps_by_slopes,
+)
 from symfpu.refinement.equation import Floats, Ints, Slopes
 from symfpu.refinement.lattice import Lattice, halves_of_pairs
 
@@ -160,8 +165,9 @@ class InvarianceEquation:
         omega = self.seed_frequencies + shifts
         return np.asarray(self.harmonics @ omega)
 
-    def _portions(self) -> list[slice]:
-        step = max(1, PORTION // self.grid.points)
+    def _portions(self, points: int | None = None) -> list[slice]:
+        """Bonds whose values fit into a portion, on so many points, or those of its own grid."""
+        step = max(1, PORTION // (points or self.grid.points))
         count = self._stretch.shape[1]
         return [slice(j, j + step) for j in range(0, count, step)]
 
@@ -170,25 +176,36 @@ class InvarianceEquation:
 
         Zero where the mask does not hold.
         """
+        return np.asarray(self._force(self.grid, cosines) * self.mask)
+
+    def force_on(self, grid: Lattice, cosines: Floats) -> Floats:
+        """The same of coefficients at the harmonics of another lattice, (M, N-1), at all of it."""
+        return np.asarray(self._force(grid, cosines) * self.allowed(grid.harmonics))
+
+    def _force(self, grid: Lattice, cosines: Floats) -> Floats:
         kind = cosines.dtype
         law = bonds.cast(self._law, kind)
         total = np.zeros(cosines.shape, dtype=kind)
-        for part in self._portions():
+        for part in self._portions(grid.points):
             there = self._stretch[:, part].astype(kind)
             back = self._back[:, part].T.astype(kind)
-            r = self.grid.values(cosines @ there)
+            r = grid.values(cosines @ there)
             tension = bonds.anharmonic_tension(law, r)
-            total += self.grid.coefficients(tension) @ back
-        return np.asarray(total * self.mask)
+            total += grid.coefficients(tension) @ back
+        return total
 
     def force_at(self, cosines: Floats, harmonics: Ints) -> Floats:
-        """The same at harmonics (M, s) that were not chosen, next to those; shape (M, N-1)."""
+        """The same at other harmonics (M, s) that the lattice tells apart; shape (M, N-1)."""
         total = np.zeros((len(harmonics), cosines.shape[1]), dtype=np.longdouble)
         for part in self._portions():
             r = self.grid.values(cosines @ self._stretch[:, part])
             tension = bonds.anharmonic_tension(self._law, r)
             total += self.grid.coefficients_at(tension, harmonics) @ self._back[:, part].T
         return np.asarray(total * self.allowed(harmonics))
+
+    def linear_at(self, harmonics: Ints) -> Floats:
+        """Omega of all modes, (N-1,): the same at every harmonic."""
+        return self.linear
 
     def rounding(self, cosines: Floats, kind: type) -> Floats:
         """What rounding in numbers of a kind makes of the force of each mode, about; (N-1,).
@@ -246,6 +263,10 @@ class InvarianceEquation:
             r = self.grid.values(c @ stretch[:, part])
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
+
+    def steps(self, slopes: Floats) -> Ints:
+        """The largest harmonics of the slopes, with both signs; (k, s)."""
+        return steps_by_slopes(self.grid, self._spectrum(slopes))
 
     def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
         """Derivatives of the mean of weights times slopes, (H, N-1); weights (bonds, points)."""

@@ -5,16 +5,23 @@ A rank-1 lattice; `symfpu.refinement.invariance` and `symfpu.refinement.waves` m
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from symfpu.algebra.dense import threads_of_a_computation
-from symfpu.refinement.equation import Floats, Ints
 
+Floats = NDArray[Any]
+Ints = NDArray[np.int64]
 # size, in that of the largest chosen harmonics, up to which harmonics are told apart
 OVERSAMPLING = 2.5
 WORKERS = threads_of_a_computation()
+# harmonics of its hull, in all and in those of a choice, above which the choice has holes; the
+# length of harmonics that count as low beside such a choice
+SMALL_HULL, HOLES, LOW = 20_000, 3.0, 4.0
 # harmonics that are tried first, generators of one period, and the ratio of the periods tried
 FIRST_TRIED, TRIALS, GROWTH = 400, 600, 1.1
 
@@ -33,13 +40,18 @@ class Lattice:
     product, harmonics fold onto chosen ones only if both together are OVERSAMPLING times as
     large, as small as what the choice leaves out. Even functions need half of the points, M/2 +
     1.
+
+    A choice that follows sizes (`symfpu.refinement.widening`) fills a small part of the least
+    polytope that holds it. It is told apart from its neighbours alone: what folds onto it is a
+    product of a harmonic at its border with others than the neighbouring one.
     """
 
-    def __init__(self, harmonics: Ints) -> None:
+    def __init__(self, harmonics: Ints, apart: Ints | None = None) -> None:
+        """apart : harmonics of both signs, among them the chosen ones; those of `told_apart`."""
         self.harmonics = harmonics
-        self.period, self.generator = generated_lattice(
-            dilated(harmonics, OVERSAMPLING / 2)
-        )
+        if apart is None:
+            apart = told_apart(harmonics)
+        self.period, self.generator = generated_lattice(apart)
         self.points = self.period // 2 + 1
         self._place = self.entries(harmonics)
         self._weight = halves_of_pairs(harmonics)
@@ -85,15 +97,68 @@ class Lattice:
         return np.asarray(sums / self.period)
 
 
+def has_holes(harmonics: Ints) -> bool:
+    """Whether chosen harmonics fill a small part of their hull, the polytope of `dilated`."""
+    highest, reach = _hull(harmonics)
+    size = float(np.prod(2 * reach * highest + 1)) / math.factorial(len(highest))
+    return size > max(SMALL_HULL, HOLES * 2 * len(harmonics))
+
+
+def told_apart(harmonics: Ints) -> Ints:
+    """The harmonics, of both signs, that the lattice of chosen ones tells apart."""
+    if has_holes(harmonics):
+        return neighbours(harmonics)
+    return dilated(harmonics, OVERSAMPLING / 2)
+
+
+def neighbours(harmonics: Ints) -> Ints:
+    """Chosen harmonics and those one step beside them, of both signs.
+
+    A step is one of one angle; where all have odd lengths, as where V is even, two of them.
+    """
+    units = np.eye(harmonics.shape[1], dtype=np.int64)
+    steps = np.concatenate([units, -units])
+    if (harmonics.sum(axis=1) % 2 == 1).all():
+        steps = (steps[:, None] + steps).reshape(-1, harmonics.shape[1])
+    return beside(harmonics, steps)
+
+
+def beside(harmonics: Ints, steps: Ints) -> Ints:
+    """Harmonics and those by steps (k, s) beside them, of both signs."""
+    signed = np.concatenate([harmonics, -harmonics])
+    moved = (signed[:, None] + steps).reshape(-1, harmonics.shape[1])
+    both = np.concatenate([signed, moved, -moved])
+    return _distinct_rows(both)
+
+
+def _distinct_rows(rows: Ints) -> Ints:
+    """Every row once."""
+    lowest = rows.min(axis=0)
+    widths = rows.max(axis=0) - lowest + 1
+    weights = np.cumprod(np.append(1, widths[:-1]))
+    _, places = np.unique((rows - lowest) @ weights, return_index=True)
+    return np.asarray(rows[places])
+
+
+def low_harmonics(s: int) -> Ints:
+    """All of s angles up to a small length, of both signs."""
+    return dilated(np.eye(s, dtype=np.int64), LOW)
+
+
+def _hull(harmonics: Ints) -> tuple[Ints, float]:
+    """The highest number of each angle, at least 1, and the reach of the polytope of `dilated`."""
+    sizes = np.abs(harmonics)
+    highest = np.maximum(sizes.max(axis=0), 1)
+    return highest, float((sizes / highest).sum(axis=1).max())
+
+
 def dilated(harmonics: Ints, factor: float) -> Ints:
     """All harmonics, of both signs, in an enlarged cross-polytope about the given ones.
 
     The smallest one that holds them, times the factor.
     """
-    sizes = np.abs(harmonics)
-    highest = np.maximum(sizes.max(axis=0), 1)
-    reach = factor * float((sizes / highest).sum(axis=1).max())
-    rows, left = np.zeros((1, 0), dtype=np.int64), np.array([reach])
+    highest, reach = _hull(harmonics)
+    rows, left = np.zeros((1, 0), dtype=np.int64), np.array([factor * reach])
     for k in highest.tolist():
         tops = np.floor(left * k + 1e-9).astype(np.int64)
         counts = 2 * tops + 1

@@ -20,7 +20,7 @@ from symfpu.refinement.conditions import Condition
 from symfpu.refinement.equation import Floats, TorusEquation
 from symfpu.refinement.linear_system import LinearSystem, Preconditioner
 
-KRYLOV, RESTARTS = 60, 4
+KRYLOV, RESTARTS = 150, 2
 ACCURACY = 1e-8  # of a Krylov solution
 # errors by rounding up to which a force is taken in doubles: of an amplitude, relative, and of
 # other coefficients, relative to the largest
@@ -30,6 +30,19 @@ STEP, ROUNDING_STEP = 1e-16, 1e-9
 ITERATIONS = 15
 CORRECTIONS = 5  # of the solution for a derivative
 GROWTH = 30.0  # factor by which iterates may leave the size of the guess
+
+
+class Aim(NamedTuple):
+    """How far Newton's method goes.
+
+    change : to come, relative, that ends it. krylov : accuracy of a Krylov solution.
+    """
+
+    change: float
+    krylov: float
+
+
+SETTLED = Aim(STEP, ACCURACY)  # to rounding
 
 
 class NewtonStep(NamedTuple):
@@ -102,6 +115,8 @@ def newton(
     cosines: Floats,
     shifts: Floats,
     progress: Progress = unheard,
+    *,
+    aim: Aim = SETTLED,
 ) -> Iterate:
     """The torus near a guess that meets the conditions.
 
@@ -128,7 +143,7 @@ def newton(
         system = LinearSystem(equation, conditions, cosines, shifts)
         right = -np.concatenate([imbalance, values])
         try:
-            change, products = _solved(system, Preconditioner(system), right)
+            change, products = _solved(system, Preconditioner(system), right, aim.krylov)
         except (np.linalg.LinAlgError, ValueError) as failure:
             return failed(f"the matrix of Newton's method is singular ({failure})")
         moved = np.zeros(cosines.shape)
@@ -144,8 +159,8 @@ def newton(
             if not old / GROWTH < new < old * GROWTH:
                 return failed(f"{name} goes from {old:.3g} to {new:.3g}")
         before = steps[-2].change if len(steps) > 1 else 1.0
-        to_come = relative * max(ACCURACY, relative / before)
-        if to_come < STEP or before / 2 < relative < ROUNDING_STEP:
+        to_come = relative * max(aim.krylov, relative / before)
+        if to_come < aim.change or before / 2 < relative < ROUNDING_STEP:
             return Iterate(cosines, shifts, tuple(steps))
     return failed(f"no convergence in {ITERATIONS} steps")
 

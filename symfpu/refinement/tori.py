@@ -5,12 +5,12 @@ Their series only approximate them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from numbers import Real
 from pathlib import Path
-from typing import Any, NamedTuple, overload
+from typing import Any, overload
 
 import mpmath
 import numpy as np
@@ -18,8 +18,7 @@ import numpy as np
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.checkpoint import checkpoint_path
-from symfpu.files.progress import NO_FRACTION, Progress, unheard
-from symfpu.numbers.arithmetic import text
+from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.typed import Number, exact, integer
 from symfpu.refinement.conditions import (
     Amplitude,
@@ -37,11 +36,11 @@ from symfpu.refinement.digits import (
     require_digits,
     resumed,
 )
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
-from symfpu.refinement.harmonics import MOST_HARMONICS, chosen_harmonics, known_rows
-from symfpu.refinement.invariance import DIGITS, InvarianceEquation, long, rational
+from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.harmonics import MOST_HARMONICS, known_rows
+from symfpu.refinement.invariance import DIGITS, InvarianceEquation, long
 from symfpu.refinement.kept_sweeps import SweepsFile, require_digits_beside, unkept
-from symfpu.refinement.newton import Iterate, NewtonStep, newton
+from symfpu.refinement.newton import Iterate, NewtonStep
 from symfpu.refinement.resonances import NearResonance, near_resonances
 from symfpu.refinement.ring_tori import (
     RefinedRingTorus,
@@ -49,6 +48,7 @@ from symfpu.refinement.ring_tori import (
     refined_waves,
     require_independent,
 )
+from symfpu.refinement.search import Search, Unknowns
 from symfpu.refinement.waves import WaveEquation
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 from symfpu.tori.ring_torus import RingTorus
@@ -57,8 +57,6 @@ from symfpu.tori.travelling import require_travelling, wave_coefficients
 # residual of the equations of motion, relative to the largest acceleration, that ends the search
 # for harmonics
 TOLERANCE = 1e-13
-MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
-ROUNDS = 8  # choices of harmonics
 LEAST_SIZE = Fraction(1, 10**40)  # of amplitudes and coefficients
 
 
@@ -467,20 +465,6 @@ def _by_seed(
     return numbers
 
 
-class Unknowns(NamedTuple):
-    """What the tori of one kind of ends differ in.
-
-    coefficients : of a torus, harmonics (H, s) and coefficients (H, C) in doubles. functions : of
-    the angles that a lattice holds. equation : of chain, seeds and harmonics. result : of torus,
-    equation, iterate and frequencies.
-    """
-
-    coefficients: Callable[[Any], tuple[Ints, Floats]]
-    functions: Callable[[Chain], int]
-    equation: Callable[[Chain, Sequence[int], Ints], TorusEquation]
-    result: Callable[..., Any]
-
-
 @overload
 def refined_torus(
     torus: RingTorus,
@@ -518,44 +502,23 @@ def refined_torus(
         )
     most = integer(most_harmonics, "most_harmonics", len(torus.seeds))
     kind = WAVES if isinstance(torus, RingTorus) else COSINES
-    tell = progress or unheard
-    chain, seeds = torus.chain, torus.seeds
     guess = kind.coefficients(torus)
     _require_moderate(guess[1])
-    known, shifts = known_rows(*guess), shifts_of(torus)
-    none = np.zeros(guess[1].shape[1])
-    before = np.inf
-    for attempt in range(ROUNDS):
-        least = tolerance * MARGIN / 10**attempt
-        functions = kind.functions(chain)
-        harmonics, full = chosen_harmonics(known, functions, len(seeds), least, most)
-        equation = kind.equation(chain, seeds, harmonics)
-        rows = [known.get(tuple(nu), none) for nu in harmonics.tolist()]
-        cosines = np.array(rows, dtype=np.longdouble)
-        tell(f"{len(harmonics)} harmonics, {equation.points} points", NO_FRACTION)
-        start = np.where(equation.mask, cosines, 0)
-        found = newton(equation, conditions, start, shifts, tell)
-        frequencies = _frequencies(chain, seeds, found.shifts)
-        refined = kind.result(torus, equation, found, frequencies)
-        residual = refined.residual()
-        if found.failure:
-            raise NoTorus(_because(found.failure, refined), refined, residual)
-        tell(f"residual {residual:.1e} between the grid points", NO_FRACTION)
-        if residual <= tolerance:
-            return refined
-        if full or residual > before / 2:
-            reason = "more harmonics change nothing and"
-            if full:
-                reason = f"as many harmonics as fit (most_harmonics={most})"
-            left = (
-                f"leave a residual of {residual:.2g}, above the tolerance {tolerance:.0e}"
-            )
-            doubt = _because(f"{reason} {left}", refined)
-            return replace(refined, warnings=(doubt,))
-        before, shifts = residual, found.shifts
-        known = known_rows(harmonics, np.asarray(found.cosines))
-    warning = f"the residual is {residual:.2g} after {ROUNDS} choices of harmonics"
-    return replace(refined, warnings=(warning,))
+    search = Search(
+        kind,
+        torus,
+        conditions,
+        tolerance=tolerance,
+        most=most,
+        tell=progress or unheard,
+    )
+    solved = search(known_rows(*guess), shifts_of(torus))
+    found: RefinedTorus | RefinedRingTorus = solved.torus
+    if solved.failure:
+        raise NoTorus(_because(solved.failure, found), found, solved.residual)
+    if solved.doubt:
+        return replace(found, warnings=(_because(solved.doubt, found),))
+    return found
 
 
 def _because(reason: str, torus: RefinedTorus | RefinedRingTorus) -> str:
@@ -587,15 +550,6 @@ def shifts_of(torus: QuasiPeriodic | RingTorus) -> Floats:
     return np.array([long(shift) for shift in shifts])
 
 
-def _frequencies(
-    chain: Chain, seeds: Sequence[int], shifts: Floats
-) -> tuple[Fraction, ...]:
-    with mpmath.workdps(2 * DIGITS):
-        linear = [chain.linear_frequency(q) for q in seeds]
-        pairs = zip(linear, shifts, strict=True)
-        return tuple(_fraction(w + _mpf(shift)) for w, shift in pairs)
-
-
 def _result(
     torus: QuasiPeriodic,
     equation: InvarianceEquation,
@@ -615,15 +569,6 @@ def _result(
         steps=found.steps,
         near_resonances=near_resonances(equation, found.cosines, found.shifts, modes),
     )
-
-
-def _mpf(value: np.longdouble) -> Any:
-    number = rational(value)
-    return mpmath.mpf(number.numerator) / number.denominator
-
-
-def _fraction(value: Any) -> Fraction:
-    return Fraction(text(value, 25))
 
 
 COSINES = Unknowns(_cosines, lambda chain: (chain.N + 1) // 2, InvarianceEquation, _result)

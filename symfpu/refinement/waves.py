@@ -21,7 +21,12 @@ from numpy.typing import NDArray
 
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
-from symfpu.refinement.couplings import largest_slopes, shifted, sparse_rows
+from symfpu.refinement.couplings import (
+    largest_slopes,
+    shifted,
+    sparse_rows,
+    steps_by_slopes,
+)
 from symfpu.refinement.equation import Floats, Ints, Slopes
 from symfpu.refinement.invariance import DIGITS, LONG_DOUBLES, curvature, long
 from symfpu.refinement.lattice import Lattice
@@ -44,9 +49,10 @@ class WaveEquation:
         self.seed_columns = np.zeros(len(seeds), dtype=np.int64)
         with mpmath.workdps(2 * DIGITS):
             linear = [chain.linear_frequency(m) for m in range(chain.N)]
-            root = long(mpmath.sqrt(chain.N))
-        self.linear = np.array([long(w) for w in linear])[self.waves][:, None]
-        self._stretch, self._back = self.linear / root, self.linear * root
+            self._root = long(mpmath.sqrt(chain.N))
+        self._linear = np.array([long(w) for w in linear])
+        self.linear = self.linear_at(harmonics)
+        self._stretch, self._back = self.linear / self._root, self.linear * self._root
         self._law = chain.law(LONG_DOUBLES)
         self._set_divisors(linear)
 
@@ -100,6 +106,18 @@ class WaveEquation:
         law = bonds.cast(self._law, cosines.dtype)
         return self._projected(bonds.anharmonic_tension(law, self._stretches(cosines)))
 
+    def force_on(self, grid: Lattice, cosines: Floats) -> Floats:
+        """The same of coefficients at the harmonics of another lattice, (M, 1), at all of it."""
+        law, linear = bonds.cast(self._law, cosines.dtype), self.linear_at(grid.harmonics)
+        r = grid.values(cosines * (linear / self._root).astype(cosines.dtype))
+        found = grid.coefficients(bonds.anharmonic_tension(law, r))
+        return np.asarray(found * (linear * self._root).astype(cosines.dtype))
+
+    def linear_at(self, harmonics: Ints) -> Floats:
+        """Omega of the wave that carries each harmonic, (M, 1)."""
+        waves = harmonics @ np.array(self.seeds) % self.chain.N
+        return np.asarray(self._linear[waves][:, None])
+
     def rounding(self, cosines: Floats, kind: type) -> Floats:
         """What rounding in numbers of a kind makes of the force, about; shape (H, 1)."""
         tension = bonds.anharmonic_tension(
@@ -114,6 +132,10 @@ class WaveEquation:
         """V''(r) - 1 at the points, in doubles; shape (1, points)."""
         r = self._stretches(cosines.astype(float))
         return np.asarray(bonds.anharmonic_stiffness(self.chain.law(), r))
+
+    def steps(self, slopes: Floats) -> Ints:
+        """The largest harmonics of the slopes, with both signs; (k, s)."""
+        return steps_by_slopes(self.grid, self.grid.spectrum(slopes))
 
     def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
         """Derivatives of the mean of weights times slopes, (H, 1); weights (1, points)."""

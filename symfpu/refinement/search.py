@@ -1,0 +1,217 @@
+"""The search for the harmonics of a torus: Newton's method with as many as its tolerance needs.
+
+First those of a polytope that the fall-off of the coefficients asks for. Where that is too large,
+a small polytope, and then choices that follow the forces (`symfpu.refinement.widening`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import mpmath
+import numpy as np
+
+from symfpu.chain.chain import Chain
+from symfpu.files.progress import NO_FRACTION, Progress
+from symfpu.numbers.arithmetic import text
+from symfpu.refinement.conditions import Condition
+from symfpu.refinement.equation import Floats, Ints, TorusEquation
+from symfpu.refinement.harmonics import chosen_harmonics, known_rows
+from symfpu.refinement.invariance import DIGITS, rational
+from symfpu.refinement.newton import SETTLED, Aim, Iterate, newton
+from symfpu.refinement.widening import Widened, widened
+
+MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
+ROUNDS = 8  # choices of a polytope
+# harmonics of the largest polytope, and of the one that choices by forces begin with
+LARGEST_POLYTOPE, FIRST_POLYTOPE = 10_000, 1500
+# choices by forces, and the residual in that of the choice before below which one gains
+WIDENINGS, GAIN = 20, 0.8
+# on the way: accuracy of a Krylov solution, and of coefficients in the residual of the choice
+# before; that of a guess is taken for so much
+ROUGH_KRYLOV, ROUGH, OF_A_GUESS = 1e-7, 1e-3, 1e-3
+
+
+class Unknowns(NamedTuple):
+    """What the tori of one kind of ends differ in.
+
+    coefficients : of a torus, harmonics (H, s) and coefficients (H, C) in doubles. functions : of
+    the angles that a lattice holds. equation : of chain, seeds and harmonics. result : of torus,
+    equation, iterate and frequencies.
+    """
+
+    coefficients: Callable[[Any], tuple[Ints, Floats]]
+    functions: Callable[[Chain], int]
+    equation: Callable[[Chain, Sequence[int], Ints], TorusEquation]
+    result: Callable[..., Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """The equations of some harmonics, solved.
+
+    torus : what came of it. residual : between the points of the lattice, relative to the largest
+    acceleration. doubt : why it may be no torus, empty if it is settled. failure : why there is
+    none.
+    """
+
+    equation: TorusEquation
+    found: Iterate
+    torus: Any
+    residual: float
+    doubt: str = ""
+
+    @property
+    def failure(self) -> str:
+        return self.found.failure
+
+
+class Search:
+    """What a torus of one guess, its conditions and its tolerance is searched with."""
+
+    def __init__(
+        self,
+        kind: Unknowns,
+        torus: Any,
+        conditions: Sequence[Condition],
+        *,
+        tolerance: float,
+        most: int,
+        tell: Progress,
+    ) -> None:
+        self.kind, self.torus, self.conditions = kind, torus, conditions
+        self.tolerance, self.most, self.tell = tolerance, most, tell
+        self.functions = kind.functions(torus.chain)
+
+    def __call__(self, known: dict[tuple[int, ...], Floats], shifts: Floats) -> Solved:
+        """The torus near known coefficients by harmonic, and shifts (s,) of its frequencies."""
+        allowed = min(self.most, LARGEST_POLYTOPE)
+        harmonics, full = self._polytope(known, self.tolerance * MARGIN, allowed)
+        if full and self.most > FIRST_POLYTOPE:
+            return self._by_forces(known, shifts)
+        before = np.inf
+        for attempt in range(ROUNDS):
+            if attempt:
+                least = self.tolerance * MARGIN / 10**attempt
+                harmonics, full = self._polytope(known, least, self.most)
+            solved = self._solved(harmonics, _rows(known, harmonics), shifts)
+            if solved.failure or solved.residual <= self.tolerance:
+                return solved
+            if full or solved.residual > before / 2:
+                return self._doubtful(solved, full=full)
+            before, shifts = solved.residual, solved.found.shifts
+            known = known_rows(harmonics, np.asarray(solved.found.cosines))
+        doubt = f"the residual is {solved.residual:.2g} after {ROUNDS} choices of harmonics"
+        return _with_doubt(solved, doubt)
+
+    def _polytope(
+        self, known: dict[tuple[int, ...], Floats], least: float, most: int
+    ) -> tuple[Ints, bool]:
+        s = len(self.torus.seeds)
+        return chosen_harmonics(known, self.functions, s, least, most)
+
+    def _by_forces(self, known: dict[tuple[int, ...], Floats], shifts: Floats) -> Solved:
+        """The same from a small polytope on, or from a large one where that is too small."""
+        for first in FIRST_POLYTOPE, LARGEST_POLYTOPE:
+            harmonics, _ = self._polytope(known, self.tolerance * MARGIN, first)
+            choice = Widened(harmonics, _rows(known, harmonics), full=False)
+            solved = self._widening(choice, shifts)
+            if not solved.failure or self.most < LARGEST_POLYTOPE:
+                break
+        return solved
+
+    def _widening(self, choice: Widened, shifts: Floats) -> Solved:
+        """Choices by forces from a first one on; the best met where none is enough."""
+        best: Solved | None = None
+        for _ in range(WIDENINGS):
+            before = OF_A_GUESS if best is None else best.residual
+            aim = Aim(ROUGH * before, ROUGH_KRYLOV)
+            solved = self._solved(choice.harmonics, choice.cosines, shifts, aim)
+            if solved.failure:
+                return solved if best is None else self._doubtful(best, solved.failure)
+            gained = best is None or solved.residual < GAIN * best.residual
+            if solved.residual <= self.tolerance or choice.full or not gained:
+                return self._settled(solved, full=choice.full)
+            best, shifts = solved, solved.found.shifts
+            choice = self._wider(solved)
+        return self._settled(solved, full=False)
+
+    def _wider(self, solved: Solved) -> Widened:
+        found = solved.found
+        return widened(
+            solved.equation, found.cosines, found.shifts, self.tolerance, self.most
+        )
+
+    def _settled(self, solved: Solved, *, full: bool) -> Solved:
+        """The same solved to rounding, with a doubt where the tolerance is not reached."""
+        again = self._newton(solved.equation, solved.found.cosines, solved.found.shifts)
+        if again.failure:
+            return self._doubtful(solved, again.failure)
+        settled = self._judged(solved.equation, again)
+        if settled.residual <= self.tolerance:
+            return settled
+        return self._doubtful(settled, full=full)
+
+    def _solved(
+        self, harmonics: Ints, cosines: Floats, shifts: Floats, aim: Aim = SETTLED
+    ) -> Solved:
+        equation = self.kind.equation(self.torus.chain, self.torus.seeds, harmonics)
+        self.tell(f"{len(harmonics)} harmonics, {equation.points} points", NO_FRACTION)
+        start = np.where(equation.mask, cosines, 0)
+        return self._judged(equation, self._newton(equation, start, shifts, aim))
+
+    def _newton(
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats, aim: Aim = SETTLED
+    ) -> Iterate:
+        return newton(equation, self.conditions, cosines, shifts, self.tell, aim=aim)
+
+    def _judged(self, equation: TorusEquation, found: Iterate) -> Solved:
+        frequencies = _frequencies(self.torus.chain, self.torus.seeds, found.shifts)
+        torus = self.kind.result(self.torus, equation, found, frequencies)
+        residual = float(torus.residual())
+        if not found.failure:
+            self.tell(f"residual {residual:.1e} between the grid points", NO_FRACTION)
+        return Solved(equation, found, torus, residual)
+
+    def _doubtful(self, solved: Solved, failure: str = "", *, full: bool = False) -> Solved:
+        """With the reason why its residual stays above the tolerance."""
+        reason = "more harmonics change nothing and"
+        if full:
+            reason = f"as many harmonics as fit (most_harmonics={self.most})"
+        if failure:
+            reason = f"with more harmonics {failure}; these {len(solved.torus.harmonics)}"
+        left = f"leave a residual of {solved.residual:.2g}"
+        doubt = f"{reason} {left}, above the tolerance {self.tolerance:.0e}"
+        return _with_doubt(solved, doubt)
+
+
+def _with_doubt(solved: Solved, doubt: str) -> Solved:
+    return Solved(solved.equation, solved.found, solved.torus, solved.residual, doubt)
+
+
+def _rows(known: dict[tuple[int, ...], Floats], harmonics: Ints) -> Floats:
+    """Coefficients of harmonics, 0 where none is known; (H, C) in long doubles."""
+    none = np.zeros(len(next(iter(known.values()))))
+    rows = [known.get(tuple(nu), none) for nu in harmonics.tolist()]
+    return np.array(rows, dtype=np.longdouble)
+
+
+def _frequencies(
+    chain: Chain, seeds: Sequence[int], shifts: Floats
+) -> tuple[Fraction, ...]:
+    with mpmath.workdps(2 * DIGITS):
+        linear = [chain.linear_frequency(q) for q in seeds]
+        pairs = zip(linear, shifts, strict=True)
+        return tuple(_fraction(w + _mpf(shift)) for w, shift in pairs)
+
+
+def _mpf(value: np.longdouble) -> Any:
+    number = rational(value)
+    return mpmath.mpf(number.numerator) / number.denominator
+
+
+def _fraction(value: Any) -> Fraction:
+    return Fraction(text(value, 25))
