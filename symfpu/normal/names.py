@@ -54,6 +54,10 @@ class Names:
         least = max(SURE, self.share(found))
         return largest != found.mode and sizes[largest] > least
 
+    def told(self, found: NormalMode) -> bool:
+        """Whether the main coefficient alone says which mode it is."""
+        return self.share(found) > SURE and not self.is_others(found)
+
     def twin(self, found: NormalMode, others: Iterable[NormalMode]) -> NormalMode | None:
         """One of the others that is the same solution, shifted by a harmonic or conjugate.
 

@@ -17,7 +17,7 @@ from symfpu.normal.linearised_standing import is_sine, is_standing
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.names import Names
 from symfpu.normal.reduction import (
-    SURE,
+    LEAST_OVERLAP,
     Reduced,
     continued,
     followed,
@@ -261,11 +261,8 @@ class _Search:
     def _require_told(self, found: NormalMode) -> None:
         """NoNormalModes for a mode that was lost on the way, if its main coefficient is small."""
         q, sigma = found.mode, complex(found.sigma).real
-        if (
-            q not in self._anew
-            or q not in self._before.modes
-            or self._names.share(found) > SURE
-        ):
+        lost = q in self._anew and q in self._before.modes
+        if not lost or self._names.told(found):
             return
         nearest = resonances_near(self._torus, {q: sigma}, self._length)
         raise NoNormalModes(q, sigma, next(iter(nearest), None), LOST, NEARER)
@@ -283,6 +280,10 @@ class _Search:
         if not cosine and abs(found.action) > STILL * abs(sigma):
             return None
         unresolved = UNRESOLVED if cosine else max(UNRESOLVED, SPREAD * found.rounding)
+        if (
+            found.residual > RESOLVED
+        ):  # of a double root that a torus in doubles tears apart
+            unresolved = max(unresolved, float(np.sqrt(found.residual)))
         nearest = resonances_near(torus, {found.mode: sigma.real}, self._length)
         for one in nearest:
             if one.kind == OWN and abs(complex(one.distance, sigma.imag)) < unresolved:
@@ -365,7 +366,7 @@ class _Search:
                 self._anew.add(q)
             if followed is None or self._names.is_others(followed):
                 anew = self._sought(q, partial(reduced, q=q, guess=guess))
-                told = anew and self._names.share(anew) > SURE
+                told = anew and self._names.told(anew)
                 followed = anew if told or followed is None else followed
             self._firsts[q] = followed
         return self._firsts[q]
@@ -381,11 +382,16 @@ class _Search:
         turning = found and self._turning(found)
         if turning:
             found = self._beside(q, turning, {})
-        if found and bool(found.growth) == bool(self._before.modes[q].growth):
+        if found is None or not self._continues(found):
+            return self._by_halves(q)
+        if bool(found.growth) == bool(self._before.modes[q].growth):
             return found
-        shortest = self._between is None or not self._halvings
-        told = shortest or (found and self._names.share(found) > SURE)
-        return self._by_halves(q) or (found if told else None)
+        return self._by_halves(q) or found
+
+    def _continues(self, found: NormalMode) -> bool:
+        """Whether it is like the eigenfunction on the torus before."""
+        like = at_harmonics(self._before.modes[found.mode], found.harmonics)
+        return bool(abs(np.vdot(like, found.coefficients)) > LEAST_OVERLAP)
 
     def _by_halves(self, q: int) -> NormalMode | None:
         """The same by the torus half way."""
