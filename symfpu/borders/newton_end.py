@@ -19,6 +19,7 @@ from symfpu.refinement.resonances import NearResonance
 from symfpu.refinement.tori import (
     NoTorus,
     RefinedTorus,
+    ended_early,
     refine_at_amplitudes,
     refine_at_energy,
 )
@@ -286,6 +287,14 @@ def _followed(
 def _refined(
     ray: Ray, guess: QuasiPeriodic, place: float, tolerance: float = TOLERANCE
 ) -> RefinedTorus:
+    """The torus of a place; NoTorus also where Newton's method ended early."""
+    found = _at(ray, guess, place, tolerance)
+    if ended_early(found):
+        raise NoTorus("; ".join(found.warnings), found, found.residual())
+    return found
+
+
+def _at(ray: Ray, guess: QuasiPeriodic, place: float, tolerance: float) -> RefinedTorus:
     name = f"{place:.8g}"
     if ray.by == ENERGY:
         equal = dict.fromkeys(ray.seeds, 1)

@@ -344,7 +344,7 @@ def continued(
             kept += number - 2
             way.tori = [*way.tori[-3:][:number], torus]
         torus = way.tori[-1]
-        frequencies = normal.of(torus) if normal else None
+        frequencies = normal.of(torus, way) if normal else None
         found = member(torus, multipliers=multipliers, normal=frequencies)
         events = events_between(way, members[kept - 1], found, kept - 1, normal)
         yield Found(kept, found, events)

@@ -152,7 +152,11 @@ class Stretch:
         ends = self._first, self._second
         near = min(ends, key=lambda end: abs(end.place - place))
         torus = self._curve.torus(place)
-        found, missing = followed_modes(torus, near.modes, modes=modes)
+
+        def between(part: float) -> Solution:
+            return self._curve.torus(near.place + part * (place - near.place))
+
+        found, missing = followed_modes(torus, near.modes, modes=modes, between=between)
         for none in missing.values():
             raise none
         return Known(place, frequencies_of(found, missing), found)

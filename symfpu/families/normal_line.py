@@ -13,7 +13,7 @@ import numpy as np
 from symfpu.families.extrapolation import extrapolated, in_doubles
 from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.search import followed_modes
+from symfpu.normal.search import Between, followed_modes
 from symfpu.refinement.conditions import AmplitudeLine, Condition
 from symfpu.refinement.tori import (
     NoTorus,
@@ -131,6 +131,13 @@ class Line:
         earlier, later = (in_doubles(self._known[p]) for p in (before, last))
         return extrapolated(earlier, later, ratio)
 
+    def _before(self, n: int) -> Between | None:
+        """The tori from the member before to this one, by part of the way; None of the first."""
+        if n == 0:
+            return None
+        low, high = self.parts[n - 1 : n + 1]
+        return lambda part: self.torus(low + part * (high - low))
+
     def modes_at(
         self, n: int, modes: tuple[int, ...], before: list[NormalModes]
     ) -> NormalModes:
@@ -140,7 +147,7 @@ class Line:
         self._known[part] = self._torus(part)
         self._last.clear()
         near = before[0] if before else None
-        found, missing = followed_modes(torus, near, modes=modes)
+        found, missing = followed_modes(torus, near, modes=modes, between=self._before(n))
         for none in missing.values():
             raise none
         return found

@@ -26,12 +26,20 @@ class NormalWay:
         self.length, self.progress = length, progress
         self.known: list[NormalModes] = []
 
-    def of(self, torus: Solution) -> NormalFrequencies | None:
-        """Those of the next member; None where it does not solve the equations well enough."""
+    def of(self, torus: Solution, way: Way | None = None) -> NormalFrequencies | None:
+        """Those of the next member; None where it does not solve the equations well enough.
+
+        way : its last two tori are the member before and this one.
+        """
         if not torus.residual() <= REFINED:
             return None
         last = self.known[-1] if self.known else None
-        found, missing = followed_modes(torus, last, progress=self.progress)
+        between = None
+        if way and last and way.tori[-2].frequencies == last.torus.frequencies:
+            between = _Between(way).torus
+        found, missing = followed_modes(
+            torus, last, between=between, progress=self.progress
+        )
         self.known = [*self.known[-1:], found]
         return frequencies_of(found, missing)
 

@@ -12,10 +12,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from symfpu.normal.modes import NormalMode
+from symfpu.normal.reduction import LEAST_ACTION
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
-
-LEAST_ACTION = 1e-6  # |action| over sigma: with less another direction is met, known or not
 
 
 def undecided_modes(
@@ -39,6 +38,7 @@ def _hidden(mode: NormalMode) -> bool:
         return bool(mode.growth <= mode.rounding)
     if mode.digits is not None:
         return False
+    # another direction is met, known or not
     return bool(abs(mode.action) < LEAST_ACTION * mode.sigma)
 
 

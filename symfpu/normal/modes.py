@@ -36,8 +36,8 @@ class NoNormalModes(SymfpuError):
 
     Raised by `normal_modes`. mode : q of the frequency that was sought; guess : of it, from the
     closed second-order shift; nearest : the resonance nearest to it, a ParametricResonance, or None
-    where no low one lets it couple. reason : why digits fail where doubles do not; empty where
-    these do. Ours.
+    where no low one lets it couple. reason : why digits fail where doubles do not, or why it was
+    lost on the way from another torus; empty where no frequency was found. Ours.
     """
 
     def __init__(
@@ -46,14 +46,15 @@ class NoNormalModes(SymfpuError):
         guess: float,
         nearest: ParametricResonance | None,
         reason: str = "",
+        advice: str = "take normal_modes(torus.in_doubles())",
     ) -> None:
         self.mode, self.guess, self.nearest, self.reason = mode, guess, nearest, reason
         place = f"mode {mode} (guess {guess:.10g})"
         known = f"nearest resonance {nearest!r}" if nearest else "no resonance is near"
-        advice = "take a torus of another amplitude, or leave the mode out by modes="
-        problem = f"no normal frequency continues {place}"
-        if reason:
-            problem, advice = f"{place}: {reason}", "take normal_modes(torus.in_doubles())"
+        problem = f"{place}: {reason}"
+        if not reason:
+            problem = f"no normal frequency continues {place}"
+            advice = "take a torus of another amplitude, or leave the mode out by modes="
         super().__init__(f"{problem}: {known}; {advice}")
 
 

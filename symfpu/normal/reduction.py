@@ -37,9 +37,15 @@ ROUNDING = 1e-13  # of L, and what a torus in doubles makes of it, over Omega_q^
 LARGEST_ROUNDING = 1e-5  # of sigma, relative: with more it is not known
 LARGEST_STEP = 0.2  # of sigma, relative, that a step may take
 SURE = 0.5  # share of the main coefficient in the eigenfunction that tells the mode
+# action over sigma, at least, of an elliptic direction: its conjugate has the negative one, and
+# what turns as the torus does, or meets another direction, has none
+LEAST_ACTION = 1e-6
 # of the coupling: the first step of a continuation, and the least
 FIRST_PART, LEAST_PART = 1 / 8, 1 / 512
 LEAST_OVERLAP = 0.6  # of the eigenfunctions of two steps
+# of those of two tori: above the root of a half, which no two directions share that are
+# perpendicular
+LEAST_FOLLOWED = 0.75
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,16 +244,13 @@ def followed(flow: Linearised, q: int, sigma: complex, like: Values) -> Reduced 
     """The one that continues that of a torus nearby; None where it cannot be told.
 
     sigma : a guess. like : its eigenfunction there, at the harmonics of this flow. Through an
-    onset, where two solutions become one, the main coefficient has to tell them apart.
+    onset, where two solutions become one, the sign of the action tells them apart.
     """
     aim = _Aim(q, sigma, flow.column(q), like)
     hyperbolic = bool(complex(sigma).imag)
     for part in DEFLATED[1:] if hyperbolic else DEFLATED:
         found = _found(flow, aim, part)
-        if found is None or aim.overlap(found) < LEAST_OVERLAP:
-            continue
-        turned = bool(complex(found.sigma).imag) != hyperbolic
-        if not turned or found.share > SURE:
+        if found and aim.overlap(found) > LEAST_FOLLOWED:
             return found
     return None
 
@@ -306,7 +309,10 @@ class _Aim:
 
 
 def _found(flow: Linearised, aim: _Aim, part: float) -> Reduced | None:
-    """With a part of the block deflated; None where Newton's method does not converge."""
+    """With a part of the block deflated; None where Newton's method does not converge.
+
+    And where it leads to a conjugate, nu.omega - sigma of an elliptic direction.
+    """
     sigma, near = aim.sigma, float(complex(aim.sigma).real)
     block = Block(flow, aim.q, near)
     like = aim.vector(block.mask)
@@ -315,7 +321,14 @@ def _found(flow: Linearised, aim: _Aim, part: float) -> Reduced | None:
         W = block.deflation(near, part, inside)
     else:
         sigma, W = block.guess(near, inside)
-    return _iterated(Bordered(block, W), sigma, like)
+    found = _iterated(Bordered(block, W), sigma, like)
+    return None if found and _is_conjugate(found) else found
+
+
+def _is_conjugate(found: Reduced) -> bool:
+    """Whether it is elliptic and turns backwards, which none does at rest."""
+    turns = not complex(found.sigma).imag
+    return turns and found.action < -LEAST_ACTION * found.sigma.real
 
 
 def _iterated(system: Bordered, guess: complex, like: Values) -> Reduced | None:
@@ -329,7 +342,9 @@ def _iterated(system: Bordered, guess: complex, like: Values) -> Reduced | None:
         X, images = system.improved(X, accuracy)
         slope = -2 * (sigma + system.rates)
         steps, vectors = steps_of(X.T @ images, X.T @ (slope[:, None] * X))
-        shares = shares_of(X, vectors, like)
+        shares = np.where(
+            _of_this_sign(steps, X @ vectors, sigma, system), shares_of(X, vectors, like), 0
+        )
         at = _nearest(steps, shares, first=step == 0)
         change, v = steps[at], vectors[:, at]
         if not np.isfinite(change) or abs(change) > LARGEST_STEP * size:
@@ -359,6 +374,16 @@ def shares_of(X: Values, vectors: Values, like: Values) -> Floats:
     gram = X.conj().T @ X
     norms = np.sqrt(np.einsum("ri,rs,si->i", vectors.conj(), gram, vectors).real)
     return np.asarray(np.abs((like.conj() @ X) @ vectors) / norms)
+
+
+def _of_this_sign(steps: Values, p: Values, sigma: complex, system: Bordered) -> Mask:
+    """Which of some solutions p (n, r) are hyperbolic, or turn forwards; all, if none does."""
+    weights = np.abs(p) ** 2
+    rates = complex(sigma).real + system.rates
+    actions = rates @ weights / weights.sum(axis=0)
+    forwards = actions > LEAST_ACTION * abs(sigma)
+    chosen = forwards | (steps.imag != 0)
+    return np.asarray(chosen if chosen.any() else ~chosen)
 
 
 def _nearest(steps: Values, shares: Floats, *, first: bool) -> int:

@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from functools import partial
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
+from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress, unheard
 from symfpu.normal.collisions import undecided_modes
 from symfpu.normal.digits import PreciseModes
 from symfpu.normal.linearised import Linearised, Values
 from symfpu.normal.linearised_standing import is_sine, is_standing
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
-from symfpu.normal.reduction import Reduced, continued, followed, hyperbolic, reduced
+from symfpu.normal.names import Names
+from symfpu.normal.reduction import (
+    LEAST_OVERLAP,
+    Reduced,
+    continued,
+    followed,
+    hyperbolic,
+    reduced,
+)
 from symfpu.normal.resonances import OWN, ParametricResonance
 from symfpu.normal.torus import (
     LENGTH,
@@ -38,7 +48,9 @@ SPREAD = 10.0  # times rounding: what is nearer to nu.omega turns as the torus d
 STILL = 1e-2  # of sigma: the action of a direction that may turn as the torus does
 GROWTHS = (1e-3, 1e-4, 1e-2)  # over nu.omega, tried where a direction is locked to it
 RESOLVED = 1e-7  # residual of such a direction
-SAME = 1e-9  # difference of two frequencies that are one
+HALVINGS = 4  # of the step between two tori, where a mode cannot be followed at once
+LOST = "its eigenfunction on the torus before does not tell it from others"
+NEARER = "follow it in smaller steps, or together with the modes that it mixes with"
 
 
 def normal_modes(
@@ -130,38 +142,80 @@ def followed_modes(
     before: NormalModes | None,
     *,
     modes: Iterable[int] | None = None,
+    between: Between | None = None,
     progress: Progress | None = None,
 ) -> tuple[NormalModes, dict[int, NoNormalModes]]:
     """Normal modes of a torus, each continued from its eigenfunction on a torus nearby.
 
     before : of the torus nearby; None, or without a mode, where there is none: then the mode is
-        sought as by `normal_modes`, and so it is where the two tori are too far apart.
+        sought as by `normal_modes`. between : the torus at a part of the way from that one, 0 to
+        1, for modes that cannot be followed in one step. One that cannot be followed at all is
+        sought anew, and taken if its main coefficient tells that it is this mode.
 
     Returns what was found, and by mode why one was not; in doubles.
     """
     torus = checked_solution(solution)
     chosen = checked_modes(torus, modes)
-    search = _Search(torus, LENGTH, before)
+    known = None if before is None else Before.of(before)
+    search = _Search(torus, LENGTH, known, between)
     found, missing = search.each(chosen, progress or unheard)
     return search.result(solution, found, missing), missing
+
+
+Between = Callable[[float], Solution]
+
+
+class Before(NamedTuple):
+    """Modes of a torus nearby, in doubles, and the closed shifts there."""
+
+    modes: Mapping[int, NormalMode]
+    shifts: Mapping[int, float]
+
+    @classmethod
+    def of(cls, found: NormalModes) -> Before:
+        modes = {mode.mode: mode.in_doubles() for mode in found.modes}
+        return cls(modes, second_order(found.torus))
 
 
 class _Search:
     """The search for the modes of one torus, from closed shifts or from modes known before."""
 
     def __init__(
-        self, torus: Solution, length: int, before: NormalModes | None = None
+        self,
+        torus: Solution,
+        length: int,
+        before: Before | None = None,
+        between: Between | None = None,
+        halvings: int = HALVINGS,
+        flows: Flows | None = None,
     ) -> None:
         self._torus, self._length = torus, length
         self._guesses = second_order(torus)
-        earlier = before.modes if before else ()
-        self._before = {mode.mode: mode.in_doubles() for mode in earlier}
-        self._earlier = second_order(before.torus) if before else {}
-        self._travels = isinstance(torus, RingTorus) and not is_standing(torus)
-        self._flows = Flows(torus)
+        self._before = before or Before({}, {})
+        self._between, self._halvings = between, halvings
+        self._names = Names(torus)
+        self._flows = flows or Flows(torus)
+        self._firsts: dict[int, NormalMode | None] = {}
+        self._anew: set[int] = set()
 
     def each(self, modes: tuple[int, ...], tell: Progress) -> Found:
-        """Those that continue the chosen modes."""
+        """Those that continue the chosen modes.
+
+        With their rivals, so that one mode alone is the one that it is among all of them.
+        """
+        sought = set(modes)
+        while True:
+            found, missing = self._of_all(sorted(sought), tell)
+            rivals = {
+                r for q in self._anew & set(found) for r in self._names.rivals(found[q])
+            }
+            if rivals <= sought:
+                break
+            sought |= rivals
+        own = {q: mode for q, mode in found.items() if q in modes}
+        return own, {q: none for q, none in missing.items() if q in modes}
+
+    def _of_all(self, modes: Sequence[int], tell: Progress) -> Found:
         found: dict[int, NormalMode] = {}
         missing: dict[int, NoNormalModes] = {}
         for number, q in enumerate(modes):
@@ -195,6 +249,7 @@ class _Search:
         found = self.mode(q, guess, others)
         turning = found and self._turning(found)
         if found and not turning:
+            self._require_told(found)
             return found
         nearest = resonances_near(self._torus, {q: guess}, self._length)
         own = turning or next((one for one in nearest if one.kind == OWN), None)
@@ -202,6 +257,15 @@ class _Search:
         if beside:
             return beside
         raise NoNormalModes(q, guess, turning or (nearest[0] if nearest else None))
+
+    def _require_told(self, found: NormalMode) -> None:
+        """NoNormalModes for a mode that was lost on the way, if its main coefficient is small."""
+        q, sigma = found.mode, complex(found.sigma).real
+        lost = q in self._anew and q in self._before.modes
+        if not lost or self._names.told(found):
+            return
+        nearest = resonances_near(self._torus, {q: sigma}, self._length)
+        raise NoNormalModes(q, sigma, next(iter(nearest), None), LOST, NEARER)
 
     def _turning(self, found: NormalMode) -> ParametricResonance | None:
         """The resonance of a direction that turns as the torus does, if this is none but that.
@@ -211,11 +275,15 @@ class _Search:
         cosine, are one to more digits than a double root has.
         """
         torus, sigma = self._torus, complex(found.sigma)
-        standing = isinstance(torus, RingTorus) and not self._travels
+        standing = isinstance(torus, RingTorus) and is_standing(torus)
         cosine = standing and not is_sine(torus.chain, found.mode)
         if not cosine and abs(found.action) > STILL * abs(sigma):
             return None
         unresolved = UNRESOLVED if cosine else max(UNRESOLVED, SPREAD * found.rounding)
+        if (
+            found.residual > RESOLVED
+        ):  # of a double root that a torus in doubles tears apart
+            unresolved = max(unresolved, float(np.sqrt(found.residual)))
         nearest = resonances_near(torus, {found.mode: sigma.real}, self._length)
         for one in nearest:
             if one.kind == OWN and abs(complex(one.distance, sigma.imag)) < unresolved:
@@ -245,7 +313,7 @@ class _Search:
         return near and alone and grows and found.residual < RESOLVED
 
     def _hyperbolic(self, flow: Linearised, q: int, sigma: complex) -> Reduced | None:
-        known = self._before.get(q)
+        known = self._before.modes.get(q)
         like = None if known is None else flow.table(at_harmonics(known, flow.harmonics))
         return hyperbolic(flow, q, sigma, like)
 
@@ -256,70 +324,133 @@ class _Search:
 
         Another that turns out to be this one is sought anew.
         """
-        found = self._sought(
-            q, lambda flow: self._nearby(flow, q) or reduced(flow, q, guess)
-        )
-        twin = found and self._twin(found, others.values())
+        found = self._first(q, guess)
+        twin = found and self._names.twin(found, others.values())
         if not twin:
             return found
-        found = self._sought(q, lambda flow: continued(flow, q))
-        twin = found and self._twin(found, others.values())
+        if found and found.growth:
+            partner = self._partner(found)
+            if partner and not self._names.twin(partner, others.values()):
+                return partner
+        found = self._sought(q, partial(continued, q=q))
+        twin = found and self._names.twin(found, others.values())
         if not found or not twin:
             return found
         other = twin.mode
-        again = self._sought(other, lambda flow: continued(flow, other))
-        if again is None or self._twin(again, [found, *others.values()]):
+        again = self._sought(other, partial(continued, q=other))
+        if again is None or self._names.twin(again, [found, *others.values()]):
             return None
         others[twin.mode] = again
         return found
 
+    def _partner(self, found: NormalMode) -> NormalMode | None:
+        """The other one of a quartet, nu.omega - conj(sigma), by the mode's largest coefficient."""
+        q = found.mode
+        column = self._torus.chain.mode_numbers.index(q)
+        rates = complex(found.sigma).real + found.rates
+        sizes = np.where(rates < 0, np.abs(found.coefficients[:, column]), 0)
+        row = int(np.argmax(sizes))
+        sigma = complex(-rates[row], found.growth)
+
+        def near(flow: Linearised) -> Reduced | None:
+            turned = at_harmonics(found, found.harmonics[row] - flow.harmonics)
+            return followed(flow, q, sigma, flow.table(turned.conj()))
+
+        return self._sought(q, near)
+
+    def _first(self, q: int, guess: float) -> NormalMode | None:
+        """The one that is taken for q if no other mode objects."""
+        if q not in self._firsts:
+            followed = self._along(q)
+            if followed is None:
+                self._anew.add(q)
+            if followed is None or self._names.is_others(followed):
+                anew = self._sought(q, partial(reduced, q=q, guess=guess))
+                told = anew and self._names.told(anew)
+                followed = anew if told or followed is None else followed
+            self._firsts[q] = followed
+        return self._firsts[q]
+
+    def _along(self, q: int) -> NormalMode | None:
+        """From the torus before, in as many steps as it needs; None where none leads here.
+
+        Through an onset, where two directions become one, in the shortest.
+        """
+        if q not in self._before.modes:
+            return None
+        found = self._sought(q, partial(self._nearby, q=q), patient=False)
+        turning = found and self._turning(found)
+        if turning:
+            found = self._beside(q, turning, {})
+        if found is None or not self._continues(found):
+            return self._by_halves(q)
+        if bool(found.growth) == bool(self._before.modes[q].growth):
+            return found
+        return self._by_halves(q) or found
+
+    def _continues(self, found: NormalMode) -> bool:
+        """Whether it is like the eigenfunction on the torus before."""
+        like = at_harmonics(self._before.modes[found.mode], found.harmonics)
+        return bool(abs(np.vdot(like, found.coefficients)) > LEAST_OVERLAP)
+
+    def _by_halves(self, q: int) -> NormalMode | None:
+        """The same by the torus half way."""
+        middle = self._middle
+        half = None if middle is None else middle._along(q)
+        if middle is None or half is None:
+            return None
+        known, between = Before({q: half}, middle._guesses), self._part(0.5, 1.0)
+        halvings = self._halvings - 1
+        rest = _Search(self._torus, self._length, known, between, halvings, self._flows)
+        return rest._along(q)
+
+    @cached_property
+    def _middle(self) -> _Search | None:
+        """The search on the torus half way; None where there is none."""
+        if self._between is None or not self._halvings:
+            return None
+        try:
+            torus = checked_solution(self._between(0.5))
+        except SymfpuError:
+            return None
+        between, halvings = self._part(0.0, 0.5), self._halvings - 1
+        return _Search(torus, self._length, self._before, between, halvings)
+
+    def _part(self, low: float, high: float) -> Between:
+        """The tori on a part of the way."""
+        whole = self._between
+        assert whole is not None
+        return lambda part: whole(low + part * (high - low))
+
     def _nearby(self, flow: Linearised, q: int) -> Reduced | None:
         """From the torus before, its frequency moved as the closed shift is."""
-        if q not in self._before:
-            return None
-        known = self._before[q]
-        moved = self._guesses[q] - self._earlier[q]
+        known = self._before.modes[q]
+        moved = self._guesses[q] - self._before.shifts[q]
         like = flow.table(at_harmonics(known, flow.harmonics))
         return followed(flow, q, known.sigma + moved, like)
 
     def _sought(
-        self, q: int, find: Callable[[Linearised], Reduced | None]
+        self,
+        q: int,
+        find: Callable[[Linearised], Reduced | None],
+        *,
+        patient: bool = True,
     ) -> NormalMode | None:
-        """With as many harmonics as the tolerance needs; the best one met if none do."""
+        """With as many harmonics as the tolerance needs; the best one met if none do.
+
+        patient : whether more harmonics are tried where fewer give none.
+        """
         best: NormalMode | None = None
         for every in self._flows:
             flow = every.of(q)
             found = find(flow)
+            if not (found or patient):
+                break
             if found and (best is None or found.residual < best.residual):
                 best = _mode_of(flow, found)
             if best and best.residual < TOLERANCE:
                 break
         return best
-
-    def _twin(self, found: NormalMode, others: Iterable[NormalMode]) -> NormalMode | None:
-        """One of the others that is the same solution, shifted by a harmonic or conjugate.
-
-        Of a hyperbolic mode the partner in a quartet, with two more solutions between them, is
-        none.
-        """
-        for other in others:
-            if found.growth or other.growth or found.mode == other.mode:
-                continue
-            if self._same(found, other):
-                return other
-        return None
-
-    def _same(self, found: NormalMode, other: NormalMode) -> bool:
-        """Whether a solution has the frequency of another, or its negative, in that one's mode."""
-        modes = self._torus.chain.mode_numbers
-        sigma, q = complex(other.sigma).real, other.mode
-        opposite = -q if self._travels and -q in modes else q
-        for mode, signed in ((q, sigma), (opposite, -sigma)):
-            column = np.abs(found.coefficients[:, modes.index(mode)])
-            rate = found.rate(int(np.argmax(column)))
-            if column.any() and abs(rate - signed) < SAME:
-                return True
-        return False
 
 
 def at_harmonics(mode: NormalMode, harmonics: Ints) -> Values:

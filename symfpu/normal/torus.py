@@ -27,12 +27,13 @@ from symfpu.numbers.typed import integer
 from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.harmonics import chosen_harmonics
+from symfpu.refinement.tori import USEFUL
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 from symfpu.tori.ring_torus import RingTorus
 
 Solution: TypeAlias = QuasiPeriodic | RingTorus
 PRECISE = (PreciseTorus, PreciseOrbit)  # solutions whose digits are those of the equations
-REFINED = 1e-9  # residual of a torus, relative, above which it is refused
+REFINED = USEFUL  # residual of a torus, relative, above which it is refused
 HEIGHTS = (1e-8, 1e-11, 1e-14, 1e-17)  # parts of the largest coefficient of the torus
 SMALLEST_KEPT = (
     1e-18  # coefficients of the torus below this part of its largest are rounding

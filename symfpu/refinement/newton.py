@@ -22,6 +22,9 @@ from symfpu.refinement.linear_system import LinearSystem, Preconditioner
 
 KRYLOV, RESTARTS = 150, 2
 ACCURACY = 1e-8  # of a Krylov solution
+# of the right-hand side, up to which what a Krylov solution leaves makes a step like any other
+INEXACT = 0.5
+FALL = 0.9  # of the error, at least, by a step that leaves more
 # errors by rounding up to which a force is taken in doubles: of an amplitude, relative, and of
 # other coefficients, relative to the largest
 AMPLITUDES, COEFFICIENTS = 1e-14, 1e-13
@@ -63,13 +66,16 @@ class NewtonStep(NamedTuple):
 class Iterate:
     """cosines (H, C) and shifts (s,) in long doubles, and the way there.
 
-    failure : why it ended early, empty if it converged.
+    failure : why it ended early, empty if it converged. settled : whether it ended early because
+    no further step could be solved for, when the next one was expected to change less than what
+    ends a search that no longer gains.
     """
 
     cosines: Floats
     shifts: Floats
     steps: tuple[NewtonStep, ...]
     failure: str = ""
+    settled: bool = False
 
     @property
     def residual(self) -> float:
@@ -126,9 +132,11 @@ def newton(
     best = (np.inf, cosines, shifts)
     sizes = _sizes(equation, cosines)
     precision = force_precision(equation, cosines, shifts)
+    to_come, left, products = np.inf, 0.0, 0
 
-    def failed(reason: str) -> Iterate:
-        return Iterate(best[1], best[2], tuple(steps), reason)
+    def failed(reason: str, *, unsolved: bool = False) -> Iterate:
+        settled = unsolved and to_come < ROUNDING_STEP
+        return Iterate(best[1], best[2], tuple(steps), reason, settled)
 
     for _ in range(ITERATIONS):
         imbalance, residual = _imbalance(equation, cosines, shifts, precision)
@@ -138,14 +146,21 @@ def newton(
         if not np.isfinite(residual + violation):
             return failed("the equations or conditions leave the range of numbers")
         error = residual + violation
+        gained = error < FALL * best[0]
         if error < best[0]:
             best = (error, cosines, shifts)
+        if left > INEXACT and not gained:
+            return failed(_unsolved(products, left), unsolved=True)
         system = LinearSystem(equation, conditions, cosines, shifts)
         right = -np.concatenate([imbalance, values])
         try:
-            change, products = _solved(system, Preconditioner(system), right, aim.krylov)
+            found = _solved(system, Preconditioner(system), right, aim.krylov)
+            change, products, left = found
         except (np.linalg.LinAlgError, ValueError) as failure:
-            return failed(f"the matrix of Newton's method is singular ({failure})")
+            reason = f"the matrix of Newton's method is singular ({failure})"
+            return failed(reason, unsolved=True)
+        if not left < 1:
+            return failed(_unsolved(products, left), unsolved=True)
         moved = np.zeros(cosines.shape)
         moved[equation.mask] = change[: -len(shifts)]
         cosines = cosines + moved
@@ -158,11 +173,17 @@ def newton(
         for name, old, new in reached:
             if not old / GROWTH < new < old * GROWTH:
                 return failed(f"{name} goes from {old:.3g} to {new:.3g}")
+        if left > INEXACT:
+            continue
         before = steps[-2].change if len(steps) > 1 else 1.0
-        to_come = relative * max(aim.krylov, relative / before)
+        to_come = relative * max(aim.krylov, left, relative / before)
         if to_come < aim.change or before / 2 < relative < ROUNDING_STEP:
             return Iterate(cosines, shifts, tuple(steps))
     return failed(f"no convergence in {ITERATIONS} steps")
+
+
+def _unsolved(products: int, left: float) -> str:
+    return f"{products} products leave {left:.2g} of the right-hand side of Newton's method"
 
 
 def _sizes(equation: TorusEquation, cosines: Floats) -> list[float]:
@@ -176,18 +197,29 @@ def _names(equation: TorusEquation) -> list[str]:
     return ["the largest coefficient", *(f"A_{q}" for q in equation.seeds)]
 
 
+class Solution(NamedTuple):
+    """Of the linear system: the changes, how many products they took, and what they leave.
+
+    left : of the right-hand side, at most about, relative.
+    """
+
+    change: Floats
+    products: int
+    left: float
+
+
 def _solved(
     system: LinearSystem,
     preconditioner: Preconditioner,
     right: Floats,
     accuracy: float = ACCURACY,
-) -> tuple[Floats, int]:
-    """The solution of the system for a right-hand side, and the number of products it took."""
+) -> Solution:
+    """The solution of the system for a right-hand side, as far as it is found."""
     from scipy.sparse.linalg import LinearOperator, gmres
 
     count = 0
     if preconditioner.whole:
-        return preconditioner(right), 0
+        return Solution(preconditioner(right), 0, 0.0)
 
     def preconditioned(vector: Floats) -> Floats:
         nonlocal count
@@ -197,12 +229,24 @@ def _solved(
     operator = LinearOperator((len(right), len(right)), matvec=preconditioned, dtype=float)
     limits = {"rtol": accuracy, "atol": 0.0, "restart": KRYLOV, "maxiter": RESTARTS}
     solution, info = gmres(operator, right, **limits)
+    left = accuracy
     if info:
-        left = float(np.linalg.norm(operator @ solution - right))
-        if left > 0.5 * float(np.linalg.norm(right)):
-            what = f"{count} products leave more than half of the right-hand side"
-            raise np.linalg.LinAlgError(what)
-    return preconditioner(solution), count
+        missed = operator @ solution - right
+        left = float(np.linalg.norm(missed) / np.linalg.norm(right))
+    return Solution(preconditioner(solution), count, left)
+
+
+def _solution(
+    system: LinearSystem,
+    preconditioner: Preconditioner,
+    right: Floats,
+    accuracy: float = ACCURACY,
+) -> Solution:
+    """The same; LinAlgError where more than half of the right-hand side is left."""
+    found = _solved(system, preconditioner, right, accuracy)
+    if not found.left <= INEXACT:
+        raise np.linalg.LinAlgError(_unsolved(found.products, found.left))
+    return found
 
 
 def responses(
@@ -235,8 +279,7 @@ def _corrected(
     """The solution to rounding."""
     total, left, before = np.zeros(len(right)), right, np.inf
     for _ in range(CORRECTIONS):
-        change, _ = _solved(system, preconditioner, left)
-        total = total + change
+        total = total + _solution(system, preconditioner, left).change
         left = right - system.product(total)
         size = float(np.abs(left).max())
         if size > before / 2:
@@ -269,7 +312,8 @@ class Correction:
         """
         mask, s = self._system.mask, self._system.s
         right = np.concatenate([-imbalance[mask], np.zeros(s)])
-        change, products = _solved(self._system, self._preconditioner, right, accuracy)
+        found = _solution(self._system, self._preconditioner, right, accuracy)
+        change, products = found.change, found.products
         by_cosine = np.zeros(mask.shape)
         by_cosine[mask] = change[:-s]
         return by_cosine, change[-s:], products

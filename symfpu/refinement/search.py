@@ -7,7 +7,7 @@ a small polytope, and then choices that follow the forces (`symfpu.refinement.wi
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -55,7 +55,7 @@ class Solved:
 
     torus : what came of it. residual : between the points of the lattice, relative to the largest
     acceleration. doubt : why it may be no torus, empty if it is settled. failure : why there is
-    none.
+    none. reached : the torus of fewer harmonics, if there is one.
     """
 
     equation: TorusEquation
@@ -63,6 +63,7 @@ class Solved:
     torus: Any
     residual: float
     doubt: str = ""
+    reached: Any = None
 
     @property
     def failure(self) -> str:
@@ -92,20 +93,20 @@ class Search:
         harmonics, full = self._polytope(known, self.tolerance * MARGIN, allowed)
         if full and self.most > FIRST_POLYTOPE:
             return self._by_forces(known, shifts)
-        before = np.inf
+        before, reached = np.inf, None
         for attempt in range(ROUNDS):
             if attempt:
                 least = self.tolerance * MARGIN / 10**attempt
                 harmonics, full = self._polytope(known, least, self.most)
             solved = self._solved(harmonics, _rows(known, harmonics), shifts)
             if solved.failure or solved.residual <= self.tolerance:
-                return solved
+                return replace(solved, reached=reached)
             if full or solved.residual > before / 2:
                 return self._doubtful(solved, full=full)
-            before, shifts = solved.residual, solved.found.shifts
+            before, shifts, reached = solved.residual, solved.found.shifts, solved.torus
             known = known_rows(harmonics, np.asarray(solved.found.cosines))
         doubt = f"the residual is {solved.residual:.2g} after {ROUNDS} choices of harmonics"
-        return _with_doubt(solved, doubt)
+        return replace(solved, doubt=doubt)
 
     def _polytope(
         self, known: dict[tuple[int, ...], Floats], least: float, most: int
@@ -119,7 +120,7 @@ class Search:
             harmonics, _ = self._polytope(known, self.tolerance * MARGIN, first)
             choice = Widened(harmonics, _rows(known, harmonics), full=False)
             solved = self._widening(choice, shifts)
-            if not solved.failure or self.most < LARGEST_POLYTOPE:
+            if not solved.failure or solved.reached or self.most < LARGEST_POLYTOPE:
                 break
         return solved
 
@@ -131,7 +132,7 @@ class Search:
             aim = Aim(ROUGH * before, ROUGH_KRYLOV)
             solved = self._solved(choice.harmonics, choice.cosines, shifts, aim)
             if solved.failure:
-                return solved if best is None else self._doubtful(best, solved.failure)
+                return replace(solved, reached=best and best.torus)
             gained = best is None or solved.residual < GAIN * best.residual
             if solved.residual <= self.tolerance or choice.full or not gained:
                 return self._settled(solved, full=choice.full)
@@ -148,9 +149,9 @@ class Search:
     def _settled(self, solved: Solved, *, full: bool) -> Solved:
         """The same solved to rounding, with a doubt where the tolerance is not reached."""
         again = self._newton(solved.equation, solved.found.cosines, solved.found.shifts)
-        if again.failure:
-            return self._doubtful(solved, again.failure)
         settled = self._judged(solved.equation, again)
+        if again.failure:
+            return replace(settled, reached=solved.torus)
         if settled.residual <= self.tolerance:
             return settled
         return self._doubtful(settled, full=full)
@@ -176,20 +177,14 @@ class Search:
             self.tell(f"residual {residual:.1e} between the grid points", NO_FRACTION)
         return Solved(equation, found, torus, residual)
 
-    def _doubtful(self, solved: Solved, failure: str = "", *, full: bool = False) -> Solved:
+    def _doubtful(self, solved: Solved, *, full: bool) -> Solved:
         """With the reason why its residual stays above the tolerance."""
         reason = "more harmonics change nothing and"
         if full:
             reason = f"as many harmonics as fit (most_harmonics={self.most})"
-        if failure:
-            reason = f"with more harmonics {failure}; these {len(solved.torus.harmonics)}"
         left = f"leave a residual of {solved.residual:.2g}"
         doubt = f"{reason} {left}, above the tolerance {self.tolerance:.0e}"
-        return _with_doubt(solved, doubt)
-
-
-def _with_doubt(solved: Solved, doubt: str) -> Solved:
-    return Solved(solved.equation, solved.found, solved.torus, solved.residual, doubt)
+        return replace(solved, doubt=doubt)
 
 
 def _rows(known: dict[tuple[int, ...], Floats], harmonics: Ints) -> Floats:

@@ -58,6 +58,8 @@ from symfpu.tori.travelling import require_travelling, wave_coefficients
 # for harmonics
 TOLERANCE = 1e-13
 LEAST_SIZE = Fraction(1, 10**40)  # of amplitudes and coefficients
+USEFUL = 1e-9  # residual of a torus up to which normal modes and others take it
+ENDED_EARLY = "Newton's method ended early"  # how the warning of such a torus begins
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +75,8 @@ class RefinedTorus(QuasiPeriodic):
     steps : of Newton's method with the final harmonics.
     near_resonances : the smallest divisors (nu.omega)^2 - Omega_q^2, with the coefficients under
         them.
-    warnings : reasons to doubt it. digits : None, of doubles.
+    warnings : reasons to doubt it: a residual above the tolerance, or that Newton's method failed
+        when it had reached a residual of 1e-9 or less. digits : None, of doubles.
 
     >>> from symfpu import Chain, lindstedt, refine, solve_amplitudes
     >>> refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
@@ -117,6 +120,8 @@ class RefinedTorus(QuasiPeriodic):
 
 class NoTorus(SymfpuError):
     """Newton's method found no torus: raised by `refine`, its sisters and `family`.
+
+    Where it fails with a residual of 1e-9 or less left, they give that torus with a warning.
 
     iterate : the best one, a RefinedTorus or RefinedRingTorus, or where digits were asked for the
         torus from which they were tried; residual : what it leaves of the
@@ -515,10 +520,30 @@ def refined_torus(
     solved = search(known_rows(*guess), shifts_of(torus))
     found: RefinedTorus | RefinedRingTorus = solved.torus
     if solved.failure:
-        raise NoTorus(_because(solved.failure, found), found, solved.residual)
+        settled = found if solved.found.settled else None
+        return _ended_early(_because(solved.failure, found), settled, solved.reached, found)
     if solved.doubt:
         return replace(found, warnings=(_because(solved.doubt, found),))
     return found
+
+
+def _ended_early(reason: str, settled: Any, reached: Any, last: Any) -> Any:
+    """The best torus there is where Newton's method failed, with a warning; else NoTorus.
+
+    settled : the last iterate, if nothing but rounding was left to be gained. reached : the torus
+    of fewer harmonics, on which the method converged.
+    """
+    tori = [torus for torus in (settled, reached) if torus is not None]
+    best = min(tori, key=lambda torus: torus.residual(), default=None)
+    if best is None or not best.residual() <= USEFUL:
+        raise NoTorus(reason, last, last.residual())
+    left = f"the residual is {best.residual():.2g} with {len(best.harmonics)} harmonics"
+    return replace(best, warnings=(f"{ENDED_EARLY}: {reason}; {left}",))
+
+
+def ended_early(torus: RefinedTorus | RefinedRingTorus) -> bool:
+    """Whether it is what Newton's method had reached when it failed."""
+    return any(warning.startswith(ENDED_EARLY) for warning in torus.warnings)
 
 
 def _because(reason: str, torus: RefinedTorus | RefinedRingTorus) -> str:
