@@ -60,6 +60,7 @@ from symfpu.tori.verdict import assess as assess
 # tori by Newton's method
 from symfpu.refinement.digits import PreciseTorus as PreciseTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus as RefinedRingTorus
+from symfpu.refinement.through import refine_at_start as refine_at_start
 from symfpu.refinement.tori import RefinedTorus as RefinedTorus
 from symfpu.refinement.tori import refine as refine
 from symfpu.refinement.tori import refine_at_amplitudes as refine_at_amplitudes

@@ -102,6 +102,38 @@ class Amplitude:
 
 
 @dataclass(frozen=True)
+class Start:
+    """The coordinate of a seed at t = 0 is given, in terms of another size.
+
+    phases : of all seeds, radians, (s,).
+    """
+
+    place: int
+    coordinate: np.longdouble
+    phases: tuple[float, ...]
+    size: float
+
+    def value(
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+    ) -> np.longdouble:
+        column = cosines[:, equation.seed_columns[self.place]]
+        found = self._waves(equation) @ column
+        return np.longdouble((found - self.coordinate) / self.size)
+
+    def gradient(
+        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[Floats, Floats]:
+        by_cosine = np.zeros(cosines.shape)
+        waves = self._waves(equation).astype(float)
+        by_cosine[:, equation.seed_columns[self.place]] = waves / self.size
+        return by_cosine, np.zeros(len(shifts))
+
+    def _waves(self, equation: TorusEquation) -> Floats:
+        angles = equation.harmonics @ np.array(self.phases, dtype=np.longdouble)
+        return np.asarray(np.cos(angles))
+
+
+@dataclass(frozen=True)
 class AmplitudeRatio:
     """The amplitude of a seed is a multiple of that of the first one."""
 
