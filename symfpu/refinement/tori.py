@@ -41,6 +41,7 @@ from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.harmonics import MOST_HARMONICS, chosen_harmonics, known_rows
 from symfpu.refinement.invariance import DIGITS, InvarianceEquation, long, rational
 from symfpu.refinement.kept_sweeps import SweepsFile, require_digits_beside, unkept
+from symfpu.refinement.memory import least_sizes, require_memory, sizes_of
 from symfpu.refinement.newton import Iterate, NewtonStep, newton
 from symfpu.refinement.resonances import NearResonance, near_resonances
 from symfpu.refinement.ring_tori import (
@@ -182,7 +183,8 @@ def refine(
         it, one to more digits, too.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration,
         dimensionless; harmonics are added until it is reached.
-    most_harmonics : how many may be taken, if their lattice fits; memory grows with them.
+    most_harmonics : how many may be taken, if their lattice fits; what their memory is predicted
+        to exceed is TorusTooLarge, before it begins.
     progress : called as (label, NO_FRACTION) on every step.
 
     Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a
@@ -534,11 +536,13 @@ def refined_torus(
         least = tolerance * MARGIN / 10**attempt
         functions = kind.functions(chain)
         harmonics, full = chosen_harmonics(known, functions, len(seeds), least, most)
+        require_memory(least_sizes(chain, len(none), functions, harmonics), chain)
         equation = kind.equation(chain, seeds, harmonics)
         rows = [known.get(tuple(nu), none) for nu in harmonics.tolist()]
         cosines = np.array(rows, dtype=np.longdouble)
         tell(f"{len(harmonics)} harmonics, {equation.points} points", NO_FRACTION)
         start = np.where(equation.mask, cosines, 0)
+        require_memory(sizes_of(chain, equation, start, shifts), chain)
         found = newton(equation, conditions, start, shifts, tell)
         frequencies = _frequencies(chain, seeds, found.shifts)
         refined = kind.result(torus, equation, found, frequencies)
