@@ -247,6 +247,7 @@ from symfpu.errors import NoRealAmplitude as NoRealAmplitude
 from symfpu.errors import ResonantDivisor as ResonantDivisor
 from symfpu.errors import SymfpuError as SymfpuError
 from symfpu.errors import TooLarge as TooLarge
+from symfpu.errors import TorusTooLarge as TorusTooLarge
 from symfpu.errors import UndeterminedAmplitudes as UndeterminedAmplitudes
 from symfpu.families.family import NotInFamily as NotInFamily
 from symfpu.files.archive import BundleError as BundleError

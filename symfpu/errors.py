@@ -90,6 +90,33 @@ class TooLarge(InputError):
         InputError.__init__(self, "order", order, allowed, advice)
 
 
+class TorusTooLarge(InputError):
+    """A torus whose refinement would not fit into the free memory.
+
+    Raised by `refine`, its sisters and what uses them, before its equations are made. Ours.
+
+    N : of the chain; harmonics : that it asks for; needed, free : bytes; largest : number of
+        harmonics that fits, 0 if none does.
+    """
+
+    def __init__(
+        self, N: int, harmonics: int, needed: int, free: int, largest: int
+    ) -> None:
+        self.N = N
+        self.harmonics = harmonics
+        self.needed = needed
+        self.free = free
+        self.largest = largest
+        allowed = (
+            f"what fits into the {free:,} bytes of free memory ({needed:,} are needed)"
+        )
+        advice = "take a shorter chain"
+        if largest:
+            advice = f"take most_harmonics={largest} or less, or a larger tolerance"
+        count = f"{harmonics:,} of N = {N}"
+        InputError.__init__(self, "harmonics", count, allowed, advice)
+
+
 class ExpansionTooLarge(InputError):
     """An expanded polynomial that would not fit into the free memory, or into integers of 64 bits.
 

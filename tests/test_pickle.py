@@ -47,6 +47,7 @@ from symfpu.errors import (
     ResonantDivisor,
     SymfpuError,
     TooLarge,
+    TorusTooLarge,
     UndeterminedAmplitudes,
     VanishingResidue,
 )
@@ -389,6 +390,7 @@ ERRORS = {
     SymfpuError: lambda: SymfpuError("something failed; do something else"),
     InputError: lambda: InputError("order", -1, "0 or more", "take 0"),
     TooLarge: lambda: TooLarge(9, 10**12, 10**9, 5),
+    TorusTooLarge: lambda: TorusTooLarge(16, 9000, 10**12, 10**9, 300),
     ExpansionTooLarge: lambda: ExpansionTooLarge(1e9, 1e11, 10**9),
     ResonantDivisor: lambda: ResonantDivisor(7, (2, 1), (1, 3), 2, exact=True),
     NoRealAmplitude: lambda: NoRealAmplitude(1, -0.5, 4),

@@ -18,8 +18,8 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.dynamics.starts import packet_state
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.paper.claims import Claim, judged
-from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.refinement.through import refine_at_start
+from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.spectral.analysis import frequency_analysis
 from symfpu.spectral.near import torus_near
 from symfpu.tori.quasiperiodic import FourierTorus

@@ -18,6 +18,7 @@ from symfpu.refinement.equation import Floats, Ints, TorusEquation
 LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
 # divisors up to so many times what the coupling adds to them belong to the block
 NEARNESS = 3.0
+ROWS = 256  # of the block, to which what is outside is added at once
 
 
 class LinearSystem:
@@ -94,13 +95,8 @@ class Preconditioner:
 
     def _block(self, system: LinearSystem, total: int) -> Ints:
         """Places of the unknowns with the smallest divisors, those of the seeds first of all."""
-        equation = system.equation
-        linear = equation.linear.astype(float)
-        weights = np.full(system.mask.shape, np.inf)
-        np.divide(np.abs(system.diagonal), linear**2, out=weights, where=system.mask)
-        weights[equation.seed_rows, equation.seed_columns] = 0
-        resonant = weights < NEARNESS * np.abs(system.slopes).max()
-        count = min(max(int(resonant.sum()), SMALLEST_BLOCK), LARGEST_BLOCK, total)
+        weights = _weights(system.equation, system.diagonal)
+        count = _count(weights, system.slopes, total)
         smallest = np.argpartition(weights, count - 1, axis=None)[:count]
         return np.sort(smallest)
 
@@ -140,8 +136,9 @@ class Preconditioner:
 
         system, count = self.system, self.into.shape[0]
         far = sparse.diags(self.inverse) @ self.out
-        added = (self.into @ far).tocoo()
-        matrix[added.row, added.col] -= added.data
+        for first in range(0, count, ROWS):
+            added = (self.into[first : first + ROWS] @ far).tocoo()
+            matrix[first + added.row, added.col] -= added.data
         matrix[count:, :count] -= (system.by_cosine @ far).toarray()
         for k, unit in enumerate(np.eye(system.s)):
             moved = self.inverse * system.along_shifts(unit)
@@ -164,6 +161,26 @@ class Preconditioner:
         result[:-s] = far - self.inverse * driven
         result[self.inside] = near
         return result
+
+
+def _weights(equation: TorusEquation, divisors: Floats) -> Floats:
+    """Of all coefficients (H, C): the divisor over Omega^2, infinite of those not unknown."""
+    linear = equation.linear.astype(float)
+    weights = np.full(equation.mask.shape, np.inf)
+    np.divide(np.abs(divisors), linear**2, out=weights, where=equation.mask)
+    weights[equation.seed_rows, equation.seed_columns] = 0
+    return weights
+
+
+def _count(weights: Floats, slopes: Floats, total: int) -> int:
+    """How many unknowns belong to the block, of so many."""
+    resonant = weights < NEARNESS * np.abs(slopes).max()
+    return min(max(int(resonant.sum()), SMALLEST_BLOCK), LARGEST_BLOCK, total)
+
+
+def block_size(equation: TorusEquation, divisors: Floats, slopes: Floats) -> int:
+    """How many unknowns a preconditioner solves for directly, by divisors (H, C) and slopes."""
+    return _count(_weights(equation, divisors), slopes, int(equation.mask.sum()))
 
 
 def _factors(matrix: Floats) -> tuple[Floats, Ints]:

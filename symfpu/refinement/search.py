@@ -21,6 +21,7 @@ from symfpu.refinement.conditions import Condition
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.harmonics import chosen_harmonics, known_rows
 from symfpu.refinement.invariance import DIGITS, rational
+from symfpu.refinement.memory import least_sizes, require_memory, sizes_of
 from symfpu.refinement.newton import SETTLED, Aim, Iterate, newton
 from symfpu.refinement.widening import Widened, widened
 
@@ -159,9 +160,13 @@ class Search:
     def _solved(
         self, harmonics: Ints, cosines: Floats, shifts: Floats, aim: Aim = SETTLED
     ) -> Solved:
-        equation = self.kind.equation(self.torus.chain, self.torus.seeds, harmonics)
+        chain = self.torus.chain
+        least = least_sizes(chain, cosines.shape[1], self.functions, harmonics)
+        require_memory(least, chain)
+        equation = self.kind.equation(chain, self.torus.seeds, harmonics)
         self.tell(f"{len(harmonics)} harmonics, {equation.points} points", NO_FRACTION)
         start = np.where(equation.mask, cosines, 0)
+        require_memory(sizes_of(chain, equation, start, shifts), chain)
         return self._judged(equation, self._newton(equation, start, shifts, aim))
 
     def _newton(

@@ -180,7 +180,8 @@ def refine(
         it, one to more digits, too.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration,
         dimensionless; harmonics are added until it is reached.
-    most_harmonics : how many may be taken, if their lattice fits; memory grows with them.
+    most_harmonics : how many may be taken, if their lattice fits; what their memory is predicted
+        to exceed is TorusTooLarge, before it begins.
     progress : called as (label, NO_FRACTION) on every step.
 
     Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a

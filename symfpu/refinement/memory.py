@@ -1,0 +1,128 @@
+"""What the refinement of a torus needs, said before it is allocated.
+
+By counting the arrays that are alive together in each part of a step: tables of all coefficients
+(H, C), functions on the points of the lattice (bonds, P), the block of the preconditioner (m, m)
+with its sparse couplings, the vectors of GMRES, and the angles at which the residual is taken.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import psutil
+
+from symfpu.chain.chain import Chain
+from symfpu.errors import TorusTooLarge
+from symfpu.refinement.couplings import MOST_SLOPES
+from symfpu.refinement.equation import Floats, Ints, TorusEquation
+from symfpu.refinement.invariance import PORTION
+from symfpu.refinement.lattice import Lattice
+from symfpu.refinement.linear_system import SMALLEST_BLOCK, block_size
+from symfpu.refinement.newton import KRYLOV
+from symfpu.tori.quasiperiodic import CHUNK, GRID_POINTS
+from symfpu.tori.ring_torus import CHUNK as ANGLES_OF_A_RING
+
+DOUBLE = 8
+# tables in long doubles and doubles that the search keeps, and those of a step beside them
+TABLES, TABLES_OF_A_STEP = 16, 5
+FUNCTIONS = 5  # on the points, of a portion of the bonds
+HARMONIC_BYTES = 600  # of the numbers of a harmonic in Python
+COUPLED_MODES = 5  # that a harmonic of the slopes couples a mode to, at most about
+COUPLING_BYTES = 84  # of one in all its forms, of which half go on
+EXPONENTIAL = 48  # bytes of one, with what it is made of
+BYTES_AT_AN_ANGLE = 24  # of a mode, where the residual is taken
+# what an allocator holds beyond the arrays, and of them
+KEPT_BYTES, KEPT_PART = 2**24, 1.2
+LESS = 0.95
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Of one refinement.
+
+    harmonics, columns : H, C of the coefficients. unknowns : among them. bonds, points : of the
+    functions on the lattice. block : unknowns that are solved for directly. angles : where the
+    residual is taken, held at once. ring : whether by exponentials of all harmonics.
+    """
+
+    harmonics: int
+    columns: int
+    unknowns: int
+    bonds: int
+    points: int
+    block: int
+    angles: int
+    ring: bool
+
+    def scaled(self, factor: float) -> Sizes:
+        """With fewer harmonics, about."""
+        return replace(
+            self,
+            harmonics=int(factor * self.harmonics),
+            unknowns=int(factor * self.unknowns),
+            points=int(factor * self.points),
+            block=min(self.block, int(factor * self.unknowns)),
+        )
+
+    def bytes(self) -> int:
+        """The most that is alive at once."""
+        table = DOUBLE * self.harmonics * self.columns
+        functions = DOUBLE * self.bonds * self.points
+        portion = min(functions, DOUBLE * max(PORTION, self.points))
+        kept = TABLES * table + HARMONIC_BYTES * self.harmonics + functions
+        block = DOUBLE * self.block**2
+        modes = min(self.columns, COUPLED_MODES)
+        coupled = COUPLING_BYTES * 2 * MOST_SLOPES * self.block * modes
+        spectra = functions + DOUBLE * self.points * (self.columns + 2)
+        step = TABLES_OF_A_STEP * table + FUNCTIONS * portion
+        vectors = (KRYLOV + 6) * DOUBLE * self.unknowns
+        entries = self.angles * self.harmonics
+        cosines = EXPONENTIAL * entries if self.ring else 2 * DOUBLE * min(entries, CHUNK)
+        parts = (
+            2 * block + coupled + spectra,
+            block + coupled // 2 + vectors + step,
+            cosines + BYTES_AT_AN_ANGLE * self.angles * self.columns,
+        )
+        return KEPT_BYTES + int(KEPT_PART * (kept + max(parts)))
+
+
+def least_sizes(chain: Chain, columns: int, bonds: int, harmonics: Ints) -> Sizes:
+    """Before the equations are made: with the smallest block, and what symmetry leaves unknown."""
+    count, s = harmonics.shape
+    halves = (not chain.periodic) + bool(chain.potential.even)
+    points, unknowns = Lattice(harmonics).points, columns * count // 2**halves
+    block = min(SMALLEST_BLOCK, unknowns)
+    angles, ring = _angles(chain, s), chain.periodic
+    return Sizes(count, columns, unknowns, bonds, points, block, angles, ring)
+
+
+def sizes_of(
+    chain: Chain, equation: TorusEquation, cosines: Floats, shifts: Floats
+) -> Sizes:
+    """Of the first step from an iterate."""
+    count, columns = equation.mask.shape
+    slopes, unknowns = equation.slopes(cosines), int(equation.mask.sum())
+    block = block_size(equation, equation.divisors(shifts).astype(float), slopes)
+    angles, ring = _angles(chain, len(shifts)), chain.periodic
+    return Sizes(
+        count, columns, unknowns, len(slopes), equation.points, block, angles, ring
+    )
+
+
+def _angles(chain: Chain, s: int) -> int:
+    """At which the residual of a torus of s angles is taken, as many as are held at once."""
+    if chain.periodic:
+        return ANGLES_OF_A_RING
+    number: int = max(2, min(64, round(GRID_POINTS ** (1 / s))))
+    return int(number**s)
+
+
+def require_memory(sizes: Sizes, chain: Chain) -> None:
+    """TorusTooLarge for what does not fit into the free memory."""
+    free = psutil.virtual_memory().available
+    if (needed := sizes.bytes()) <= free:
+        return
+    fewer = sizes
+    while fewer.harmonics and fewer.bytes() > free:
+        fewer = fewer.scaled(LESS)
+    raise TorusTooLarge(chain.N, sizes.harmonics, needed, free, fewer.harmonics)
