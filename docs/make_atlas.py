@@ -15,10 +15,14 @@ from typing import Any
 from symfpu import Atlas, AtlasBorder, Chain, atlas, read_atlas
 from symfpu.borders.laws import power_law
 from symfpu.errors import InputError
+from symfpu.sweeps.this_process import ThisProcess
 
 HERE = Path(__file__).parent
 FILE = HERE / "data" / "atlas.jsonl"
 NEWTON_FILE = HERE / "data" / "newton.jsonl"
+CHAOS_FILES = {
+    T: HERE / "data" / f"chaos-1e{round(math.log10(T))}.jsonl" for T in (1e5, 1e6, 1e7)
+}
 PAGE = HERE / "atlas.md"
 SERIES = ("ratio", "poles")
 LENGTHS = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
@@ -58,6 +62,21 @@ NEWTON_HOW: dict[str, Any] = {
     "reach": 10**6,
     "most_harmonics": 12000,
 }
+CHAOS_PARTS = {
+    1e5: {
+        "1/8": (8, 16, 32, 64, 128, 256),
+        "1/16": (16, 32, 64, 128, 256),
+        "1/32": (32, 64, 128, 256),
+    },
+    1e6: {"1/8": (8, 16, 32, 64, 128), "1/16": (16, 32, 64, 128), "1/32": (32, 64)},
+    1e7: {"1/8": (8, 16)},
+}
+CHAOS_SEEDS = {
+    1e5: {"1": (64, 128), "2": (8, 128, 256), "4": (16, 256)},
+    1e6: {"1": (64,), "2": (8,)},
+    1e7: {},
+}
+TODA_LENGTHS = (8, 16, 32)  # that must show no chaos
 PICTURES = ("atlas-alpha.png", "atlas-beta.png", "atlas-map.png")
 
 
@@ -134,6 +153,39 @@ def make_data() -> None:
         for model in EXTENSIVE:
             chains = [Chain(N, **MODELS[model]) for N in lengths]
             print(atlas(chains, [f"low:{part}"], **NEWTON_HOW, file=NEWTON_FILE))
+    make_chaos_data()
+
+
+def make_chaos_data() -> None:
+    """The orbits, a column at a time: fewer cores than two cost what they cost."""
+    for arguments in chaos_grids():
+        print(atlas(**arguments, executor=ThisProcess()), flush=True)
+
+
+def chaos_grids() -> Iterator[dict[str, Any]]:
+    """The arguments of every call for the borders of chaos; the shortest time first."""
+    for T, file in CHAOS_FILES.items():
+        packets = {**CHAOS_PARTS[T], **CHAOS_SEEDS[T]}
+        cases = [(N, name) for name, lengths in packets.items() for N in lengths]
+        for N, name in sorted(cases, key=lambda case: case[0]):
+            for model in EXTENSIVE:
+                yield chaos_grid(Chain(N, **MODELS[model]), f"low:{name}", T, file)
+        if min(CHAOS_FILES) == T:
+            for N in TODA_LENGTHS:
+                yield chaos_grid(Chain(N, **MODELS[TODA]), "low:1/8", T, file)
+
+
+def chaos_grid(chain: Chain, packet: str, T: float, file: Path) -> dict[str, Any]:
+    """One call of `atlas` for orbits alone."""
+    borders = ["chaos", "in-phase"]
+    return {
+        "chains": [chain],
+        "packets": [packet],
+        "order": 1,
+        "borders": borders,
+        "time": T,
+        "file": file,
+    }
 
 
 def tables(found: Atlas) -> dict[str, str]:
