@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from symfpu import Chain, alignment_indices, atlas, packet_state, read_atlas
+from symfpu import Atlas, Chain, alignment_indices, atlas, breather_at_energy, packet_state, read_atlas
 from symfpu.borders import chaos
 from symfpu.borders.chaos import COARSE, DRAWS, EARLIER, FACTOR, QUIET, ChaosRay, chaos_borders
 from symfpu.borders.column import atlas_column
 from symfpu.errors import InputError
+from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
 from symfpu.sweeps.this_process import ThisProcess
 from tests.tolerances import SIX_DIGITS
 
@@ -99,6 +100,17 @@ def test_above_a_border_an_orbit_is_chaotic_and_below_it_is_not_seen():
     assert column["points"] == column["newton"] == []
 
 
+def test_a_breather_stays_where_the_packet_of_its_seed_is_chaotic():
+    """No orbit of alpha leaves its well below H = 1/6; twice the border of the packet by 1e5."""
+    chain, H = Chain(16, alpha=1), "0.16"
+    breather = breather_at_energy(chain, 1, H, harmonic=False)
+    on_it = [(breather.positions(t), breather.momenta(t)) for t in (0.0, 5.0)]
+    packets = [packet_state(chain, (1,), H, phases={1: phase}) for phase in (0.0, 1.0, 2.0)]
+    seen = chaos.chaos_times(chain, [*on_it, *packets], 1e5)
+    assert np.isinf(seen[:2]).all()
+    assert np.isfinite(seen[2:]).all()
+
+
 def test_toda_has_no_border_where_alpha_has_one():
     toda, alpha = (atlas_column(chain, "low:2", 1, ("chaos",), time=1e3, draws=2)["borders"] for chain in (TODA, ALPHA))
     assert toda["chaos"]["none"] == "no chaos seen up to H = 8"
@@ -145,12 +157,17 @@ def test_a_file_is_gone_on_with_and_has_earlier_times(tmp_path):
         atlas([BETA], **CHEAP | {"draws": 2}, file=file)
 
 
-def test_other_borders_are_as_they_were_by_an_earlier_time():
-    both = atlas([Chain(4, beta=1)], **CHEAP | {"borders": ["ratio", "chaos"], "order": 4})
-    earlier = both.by_time(1e3)
-    assert [b.border for b in earlier.borders] == ["ratio", "chaos"]
-    assert earlier.borders[0] == both.borders[0]
-    assert earlier.borders[1] != both.borders[1]
+def test_other_borders_and_failures_are_as_they_were_by_an_earlier_time():
+    orbits = [{"place": 1.0, "seen": [None, 900.0]}, {"place": 2.0, "seen": [50.0, 100.0]}]
+    borders = {"ratio": {"energy": 5.0}} | {name: chaos_borders(orbits, 1e3)[name] for name in ("chaos",)}
+    case = {"chain": {"N": 8, "beta": "1"}, "packet": "1", "order": 2}
+    done = SweepRow(case, {"modes": [1], "points": [], "newton": [], "borders": borders, "orbits": orbits})
+    failed = SweepRow(case | {"packet": "9"}, None, SweepFailure("InputError", "no mode 9"))
+    found = Atlas(SweepRows("a.function", {"time": 1e3}, (done, failed)))
+    earlier = found.by_time(200)
+    assert [(b.border, b.energy) for b in found.borders] == [("ratio", 5.0), ("chaos", 1.0)]
+    assert [(b.border, b.energy) for b in earlier.borders] == [("ratio", 5.0), ("chaos", 2.0)]
+    assert earlier.rows.failures == found.rows.failures
 
 
 def test_without_chaos_the_head_of_a_file_has_no_time(tmp_path):
