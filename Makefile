@@ -38,7 +38,7 @@ sweeps: install  ## decide the propagation rule for all seed sets: N <= 12, up t
 	$(BIN)/symfpu sweep --model alpha --longest 12 --largest 3 --order 5 --file $(OUT)/alpha.jsonl -o $(OUT)/sweep-alpha.md
 	$(BIN)/symfpu sweep --model beta --longest 12 --largest 3 --order 3 --file $(OUT)/beta.jsonl -o $(OUT)/sweep-beta.md
 
-atlas: install  ## where tori end, docs/atlas.md: what its data lack first (about 105 minutes of processor time from nothing), tables, pictures
+atlas: install  ## where tori end, docs/atlas.md: what its data lack first (about 125 minutes of processor time from nothing), tables, pictures
 	$(ONE_THREAD) $(BIN)/python docs/make_atlas.py --data
 
 long: install  ## tests that `make test` leaves out: minutes of exact checks, notebooks, whole figures

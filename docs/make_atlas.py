@@ -8,17 +8,24 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from symfpu import Atlas, AtlasBorder, Chain, atlas, read_atlas
+from symfpu.borders.chaos import FACTOR
 from symfpu.borders.laws import power_law
 from symfpu.errors import InputError
+from symfpu.sweeps.this_process import ThisProcess
 
 HERE = Path(__file__).parent
 FILE = HERE / "data" / "atlas.jsonl"
 NEWTON_FILE = HERE / "data" / "newton.jsonl"
+ONE_SEED_FILE = HERE / "data" / "newton-one.jsonl"
+CHAOS_FILES = {
+    T: HERE / "data" / f"chaos-1e{round(math.log10(T))}.jsonl" for T in (1e5, 1e6, 1e7)
+}
 PAGE = HERE / "atlas.md"
 SERIES = ("ratio", "poles")
 LENGTHS = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
@@ -58,7 +65,32 @@ NEWTON_HOW: dict[str, Any] = {
     "reach": 10**6,
     "most_harmonics": 12000,
 }
+CHAOS_PARTS: dict[float, dict[str, tuple[int, ...]]] = {
+    1e5: {
+        "1/8": (8, 16, 32, 64, 128, 256),
+        "1/16": (16, 32, 64, 128),
+        "1/32": (32, 64, 128),
+    },
+    1e6: {"1/8": (8, 16, 32, 64), "1/16": (16, 32, 64), "1/32": (32, 64)},
+    1e7: {"1/8": (8, 16)},
+}
+CHAOS_SEEDS: dict[float, dict[str, tuple[int, ...]]] = {
+    1e5: {"1": (64, 128), "2": (8, 128), "4": (16,)},
+    1e6: {},
+    1e7: {},
+}
+TODA_LENGTHS = (8, 16)  # that must show no chaos
+SEEN_BY = (1e4, 1e5, 1e6, 1e7)
+ONE_SEED_LENGTHS = {"alpha=1": (8, 12, 16, 24, 32), "beta=1": (8, 12, 16, 24, 32, 48)}
+ONE_SEED_HOW: dict[str, Any] = {
+    "order": 4,
+    "borders": ["newton"],
+    "places": ["1e-6"],
+    "reach": 10**9,
+    "most_harmonics": 4000,
+}
 PICTURES = ("atlas-alpha.png", "atlas-beta.png", "atlas-map.png")
+CHAOS_PICTURES = {"alpha=1": "atlas-chaos-alpha.png", "beta=1": "atlas-chaos-beta.png"}
 
 
 def grids() -> Iterator[dict[str, Any]]:
@@ -134,6 +166,50 @@ def make_data() -> None:
         for model in EXTENSIVE:
             chains = [Chain(N, **MODELS[model]) for N in lengths]
             print(atlas(chains, [f"low:{part}"], **NEWTON_HOW, file=NEWTON_FILE))
+    for arguments in one_seed_grids():
+        print(atlas(**arguments), flush=True)
+    make_chaos_data()
+
+
+def make_chaos_data() -> None:
+    """The orbits, a column at a time: fewer cores than two cost what they cost."""
+    for arguments in chaos_grids():
+        print(atlas(**arguments, executor=ThisProcess()), flush=True)
+
+
+def chaos_grids() -> Iterator[dict[str, Any]]:
+    """The arguments of every call for the borders of chaos; the shortest time first."""
+    for T, file in CHAOS_FILES.items():
+        packets = {**CHAOS_PARTS[T], **CHAOS_SEEDS[T]}
+        cases = [(N, name) for name, lengths in packets.items() for N in lengths]
+        for N, name in sorted(cases, key=lambda case: case[0]):
+            for model in EXTENSIVE:
+                yield chaos_grid(Chain(N, **MODELS[model]), f"low:{name}", T, file)
+        if min(CHAOS_FILES) == T:
+            for N in TODA_LENGTHS:
+                yield chaos_grid(Chain(N, **MODELS[TODA]), "low:1/8", T, file)
+
+
+def chaos_grid(chain: Chain, packet: str, T: float, file: Path) -> dict[str, Any]:
+    """One call of `atlas` for orbits alone."""
+    borders = ["chaos", "in-phase"]
+    return {
+        "chains": [chain],
+        "packets": [packet],
+        "order": 1,
+        "borders": borders,
+        "time": T,
+        "file": file,
+    }
+
+
+def one_seed_grids() -> Iterator[dict[str, Any]]:
+    """The arguments of every call for the end of Newton's breathers."""
+    for model, lengths in ONE_SEED_LENGTHS.items():
+        for N in lengths:
+            chain = Chain(N, **MODELS[model])
+            shared = {"chains": [chain], "packets": ["low:1"], "file": ONE_SEED_FILE}
+            yield shared | ONE_SEED_HOW
 
 
 def tables(found: Atlas) -> dict[str, str]:
@@ -147,6 +223,9 @@ def tables(found: Atlas) -> dict[str, str]:
         "packets": packets_table(found),
         "flach": flach_table(found),
         "newton": newton_table(found),
+        "one-seed": one_seed_table(),
+        "chaos": chaos_table(),
+        "chaos-laws": chaos_laws_table(),
     }
 
 
@@ -398,6 +477,130 @@ def newton_table(found: Atlas) -> str:
     return rows_of(head, [line for _, line in sorted(cells)])
 
 
+def one_seed_table() -> str:
+    """Where Newton's breathers of seed 1 end on the way up in H, and why."""
+    head = ["model", "N", "H, last breather", "harmonics", "d ln A / d ln H there"]
+    head += ["what ends the search"]
+    rows = []
+    for row in read_atlas(ONE_SEED_FILE).rows.rows:
+        end = row.result["borders"]["newton"]
+        model = "alpha=1" if row.case["chain"]["alpha"] != "0" else "beta=1"
+        harmonics = str(row.result["newton"][-1]["harmonics"])
+        cells = [f"{end['energy']:.4g}", harmonics, f"{end['slopes'][0]:.2f}"]
+        rows.append([model, str(row.case["chain"]["N"]), *cells, end["failure"]])
+    rows.sort(key=lambda cells: (cells[0], int(cells[1])))
+    return rows_of(head, rows)
+
+
+Borders = dict[tuple[str, int, int], AtlasBorder]
+
+
+def chaos_by(T: float, name: str = "chaos") -> Borders:
+    """Borders of chaos by a time, by model, s and N; of the file with the fewest longer times."""
+    file = next(file for longest, file in CHAOS_FILES.items() if longest >= T)
+    borders = read_atlas(file).by_time(T).borders
+    return {(b.model, len(b.modes), b.N): b for b in borders if b.border == name}
+
+
+def chaos_table() -> str:
+    """H/N at which orbits of low packets are seen to be chaotic, by several times."""
+    columns = [chaos_by(T) for T in SEEN_BY]
+    in_phase = [chaos_by(T, "in-phase") for T in SEEN_BY[1:3]]
+    head = ["model", "M", "N", "s", *(f"by {T:.0e}" for T in SEEN_BY)]
+    head += [f"phases 0, by {T:.0e}" for T in SEEN_BY[1:3]]
+    keys = {key for column in columns for key in column}
+    rows = []
+    for model, s, N in sorted(keys, key=lambda key: (key[0], key[2] / key[1], key[2])):
+        cells = [spread(column.get((model, s, N))) for column in columns]
+        cells += [specific(column.get((model, s, N))) for column in in_phase]
+        rows.append([model, f"1/{N // s}", str(N), str(s), *cells])
+    return rows_of(head, rows)
+
+
+def specific(border: AtlasBorder | None) -> str:
+    """H/N to two digits; "none" where no chaos was seen at any energy."""
+    if border is None:
+        return ""
+    return "none" if border.energy is None else f"{border.energy / border.N:.2g}"
+
+
+def spread(border: AtlasBorder | None) -> str:
+    """The median over the draws with the lowest and the highest."""
+    middle = specific(border)
+    if border is None or border.energy is None:
+        return middle
+    lowest, highest = (
+        f"{H / border.N:.2g}" if H else "" for H in border.details["between"]
+    )
+    return middle if lowest == highest else f"{middle} ({lowest} .. {highest})"
+
+
+def chaos_laws_table() -> str:
+    """Powers of N and of T with which H/N goes, where there are three lengths or two times."""
+    head = ["model", "packets", "N", *(f"power of N, by {T:.0e}" for T in SEEN_BY[:2])]
+    head += ["N", *(f"power of T, {T:.0e} to {10 * T:.0e}" for T in SEEN_BY[:2])]
+    rows = []
+    for model in EXTENSIVE:
+        for name, chosen_by in CHAOS_GROUPS.items():
+            laws = [power_of_lengths(T, model, chosen_by) for T in SEEN_BY[:2]]
+            longest = longest_followed(model, chosen_by)
+            times = [power_of_time(T, (model, *longest)) for T in SEEN_BY[:2]]
+            lengths = laws[0][0]
+            rows.append([model, name, lengths, *(law for _, law in laws)])
+            rows[-1] += [str(longest[1]), *times]
+    return rows_of(head, rows)
+
+
+def is_part(part: int) -> Callable[[int, int], bool]:
+    """Whether s is this part of N."""
+    return lambda s, N: s * part == N
+
+
+CHAOS_GROUPS: dict[str, Callable[[int, int], bool]] = {
+    "M = 1/8": is_part(8),
+    "M = 1/16": is_part(16),
+    "M = 1/32": is_part(32),
+    "s = 1": lambda s, N: s == 1,
+}
+
+
+def power_of_lengths(
+    T: float, model: str, chosen_by: Callable[[int, int], bool]
+) -> tuple[str, str]:
+    """The lengths from LONG on, and the power of N of H/N with its error."""
+    borders = [
+        b for (name, s, N), b in chaos_by(T).items() if name == model and chosen_by(s, N)
+    ]
+    long_ones = sorted((b for b in borders if b.N >= LONG and b.energy), key=lambda b: b.N)
+    law = power_law([b.N for b in long_ones], [b.energy / b.N for b in long_ones])
+    error = max(law.error, grid_error(law.lengths))
+    return f"{law.lengths[0]} .. {law.lengths[-1]}", f"{law.exponent:.2f} ± {error:.2f}"
+
+
+def grid_error(lengths: tuple[int, ...]) -> float:
+    """Of an exponent of energies that lie anywhere between two neighbours of the grid."""
+    x = [math.log(N) for N in lengths]
+    mean = sum(x) / len(x)
+    spread_of_lengths = sum((value - mean) ** 2 for value in x)
+    return math.log(FACTOR) / math.sqrt(12 * spread_of_lengths)
+
+
+def longest_followed(model: str, chosen_by: Callable[[int, int], bool]) -> tuple[int, int]:
+    """s and N of the longest chain whose orbits were followed to the third time."""
+    keys = [
+        (s, N) for name, s, N in chaos_by(SEEN_BY[2]) if name == model and chosen_by(s, N)
+    ]
+    return max(keys, key=lambda key: key[1])
+
+
+def power_of_time(T: float, key: tuple[str, int, int]) -> str:
+    """Between T and 10 T."""
+    early, late = (chaos_by(time).get(key) for time in (T, 10 * T))
+    if early is None or late is None:
+        return ""
+    return f"{math.log10(late.energy / early.energy):.2f}"
+
+
 def with_tables(text: str, found: Atlas) -> str:
     """The page with its tables made anew."""
     for name, table in tables(found).items():
@@ -423,6 +626,26 @@ def draw(found: Atlas) -> None:
         save(axes, name)
     axes = plots.atlas_map(found, N=16, model="alpha=1", border="fold")
     save(axes, PICTURES[-1])
+    together = with_chaos(found)
+    for model, name in CHAOS_PICTURES.items():
+        axes = plots.atlas_borders(
+            together,
+            models=[model],
+            borders=["ratio", "newton", "chaos"],
+            per_particle=True,
+        )
+        save(axes, name)
+
+
+def with_chaos(found: Atlas) -> Atlas:
+    """Low packets of the parts 1/8, 1/16 and 1/32: their series, Newton's tori and orbits."""
+    files = (NEWTON_FILE, CHAOS_FILES[min(CHAOS_FILES)])
+    rows = [
+        row for atlas_of in (found, *map(read_atlas, files)) for row in atlas_of.rows.rows
+    ]
+    wanted = {f"low:{part}" for part in CHAOS_PARTS[min(CHAOS_FILES)]}
+    kept = tuple(row for row in rows if row.case["packet"] in wanted)
+    return Atlas(replace(found.rows, rows=kept))
 
 
 def save(axes: Any, name: str) -> None:

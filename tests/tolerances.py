@@ -752,6 +752,9 @@ SHEET_DETERMINANT = 1e-5
 # Numbers in the rows of an atlas are rounded to six digits.
 SIX_DIGITS = 5e-6
 
+# A hundred steps of two loops that round in another order: 1e-14 of the largest deviation, times its growth.
+ONSET_STEPS = 1e-10
+
 # Two borders that are the same: each lies between points whose logarithms differ by at most 0.01, and is located within.
 LOCATED = 0.01
 

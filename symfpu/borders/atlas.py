@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from symfpu.borders.column import BORDERS, REACH, atlas_column
+from symfpu.borders.chaos import DRAWS, TIME, chaos_borders
+from symfpu.borders.column import BORDERS, OF_ORBITS, REACH, atlas_column
 from symfpu.borders.laws import LEAST_LENGTHS, BorderLaw, power_law
 from symfpu.borders.newton_end import MOST_HARMONICS, NEWTON, SEARCH_ENDS
 from symfpu.borders.packets import packet_modes
 from symfpu.borders.point import AMPLITUDE, ENERGY, ESTIMATES
 from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.dynamics.alignment import last_time
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
@@ -22,7 +24,7 @@ from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.typed import Number, decimal, exact, integer
 from symfpu.series.memory import series_bytes
-from symfpu.sweeps.rows import SweepRows
+from symfpu.sweeps.rows import SweepRow, SweepRows
 from symfpu.sweeps.sweep import read_sweep, sweep
 
 Json = dict[str, Any]
@@ -34,8 +36,8 @@ class AtlasBorder:
     """One border of an atlas. Made by `Atlas`; ours, dimensionless.
 
     chain : as it is typed. packet : as it was named; modes : its modes. order : of the series.
-    border : "ratio", "sums", "poles", "fold", "newton" or "stability". energy : H there; None if
-        there is none. details : its record.
+    border : "ratio", "sums", "poles", "fold", "newton", "stability", "chaos" or "in-phase".
+    energy : H there; None if there is none. details : its record.
 
     >>> chain = {"N": 8, "alpha": "0", "beta": "1"}
     >>> AtlasBorder(chain, "low:1", (1,), 8, "poles", 1.02, {"mode": 5}).model
@@ -128,8 +130,7 @@ class Atlas(Shown, Tabled):
     ) -> BorderLaw:
         """The power of N with which this border of a packet goes.
 
-        packet : as it was named. border : "ratio", "sums", "poles", "fold", "newton" or
-        "stability".
+        packet : as it was named. border : as `atlas` names them.
         model : the couplings, such as "alpha=1"; needed if there are several. order : of the
         series; default for each length the largest.
 
@@ -149,6 +150,29 @@ class Atlas(Shown, Tabled):
             raise InputError("model", model, allowed, "name one")
         energies = _by_length(found)
         return power_law(list(energies), list(energies.values()))
+
+    def by_time(self, T: float) -> Atlas:
+        """The atlas whose borders of chaos are those by an earlier time.
+
+        T : at most the time to which the orbits were integrated; such borders are located to the
+        factor of 1.2 by that time, a tenth and a hundredth of it. All other borders stay.
+        Dimensionless. Raises InputError for a later time.
+
+        >>> from concurrent.futures import ThreadPoolExecutor
+        >>> from symfpu import Chain, atlas
+        >>> how = {"borders": ["chaos"], "time": 1e3, "draws": 1}
+        >>> with ThreadPoolExecutor(1) as pool:
+        ...     found = atlas([Chain(4, beta=1)], ["low:2"], 1, executor=pool, **how)
+        >>> found.by_time(200).borders[0].energy > found.borders[0].energy
+        True
+        """
+        latest = float(self.rows.fixed.get("time", TIME))
+        earlier = last_time(T)
+        if earlier > latest:
+            allowed = f"at most {latest:g}, to which orbits were integrated"
+            raise InputError("T", T, allowed, "take an earlier time, or another atlas")
+        rows = tuple(_by_time(row, earlier) for row in self.rows.rows)
+        return Atlas(replace(self.rows, rows=rows))
 
     @property
     def laws(self) -> dict[tuple[str, str, str], BorderLaw]:
@@ -180,6 +204,7 @@ class Atlas(Shown, Tabled):
             "divisor": [_number(b.details.get("divisor")) for b in borders],
             "pole": [_number(b.details.get("pole")) for b in borders],
             "growth": [_number(b.details.get("growth")) for b in borders],
+            "time": [_number(b.details.get("time")) for b in borders],
             "reason": [b.reason for b in borders],
         }
         return Table(columns, attributes(self, function=self.rows.function))
@@ -192,6 +217,17 @@ def _by_length(borders: Iterable[AtlasBorder]) -> dict[int, float]:
         if b.energy is not None and not b.limited:
             best[b.N] = b.energy
     return best
+
+
+def _by_time(row: SweepRow, T: float) -> SweepRow:
+    """A row whose borders of chaos are those by a time."""
+    if row.failure is not None or "orbits" not in row.result:
+        return row
+    of_orbits = chaos_borders(row.result["orbits"], T)
+    borders = {
+        name: of_orbits.get(name, border) for name, border in row.result["borders"].items()
+    }
+    return replace(row, result=row.result | {"borders": borders})
 
 
 def _number(value: Any) -> float:
@@ -251,6 +287,8 @@ def atlas(
     per_particle: bool = False,
     most_harmonics: int = MOST_HARMONICS,
     reach: float = REACH,
+    time: float = TIME,
+    draws: int = DRAWS,
     executor: Any = None,
     file: Path | str | None = None,
     retry: bool = False,
@@ -266,13 +304,18 @@ def atlas(
     borders : of "ratio", "sums", "poles" (where the radius of convergence falls to the torus' own
         amplitudes: by the largest term of each order, by the sums of all terms, by the nearest
         pole of Pade approximants to the frequencies), "newton" (where Newton's method finds no
-        further torus), "fold" (the first torus on its way that is on another sheet of the series)
-        and "stability" (the first unstable one).
+        further torus), "fold" (the first torus on its way that is on another sheet of the series),
+        "stability" (the first unstable one), "chaos" and "in-phase" (the lowest energy at which
+        an orbit that starts with the modes of the packet alone is seen to be chaotic or to leave
+        its well, to a factor of 1.2: the median over random phases, and with phases 0).
     places : energies H > 0 (`per_particle` H/N; with by="amplitude" the A_q of all seeds) at which
         a point is wanted in any case. Each border is located to 1 % between points of its own.
     by : "energy", with equal mode energies, or "amplitude", with equal amplitudes.
     most_harmonics : of a torus of Newton's method, beyond which it is not followed; its residual
         is 1e-9. reach : places up to so many times the series' last one.
+    time : by which chaos is to be seen: what is not seen by then may show later. draws : of random
+        phases, the same ones at all energies of a packet. Neither asks for a series, nor do its
+        orbits: for them alone any order will do.
     executor, file, retry : as for `sweep`: a file is gone on with.
     progress : called as (label, fraction done).
 
@@ -297,6 +340,8 @@ def atlas(
     }
     wanted = tuple(_one_of("borders", name, BORDERS) for name in borders)
     series = tuple(name for name in wanted if name in ESTIMATES)
+    if set(wanted) & set(OF_ORBITS):
+        shared |= {"time": last_time(time), "draws": integer(draws, "draws", 1)}
     orders = _orders(order)
     names = _packets(packets)
     cases = [
@@ -323,13 +368,15 @@ def atlas(
     return Atlas(rows)
 
 
-def column_bytes(chain: Chain, packet: str, order: int) -> int:
-    """The bytes that the series of a column need, for `sweep`.
+def column_bytes(chain: Chain, packet: str, order: int, borders: Sequence[str]) -> int:
+    """The bytes that the series of a column need, for `sweep`; orbits need none.
 
-    >>> column_bytes(Chain(32, beta=1), "low:2", 6) > 0
+    >>> column_bytes(Chain(32, beta=1), "low:2", 6, ["poles"]) > 0
     True
     """
     require_fixed_ends(chain)
+    if borders and set(borders) <= set(OF_ORBITS):
+        return 0
     return series_bytes(chain, packet_modes(chain, packet), order)
 
 

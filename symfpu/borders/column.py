@@ -6,6 +6,14 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
+from symfpu.borders.chaos import (
+    CHAOS,
+    DRAWS,
+    IN_PHASE,
+    TIME,
+    ChaosRay,
+    chaos_borders,
+)
 from symfpu.borders.newton_end import (
     FOLD,
     MOST_HARMONICS,
@@ -22,8 +30,9 @@ from symfpu.tori.torus import QTorus
 
 Json = dict[str, Any]
 
-BORDERS = (*ESTIMATES, FOLD, NEWTON, STABILITY)
+BORDERS = (*ESTIMATES, FOLD, NEWTON, STABILITY, CHAOS, IN_PHASE)
 LOSSES = (FOLD, STABILITY)
+OF_ORBITS = (CHAOS, IN_PHASE)
 BEGIN_RESIDUAL = 1e-9  # of a series whose torus Newton's method begins with
 REACH = 3.0  # times the largest place of the series, to which Newton's tori are followed
 
@@ -39,6 +48,8 @@ def atlas_column(
     per_particle: bool = False,
     most_harmonics: int = MOST_HARMONICS,
     reach: float = REACH,
+    time: float = TIME,
+    draws: int = DRAWS,
 ) -> Json:
     """Points and borders of one ray, as JSON holds them: a case of `atlas`.
 
@@ -58,12 +69,19 @@ def atlas_column(
     if asked:
         of_newton, newton = _newton_borders(points, asked, most_harmonics, reach)
         found |= of_newton
-    return {
+    column = {
         "modes": list(seeds),
         "points": [point.record() for point in points],
         "newton": newton,
         "borders": found,
     }
+    of_orbits = [name for name in borders if name in OF_ORBITS]
+    if of_orbits:
+        orbits = ChaosRay(chain, seeds, time, draws).searched().records()
+        column["orbits"] = orbits
+        by_name = chaos_borders(orbits, time)
+        found |= {name: by_name[name] for name in of_orbits}
+    return column
 
 
 def _series_border(points: Points, estimate: str) -> Json:

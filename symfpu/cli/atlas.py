@@ -9,6 +9,7 @@ import typer
 
 from symfpu.algebra.dense import available_cores
 from symfpu.borders.atlas import atlas
+from symfpu.borders.chaos import DRAWS, TIME
 from symfpu.borders.column import BORDERS, REACH
 from symfpu.borders.newton_end import MOST_HARMONICS
 from symfpu.borders.point import AMPLITUDE, ENERGY, ESTIMATES
@@ -85,6 +86,13 @@ def borders_of_tori(
             help="Newton's tori: up to so many times the series' last place.", metavar="X"
         ),
     ] = f"{REACH:g}",
+    time: Annotated[
+        str, typer.Option(help="By which chaos is to be seen in an orbit.", metavar="T")
+    ] = f"{TIME:g}",
+    draws: Annotated[
+        str,
+        typer.Option(help="Of random phases, for the orbits of chaos.", metavar="D"),
+    ] = str(DRAWS),
     file: Annotated[
         str | None,
         typer.Option(
@@ -117,6 +125,8 @@ def borders_of_tori(
             per_particle=per_particle,
             most_harmonics=whole("most-harmonics", most_harmonics),
             reach=number("reach", reach),
+            time=number("time", time),
+            draws=whole("draws", draws),
             executor=ThisProcess() if alone else None,
             file=log,
             retry=True,

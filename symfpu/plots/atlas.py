@@ -32,8 +32,9 @@ def atlas_borders(
     result : what `atlas` gave; dimensionless. Ours. ax : axes of matplotlib; default new ones.
     models, packets, borders : which, by their names; default all. per_particle : H/N instead of H.
 
-    Of several orders the largest is drawn, and a line down to the other. Borders that only the
-    search ended are arrows up, and not fitted. Returns the axes. Raises InputError.
+    Of several orders the largest is drawn, and a line down to the other; of chaos a line over the
+    draws. Borders that only the search ended are arrows up, and not fitted. Returns the axes.
+    Raises InputError.
 
     >>> from concurrent.futures import ThreadPoolExecutor
     >>> from matplotlib.figure import Figure
@@ -110,9 +111,20 @@ def _draw_line(
     [line] = axes.plot(lengths, energies / unit, label=label, **style)
     colour = line.get_color()
     axes.vlines(lengths, others / unit, energies / unit, color=colour, lw=0.8)
+    spans = [_span_of_draws(best[N]) for N in lengths]
+    axes.vlines(lengths, *(np.array(spans).T / unit), color=colour, lw=0.8)
     at = np.array(lengths)[limited]
     above = (energies / unit)[limited]
     axes.plot(at, 1.25 * above, ls="none", marker=r"$\uparrow$", color=colour)
+
+
+def _span_of_draws(border: AtlasBorder) -> tuple[float, float]:
+    """The lowest and the highest energy of random phases; no length for all other borders."""
+    here = float(border.energy or 0.0)
+    if "draws" not in border.details:
+        return here, here
+    lowest, highest = border.details["between"]
+    return float(lowest), float(highest or here)
 
 
 def atlas_map(

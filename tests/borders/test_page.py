@@ -19,7 +19,8 @@ def test_the_page_has_the_tables_of_the_data():
     text = module.PAGE.read_text()
     found = read_atlas(module.FILE)
     assert module.with_tables(text, found) == text
-    rows = (*found.rows.rows, *read_atlas(module.NEWTON_FILE).rows.rows)
+    files = (module.NEWTON_FILE, module.ONE_SEED_FILE, *module.CHAOS_FILES.values())
+    rows = [row for atlas_of in (found, *map(read_atlas, files)) for row in atlas_of.rows.rows]
     assert all(row.failure is None for row in rows)
 
 
@@ -31,3 +32,18 @@ def test_all_rows_are_of_its_grids():
     asked = {(c.N, p, K) for g in module.grids() for c in g["chains"] for p in g["packets"] for K in g["order"]}
     rows = read_atlas(module.FILE).rows.rows
     assert {(row.case["chain"]["N"], row.case["packet"], row.case["order"]) for row in rows} <= asked
+
+
+@pytest.mark.skipif(not SCRIPT.exists(), reason="no pages beside an installed package")
+def test_all_orbits_and_breathers_are_of_its_grids():
+    made = importlib.util.spec_from_file_location("make_atlas", SCRIPT)
+    module = importlib.util.module_from_spec(made)
+    made.loader.exec_module(module)
+    asked = {
+        (g["file"], c.typed["N"], p) for g in (*module.chaos_grids(), *module.one_seed_grids()) for c in g["chains"] for p in g["packets"]
+    }
+    files = (module.ONE_SEED_FILE, *module.CHAOS_FILES.values())
+    held = {(file, str(row.case["chain"]["N"]), row.case["packet"]) for file in files for row in read_atlas(file).rows.rows}
+    assert held == {(file, str(N), packet) for file, N, packet in asked}
+    for T, file in module.CHAOS_FILES.items():
+        assert float(read_atlas(file).rows.fixed["time"]) == T

@@ -71,12 +71,26 @@ def test_what_is_asked_for_reaches_the_function(here, capsys, monkeypatch):
         "1e-3,0.1",
         "--per-particle",
     )
+    words += ("--time", "1e4", "--draws", "3")
     run(capsys, *words, "--by", "amplitude", "--most-harmonics", "50", "--reach", "3", "--borders", "ratio,newton")
     assert [chain["N"] for chain in asked["chains"]] == [8, 16]
     assert {chain["potential"] for chain in asked["chains"]} == {"toda:1/2"}
     assert (asked["packets"], asked["order"], asked["places"]) == (["1,2", "low:1/8"], [4, 6], ["1e-3", "0.1"])
     assert (asked["by"], asked["per_particle"], asked["borders"]) == ("amplitude", True, ["ratio", "newton"])
     assert (asked["most_harmonics"], asked["reach"], asked["retry"]) == (50, 3.0, True)
+    assert (asked["time"], asked["draws"]) == (1e4, 3)
+
+
+def test_chaos_is_said_with_its_time_and_the_spread_of_draws(here, capsys):
+    words = ("--beta", "1", "--lengths", "8", "--packets", "low:2", "--order", "1", "--time", "3e3", "--draws", "2")
+    code, out, _ = run(capsys, *words, "--borders", "chaos")
+    assert code == 0
+    line = next(line for line in out.splitlines() if "chaos" in line)
+    code, out, _ = run(capsys, *words, "--borders", "chaos", "--json")
+    details = json.loads(out)["borders"][0]["details"]
+    lowest, highest = details["between"]
+    assert line.endswith(f"chaos by t = 3000, {lowest:.3g} .. {highest:.3g}")
+    assert (details["time"], details["draws"]) == (3000.0, 2)
 
 
 def test_an_interrupted_run_says_that_it_goes_on(here, capsys, monkeypatch, tmp_path):
@@ -104,6 +118,8 @@ WRONG = {
     "packets": ("--packets", ""),
     "file": ("--file", "/no/such/folder/atlas.jsonl"),
     "most-harmonics": ("--most-harmonics", "x"),
+    "time": ("--time", "x"),
+    "draws": ("--draws", "1.5"),
 }
 
 

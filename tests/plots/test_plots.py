@@ -9,6 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from symfpu import plots
+from symfpu.borders.atlas import Atlas
 from symfpu.breathers.balance import breather_at_amplitude
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
@@ -20,6 +21,7 @@ from symfpu.localization.floors import spectrum_floor
 from symfpu.plots.style import COLOURS, EPS, MARKERS, legend, look, parameters, styled
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.travelling import travelling_waves
+from symfpu.sweeps.rows import SweepRow, SweepRows
 from tests.plots import cases
 from tests.tolerances import LAST_DIGIT, ROUNDING
 
@@ -569,3 +571,18 @@ def test_integrated_indices_are_so_many_rings_that_curves_are_seen():
     assert all(20 <= len(line.get_xdata()) <= 60 for line in rings)
     words = [text.get_text() for text in ax.get_legend().get_texts()]
     assert "integrated" in words
+
+
+def test_a_border_of_chaos_is_drawn_with_the_spread_of_its_draws(ax):
+    """From the lowest draw to the highest, or to the border where that is not known; phases 0 have no length."""
+    spreads = {"chaos": ([1.0, 4.0], 2.0), "in-phase": ([3.0, 3.0], 3.0)}
+    rows = []
+    for N, highest in ((8, 4.0), (16, None)):
+        borders = {name: {"energy": H, "between": [low, highest and high], "draws": 3} for name, ((low, high), H) in spreads.items()}
+        case = {"chain": {"N": N, "beta": "1"}, "packet": "low:1", "order": 1}
+        rows.append(SweepRow(case, {"modes": [1], "points": [], "newton": [], "borders": borders}))
+    plots.atlas_borders(Atlas(SweepRows("a.function", {}, tuple(rows))), ax)
+    ends = [segment[:, 1].tolist() for lines in ax.collections for segment in lines.get_segments()]
+    assert ends.count([1.0, 4.0]) == 1
+    assert ends.count([1.0, 2.0]) == 1
+    assert ends.count([3.0, 3.0]) == len(ends) - ends.count([2.0, 2.0]) - 2
