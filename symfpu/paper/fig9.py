@@ -49,6 +49,7 @@ from symfpu.paper.dimensions import (
     indices_panel,
     integrated_text,
 )
+from symfpu.paper.fig9_tori import approach, tori_claim
 from symfpu.paper.judgements import SIMILAR_DECADES, same_profile
 from symfpu.paper.printed import FIG9_PACKETS, FIG9_RECURRENCE, PrintedTorus
 from symfpu.paper.starts import (
@@ -127,6 +128,7 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
         pairs_claim({row.label: closing(row, torus)}),
         law_claim("6.4.3", profiles["Newton"], law),
         frequencies_claim(seen, growth),
+        tori_claim(approach(chain, row.energy, progress)),
         *packet_claims(row),
     )
     title = "Fig. 9: the q-breather and FPU-trajectory of E = 0.014915"

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import integrate
 from symfpu.dynamics.starts import packet_state
 from symfpu.files.progress import NO_FRACTION, Progress
+from symfpu.numbers.typed import Number
 from symfpu.paper.claims import Claim, judged
 from symfpu.refinement.through import refine_at_start
 from symfpu.refinement.tori import refine_at_amplitudes
@@ -24,12 +24,12 @@ from symfpu.spectral.analysis import frequency_analysis
 from symfpu.spectral.near import torus_near
 from symfpu.tori.quasiperiodic import FourierTorus
 
-ANGLES = (1, 2, 3, 4)
+ANGLES = (1, 2, 3)
 # time that is analysed, step, lines of each mode, and the least strength of a frequency
 TIME, STEP, LINES, LEVEL = 1e5, 0.2, 8, 1e-6
-MOST = 2000  # harmonics: residuals below the distances that are compared
+MOST = 1200  # harmonics: residuals below the distances that are compared
 LAST_FALL = 2.0  # an angle that takes less off the distance is one too many
-NEAR = 0.01  # of the largest coordinate
+NEAR = 0.05  # of the largest coordinate
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Approach:
 
 
 def approach(
-    chain: Chain, energy: Fraction, progress: Progress, angles: Sequence[int] = ANGLES
+    chain: Chain, energy: Number, progress: Progress, angles: Sequence[int] = ANGLES
 ) -> Approach:
     """Tori of the lowest modes near the FPU-trajectory that starts in mode 1 with an energy."""
     start, momenta = packet_state(chain, (1,), energy)
