@@ -172,6 +172,12 @@ def half_period_points(chain: Chain, harmonics: int) -> int:
     return (power + 1) * harmonics // 2 + 1
 
 
+def products_of_modes(N: int) -> Floats:
+    """cos(pi m (j + 1/2)/N) / N of the bonds j and of m = 0 .. N; shape (N, N+1)."""
+    angles = np.outer(2 * np.arange(N) + 1, np.arange(N + 1)) % (4 * N)
+    return np.asarray(np.cos(np.pi / (2 * N) * angles) / N)
+
+
 class Balance:
     """The equations n^2 omega^2 c + force = 0 up to a number of harmonics.
 
@@ -188,6 +194,7 @@ class Balance:
         self.first = int(np.flatnonzero(is_first)[0])
         # of every bond by a unit of each mode
         self.stretch = chain.stretches(np.eye(chain.N - 1))
+        self.products = products_of_modes(chain.N)
         points = half_period_points(chain, harmonics)
         k = np.arange(points + 1)
         ends = np.where(k % points == 0, 0.5, 1.0)
@@ -220,7 +227,8 @@ class Balance:
         tension = bonds.anharmonic_tension(law, r)
         force = -(self.analysis @ tension @ self.stretch.T)
         slope = self.analysis @ bonds.anharmonic_stiffness(law, r)
-        J = self._coupling(slope) + np.diag(diagonal)
+        J = self._coupling(slope)
+        J[np.diag_indices_from(J)] += diagonal
         equations = diagonal * c + force[self.n, self.q]
         return equations, np.column_stack([J, self.n**2 * c])
 
@@ -230,13 +238,31 @@ class Balance:
         slope : cosine coefficients of the anharmonic part of V'' of every bond, overwritten.
         """
         slope[1:] /= 2  # coefficients of exp(i k theta), k of both signs
-        stiffness = np.einsum(
-            "kj,pj,qj->kpq", slope, self.stretch, self.stretch, optimize=True
-        )
-        n, q = self.n[:, None], self.q[:, None]
-        difference = stiffness[abs(n - self.n), q, self.q]
-        total = stiffness[n + self.n, q, self.q]
-        return np.asarray(-difference - np.where(n > 0, total, 0.0))
+        table = slope @ self.products
+        J = np.empty((len(self.n), len(self.n)))
+        rows = [(n, self._of_harmonic(n)) for n in np.unique(self.n).tolist()]
+        for n, those in rows:
+            for other, columns in rows:
+                both = table[abs(n - other)] + (table[n + other] if n else 0.0)
+                J[those, columns] = -self._by_modes(both, those, columns)
+        return J
+
+    def _of_harmonic(self, n: int) -> slice:
+        """The coefficients of a harmonic, which stand together."""
+        first, last = np.searchsorted(self.n, [n, n + 1])
+        return slice(int(first), int(last))
+
+    def _by_modes(self, row: Floats, those: slice, columns: slice) -> Floats:
+        """A slope of the bonds between the modes of some coefficients.
+
+        row : what it has of the modes 0 .. N. Of q and q' it makes Omega_q Omega_q' times what it
+        has of |q - q'| and q + q', beyond N of 2 N - q - q' with the other sign.
+        """
+        N, linear = self.chain.N, self.chain.frequencies()
+        p, q = self.q[those, None], self.q[None, columns]
+        total = p + q + 2
+        beyond = np.where(total > N, -1.0, 1.0) * row[np.minimum(total, 2 * N - total)]
+        return np.asarray(linear[p] * linear[q] * (row[np.abs(p - q)] + beyond))
 
     def newton(self, z: Floats, given: int | Condition) -> tuple[Floats, int]:
         """The solution with the same z[given], or that meets a condition, and the number of steps.

@@ -16,6 +16,7 @@ from typing import Any
 
 import mpmath
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from symfpu.chain import bonds
@@ -323,6 +324,19 @@ class InvarianceEquation:
         cosines = np.cos(np.pi / (2 * N) * angles)
         return np.asarray(cosines * images[:, None] / N)
 
+    def _between_modes(self, row: Floats) -> Floats:
+        """A slope of the bonds between all modes, (N-1, N-1), by what it has of the modes 0 .. N.
+
+        Windows of rows of numbers: of |q - q'|, and of q + q' beyond N, where the sign turns.
+        """
+        count, linear = self.chain.N - 1, self.linear.astype(float)
+        apart = np.concatenate([row[count - 1 : 0 : -1], row[:count]])
+        total = np.concatenate([row[2:], -row[count:1:-1]])
+        both = sliding_window_view(apart, count)[::-1] + sliding_window_view(total, count)
+        both *= linear
+        both *= linear[:, None]
+        return np.asarray(both)
+
     def _spectrum(self, slopes: Floats) -> Floats:
         """Coefficients of the slopes of all bonds, by place; shape (bonds, points)."""
         spectrum = np.empty_like(slopes)
@@ -338,12 +352,12 @@ class InvarianceEquation:
         """
         spectrum = self._spectrum(slopes)
         kappas = largest_slopes(self.grid, spectrum)
-        stretch, back = self.stretches_of_half()
+        products = self._products_of_modes()
         weights = halves_of_pairs(self.harmonics)
 
         def coupled(kappa: Ints) -> tuple[Floats, Ints, Ints]:
             slope = spectrum[:, self.grid.entries(kappa)]
-            coupling = (back * slope) @ stretch.T
+            coupling = self._between_modes(slope @ products)
             sizes = np.abs(coupling)
             coupling[sizes <= LEAST_COUPLING * sizes.max()] = 0
             at, to = shifted(self.harmonics, rows, kappa)

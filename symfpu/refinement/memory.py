@@ -26,6 +26,7 @@ DOUBLE = 8
 # tables in long doubles and doubles that the search keeps, and those of a step beside them
 TABLES, TABLES_OF_A_STEP = 16, 5
 FUNCTIONS = 5  # on the points, of a portion of the bonds
+MODES_BYTES = 72  # of two modes, in the tables of bonds and modes and of couplings
 HARMONIC_BYTES = 600  # of the numbers of a harmonic in Python
 COUPLED_MODES = 5  # that a harmonic of the slopes couples a mode to, at most about
 COUPLING_BYTES = 84  # of one in all its forms, of which half go on
@@ -70,6 +71,7 @@ class Sizes:
         functions = DOUBLE * self.bonds * self.points
         portion = min(functions, DOUBLE * max(PORTION, self.points))
         kept = TABLES * table + HARMONIC_BYTES * self.harmonics + functions
+        kept += MODES_BYTES * self.columns**2
         block = DOUBLE * self.block**2
         modes = min(self.columns, COUPLED_MODES)
         coupled = COUPLING_BYTES * 2 * MOST_SLOPES * self.block * modes

@@ -108,8 +108,10 @@ def test_two_thirds_of_alpha_is_the_cubic_oscillator():
     assert abs(orbit.cosines[0, seed - 1]) > 0.01
 
 
-def test_the_matrix_of_newtons_method_is_the_derivative():
-    balance = Balance(Chain(7, alpha="0.3", beta="0.2"), 2, 5)
+@pytest.mark.parametrize(("chain", "seed"), [(Chain(7, alpha="0.3", beta="0.2"), 2), (Chain(8, beta=1), 7)], ids=repr)
+def test_the_matrix_of_newtons_method_is_the_derivative(chain, seed):
+    """Of the modes q and q' also where q + q' is beyond N."""
+    balance = Balance(chain, seed, 5)
     z = np.random.default_rng(1).normal(scale=0.3, size=len(balance.n) + 1)
     h = 1e-3  # central differences of a cubic polynomial: the error is h^2 times the third derivative, removed by a second h
     slopes = [

@@ -53,9 +53,10 @@ CASES = {
     "N = 16, s = 4": {"N": 16, "s": 4, "law": "alpha='0.3'", "scale": 0.3, "order": 2, "most": 8000},
     "N = 16, s = 3": {"N": 16, "s": 3, "law": "alpha='0.3'", "scale": 1.0, "order": 3, "most": 6000},
     "N = 16, s = 5": {"N": 16, "s": 5, "law": "alpha='0.3'", "scale": 0.3, "order": 2, "most": 8000},
+    "N = 1024, s = 2": {"N": 1024, "s": 2, "law": "beta='0.3'", "scale": 0.3, "order": 2, "most": 2000},
     "ring, s = 3": {"most": 20000},
 }
-QUICK = {"N = 32, s = 4", "ring, s = 3"}
+QUICK = {"N = 32, s = 4", "N = 1024, s = 2", "ring, s = 3"}
 ALL = [pytest.param(name, marks=[] if name in QUICK else pytest.mark.long) for name in CASES]
 TOO_MUCH = 1.5  # as promised: of the peak, what is predicted at most
 LEAST = 60e6  # bytes from which on it is; below, what an allocator keeps counts for more
