@@ -19,9 +19,9 @@ LOOK = 0.5
 LOOKS = 256  # looks held at once
 
 
-def steps_between_looks(step: float) -> int:
-    """Whole steps between two looks at the orbit."""
-    return max(1, int(LOOK / abs(step) * (1 + 1e-12)))
+def steps_between_looks(step: float, look: float = LOOK) -> int:
+    """Whole steps between two looks at the orbit, no longer than `look` unless a step is."""
+    return max(1, int(look / abs(step) * (1 + 1e-12)))
 
 
 class RunningAverages:

@@ -20,7 +20,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain, require_any_chain
-from symfpu.dynamics.averages import LOOKS, RunningAverages, steps_between_looks
+from symfpu.dynamics.averages import (
+    LOOK,
+    LOOKS,
+    RunningAverages,
+    steps_between_looks,
+)
 from symfpu.dynamics.motion import Motion
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import scheme_of
@@ -55,7 +60,7 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
-from symfpu.numbers.typed import integer
+from symfpu.numbers.typed import double, integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -169,6 +174,7 @@ def integrate(
     scheme: str = "kahan_li8",
     samples: int | ArrayLike = 200,
     averages: bool = False,
+    look: float = LOOK,
     file: str | PathLike[str] | None = None,
     every: float = 10.0,
     workers: int = 1,
@@ -188,8 +194,9 @@ def integrate(
         polynomial potentials with fixed ends, others split T + V.
     samples : about how many, log-spaced from one step to T and 0; or times between 0 and T, shape
         (S,), each moved to the nearest step.
-    averages : of E_q, by the trapezoid rule over looks at every LOOK time units, or every step if
-        longer; samples are then moved to looks.
+    averages : of E_q, by the trapezoid rule over looks; samples are then moved to looks.
+    look : the time between two of them, at most, or one step if that is longer. A longer one than
+        the default is for long times: one look costs as much as several steps.
     file : written every so many seconds, at the end, and when the interrupt key is pressed, whole
         or not at all; with the same arguments an interrupted or killed run goes on from it and
         ends in the same bits. With a larger T, a multiple of the same step, it goes on too.
@@ -214,7 +221,7 @@ def integrate(
     found, workers = scheme_of(chain, scheme), integer(workers, "workers", 1)
     if not isinstance(averages, bool):
         raise InputError("averages", averages, "True or False", "leave it out")
-    stride = steps_between_looks(step) if averages else 1
+    stride = steps_between_looks(step, _look(look)) if averages else 1
     looks = _whole_steps(T, step * stride)
     marks = stride * _sample_steps(T, looks, samples)
     run = _Run(chain, found, T, looks * stride, marks, Q, P, workers)
@@ -478,6 +485,14 @@ def _start(
             "step", step, "a positive number", "for the past take a negative T"
         )
     return Q, P, float(T), float(step)
+
+
+def _look(look: float) -> float:
+    """The time between two looks; raises InputError."""
+    found = double(look, "look")
+    if not found > 0:
+        raise InputError("look", look, "a positive number", "leave it out")
+    return found
 
 
 def _whole_steps(T: float, step: float) -> int:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain, require_chain
+from symfpu.dynamics.averages import LOOK
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
@@ -351,6 +352,7 @@ def profile_invariance(
     seed: int = 0,
     scheme: str = "kahan_li8",
     step: float = 0.5,
+    look: float = LOOK,
     workers: int = 1,
 ) -> ProfileInvariance:
     """Does the profile stay put as N grows at fixed M and eps? By orbits of packets (Definition 4).
@@ -362,7 +364,7 @@ def profile_invariance(
     phases : equal, all 0; or random, uniform in 0 .. 2 pi radians.
     realisations : orbits of random phases, from numpy's default generator at (seed, N). seed : of
         it.
-    scheme, step, workers : of `integrate`.
+    scheme, step, look, workers : of `integrate`.
 
     Spectra are averaged over 0 .. T. Section 6.1 says of the normalised profiles that they stay
     as they are; e_kappa falls as 1/N. Modes within ROUNDING_MARGIN of `rounding_floor` count as
@@ -385,7 +387,7 @@ def profile_invariance(
             "realisations", realisations, "1 with equal phases", "take random phases"
         )
     chains = tuple(replace(chain, N=N) for N in sorted(set(sizes)))
-    how = {"scheme": scheme, "step": step, "workers": workers}
+    how = {"scheme": scheme, "step": step, "look": look, "workers": workers}
     power = _power_of_the_law(chain)
     spectra, floors, fits = [], [], []
     for longer in chains:

@@ -29,7 +29,9 @@ TIME, FULL_TIME = 1e7, 1e9  # default, at the latest; the paper's, with --full
 STAGES, SEEN_GROWTH = (1e6, 3e6), 1.0
 # by figure: whose chain, and how many vectors
 VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}
-GALI_STEP = 0.4  # of the tangent map
+# of the tangent map: of --full, and of what only confirms a forecast, whose slopes it moves by
+# hundredths (docs/performance.md)
+GALI_STEP, CONFIRMING_STEP = 0.4, 0.8
 FORETOLD_TIME, FORETOLD_SAMPLES, FORETOLD_FRAMES = 1e11, 440, 4
 SETTLED_DECADES = 0.3  # of the last value of an index
 
@@ -81,12 +83,13 @@ def figure_alignment(
     """
     if full:
         file = folder / f"{name}-gali.checkpoint"
-        found = _integrated(name, start, FULL_TIME, file, tell)
+        found = _integrated(name, start, FULL_TIME, GALI_STEP, file, tell)
         return FigureIndices(found)
     stages = [T for T in STAGES if T < TIME] + [TIME]
     with TemporaryDirectory() as kept:
         for T in stages:
-            found = _integrated(name, start, T, Path(kept) / "gali.checkpoint", tell)
+            file = Path(kept) / "gali.checkpoint"
+            found = _integrated(name, start, T, CONFIRMING_STEP, file, tell)
             there = foretell(found.times)
             if confirms(found, there):
                 break
@@ -95,7 +98,7 @@ def figure_alignment(
 
 
 def _integrated(
-    name: str, start: Start, T: float, file: Path, tell: Progress
+    name: str, start: Start, T: float, step: float, file: Path, tell: Progress
 ) -> AlignmentIndices:
     """To a time, going on from the file where it holds a shorter run."""
     label, vectors = VECTORS[name]
@@ -108,7 +111,7 @@ def _integrated(
         *start,
         T,
         vectors=vectors,
-        step=GALI_STEP,
+        step=step,
         frames=1,
         file=file,
         progress=progress,

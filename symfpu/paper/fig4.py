@@ -42,6 +42,9 @@ from symfpu.paper.torus_laws import (
 Floats = NDArray[np.float64]
 TIME, RANDOM_TIME = 1e6, 1e5  # the paper's with phases 0; ours with random phases
 REALISATIONS = 4  # of random phases
+# of the orbits: averages are those of a step and a look of 1/4 to 1e-5 decades by the median, and
+# to the noise in the last modes above it
+SCHEME, STEP, LOOK = "blanes_moan6", 1.25, 5.0
 # decades, over all chains: what a picture of thirty decades does not show; a fiftieth of its
 # height
 UNSEEN_DECADES, SHIFT_DECADES = 0.2, 0.6
@@ -100,6 +103,9 @@ def _trial(line: PrintedLine, T: float, *, random: bool = False) -> ProfileInvar
         T,
         phases="random" if random else "equal",
         realisations=REALISATIONS if random else 1,
+        scheme=SCHEME,
+        step=STEP,
+        look=LOOK,
     )
 
 

@@ -38,8 +38,9 @@ AMPLITUDE_ORDERS = {
     "Fig. 5d": 4,
     "Fig. 9": 242,
 }
-# tails far below the rounding of the largest mode; two looks in a period of E_q
-SCHEME, MODE_STEP = "aba864_modes", 0.7
+# tails far below the rounding of the largest mode; one look a step, more than one in a period of
+# E_q
+SCHEME, MODE_STEP = "aba864_modes", 1.0
 PERIOD_STEP = 0.02  # twelve digits of a period of the highest mode
 EPS = float(np.finfo(float).eps)
 

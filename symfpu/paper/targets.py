@@ -55,22 +55,22 @@ TARGETS: dict[str, Maker] = {
 }
 # with a part that takes many minutes, or hours
 LONG_TARGETS = ("table", "fig1", "fig2", "fig9")
-# of processor time, measured: what is begun first, and how long all will take
+# of processor time without AVX-512: what is begun first, and how long all will take
 SECONDS: dict[str, float] = {
-    "table": 60.0,
-    "section5": 4.0,
+    "table": 31.0,
+    "section5": 5.0,
     "statements": 15.0,
-    "fig1": 35.0,
-    "fig2": 40.0,
-    "fig3": 12.0,
-    "fig4": 95.0,
+    "fig1": 10.0,
+    "fig2": 38.0,
+    "fig3": 13.0,
+    "fig4": 43.0,
     "fig5": 18.0,
-    "fig6": 2.0,
+    "fig6": 3.0,
     "fig7": 6.0,
     "fig8": 5.0,
-    "fig9": 60.0,
-    "convergence": 130.0,
-    "toda": 50.0,
+    "fig9": 20.0,
+    "convergence": 46.0,
+    "toda": 37.0,
 }
 FULL_TABLE = 600.0  # seconds
 FIRST_PICTURE = "fig6"  # drawn within seconds

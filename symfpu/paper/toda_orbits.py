@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 ORBIT_SCHEME = "kahan_li8"
 TIME, STEP, LOOKS = 1e5, 0.2, 501  # of Fig. 3
 # of Fig. 9; a return is known to some hundredths where looks are this near each other
-RECURRENCE_TIME, RECURRENCE_STEP, RECURRENCE_LOOKS = 2.5e4, 0.1, 50001
+RECURRENCE_TIME, RECURRENCE_STEP, RECURRENCE_LOOKS = 2.5e4, 0.25, 50001
 GROUPS = 7
 # of breathers of Fig. 9's chain, from near the linear one to the printed one
 BREATHER_FREQUENCIES = (
@@ -130,7 +130,8 @@ def trajectory_study(
     """The FPU-trajectory from the printed amplitudes of Fig. 2, with all gaps along it."""
     row = printed_row("Fig. 2")
     start = fpu_trajectory(chain, printed_amplitudes(row))
-    orbit = _orbit(f"toda: Fig. 3, {name}", chain, start, T, STEP, LOOKS, progress)
+    label = f"toda: Fig. 3, {name}"
+    orbit = _orbit(label, chain, start, T, STEP, LOOKS, progress, averages=True)
     shares = orbit.harmonic_energies()
     shares = shares / shares.sum(axis=1, keepdims=True)
     groups = excitation_sequence(chain.N, row.seeds, GROUPS)
@@ -154,7 +155,7 @@ def recurrence_study(
     start = fpu_trajectory(chain, amplitudes)
     label = f"toda: Fig. 9, {name}"
     T, step, looks = RECURRENCE_TIME, RECURRENCE_STEP, RECURRENCE_LOOKS
-    orbit = _orbit(label, chain, start, T, step, looks, progress)
+    orbit = _orbit(label, chain, start, T, step, looks, progress, averages=False)
     energies = orbit.harmonic_energies()
     first_mode = energies[:, 0] / energies[0].sum()
     return RecurrenceStudy(orbit.times, first_mode, recurrence(orbit.times, energies))
@@ -168,10 +169,19 @@ def _orbit(
     step: float,
     looks: int,
     progress: Progress,
+    *,
+    averages: bool,
 ) -> Orbit:
-    times = np.linspace(0, T, looks)
     return integrated_orbit(
-        label, chain, start, T, progress, scheme=ORBIT_SCHEME, step=step, samples=times
+        label,
+        chain,
+        start,
+        T,
+        progress,
+        scheme=ORBIT_SCHEME,
+        step=step,
+        samples=np.linspace(0, T, looks),
+        averages=averages,
     )
 
 

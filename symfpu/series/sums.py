@@ -251,34 +251,18 @@ def frequency_sums(
     linear, slope, squares : (s,), Omega of the seeds, the factor of A^2 in the tables' variables,
     and A^2. diagonals, tables : of orders 1, 2, ..., exponents and coefficients of W.
     """
+    # lazy: numba takes longer to import than all the rest
+    from symfpu.series.frequency_loops import frequencies_by_order
+
     s, top = len(linear), len(tables)
-    y = slope * squares
     terms = np.zeros((top + 1, s))
     jacobian = np.zeros((top + 1, s, s))
     terms[0] = linear
-    for k, (e, corrections) in enumerate(zip(diagonals, tables, strict=True), 1):
-        if len(e) == 0:
-            continue
-        table = corrections * linear**2
-        square, square_slope = _polynomial(y, e, table)
-        # [omega^2]^(k) = 2 Omega omega^(k) + sum of omega^(j) omega^(k-j), 0 < j < k
-        earlier = terms[1:k]
-        square -= np.einsum("jq,jq->q", earlier, terms[k - 1 : 0 : -1])
-        products = np.einsum("jq,jqi->qi", earlier, jacobian[k - 1 : 0 : -1])
-        square_slope = square_slope * slope - 2 * products
-        terms[k] = square / (2 * linear)
-        jacobian[k] = square_slope / (2 * linear)[:, None]
+    if not top:
+        return terms, jacobian
+    first = np.cumsum([0, *map(len, diagonals)])
+    exponents = np.concatenate(diagonals).reshape(-1, s)
+    table = np.concatenate([np.reshape(rows, (-1, s)) for rows in tables]) * linear**2
+    rules = first, exponents, table, linear, slope
+    frequencies_by_order(slope * squares, *rules, terms, jacobian)
     return terms, jacobian
-
-
-def _polynomial(y: Floats, exponents: Ints, table: Floats) -> tuple[Floats, Floats]:
-    """Values (s,) and derivatives (s, variables) of the polynomials sum_e table[e] y^e."""
-    powers = y**exponents
-    square = np.prod(powers, axis=1) @ table
-    slopes = []
-    for j in range(len(y)):
-        exponent = exponents[:, j]
-        lowered = powers.copy()
-        lowered[:, j] = exponent * y[j] ** np.maximum(exponent - 1, 0)
-        slopes.append(np.prod(lowered, axis=1) @ table)
-    return square, np.stack(slopes, axis=1)

@@ -32,12 +32,14 @@ from symfpu.numbers.arithmetic import (
     with_digits,
 )
 from symfpu.numbers.typed import integer
+from symfpu.tori.grid_sums import grid_sums
 
 Floats = NDArray[np.float64]
 Value = TypeVar("Value")
 
 CHUNK = 4_000_000  # entries of a table of cosines held at once
 GRID_POINTS = 4096  # angles at which a residual is taken, about
+TRANSFORMED = 4 * GRID_POINTS  # angles whose sums are held at once, at most
 DOUBLES_RESIDUAL = 1e-10  # relative residuals above it need no more digits
 GRID_POINTS_DIGITS = 16  # the same for numbers of many digits
 
@@ -357,13 +359,21 @@ class QuasiPeriodic(Shown, Gridded, Parts):
         largest: Any = 0.0
         squares = self.chain.frequencies(self.numbers) ** 2
         linear = (squares - self._rates[:, None] ** 2) * self.cosines
-        both = self._cosine_sums(np.hstack([self.cosines, linear]))
-        for theta in self.angle_grid(number):
-            Q, off = np.hsplit(self._at_angles(theta, both), 2)
+        for sums in self._on_grid(np.hstack([self.cosines, linear]), number):
+            Q, off = np.hsplit(sums, 2)
             anharmonic = self.chain.anharmonic_accelerations(Q)
             worst = np.maximum(worst, np.abs(off - anharmonic).max(axis=0))
             largest = max(largest, np.abs(anharmonic - squares * Q).max())
         return worst, largest
+
+    def _on_grid(self, coefficients: Numbers, number: int) -> Iterator[Numbers]:
+        """Sums of cosines at the angles of the grid, in its portions, or all of them at once."""
+        if self.digits is None and number ** len(self.seeds) <= TRANSFORMED:
+            yield grid_sums(self.harmonics, coefficients, number)
+            return
+        sums = self._cosine_sums(coefficients)
+        for theta in self.angle_grid(number):
+            yield self._at_angles(theta, sums)
 
     def angle_grid(self, number: int) -> Iterator[Numbers]:
         """The tensor grid of angles, radians, in portions (P, s); a shift keeps it off 0 and pi.

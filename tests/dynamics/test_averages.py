@@ -56,12 +56,11 @@ def test_averages_of_a_torus_are_its_closed_form(torus):
         assert np.all(np.abs(found - torus.average_spectrum(time)) <= looks.LOOK**2 / 12 * 2 * steepest * 2 / time + THOUSAND_ROUNDINGS)
 
 
-def test_looks_twice_as_dense_are_four_times_as_good(torus, monkeypatch):
+def test_looks_twice_as_dense_are_four_times_as_good(torus):
     start, T = (torus.positions(0.0), torus.momenta(0.0)), 20.0
     errors = []
     for look in (0.5, 0.25, 0.125):
-        monkeypatch.setattr(looks, "LOOK", look)
-        made = integrate(torus.chain, *start, T, step=0.0625, samples=1, averages=True)
+        made = integrate(torus.chain, *start, T, step=0.0625, samples=1, averages=True, look=look)
         errors.append(np.abs(made.averages[-1] - torus.average_spectrum(T)).max())
     rates = np.log2(np.array(errors[:-1]) / errors[1:])
     assert rates == pytest.approx([2, 2], abs=SLOPE)
@@ -73,6 +72,20 @@ def test_a_long_step_is_looked_at_every_time(torus):
     made = integrate(torus.chain, *start, T, step=0.7, scheme="aba864_modes", samples=5, averages=True)
     assert made.step == 0.7
     assert made.averages[-1] == pytest.approx(torus.average_spectrum(T), rel=1 / T)
+
+
+def test_rare_looks_are_enough_for_a_long_time(torus):
+    """Each line w of E_q leaves w times look/T of itself over sin(w look/2): no line is near 2 pi/look here."""
+    start, T = (torus.positions(0.0), torus.momenta(0.0)), 7000.0
+    made = integrate(torus.chain, *start, T, step=0.25, samples=[700.0], averages=True, look=5.0)
+    assert made.times.tolist() == [0.0, 700.0, T]
+    assert made.averages[-1] == pytest.approx(torus.average_spectrum(T), rel=5 / T)
+
+
+@pytest.mark.parametrize("look", [0, -1.0, "long", np.inf])
+def test_a_look_is_a_positive_time(start, look):
+    with pytest.raises(InputError, match="look"):
+        integrate(MIXED, *start, 10.0, step=STEP, averages=True, look=look)
 
 
 def test_orbits_and_threads_do_not_mix(start):

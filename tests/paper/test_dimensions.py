@@ -37,7 +37,7 @@ def test_what_is_foretold_ends_the_integration_where_it_is_confirmed(at, last, s
 
     monkeypatch.setattr(dimensions, "confirms", confirms)
     seen = figure_alignment("fig1", start, unheard, tmp_path, flat, full=False)
-    assert seen.found.times[-1] == pytest.approx(last, abs=dimensions.GALI_STEP)
+    assert seen.found.times[-1] == pytest.approx(last, abs=dimensions.CONFIRMING_STEP)
     assert looked == sorted(looked)
     assert len(set(looked)) == [500.0, 1000.0, 2000.0].index(last) + 1
     assert seen.confirmed == np.isfinite(at)

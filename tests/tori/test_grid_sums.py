@@ -1,0 +1,38 @@
+"""Sums of cosines on a tensor grid: against sums by hand, harmonics that fold on the grid among them."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from symfpu.chain.chain import Chain
+from symfpu.tori import quasiperiodic
+from symfpu.tori.grid_sums import grid_sums
+from symfpu.tori.quasiperiodic import FourierTorus
+from tests.tolerances import THOUSAND_ROUNDINGS
+
+CHAIN = Chain(8, alpha="0.3")
+
+
+@pytest.mark.parametrize(("seeds", "number"), [(1, 7), (2, 5), (3, 4), (2, 2)])
+def test_all_points_at_once_are_the_sums_of_cosines(seeds, number):
+    draws = np.random.default_rng(seeds)
+    harmonics = draws.integers(-9, 10, size=(40, seeds))
+    coefficients = draws.normal(size=(40, 3))
+    points = np.array(list(np.ndindex(*(number,) * seeds)))
+    theta = 2 * np.pi * (3 * points + 1) / (3 * number)
+    by_hand = np.cos(theta @ harmonics.T) @ coefficients
+    found = grid_sums(harmonics, coefficients, number)
+    assert found.shape == by_hand.shape
+    assert np.abs(found - by_hand).max() <= THOUSAND_ROUNDINGS * np.abs(coefficients).sum()
+
+
+@pytest.mark.parametrize("points", [1, 3, 6])
+def test_a_residual_is_that_of_angles_one_by_one(points, monkeypatch):
+    draws = np.random.default_rng(2)
+    harmonics = np.array([[1, 0], [0, 1], [2, -1], [3, 4], [0, 0]])
+    cosines = draws.normal(scale=0.1, size=(5, CHAIN.N - 1))
+    torus = FourierTorus(CHAIN, (1, 2), (Fraction("0.21"), Fraction("0.43")), harmonics, cosines, {1: 0.0, 2: 0.0})
+    at_once = torus.residuals(points)
+    monkeypatch.setattr(quasiperiodic, "TRANSFORMED", 0)
+    assert at_once == pytest.approx(torus.residuals(points), rel=THOUSAND_ROUNDINGS)
