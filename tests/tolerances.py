@@ -365,6 +365,10 @@ CHOSEN_RESONANCE = 2e-9
 # Bounds are radii and the rounding of the sums that made them, in units of the last place.
 RADIUS_ROUNDING = 1e-9
 
+# Radii of moduli that are enlarged by 2^-20 each, against radii of the moduli themselves: two factors in each of up to 30
+# products on the way to an order.
+RADIUS_ENLARGED = 1 + 2.0**-13
+
 # Radii by differential equations and by powers of the stretch, both enlarged as doubles round; the
 # measured ones of the former are 0.01 to 2 times the latter.
 RADIUS_OF_GROWTHS = 3

@@ -86,6 +86,14 @@ def aligned_zeros(shape: tuple[int, ...], kind: Any = np.float64) -> NDArray[Any
     return np.asarray(memory[first : first + size].view(kind).reshape(shape))
 
 
+def degrees_of(splits: list[tuple[int, int]], degree: int) -> NDArray[np.bool_]:
+    """Which degrees the left and the right factors have; (2, degree + 1)."""
+    there = np.zeros((2, degree + 1), dtype=np.bool_)
+    for d, e in splits:
+        there[0, d] = there[1, e] = True
+    return there
+
+
 class DenseRing(ABC, Generic[Bonds]):
     """Coefficients as doubles; products on bonds by compiled, threaded kernels.
 
@@ -117,7 +125,8 @@ class DenseRing(ABC, Generic[Bonds]):
         self._lanes = 8 if self._convolves else self._lane_width()
         self._slices = -(-self._points // self._lanes)
         rows, seed_slices = int(self.grading.first_row[-1]), -(-len(space.seeds) // 8)
-        self._bonds = aligned_zeros((self._slices, rows, self._lanes), self.kind)
+        kept = (self._slices, self._kept_count(), self._lanes)
+        self._bonds = aligned_zeros(kept, self.kind)
         self._powers: dict[
             int, Floats
         ] = {}  # of the bonds, as far as higher powers need them
@@ -212,6 +221,14 @@ class DenseRing(ABC, Generic[Bonds]):
     def _rows(self, degree: int) -> slice:
         first, end = self.grading.first_row[degree : degree + 2]
         return slice(int(first), int(end))
+
+    def _kept_count(self) -> int:
+        """Rows of what is kept on the bonds."""
+        return int(self.grading.first_row[-1])
+
+    def _kept_rows(self, degree: int) -> Any:
+        """Those of a degree."""
+        return self._rows(degree)
 
     def seed_terms(self) -> Floats:
         modes = np.zeros((len(self.space.seeds), self.space.N - 1))
@@ -426,9 +443,38 @@ class DenseRing(ABC, Generic[Bonds]):
 
     def _seed_product(self, degree: int, corrections: Floats, seed_modes: Floats) -> Floats:
         """Sum W_q u_q over all stored pairs of degrees; (canonical, s)."""
-        known = set(self._degrees)
-        splits = [(n, degree - n) for n in self._correction_degrees if degree - n in known]
+        splits = self._correction_splits(degree)
         lanes = self._product(corrections, seed_modes, degree, splits, sparse=True)
+        return self._of_seeds(degree, lanes)
+
+    def _correction_splits(self, degree: int) -> list[tuple[int, int]]:
+        """Degrees of W and u."""
+        known = set(self._degrees)
+        return [(n, degree - n) for n in self._correction_degrees if degree - n in known]
+
+    def _diagonal_product(
+        self, degree: int, corrections: Floats, seed_modes: Floats, *reductions: Any
+    ) -> Floats:
+        """The same sum by its few factors, as the kernel leaves it: (slices, rows, 8)."""
+        there = degrees_of(self._correction_splits(degree), degree)
+        rows = self._rows(degree)
+        out = aligned_zeros((len(seed_modes), rows.stop - rows.start, 8))
+        self._kernels.multiply_diagonal(
+            (0.0,) * 8,
+            corrections,
+            seed_modes,
+            out,
+            degree,
+            *there,
+            self.grading.wanted_blocks(degree),
+            self.grading.tables,
+            self.grading.diagonal_tables,
+            *reductions,
+        )
+        return out
+
+    def _of_seeds(self, degree: int, lanes: Floats) -> Floats:
+        """Canonical monomials of the kernel's (slices, rows, 8), a column a seed."""
         canonical = self.grading.canonical(degree)
         places = [divmod(i, 8) for i in range(len(self.space.seeds))]
         columns = [lanes[slice_, canonical, lane] for slice_, lane in places]
@@ -512,7 +558,7 @@ class ValuesRing(DenseRing[Floats]):
             self._power_degrees[name] = list(self._degrees)
         missing = [d for d in self._degrees if d not in self._completed[name]]
         for degree in missing:
-            rows, target = self._rows(degree), self._powers[name]
+            rows, target = self._kept_rows(degree), self._powers[name]
             weight = self.number(Fraction(degree) if factor is None else factor)
             own = self._times(self._bonds[:, rows].astype(np.float64), weight)
             own += target[:, rows]

@@ -26,14 +26,16 @@ from numpy.typing import NDArray
 from symfpu.algebra.dense import Floats, threads_of_a_computation
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.several_primes import SeveralPrimesRing, largest_prime
-from symfpu.algebra.words import LIMB_BITS, IntegerTable, ResidueBasis, divided, words_of
-
-BLOCK = 1 << 15  # integers converted at once, so that they stay in the cache
+from symfpu.algebra.several_primes import (
+    Portions,
+    SeveralPrimesRing,
+    residue_basis,
+)
+from symfpu.algebra.words import LIMB_BITS, IntegerTable, divided
 
 
 class Precision(NamedTuple):
-    """bits : binary places, a multiple of 20.
+    """bits : binary places, as `words.whole_places` gives them; for growths a multiple of 20.
 
     Headroom : bits of the largest sum above 2^(2 bits). unit : scale of a degree.
     """
@@ -44,18 +46,21 @@ class Precision(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """Coefficients of one degree: residues (primes, canonical, N-1), and the integers as words."""
+    """Coefficients of one degree: residues (primes, canonical, N-1), and the integers as words.
+
+    Residues are singles where there are many of them.
+    """
 
     residues: Floats
     table: IntegerTable
 
 
 class Bonds(NamedTuple):
-    """Values on bonds: residues (primes, canonical, points), still to be multiplied by
+    """Values on bonds, of portions of the canonical monomials, still to be multiplied by
     factor unit^-power.
     """
 
-    residues: Floats
+    values: Portions
     power: int
     factor: Fraction = Fraction(1)
 
@@ -68,15 +73,18 @@ class FixedPointRing:
 
     def __init__(self, space: CosineModes, precision: Precision) -> None:
         self.space, self.grading, self.precision = space, space.grading, precision
-        self._drop = precision.bits // LIMB_BITS
-        largest = largest_prime(space.grading.degree)
-        self.basis = ResidueBasis(2 * precision.bits + precision.headroom, largest)
+        bits = precision.bits + precision.headroom
+        self.basis = residue_basis(space.grading, precision.bits + bits)
+        self._rounded_basis = self.basis.beginning(bits + 1)
         self._image = SeveralPrimesRing(space, self.basis)
         self._threads = threads_of_a_computation()
         self._pool = ThreadPoolExecutor(self._threads)
         self._to_bonds = self._cosines(np.ones(space.half))
         self._back: dict[Fraction, Floats] = {}
         self._stored: set[tuple[int, int]] = set()  # powers of the bonds, and their degrees
+        rows = len(space.grading.canonical(space.grading.degree))
+        size = len(self.basis) * rows * (space.N - 1)
+        self._room = np.empty(size, dtype=np.float32)  # of the residues of one degree
         self._modes: list[IntegerTable] = []
         self._corrections: list[IntegerTable] = []
 
@@ -120,44 +128,44 @@ class FixedPointRing:
             self._back[coefficient] = self._cosines(np.array(weights, dtype=object))
         return self._back[coefficient]
 
-    def _rounded(
-        self, residues: Floats, divisor: int = 1
-    ) -> tuple[Floats, NDArray[np.int64]]:
-        """Integers / (2^bits divisor), rounded: residues (primes, count) and words (count, n)."""
+    def _rounded(self, residues: Floats, divisor: int = 1) -> Floats:
+        """Integers / (2^bits divisor), rounded; residues (primes, ...), overwritten."""
+        flat, bits = residues.reshape(len(self.basis), -1), self.precision.bits
         if divisor == 1:
-            every = np.ones(residues.shape[1], dtype=np.bool_)
-            return residues, self._round(residues, every)
-        starts = range(0, residues.shape[1], BLOCK)
+            every = np.ones(flat.shape[1], dtype=np.bool_)
+            self.basis.round_in_place(flat, every, bits)
+        else:
+            limbs = self.basis.limbs(flat, bits // LIMB_BITS - 1)
+            flat[:] = self.basis.residues(divided(limbs, divisor))
+        return residues
 
-        def convert(start: int) -> tuple[Floats, NDArray[np.int64]]:
-            block = residues[:, start : start + BLOCK].copy()
-            limbs = divided(self.basis.limbs(block, self._drop - 1), divisor)
-            return self.basis.residues(limbs), words_of(limbs)
+    def _rounded_words(
+        self, residues: Floats, wanted: NDArray[np.bool_]
+    ) -> NDArray[np.int64]:
+        """The wanted entries of (primes, rows, columns), rounded; the others are exactly zero.
 
-        parts = list(self._pool.map(convert, starts))
-        if not parts:
-            return np.zeros((len(self.basis), 0)), np.zeros((0, 1), dtype=np.int64)
-        rounded, words = zip(*parts, strict=True)
-        return np.concatenate(rounded, axis=1), _joined(words)
+        residues : overwritten. Returns the words of the wanted ones.
+        """
+        flat, bits = residues.reshape(len(self.basis), -1), self.precision.bits
+        return self.basis.rounded_words(flat, wanted.ravel(), bits, self._rounded_basis)
 
-    def _round(self, residues: Floats, wanted: NDArray[np.bool_]) -> NDArray[np.int64]:
-        """Integers / 2^bits in their place, zero where not wanted; words of the wanted ones."""
-        step = max(BLOCK, -(-len(wanted) // (8 * self._threads)))
+    def _modes_of(self, degree: int, wanted: NDArray[np.bool_], values: Portions) -> Modes:
+        """The wanted entries of portions (primes, some, N-1), rounded.
 
-        def convert(start: int) -> NDArray[np.int64]:
-            some = slice(start, start + step)
-            return self.basis.round_in_place(residues[:, some], wanted[some], self._drop)
+        Their residues lie where those of the last call lay, whose portions may be read until they
+        are replaced: fresh memory of that size takes longer than the work.
+        """
+        shape = (len(self.basis), *wanted.shape)
+        residues = self._room[: math.prod(shape)].reshape(shape)
 
-        parts = list(self._pool.map(convert, range(0, len(wanted), step)))
-        return _joined(parts) if parts else np.zeros((0, 1), dtype=np.int64)
+        def convert(some: slice) -> NDArray[np.int64]:
+            own = values(some)
+            words = self._rounded_words(own, wanted[some])
+            residues[:, some] = own
+            return words
 
-    def _rounded_where(self, residues: Floats, wanted: NDArray[np.bool_]) -> Modes:
-        """Round the wanted entries of (primes, rows, columns); the others are exactly zero."""
-        flat = residues.reshape(len(self.basis), -1)
-        words = self._round(flat, wanted.ravel())
-        table = np.zeros((*wanted.shape, words.shape[1]), dtype=np.int64)
-        table[wanted] = words
-        return Modes(flat.reshape(residues.shape), IntegerTable(table))
+        words = _joined(list(self._pool.map(convert, self._image.pieces(degree))))
+        return Modes(residues, _table(words, wanted))
 
     def seed_terms(self) -> Modes:
         seeds, one = self.space.seeds, 1 << self.precision.bits
@@ -170,32 +178,37 @@ class FixedPointRing:
     def put(self, degree: int, modes: Modes) -> None:
         self._modes.append(modes.table)
         self._image.store(degree, modes.residues)
-        for rows, columns in self._image._parts(degree):
-            self._put_part(degree, rows, columns, modes.residues)
+        parity = self.space.parity(degree)
 
-    def _put_part(self, degree: int, rows: Ints, columns: slice, residues: Floats) -> None:
-        products = np.zeros((len(self.basis), len(rows), self.space.half))
-        right = self._to_bonds[:, columns]
-        everywhere = (slice(None), slice(None))
-        self._image.matrix_products(residues, rows, columns, right, products, everywhere)
-        values, _ = self._rounded(products.reshape(len(self.basis), -1))
-        self._image.store_bonds(degree, rows, values.reshape(products.shape))
+        def values(some: slice) -> Floats:
+            own = modes.residues[:, some].astype(np.float64)
+            bonds = np.zeros((*own.shape[:2], self.space.half))
+            for rows, columns in _parts(parity[some]):
+                left, right = own[:, rows, columns], self._to_bonds[:, columns]
+                bonds[:, rows] = self._image.add_matrix_product(bonds[:, rows], left, right)
+            return self._rounded(bonds)
 
-    def _bonds(self, products: Floats, power: int) -> Bonds:
-        values, _ = self._rounded(products.reshape(len(self.basis), -1))
-        return Bonds(values.reshape(products.shape), power)
+        self._image.store_bonds(degree, values)
+
+    def _bonds(self, rows: Floats, power: int, degree: int) -> Bonds:
+        """A power of the bonds, from half of it by the kernel's rows."""
+
+        def values(some: slice) -> Floats:
+            return self._rounded(self._image.residues(degree, rows, some, 2.0))
+
+        return Bonds(values, power - 1)
 
     def power(self, power: int, degree: int) -> Bonds:
         lower = power - 1
         for d in range(lower, degree if power > 2 else 0):
             if (lower, d) not in self._stored:
                 self._put_power(lower, d)
-        return self._bonds(self._image.canonical_power(power, degree), lower)
+        return self._bonds(self._image.power_rows(power, degree), power, degree)
 
     def _put_power(self, power: int, degree: int) -> None:
-        values = self.power(power, degree).residues
+        bonds = self.power(power, degree)
         self._stored.add((power, degree))
-        self._image.store_power(power, degree, values)
+        self._image.store_power(power, degree, bonds.values)
 
     def number(self, value: Fraction) -> Fraction:
         return value
@@ -206,29 +219,34 @@ class FixedPointRing:
         whole, share = whole_growth(slope, rate, degree, self.precision.unit)
         sums = self._image.canonical_growth(name, *whole, degree)
         numerator = self.basis.of_integers(np.array([share.numerator], dtype=object))
-        products = sums.reshape(len(self.basis), -1)
-        self.basis.scale(products, numerator[:, 0])
-        values, _ = self._rounded(products, share.denominator)
-        shaped = values.reshape(sums.shape)
-        self._image.store_power(name, degree, shaped)
-        return Bonds(shaped, 0, 2 * rate)
+        self.basis.scale(sums.reshape(len(self.basis), -1), numerator[:, 0])
+        grown = self._rounded(sums, share.denominator)
+
+        def values(some: slice) -> Floats:
+            return grown[:, some]
+
+        self._image.store_power(name, degree, values)
+        return Bonds(values, 0, 2 * rate)
 
     def project(self, degree: int, parts: Sequence[tuple[Fraction, Bonds]]) -> Modes:
-        rows = len(self.grading.canonical(degree))
-        total = np.zeros((len(self.basis), rows, self.space.N - 1))
+        parity = self.space.parity(degree)
+        sources = []
         for coefficient, bonds in parts:
             scale = bonds.factor / self.precision.unit**bonds.power
-            back = self._to_modes(coefficient * scale)
-            self._add_projection(degree, total, bonds.residues, back)
-        return self._rounded_where(total, self.space.mask(degree))
+            back = np.moveaxis(self._to_modes(coefficient * scale), 1, 2)
+            sources.append((bonds.values, back))
 
-    def _add_projection(
-        self, degree: int, total: Floats, values: Floats, back: Floats
-    ) -> None:
-        for rows, columns in self._image._parts(degree):
-            right = np.moveaxis(back[:, columns], 1, 2)
-            at = (rows, columns)
-            self._image.matrix_products(values, rows, slice(None), right, total, at)
+        def values(some: slice) -> Floats:
+            modes = np.zeros((len(self.basis), len(parity[some]), self.space.N - 1))
+            for on_bonds, back in sources:
+                own = on_bonds(some)
+                for rows, columns in _parts(parity[some]):
+                    before, right = modes[:, rows, columns], back[:, :, columns]
+                    product = self._image.add_matrix_product(before, own[:, rows], right)
+                    modes[:, rows, columns] = product
+            return modes
+
+        return self._modes_of(degree, self.space.mask(degree), values)
 
     def secular(self, degree: int, modes: Modes) -> Modes:
         # the image only picks entries
@@ -241,35 +259,40 @@ class FixedPointRing:
         self._image.correct_by(degree, corrections.residues)
 
     def corrected(self, degree: int) -> Modes:
-        residues = self._image.corrected_residues(degree)
+        residues = np.ascontiguousarray(self._image.corrected_residues(degree))
         every = np.ones(residues.shape[1:], dtype=np.bool_)
-        return self._rounded_where(residues, every)
+        words = self._rounded_words(residues, every)
+        return Modes(residues, _table(words, every))
 
     def solve(
         self, degree: int, corrected: Modes, force: Modes, multipliers: NDArray[np.object_]
     ) -> Modes:
         _, index = self.grading.harmonics(degree)
         seeds = np.array(self.space.seeds) - 1
-        sizes = (multipliers / 2**self.precision.bits).astype(float)
-        self._check_range(corrected, force, sizes[index], seeds)
+        sizes = np.abs((multipliers / 2**self.precision.bits).astype(float))
         carried = multipliers != 0
-        wanted = carried[index]
-        bracket = np.negative(force.residues, out=force.residues)
-        bracket[:, :, seeds] += corrected.residues
         places = np.cumsum(carried).reshape(carried.shape) - 1
         factors = self.basis.of_integers(multipliers[carried])
-        self._image.multiply_at(bracket, wanted, factors, places[index])
-        return self._rounded_where(bracket, wanted)
+
+        def values(some: slice) -> Floats:
+            own = index[some]
+            self._check_range(corrected.table, force.table, sizes[own], some)
+            bracket = -force.residues[:, some].astype(np.float64)
+            bracket[:, :, seeds] += corrected.residues[:, some]
+            flat = bracket.reshape(len(bracket), -1)
+            self.basis.multiply_places(flat, carried[own], factors, places[own])
+            return bracket
+
+        return self._modes_of(degree, carried[index], values)
 
     def _check_range(
-        self, corrected: Modes, force: Modes, factors: Floats, seeds: Ints
+        self, corrected: IntegerTable, force: IntegerTable, factors: Floats, some: slice
     ) -> None:
         """Refuse the last products beyond the range of the residues: they have no bound before."""
-        below = -self.precision.bits
-        sizes = np.abs(force.table.floats(below))
-        sizes[:, seeds] += np.abs(corrected.table.floats(below))
-        products = sizes * np.abs(factors)
-        if np.any(products > 2.0**self.precision.headroom):
+        below, seeds = -self.precision.bits, np.array(self.space.seeds) - 1
+        sizes = np.abs(IntegerTable(force.words[some]).floats(below))
+        sizes[:, seeds] += np.abs(IntegerTable(corrected.words[some]).floats(below))
+        if np.any(sizes * factors > 2.0**self.precision.headroom):
             what = "a product of a force with its multiplier"
             raise OverflowError(f"{what} exceeds the range of the residues")
 
@@ -291,11 +314,24 @@ def whole_growth(
     return (slope * common, rate * common), share / common
 
 
+def _parts(parity: Ints) -> list[tuple[Ints, slice]]:
+    """Monomials of each parity with the modes of that parity."""
+    even, odd = (np.flatnonzero(parity == p) for p in (0, 1))
+    return [(even, slice(1, None, 2)), (odd, slice(0, None, 2))]
+
+
 def _joined(words: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
     """Words (count, n) of several parts as one array, of as many words as the longest."""
     longest = max(part.shape[1] for part in words)
     padded = [np.pad(part, ((0, 0), (0, longest - part.shape[1]))) for part in words]
     return np.concatenate(padded)
+
+
+def _table(words: NDArray[np.int64], wanted: NDArray[np.bool_]) -> IntegerTable:
+    """Words (count, n) in their places of a table; the other entries are zero."""
+    table = np.zeros((*wanted.shape, words.shape[1]), dtype=np.int64)
+    table[wanted] = words
+    return IntegerTable(table)
 
 
 def _weighted(table: Sequence[Any], weight: Fraction) -> NDArray[np.object_]:

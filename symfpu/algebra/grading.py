@@ -120,6 +120,11 @@ def exchanged(exponents: Ints) -> Ints:
     return pairs[:, :, ::-1].reshape(exponents.shape)
 
 
+def _self_conjugate(exponents: Ints) -> NDArray[np.bool_]:
+    """Which rows of exponents (count, 2 seeds) are those of monomials |z|^(2e)."""
+    return np.asarray((harmonic_of(exponents) == 0).all(axis=1))
+
+
 def harmonic_of(exponents: Ints) -> Ints:
     """nu = p - n of rows of exponents; shape (count, seeds)."""
     return np.asarray(exponents[:, 0::2] - exponents[:, 1::2])
@@ -145,6 +150,21 @@ class ProductTables(NamedTuple):
     inner_table: NDArray[np.int32]  # flat: rank of the product of inner monomials
     table_offset: Ints  # (degree + 1, degree + 1)
     table_stride: Ints  # (degree + 1, degree + 1)
+
+
+class DiagonalTables(NamedTuple):
+    """The monomials |z|^(2e) as factors, for the compiled product with a series of them.
+
+    pair_start : (X + 1,), where the factor pairs of an outer monomial begin. pair_left,
+    pair_right : outer monomials, the left one such a monomial. inner_start : (degree + 2,), where
+    the inner ones of a degree begin. inner_rank : their ranks.
+    """
+
+    pair_start: Ints
+    pair_left: NDArray[np.int32]
+    pair_right: NDArray[np.int32]
+    inner_start: Ints
+    inner_rank: Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -328,6 +348,22 @@ class Grading:
             inner_table=flat,
             table_offset=offset,
             table_stride=stride,
+        )
+
+    @cached_property
+    def diagonal_tables(self) -> DiagonalTables:
+        """The tables of products whose left factors are monomials |z|^(2e)."""
+        tables = self.tables
+        outer = np.concatenate([_self_conjugate(rows) for rows in self.outer.exponents])
+        pairs = np.flatnonzero(outer[tables.pair_left])
+        ranks = [np.flatnonzero(_self_conjugate(rows)) for rows in self.inner.exponents]
+        begin = np.append(tables.pair_start[:, 0], len(tables.pair_left))
+        return DiagonalTables(
+            pair_start=np.searchsorted(pairs, begin),
+            pair_left=tables.pair_left[pairs],
+            pair_right=tables.pair_right[pairs],
+            inner_start=np.cumsum([0, *(len(r) for r in ranks)]),
+            inner_rank=np.concatenate(ranks),
         )
 
     @cached_property

@@ -23,7 +23,7 @@ from symfpu.algebra import uncompiled
 from symfpu.compiled import JIT, compiled
 
 INT64 = ir.IntType(64)
-COLUMNS = 128  # integers rounded at once, so that they stay in the cache
+COLUMNS = 64  # integers rounded at once, so that they stay in the cache
 Float64 = types.float64
 
 
@@ -312,6 +312,72 @@ def multiply(
 
 
 @compiled()
+def _reduce_slices(out, rows, moduli):  # type: ignore[no-untyped-def]
+    """These rows of all slices modulo the modulus of each lane; without moduli nothing."""
+    if moduli is not None:
+        for part in range(len(out)):
+            own = moduli[part]
+            reduce_lanes(out[part], rows[0], rows[1], own, 1.0 / own)
+
+
+@compiled()
+def multiply_diagonal(  # type: ignore[no-untyped-def]
+    lanes,
+    left,
+    right,
+    out,
+    degree,
+    has_left,
+    has_right,
+    blocks,
+    tables,
+    diagonal,
+    moduli,
+    limit,
+):
+    """Add the products of a series in the monomials |z|^(2e) and another one, of a degree.
+
+    Canonical rows only. lanes, blocks, tables, limit : as of
+    `multiply`. left, right : (slices, rows of all degrees, lanes). out : (slices, rows of this
+    degree, lanes). has_left, has_right : (degrees,) which degrees the factors have. diagonal :
+    algebra.grading.DiagonalTables. moduli : None, or (slices, lanes), of each lane.
+    """
+    block, counts, table = tables.block, tables.inner_count, tables.inner_table
+    for outer in blocks:
+        inner = degree - tables.outer_degree[outer]
+        target = block[degree, outer] - block[degree, 0]
+        wanted = tables.first_canonical[inner] if tables.inner_start[outer] else 0
+        rows = (target + wanted, target + counts[inner])
+        pending = 1.0
+        for pair in range(diagonal.pair_start[outer], diagonal.pair_start[outer + 1]):
+            l, r = diagonal.pair_left[pair], diagonal.pair_right[pair]
+            for y in range(0, inner + 1, 2):
+                d = tables.outer_degree[l] + y
+                if d == 0 or d == degree or not (has_left[d] and has_right[degree - d]):
+                    continue
+                i0, j0, length = block[d, l], block[degree - d, r], counts[inner - y]
+                for n in range(diagonal.inner_start[y], diagonal.inner_start[y + 1]):
+                    i = diagonal.inner_rank[n]
+                    t = (
+                        tables.table_offset[y, inner - y]
+                        + i * tables.table_stride[y, inner - y]
+                    )
+                    start = length if wanted > 0 else 0
+                    while start > 0 and table[t + start - 1] >= wanted:
+                        start -= 1
+                    pending += 1.0
+                    if pending > limit:
+                        _reduce_slices(out, rows, moduli)
+                        pending = 2.0
+                    for part in range(len(out)):
+                        multiply_row(
+                            lanes, left[part], i0 + i, 1.0, right[part], j0, out[part],
+                            target, table, t, start, length, None,
+                        )  # fmt: skip
+        _reduce_slices(out, rows, moduli)
+
+
+@compiled()
 def multiply_elements(left, right, modulus, out):  # type: ignore[no-untyped-def]
     """out = left right modulo a prime below 2^40, element by element, in -p/2 .. p/2.
 
@@ -369,18 +435,34 @@ def _next_columns(residues, wanted, first, places):  # type: ignore[no-untyped-d
 
 
 @compiled()
-def _shares(residues, places, basis, shares, turns):  # type: ignore[no-untyped-def]
+def _taken(residues, places, own):  # type: ignore[no-untyped-def]
+    """own[:, b] = residues[:, places[b]]; whether the places are neighbours."""
+    n = len(places)
+    near = n > 0 and places[n - 1] - places[0] == n - 1
+    for i in range(len(residues)):
+        row, values = residues[i], own[i]
+        if near:
+            first = places[0]
+            for b in range(n):
+                values[b] = row[first + b]
+        else:
+            for b in range(n):
+                values[b] = row[places[b]]
+    return near
+
+
+@compiled(fastmath={"contract"})
+def _shares(own, n, basis, shares, turns):  # type: ignore[no-untyped-def]
     """Residues over the cofactors, (primes, n), and the multiple of all primes that they exceed.
 
     Returns the largest distance of a sum of shares from that whole number.
     """
-    n = len(places)
     turns[:n] = 0.0
-    for i in range(len(residues)):
-        modulus, own = basis.moduli[i], basis.inverses[i]
+    for i in range(len(shares)):
+        modulus, factor = basis.moduli[i], basis.inverses[i]
         inverse = 1.0 / modulus
         for b in range(n):
-            value = residues[i, places[b]] * own
+            value = own[i, b] * factor
             value -= modulus * np.rint(value * inverse)
             shares[i, b] = value
             turns[b] += value * inverse
@@ -392,69 +474,133 @@ def _shares(residues, places, basis, shares, turns):  # type: ignore[no-untyped-
     return farthest
 
 
+@compiled(fastmath={"contract"})
+def _add_product(matrix, columns, n, total):  # type: ignore[no-untyped-def]
+    """total[:n] += matrix columns[:, :n]; matrix (count,). Four rows a pass over the total."""
+    whole = len(matrix) - len(matrix) % 4
+    for i in range(0, whole, 4):
+        f0, f1, f2, f3 = matrix[i], matrix[i + 1], matrix[i + 2], matrix[i + 3]
+        c0, c1, c2, c3 = columns[i], columns[i + 1], columns[i + 2], columns[i + 3]
+        for b in range(n):
+            total[b] += f0 * c0[b] + f1 * c1[b] + f2 * c2[b] + f3 * c3[b]
+    for i in range(whole, len(matrix)):
+        factor, column = matrix[i], columns[i]
+        for b in range(n):
+            total[b] += factor * column[b]
+
+
+@compiled(fastmath={"contract"})
+def _carry(low, high, n, limb):  # type: ignore[no-untyped-def]
+    """Balances low limbs; what is over goes to the high ones. limb : a power of two."""
+    inverse = 1.0 / limb
+    for b in range(n):
+        carry = np.rint(low[b] * inverse)
+        low[b] -= carry * limb
+        high[b] += carry
+
+
+@compiled(fastmath={"contract"})
+def _without_lowest(own, limbs, n, basis, scale):  # type: ignore[no-untyped-def]
+    """Residues (primes, n) of integers without these limbs, over 2^bits, in their place."""
+    for i in range(len(own)):
+        total, share = own[i], scale.share[i]
+        for b in range(n):
+            total[b] *= share
+        _add_product(scale.lowest[i], limbs, n, total)
+        _reduce_row(total, n, basis.moduli[i])
+
+
+@compiled(fastmath={"contract"})
+def _reduce_row(row, n, modulus):  # type: ignore[no-untyped-def]
+    """row[:n] modulo a modulus, integers below 2^52 in size."""
+    inverse = 1.0 / modulus
+    for b in range(n):
+        row[b] -= modulus * np.rint(row[b] * inverse)
+
+
+@compiled()
+def _put_back(own, places, near, residues):  # type: ignore[no-untyped-def]
+    """residues[:, places] = own. near : whether the places are neighbours."""
+    n = len(places)
+    for i in range(len(residues)):
+        row, values = residues[i], own[i]
+        if near:
+            first = places[0]
+            for b in range(n):
+                row[first + b] = values[b]
+        else:
+            for b in range(n):
+                row[places[b]] = values[b]
+
+
 @compiled()
 def _limbs_of(shares, turns, n, basis, limb, limbs):  # type: ignore[no-untyped-def]
-    """Balanced limbs (limbs, n) of the integers with these shares."""
+    """The lowest limbs (limbs, n), balanced but for the last, of the integers of these shares."""
     for k in range(len(limbs)):
         row, multiple = limbs[k], basis.modulus_limbs[k]
         for b in range(n):
             row[b] = -multiple * turns[b]
-        for i in range(len(shares)):
-            factor = basis.cofactor_limbs[k, i]
-            for b in range(n):
-                row[b] += factor * shares[i, b]
+        _add_product(basis.cofactor_limbs[k], shares, n, row)
         if k > 0:
-            before = limbs[k - 1]
-            for b in range(n):
-                carry = np.rint(before[b] / limb)
-                before[b] -= carry * limb
-                row[b] += carry
+            _carry(limbs[k - 1], row, n, limb)
 
 
 @compiled()
-def _residues_of(limbs, places, basis, total, residues):  # type: ignore[no-untyped-def]
-    """residues[:, places] of the integers with these limbs."""
-    n = len(places)
-    for i in range(len(residues)):
-        modulus = basis.moduli[i]
-        inverse = 1.0 / modulus
-        total[:n] = 0.0
-        for k in range(len(limbs)):
-            factor = basis.powers[i, k]
-            for b in range(n):
-                total[b] += factor * limbs[k, b]
+def _add_words(limbs, n, first, words):  # type: ignore[no-untyped-def]
+    """Adds limbs (limbs, n) to words, three each, from a row on."""
+    for k in range(len(limbs)):
+        word, place = divmod(k, 3)
         for b in range(n):
-            residues[i, places[b]] = total[b] - modulus * np.rint(total[b] * inverse)
+            words[first + b, word] += np.int64(limbs[k, b]) << (20 * place)
 
 
 @compiled()
-def round_columns(residues, wanted, drop, basis, limb, words):  # type: ignore[no-untyped-def]
-    """Integers of which residues are given, / limb^drop, rounded to the nearest, in their place.
+def round_columns(residues, wanted, basis, limb, scale, rounded, words):  # type: ignore[no-untyped-def]
+    """Integers of which residues are given, / 2^bits, rounded to the nearest, in their place.
 
     Zero where they are not wanted. Returns the largest distance of a sum of shares from a whole
-    number, which is small unless an integer exceeds the range.
+    number, which is small unless an integer exceeds the range; and that of what is rounded.
 
     residues : (primes, count), overwritten. wanted : (count,). basis : a `words.Rounding` of small
-    primes. limb : 2^20. words : (wanted, n) int64 of three limbs each, zeros, filled.
+    primes. limb : 2^20. scale : a `words.Scale` of these bits. words : None, or (wanted, n) int64
+    of three limbs each, zeros, filled; rounded : the `words.Rounding` of the first primes, as many
+    as hold what is rounded.
     """
-    primes = len(residues)
-    shares = np.empty((primes, COLUMNS))
-    limbs = np.empty((len(basis.modulus_limbs), COLUMNS))
+    primes, count = len(residues), scale.lowest.shape[1]
+    own, shares = np.empty((primes, COLUMNS)), np.empty((primes, COLUMNS))
+    limbs = np.empty((max(count, len(rounded.modulus_limbs)), COLUMNS))
     turns = np.empty(COLUMNS)
     places = np.empty(COLUMNS, dtype=np.int64)
-    done, at, farthest = 0, 0, 0.0
+    done, at, farthest, farther = 0, 0, 0.0, 0.0
     while at < residues.shape[1]:
         n, at = _next_columns(residues, wanted, at, places)
-        distance = _shares(residues, places[:n], basis, shares, turns)
-        farthest = max(farthest, distance)
-        _limbs_of(shares, turns, n, basis, limb, limbs)
-        _residues_of(limbs[drop:], places[:n], basis, turns, residues)
-        for k in range(drop, len(limbs)):
-            word, place = divmod(k - drop, 3)
-            for b in range(n):
-                words[done + b, word] += np.int64(limbs[k, b]) << (20 * place)
+        near = _taken(residues, places[:n], own)
+        farthest = max(farthest, _shares(own, n, basis, shares, turns))
+        _limbs_of(shares, turns, n, basis, limb, limbs[:count])
+        _reduce_row(limbs[count - 1], n, scale.top)
+        _without_lowest(own, limbs, n, basis, scale)
+        _put_back(own, places[:n], near, residues)
+        if words is not None:
+            first = shares[: len(rounded.moduli)]
+            farther = max(farther, _shares(own, n, rounded, first, turns))
+            _limbs_of(first, turns, n, rounded, limb, limbs[: len(rounded.modulus_limbs)])
+            _add_words(limbs[: len(rounded.modulus_limbs)], n, done, words)
         done += n
-    return farthest
+    return farthest, farther
+
+
+@compiled(fastmath={"contract"})
+def multiply_places(values, wanted, factors, places, moduli):  # type: ignore[no-untyped-def]
+    """values[i, n] *= factors[i, places[n]] modulo moduli[i] where wanted; else zero.
+
+    values : (primes, count), below a prime in size, overwritten. wanted, places : (count,).
+    """
+    for i in range(len(values)):
+        modulus = moduli[i]
+        inverse = 1.0 / modulus
+        for n in range(values.shape[1]):
+            value = values[i, n] * factors[i, places[n]] if wanted[n] else 0.0
+            values[i, n] = value - modulus * np.rint(value * inverse)
 
 
 @compiled()
@@ -463,30 +609,32 @@ def to_lanes(values, target, rows):  # type: ignore[no-untyped-def]
 
     values : (primes, rows, half). target : (slices, all rows, lanes); the last lanes may be over.
     """
-    slices, _, width = target.shape
+    width = target.shape[2]
     primes, count, half = values.shape
-    for part in range(slices):
-        first, last = part * width, min((part + 1) * width, primes * half)
+    for i in range(primes):
         for r in range(count):
-            i, j = divmod(first, half)
-            for lane in range(last - first):
-                target[part, rows[r], lane] = values[i, r, j]
-                j += 1
-                if j == half:
-                    i, j = i + 1, 0
+            part, lane = divmod(i * half, width)
+            done = 0
+            while done < half:
+                run = min(half - done, width - lane)
+                row = target[part, rows[r]]
+                for j in range(run):
+                    row[lane + j] = values[i, r, done + j]
+                part, lane, done = part + 1, 0, done + run
 
 
 @compiled()
 def from_lanes(source, values, rows, factor):  # type: ignore[no-untyped-def]
     """The way back: values[., r, .] = factor source[slice, rows[r]]."""
-    slices, _, width = source.shape
+    width = source.shape[2]
     primes, count, half = values.shape
-    for part in range(slices):
-        first, last = part * width, min((part + 1) * width, primes * half)
+    for i in range(primes):
         for r in range(count):
-            i, j = divmod(first, half)
-            for lane in range(last - first):
-                values[i, r, j] = factor * source[part, rows[r], lane]
-                j += 1
-                if j == half:
-                    i, j = i + 1, 0
+            part, lane = divmod(i * half, width)
+            done = 0
+            while done < half:
+                run = min(half - done, width - lane)
+                row = source[part, rows[r]]
+                for j in range(run):
+                    values[i, r, done + j] = factor * row[lane + j]
+                part, lane, done = part + 1, 0, done + run

@@ -81,7 +81,9 @@ class MajorantRing(DoublesRing[Bounds]):
         *,
         positive: bool = False,
     ) -> None:
-        super().__init__(space, points=(space.N + 2) // 2)
+        # one lane more: in it, where radii are multiplied, moduli at the first point are
+        self._of_sizes = (space.N + 2) // 2
+        super().__init__(space, points=self._of_sizes + 1)
         self._tables, self._known = tables, corrections
         self._exact_unit = unit
         self._unit, self._epsilon = float(unit), epsilon
@@ -101,7 +103,7 @@ class MajorantRing(DoublesRing[Bounds]):
         self._noise = np.zeros((2, self._slices * self._lanes))
         for parity in (0, 1):
             table = self._table(np.arange(parity, space.N, 2))
-            self._noise[parity, : self._points] = 2 * table.sum(axis=0)
+            self._noise[parity, : self._of_sizes] = 2 * table.sum(axis=0)
 
     def coupling(self, power: int, value: Fraction) -> float:
         return abs(float(value))
@@ -109,17 +111,17 @@ class MajorantRing(DoublesRing[Bounds]):
     def _table(self, modes: Ints) -> Floats:
         """cos(q j pi / N) on half of the points j = 0 .. N, from exactly reduced angles."""
         turn = 4 * self.space.N
-        angles = 2 * np.outer(modes, np.arange(self._points)) % turn
+        angles = 2 * np.outer(modes, np.arange(self._of_sizes)) % turn
         return self._cosines(np.minimum(angles, turn - angles))
 
     def _transforms(self) -> tuple[Floats, Floats]:
-        N, points = self.space.N, np.arange(self._points)
+        N, points = self.space.N, np.arange(self._of_sizes)
         there = np.zeros((N - 1, self._slices * self._lanes))
-        there[:, : self._points] = self._table(np.arange(1, N))
+        there[:, : len(points)] = self._table(np.arange(1, N))
         ends = (points == 0) | (2 * points == N)
         weights = np.where(ends, 2 / N, 4 / N)
         back = there.copy()
-        back[:, : self._points] *= weights
+        back[:, : len(points)] *= weights
         return there, back
 
     def _keep_in_range(self, degree: int, modes: Floats) -> None:
@@ -143,9 +145,12 @@ class MajorantRing(DoublesRing[Bounds]):
             values = known[rows, columns] @ to_bonds
             fresh = np.outer(COSINE * sizes[rows] + NEAREST_ROUNDING, self._noise[parity])
             radii = modes[rows, columns] @ to_bonds + fresh
+            reached = 2 * values + self._epsilon * radii
+            for table in (values, radii, reached):
+                table[:, self._of_sizes] = values[:, 0]
             self._store(self._bonds, degree, rows, values)
             self._store(self._radii, degree, rows, radii)
-            self._store(self._sums, degree, rows, 2 * values + self._epsilon * radii)
+            self._store(self._sums, degree, rows, reached)
         self._store_seed_modes(degree, known)
         self._store_seed_radii(degree, modes)
 
@@ -160,26 +165,27 @@ class MajorantRing(DoublesRing[Bounds]):
             for rows in (canonical, conjugate):
                 self._seed_radii[slice_, base + rows, lane] = modes[:, q - 1]
 
-    def _bounds(self, degree: int, radii: Floats, sizes: Floats, power: int) -> Bounds:
+    def _bounds(self, degree: int, radii: Floats, power: int) -> Bounds:
         """What the kernel gave, f o g = 2 f g, with the rounding on the bonds added."""
         fresh = NEAREST_ROUNDING * self._noise[self.space.parity(degree)]
-        sums = 2 * self._canonical_points(degree, sizes)[:, 0]
-        self._note(sums)
         doubled = 2 * self._canonical_points(degree, radii)
-        return Bounds(doubled + fresh, sums, power)
+        sizes = doubled[:, self._of_sizes].copy()
+        self._note(sizes)
+        doubled[:, self._of_sizes] = 0.0
+        return Bounds(doubled + fresh, sizes, power)
 
     def power(self, power: int, degree: int) -> Bounds:
         if power == 2:
             splits = [(d, degree - d) for d in self._degrees]
             ordered = [(d, e) for d, e in splits if e in self._degrees]
             radii = self._product(self._sums, self._radii, degree, ordered)
-            return self._bounds(degree, radii, self._sizes(power, degree), 1)
+            return self._bounds(degree, radii, 1)
         splits = self._power_splits(power, degree)
         lower, lower_radii = self._powers[power - 1], self._power_radii[power - 1]
         single = self._bonds + self._epsilon * self._radii
         radii = self._product(lower, self._radii, degree, splits)
         radii += self._product(lower_radii, single, degree, splits)
-        return self._bounds(degree, radii, self._sizes(power, degree), power - 1)
+        return self._bounds(degree, radii, power - 1)
 
     def _sizes(self, power: int, degree: int) -> Floats:
         """Moduli of a power, half of it."""
@@ -281,6 +287,10 @@ class MajorantRing(DoublesRing[Bounds]):
         reached = bounds.sizes + self._epsilon * largest
         lost = self._lost * scale * largest
         return np.asarray(COSINE * self.space.half * reached + lost)
+
+    def _seed_product(self, degree: int, corrections: Floats, seed_modes: Floats) -> Floats:
+        lanes = self._diagonal_product(degree, corrections, seed_modes, None, 0)
+        return self._of_seeds(degree, lanes)
 
     def correct(self, degree: int, corrections: Floats) -> None:
         super().correct(degree, self._known[degree])

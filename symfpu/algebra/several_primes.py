@@ -10,17 +10,19 @@ Arrays of residues are (primes, ...), in -p/2 .. p/2.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
+from functools import lru_cache
 from math import isqrt
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from symfpu.algebra.dense import Floats, ValuesRing, aligned_zeros
-from symfpu.algebra.grading import Ints
+from symfpu.algebra.at_points import AtPoints
+from symfpu.algebra.dense import Floats, ValuesRing, aligned_zeros, degrees_of
+from symfpu.algebra.grading import Grading, Ints
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.words import ResidueBasis
+from symfpu.algebra.words import ResidueBasis, TooFewPrimes
 
 PRODUCTS = 128  # that sums may have between two reductions, at least
 EXACT = 2**52  # integers below it are exact in doubles, and so are their remainders
@@ -28,12 +30,35 @@ EXACT = 2**52  # integers below it are exact in doubles, and so are their remain
 _OWNER = (
     "integers are transformed and rounded by the fixed-point ring that owns these residues"
 )
+AHEAD = 8  # degrees whose squares are begun at once
+PORTION = 4096  # integers on all bonds or modes of the monomials that are converted at once
 LANES = 32  # of a row: four registers of AVX-512, eight of AVX2
+# residues on bonds of some canonical monomials, (primes, some, half)
+Portions = Callable[[slice], Floats]
 
 
 def products_between_reductions(degree: int) -> int:
     """How many products are summed before they are reduced; a split in one seed has fewer."""
     return max(PRODUCTS, degree + 4)
+
+
+@lru_cache(maxsize=4)
+def at_points(grading: Grading) -> AtPoints | None:
+    """How series are kept at points; None where they are kept by their coefficients."""
+    return AtPoints(grading) if AtPoints.fits(grading) else None
+
+
+def residue_basis(grading: Grading, bits: int) -> ResidueBasis:
+    """Primes for integers of so many bits, at whose roots of unity there are points, if they are
+    enough of them; there are fewer at high orders.
+    """
+    largest, points = largest_prime(grading.degree), at_points(grading)
+    if points is not None:
+        try:
+            return ResidueBasis(bits, largest, points.divisor)
+        except TooFewPrimes:
+            pass
+    return ResidueBasis(bits, largest)
 
 
 def largest_prime(degree: int) -> int:
@@ -49,16 +74,30 @@ class SeveralPrimesRing(ValuesRing):
     kind = np.float32  # holds residues of such primes: half of the memory that kernels read
 
     def __init__(self, space: CosineModes, basis: ResidueBasis) -> None:
+        # lazy: numba takes longer to import than all the rest
+        from symfpu.algebra import point_loops
+
         self.basis = basis
+        self._point_loops = point_loops
+        points = at_points(space.grading)
+        fits = points is not None and points.divide(basis.primes)
+        self._at_points = points if fits else None
         self._limit = products_between_reductions(space.grading.degree)
+        # the first of the degrees to which lower ones gave their squares already, and these
+        self._early: tuple[int, Floats] = (0, np.zeros((0, 0, 0, 0)))
         count, seeds = len(basis), len(space.seeds)
         super().__init__(space, points=count * space.half)
         self._moduli = self._by_slice(np.repeat(basis.moduli, space.half), self._lanes)
         columns = np.tile(basis.moduli, seeds)
         self._seed_moduli = self._by_slice(columns, 8)
-        rows = self._bonds.shape[1]
+        rows = self._seed_modes.shape[1]
         self._seed_modes = aligned_zeros((len(self._seed_moduli), rows, 8))
         self._corrections = aligned_zeros(self._seed_modes.shape)
+        if self._at_points:
+            there, back = self._at_points.powers, self._at_points.inverse_powers
+            self._there, self._back = (
+                self._by_lane(f(basis.primes)) for f in (there, back)
+            )
 
     def _by_slice(self, moduli: Floats, width: int) -> Floats:
         """Moduli of all lanes, (slices, width); lanes without a residue are zero, modulo 1."""
@@ -67,8 +106,24 @@ class SeveralPrimesRing(ValuesRing):
         padded[: len(moduli)] = moduli
         return padded.reshape(slices, width)
 
+    def _by_lane(self, table: Floats) -> Floats:
+        """Residues (entries, primes) for every lane, (slices, entries, lanes)."""
+        lanes = np.zeros((len(table), self._moduli.size))
+        lanes[:, : self._points] = np.repeat(table, self.space.half, axis=1)
+        return np.ascontiguousarray(
+            np.moveaxis(lanes.reshape(len(table), *self._moduli.shape), 1, 0)
+        )
+
     def _lane_width(self) -> int:
         return LANES
+
+    def _kept_count(self) -> int:
+        points = self._at_points
+        return int(points.rows.first[-1]) if points else super()._kept_count()
+
+    def _kept_rows(self, degree: int) -> Any:
+        points = self._at_points
+        return points.rows_of(degree) if points else super()._kept_rows(degree)
 
     def _reductions(self, slice_: int, *, sparse: bool = False) -> tuple[Any, ...]:
         moduli = self._seed_moduli if sparse else self._moduli
@@ -123,40 +178,163 @@ class SeveralPrimesRing(ValuesRing):
         columns = np.moveaxis(modes[:, :, seeds], 0, 2)
         self._store_columns(self._seed_modes, degree, columns)
 
+    def pieces(self, degree: int) -> list[slice]:
+        """Canonical monomials in portions that stay in the cache of one core."""
+        count = len(self.grading.canonical(degree))
+        step = max(1, PORTION // self.space.N)
+        return [slice(start, min(start + step, count)) for start in range(0, count, step)]
+
     def _store_columns(self, target: Floats, degree: int, columns: Floats) -> None:
         """(canonical, s, primes) for the rows of monomials and of their conjugates."""
         rows = np.arange(len(columns))
         self._store(target, degree, rows, _padded(columns, target))
 
-    def store_bonds(self, degree: int, rows: Ints, values: Floats) -> None:
-        """Values on bonds of some monomials, (primes, rows, half)."""
-        self._put_lanes(self._bonds, degree, rows, values)
+    def store_bonds(self, degree: int, values: Portions) -> None:
+        """Values on bonds of all monomials."""
+        self._keep(self._bonds, degree, values)
 
-    def _put_lanes(self, target: Floats, degree: int, rows: Ints, values: Floats) -> None:
-        """(primes, rows, half) for some monomials and their conjugates."""
-        base = int(self.grading.first_row[degree])
-        for places in (self.grading.canonical(degree), self.grading.conjugate(degree)):
-            self._kernels.to_lanes(values, target, base + places[rows])
+    def _keep(self, target: Floats, degree: int, values: Portions) -> None:
+        """Values of all monomials and their conjugates, or those at points.
 
-    def store_power(self, power: int, degree: int, values: Floats) -> None:
-        """Of all monomials, (primes, canonical, half)."""
+        Not of the last degree, which is a factor of nothing.
+        """
+        if degree == self.grading.degree:
+            return
+        if not self._at_points:
+            first = int(self.grading.first_row[degree])
+            self._put_lanes(target, degree, first, values)
+            return
+        rows = self._rows(degree)
+        own = aligned_zeros((self._slices, rows.stop - rows.start, self._lanes))
+        self._put_lanes(own, degree, 0, values)
+        self._over_slices(
+            self._point_loops.evaluate,
+            own,
+            degree,
+            self._skipped(degree),
+            self.grading.tables,
+            self._at_points.rows,
+            self._there,
+            self._at_points.places(degree),
+            target,
+        )
+
+    def _over_slices(self, loop: Callable[..., int], *arguments: Any) -> None:
+        """Run a loop of residues at points over all slices, shared among the threads."""
+        every = np.arange(self._slices)
+        lanes, common = (0.0,) * self._lanes, (self._moduli, self._limit)
+
+        def work(parts: Ints) -> int:
+            return int(loop(lanes, *arguments, *common, parts))
+
+        shares = [every[n :: self._workers] for n in range(self._workers)]
+        self.multiply_adds += sum(self._pool.map(work, shares))
+
+    def _skipped(self, degree: int) -> int:
+        """Coefficients before the first canonical one, where one seed leaves the others out."""
+        alone = len(self.space.seeds) == 1
+        return int(self.grading.canonical(degree)[0]) if alone else 0
+
+    def _put_lanes(self, target: Floats, degree: int, first: int, values: Portions) -> None:
+        """All monomials and their conjugates, from a row on."""
+        canonical, conjugate = (
+            self.grading.canonical(degree),
+            self.grading.conjugate(degree),
+        )
+
+        def work(some: slice) -> None:
+            own = values(some)
+            self._kernels.to_lanes(own, target, first + canonical[some])
+            self._kernels.to_lanes(own, target, first + conjugate[some])
+
+        list(self._pool.map(work, self.pieces(degree)))
+
+    def _product(
+        self,
+        left: Floats,
+        right: Floats,
+        degree: int,
+        splits: list[tuple[int, int]],
+        *,
+        symmetric: bool = False,
+        sparse: bool = False,
+    ) -> Floats:
+        if sparse or not self._at_points:
+            return super()._product(
+                left, right, degree, splits, symmetric=symmetric, sparse=sparse
+            )
+        rows = self._rows(degree)
+        out = aligned_zeros((self._slices, rows.stop - rows.start, self._lanes))
+        both = [(e, d) for d, e in splits] if symmetric else []
+        early = symmetric and self._at_points.alone
+        since, sums = self._early_squares(degree) if early else (0, None)
+        self._over_slices(
+            self._point_loops.multiply,
+            left,
+            right,
+            out,
+            degree,
+            degrees_of([*splits, *both], degree),
+            symmetric,
+            since,
+            sums,
+            self.grading.wanted_blocks(degree),
+            self._skipped(degree),
+            self.grading.tables,
+            self._at_points.rows,
+            self._back,
+            self._at_points.inverse_places(degree),
+        )
+        return out
+
+    def _early_squares(self, degree: int) -> tuple[int, Floats]:
+        """What degrees below one, which is given, give to the values of a square.
+
+        (slices, points, lanes).
+        """
+        since, sums = self._early
+        if not since <= degree < since + len(sums):
+            since = degree
+            sums = self._squares_from(degree)
+            self._early = since, sums
+        return since, sums[degree - since]
+
+    def _squares_from(self, degree: int) -> Floats:
+        """The same for a degree and the next ones, (degrees, slices, points, lanes)."""
+        assert self._at_points is not None
+        several = min(AHEAD, self.grading.degree + 1 - degree)
+        points = len(self._at_points.rows.first) - 1
+        sums = aligned_zeros((several, self._slices, points, self._lanes))
+        has = np.zeros(degree + several, dtype=np.bool_)
+        has[[d for d in self._degrees if d < degree]] = True
+
+        self._over_slices(
+            self._point_loops.square_early,
+            self._bonds,
+            sums,
+            degree,
+            has,
+            self.grading.tables,
+            self._at_points.rows,
+        )
+        return sums
+
+    def store_power(self, power: int, degree: int, values: Portions) -> None:
+        """Of all monomials."""
         if power not in self._powers:
             self._powers[power] = aligned_zeros(self._bonds.shape, self.kind)
             self._power_degrees[power] = []
         if degree not in self._power_degrees[power]:
             self._power_degrees[power].append(degree)
-        rows = np.arange(values.shape[1])
-        self._put_lanes(self._powers[power], degree, rows, values)
+        self._keep(self._powers[power], degree, values)
 
-    def canonical_power(self, power: int, degree: int) -> Floats:
-        """A power of the bonds, (primes, canonical, half)."""
+    def power_rows(self, power: int, degree: int) -> Floats:
+        """Half of a power of the bonds, as the kernel leaves it: (slices, rows, lanes)."""
         if power == 2:
             splits = self._square_splits(degree)
-            out = self._product(self._bonds, self._bonds, degree, splits, symmetric=True)
-        else:
-            splits = self._power_splits(power, degree)
-            out = self._product(self._powers[power - 1], self._bonds, degree, splits)
-        return self._residues(degree, out, 2.0)
+            return self._product(self._bonds, self._bonds, degree, splits, symmetric=True)
+        splits = self._power_splits(power, degree)
+        return self._product(self._powers[power - 1], self._bonds, degree, splits)
 
     def canonical_growth(
         self, name: int, slope: Fraction, rate: Fraction, degree: int
@@ -166,25 +344,23 @@ class SeveralPrimesRing(ValuesRing):
         """
         self._complete(name, Fraction(1))
         values, _ = self._grown(name, slope, rate, degree)
-        return self._residues(degree, values)
+        return self.residues(degree, values, slice(None), 1.0)
 
-    def _residues(self, degree: int, out: Floats, factor: float = 1.0) -> Floats:
-        """Canonical monomials of the kernel's rows times a factor; (primes, canonical, half)."""
-        canonical = self.grading.canonical(degree)
+    def residues(self, degree: int, out: Floats, some: slice, factor: float) -> Floats:
+        """Some canonical monomials of the kernel's rows times a factor; (primes, some, half)."""
+        canonical = self.grading.canonical(degree)[some]
         values = np.empty((len(self.basis), len(canonical), self.space.half))
         self._kernels.from_lanes(out, values, canonical, factor)
         return values
 
     def _weighted_bonds(self, slope: Fraction, rate: Fraction, degree: int) -> Floats:
-        end = int(self.grading.first_row[degree])
         if self._weighted is None:
             self._weighted = aligned_zeros(self._bonds.shape)
-        lower = self._weighted[:, :end]
-        for j in range(degree):
+        for j in range(1, degree):
             weight = self.number(rate * j - slope * (degree - j))
-            rows = self._rows(j)
-            np.multiply(self._bonds[:, rows], weight, out=lower[:, rows])
-        return self._reduced(lower)
+            rows = self._kept_rows(j)
+            self._weighted[:, rows] = self._reduced(self._bonds[:, rows] * weight)
+        return self._weighted
 
     def correct_by(self, degree: int, corrections: Floats) -> None:
         """Register corrections, (primes, diagonal, s)."""
@@ -197,53 +373,22 @@ class SeveralPrimesRing(ValuesRing):
 
     def corrected_residues(self, degree: int) -> Floats:
         """Sum W_q u_q over all stored pairs of degrees; (primes, canonical, s)."""
-        known = set(self._degrees)
-        splits = [(n, degree - n) for n in self._correction_degrees if degree - n in known]
-        out = self._product(
-            self._corrections, self._seed_modes, degree, splits, sparse=True
+        reductions = (self._seed_moduli, self._limit)
+        out = self._diagonal_product(
+            degree, self._corrections, self._seed_modes, *reductions
         )
         count, seeds = len(self.basis), len(self.space.seeds)
         columns = self._canonical_points(degree, out)[:, : seeds * count]
         return np.moveaxis(columns.reshape(len(columns), seeds, count), 2, 0)
 
-    def multiply_at(
-        self, values: Floats, wanted: NDArray[np.bool_], factors: Floats, places: Ints
-    ) -> None:
-        """values[:, wanted] *= factors[:, places]; values (primes, rows, N-1), sums of residues."""
-        at, of = np.flatnonzero(wanted), places[wanted]
-        flat = values.reshape(len(values), -1)
-
-        def work(i: int) -> None:
-            own = self.basis.reduced(flat[i, at], i) * factors[i, of]
-            flat[i, at] = self.basis.reduced(own, i)
-
-        list(self._pool.map(work, range(len(self.basis))))
-
-    def matrix_products(
-        self,
-        left: Floats,
-        rows: Any,
-        columns: Any,
-        right: Floats,
-        total: Floats,
-        places: tuple[Any, Any],
-    ) -> None:
-        """total[:, *places] += left[:, rows, columns] right modulo every prime.
-
-        left, right, total : (primes, ., .); sums of any length.
-        """
+    def add_matrix_product(self, total: Floats, left: Floats, right: Floats) -> Floats:
+        """total + left right modulo every prime; (primes, ., .), sums of any length."""
         step = self._limit - 1
-        length = right.shape[1]
-
-        def work(i: int) -> None:
-            factor = left[i][rows][:, columns]
-            for start in range(0, length, step):
-                some = slice(start, start + step)
-                product = factor[:, some] @ right[i, some]
-                product += total[i][places]
-                total[i][places] = self.basis.reduced(product, i)
-
-        list(self._pool.map(work, range(len(self.basis))))
+        for start in range(0, right.shape[1], step):
+            some = slice(start, start + step)
+            total = total + np.matmul(left[:, :, some], right[:, some])
+            self.basis.reduce(total)
+        return total
 
 
 def _padded(values: Floats, target: Floats) -> Floats:

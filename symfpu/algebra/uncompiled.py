@@ -67,6 +67,24 @@ def convolution(tile: int) -> Any:
     return add
 
 
+def add_products(
+    lanes: Any,
+    left: Any,
+    lefts: Any,
+    i: int,
+    right: Any,
+    rights: Any,
+    j: int,
+    first: int,
+    last: int,
+    out: Any,
+    o: int,
+) -> None:
+    """out[o] += sum of left[i + lefts[n]] right[j + rights[n]] over first <= n < last."""
+    factors = left[i + lefts[first:last]].astype(np.float64)
+    out[o] += (factors * right[j + rights[first:last]]).sum(axis=0)
+
+
 def control() -> Any:
     """The processor's way with subnormal numbers, which NumPy's loops leave alone."""
     return np.uint32(0)

@@ -23,8 +23,13 @@ LIMB_BITS = 20
 LIMB = 2.0**LIMB_BITS
 LIMBS_PER_WORD = 3
 LARGEST_DIVISOR = 2**42
+LEAST_TOP = 8  # bits of the highest of the limbs that are rounded away
 EXACT = 2.0**52  # integers below it are exact in doubles
 WORD_BITS = LIMB_BITS * LIMBS_PER_WORD
+
+
+class TooFewPrimes(ArithmeticError):
+    """There are not so many primes of a kind that their product is as large as was asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,30 +94,42 @@ class IntegerTable:
 
 class Rounding(NamedTuple):
     """Tables of `kernels.round_columns`: moduli, inverses of cofactors, limbs of the cofactors
-    (limbs, primes) and of the product of all primes (limbs,), powers of 2^20 (primes, limbs).
+    (limbs, primes) and of the product of all primes (limbs,).
     """
 
     moduli: Floats
     inverses: Floats
     cofactor_limbs: Floats
     modulus_limbs: Floats
-    powers: Floats
+
+
+class Scale(NamedTuple):
+    """A power of two to divide by: 2^bits.
+
+    share : its inverse modulo each prime. lowest : (primes, limbs) what the limbs below it are
+    times, to be taken away. top : two to as many bits as its highest limb has.
+    """
+
+    share: Floats
+    lowest: Floats
+    top: float
 
 
 class ResidueBasis:
-    """Integers below `bits` bits as residues modulo enough primes below `largest`.
+    """Integers below `bits` bits as residues modulo enough primes up to `largest`.
 
-    Arrays of residues are (primes, count).
+    divisor : of p - 1 for every prime p; even. Arrays of residues are (primes, count).
     """
 
-    def __init__(self, bits: int, largest: int) -> None:
+    def __init__(self, bits: int, largest: int, divisor: int = 2) -> None:
         from symfpu.algebra import (
             kernels,
         )  # lazy: numba takes longer to import than all the rest
 
         self._kernels = kernels
+        self._largest, self._divisor = largest, divisor
         # an overflow of the promised bits by a factor of eight is still seen
-        self.primes = _primes(bits + 4, largest)
+        self.primes = _primes(bits + 4, largest, divisor)
         self.moduli = np.array(self.primes, dtype=np.float64)
         modulus = prod(self.primes)
         spare = modulus.bit_length() - bits - 1
@@ -133,8 +150,12 @@ class ResidueBasis:
             self._inverses,
             self._cofactor_limbs,
             self._modulus_limbs[:, 0].copy(),
-            self._powers,
         )
+        self._scales: dict[int, Scale] = {}
+
+    def beginning(self, bits: int) -> ResidueBasis:
+        """The basis of the first of these primes, as many as integers of so many bits need."""
+        return ResidueBasis(bits, self._largest, self._divisor)
 
     def _centred(self, numbers: Sequence[int]) -> Floats:
         """One number for each prime, as residues in -p/2 .. p/2."""
@@ -155,7 +176,7 @@ class ResidueBasis:
         low = residues - high * LIMB
         share = (1 / self.moduli) @ residues
         turns = np.rint(share)
-        self._check(float(np.abs(share - turns).max(initial=0.0)))
+        self._check(float(np.abs(share - turns).max(initial=0.0)), self._limit)
         limbs = self._cofactor_limbs @ low - self._modulus_limbs * turns
         above = self._cofactor_limbs @ high
         limbs[1:] += above[:-1]
@@ -171,32 +192,78 @@ class ResidueBasis:
         largest = float(self.moduli.max(initial=0.0))
         return len(self) * largest * LIMB / 4 <= EXACT and largest**2 / 4 <= EXACT
 
-    def round_in_place(
-        self, residues: Floats, wanted: NDArray[np.bool_], drop: int
-    ) -> Words:
-        """The wanted integers / 2^(20 drop), rounded to the nearest; zeros where not wanted.
+    def _scale(self, bits: int) -> Scale:
+        if bits not in self._scales:
+            count = max(1, -(-bits // LIMB_BITS))
+            shares = [pow(2, -bits, p) for p in self.primes]
+            lowest = [
+                self._centred([-share * 2 ** (LIMB_BITS * k) for share in shares])
+                for k in range(count)
+            ]
+            top = 2.0 ** (bits - LIMB_BITS * (count - 1))
+            table = np.stack(lowest, axis=1)
+            self._scales[bits] = Scale(self._centred(shares), table, top)
+        return self._scales[bits]
 
-        residues : (primes, count), overwritten. Returns the words of the wanted
-        ones, (wanted, n). Raises OverflowError as `limbs` does.
+    def round_in_place(
+        self, residues: Floats, wanted: NDArray[np.bool_], bits: int
+    ) -> None:
+        """The wanted integers / 2^bits, rounded to the nearest; zeros where not wanted.
+
+        residues : (primes, count), below a prime in size, overwritten. bits : as `whole_places`
+        gives them. Raises OverflowError as `limbs` does.
         """
-        if not self.small:
-            rounded = self.limbs(residues[:, wanted], drop)
-            residues[:] = 0.0
-            residues[:, wanted] = self.residues(rounded)
-            return words_of(rounded)
-        limbs = len(self._modulus_limbs) - drop
+        self._round(residues, wanted, bits, self, None)
+
+    def rounded_words(
+        self, residues: Floats, wanted: NDArray[np.bool_], bits: int, first: ResidueBasis
+    ) -> Words:
+        """The same, and words of the wanted ones, (wanted, n).
+
+        first : the basis of the first primes, as many as hold what is rounded.
+        """
         count = int(np.count_nonzero(wanted))
-        words = np.zeros((count, -(-limbs // LIMBS_PER_WORD)), dtype=np.int64)
-        farthest = self._kernels.round_columns(
-            residues, wanted, drop, self._rounding, LIMB, words
-        )
-        self._check(farthest)
+        longest = -(-len(first._modulus_limbs) // LIMBS_PER_WORD)
+        words = np.zeros((count, longest), dtype=np.int64)
+        self._round(residues, wanted, bits, first, words)
         used = np.flatnonzero(words.any(axis=0))
         return words[:, : used[-1] + 1 if len(used) else 1]
 
-    def _check(self, farthest: float) -> None:
+    def _round(
+        self,
+        residues: Floats,
+        wanted: NDArray[np.bool_],
+        bits: int,
+        first: ResidueBasis,
+        words: Words | None,
+    ) -> None:
+        scale = self._scale(bits)
+        if not self.small:
+            own = self._divided(residues[:, wanted], scale)
+            residues[:] = 0.0
+            residues[:, wanted] = own
+            if words is not None:
+                found = words_of(first.limbs(own[: len(first)].copy()))
+                words[:, : found.shape[1]] = found
+            return
+        farthest, farther = self._kernels.round_columns(
+            residues, wanted, self._rounding, LIMB, scale, first._rounding, words
+        )
+        self._check(farthest, self._limit)
+        self._check(farther, first._limit)
+
+    def _divided(self, residues: Floats, scale: Scale) -> Floats:
+        """Residues of the rounded integers, of primes of any size; overwrites them."""
+        limbs = self.limbs(residues.copy())[: scale.lowest.shape[1]]
+        limbs[-1] -= scale.top * np.rint(limbs[-1] / scale.top)
+        residues -= self.residues(limbs)
+        self._kernels.reduce_rows(residues, self.moduli)
+        self._kernels.multiply_rows(residues, scale.share, self.moduli)
+        return residues
+
+    def _check(self, farthest: float, limit: float) -> None:
         """OverflowError where a sum of shares is too far from a whole number."""
-        if farthest > self._limit + 2.0**-40:
+        if farthest > limit + 2.0**-40:
             raise OverflowError("an integer exceeds the range of the residues")
 
     def residues(self, limbs: Floats) -> Floats:
@@ -227,6 +294,18 @@ class ResidueBasis:
         """Multiply residues (primes, count), which are overwritten, by one number (primes,)."""
         self._kernels.multiply_rows(residues, factors, self.moduli)
 
+    def multiply_places(
+        self, residues: Floats, wanted: NDArray[np.bool_], factors: Floats, places: Any
+    ) -> None:
+        """residues[:, n] *= factors[:, places[n]] where wanted; else zero. Of any shape."""
+        some, at = wanted.ravel(), places.ravel()
+        if self.small:
+            self._kernels.multiply_places(residues, some, factors, at, self.moduli)
+            return
+        own = self._kernels.multiply_elements
+        for i, modulus in enumerate(self.moduli):
+            own(residues[i], np.where(some, factors[i, at], 0.0), modulus, residues[i])
+
     def of_integers(self, integers: NDArray[np.object_]) -> Floats:
         """Residues (primes, ...) of Python's integers, of any size."""
         flat = [int(x) for x in np.asarray(integers, dtype=object).ravel()]
@@ -239,6 +318,15 @@ class ResidueBasis:
             total += self.residues(limbs[start : start + step])
         self._kernels.reduce_rows(total, self.moduli)
         return total.reshape(len(self), *np.shape(integers))
+
+
+def whole_places(bits: int) -> int:
+    """At least so many bits, so that rounding by limbs is to the nearest.
+
+    Limbs below a highest one of r bits round it by less than 2^-r of a unit more.
+    """
+    rest = bits % LIMB_BITS
+    return bits + LEAST_TOP - rest if 0 < rest < LEAST_TOP else bits
 
 
 def limbs_of(integers: Sequence[int]) -> Floats:
@@ -298,16 +386,21 @@ def words_of(limbs: Floats) -> Words:
     return words
 
 
-def _primes(bits: int, largest: int) -> tuple[int, ...]:
-    """The largest odd primes up to `largest` whose product has more than `bits` bits."""
+def _primes(bits: int, largest: int, divisor: int) -> tuple[int, ...]:
+    """The largest primes up to `largest` whose product has more than `bits` bits.
+
+    Those which a divisor, that is even, leaves one of.
+    """
     primes: list[int] = []
-    candidate = largest - 1 + largest % 2
+    candidate = largest - (largest - 1) % divisor
     product = 1
     while product.bit_length() <= bits:
+        if candidate < 2:
+            raise TooFewPrimes(f"too few primes up to {largest} for {bits} bits")
         if flint.fmpz(candidate).is_prime():
             primes.append(candidate)
             product *= candidate
-        candidate -= 2
+        candidate -= divisor
     return tuple(primes)
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import lcm
+from math import frexp, lcm
 from typing import Any, Protocol
 
 import mpmath
@@ -164,17 +164,28 @@ class Float64Divisors:
 class FixedPointDivisors:
     """Multipliers as integers, 2^bits L rounded down.
 
-    They come from exact frequencies and linear frequencies of four times the bits.
+    They come from exact frequencies and from linear ones of so many places that divisors above
+    2^-depth leave no more than 2^-20 of a unit to the rounding down.
     """
 
     def __init__(
-        self, chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction], bits: int
+        self,
+        chain: Chain,
+        seeds: Sequence[int],
+        frequencies: Sequence[Fraction],
+        bits: int,
+        *,
+        least: float = 0.0,
     ) -> None:
+        """least : the smallest divisor, as doubles know it; 0 for any above 2^-bits."""
         self.chain = chain
         self.seeds = tuple(seeds)
         self.frequencies = tuple(frequencies)
         self.bits = bits
-        self._places = 4 * bits + 64
+        self.known: dict[int, Floats] = {}  # moduli of multipliers, by order
+        self._depth = min(bits, 2 - frexp(least)[1]) if least else bits
+        # a divisor is off by two units, and enters squared; numerators are at most 4
+        self._places = bits + 2 * max(self._depth, 0) + 32
         self._common = lcm(*(w.denominator for w in frequencies))
         whole_frequencies = [int(w * self._common) for w in frequencies]
         self._omega = np.array(whole_frequencies, dtype=object)
@@ -183,8 +194,8 @@ class FixedPointDivisors:
             for q in range(1, chain.N):
                 square = mpmath.ldexp(chain.linear_frequency(q) ** 2, self._places)
                 linear.append(int(mpmath.nint(square)))
-        self._numerators = np.array(linear, dtype=object)
-        self._lambda = self._numerators.copy()
+        self._lambda = np.array(linear, dtype=object)
+        self._numerators = self._lambda << bits
         for q, whole in zip(seeds, self._omega, strict=True):
             self._lambda[q - 1] = self._squared(whole)
 
@@ -199,21 +210,22 @@ class FixedPointDivisors:
 
         Zero elsewhere and in the gauge term.
 
-        Raises ResonantDivisor where a divisor is zero or below 2^-bits.
+        Raises ResonantDivisor where a divisor is zero or below 2^-bits, or 2^-depth.
         """
         gauge = gauge_terms(harmonics, self.seeds, self.chain.N)
         rows, columns = np.nonzero(carried & ~gauge)
         drives = harmonics.astype(object) @ self._omega
         divisors = self._lambda[columns] - self._squared(drives)[rows]
-        smallest_allowed = 1 << (self._places - self.bits)
+        smallest_allowed = 1 << (self._places - self._depth)
         for at in np.flatnonzero(np.abs(divisors) < smallest_allowed):
             mode = int(columns[at]) + 1
             harmonic = tuple(map(int, harmonics[rows[at]]))
             exact = vanishes(self.chain.N, self.seeds, self.frequencies, mode, harmonic)
             raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
         table = np.full(carried.shape, 0, dtype=object)
-        numerators = self._numerators[columns] << self.bits
-        table[rows, columns] = numerators // divisors
+        table[rows, columns] = self._numerators[columns] // divisors
+        moduli = np.abs((table / 2**self.bits).astype(np.float64))
+        self.known[order] = moduli * (1 + 1e-12)  # more than the rounding to a double
         return table
 
     def moduli(self) -> MultiplierModuli:
@@ -234,10 +246,41 @@ class MultiplierModuli:
     def multipliers(
         self, harmonics: Ints, carried: NDArray[np.bool_], order: int
     ) -> Floats:
-        """|L_q(nu)|, enlarged by more than the rounding to a double; shape (H, N-1)."""
-        whole = self._divisors.multipliers(harmonics, carried, order)
-        doubles = (whole / 2**self._divisors.bits).astype(np.float64)
-        return np.asarray(np.abs(doubles) * (1 + 1e-12))
+        """|L_q(nu)|, enlarged by more than the rounding to a double; shape (H, N-1).
+
+        Those of an order that was asked for before are remembered.
+        """
+        if order not in self._divisors.known:
+            self._divisors.multipliers(harmonics, carried, order)
+        return self._divisors.known[order]
+
+    def smallest(self) -> tuple[SmallDivisor, ...]:
+        """None: bounds are not divisors."""
+        return ()
+
+
+class EnlargedMultipliers:
+    """Moduli of multipliers in doubles, a little enlarged, to be compared with proved ones."""
+
+    enlarged = 1 + 2.0**-28
+    most = 1 + 2.0**-26  # that one may be above a proved one
+
+    def __init__(self, divisors: Float64Divisors) -> None:
+        self._divisors = divisors
+        self._by_order: dict[int, Floats] = {}
+
+    def multipliers(
+        self, harmonics: Ints, carried: NDArray[np.bool_], order: int
+    ) -> Floats:
+        """|L_q(nu)|, enlarged; shape (H, N-1)."""
+        table = np.abs(self._divisors.multipliers(harmonics, carried, order))
+        self._by_order[order] = table * self.enlarged
+        return self._by_order[order]
+
+    def cover(self, proved: FixedPointDivisors) -> bool:
+        """Whether all are upper bounds of proved ones, and near to them."""
+        pairs = [(own, proved.known[order]) for order, own in self._by_order.items()]
+        return all(bool(((b <= a) & (a <= b * self.most)).all()) for a, b in pairs)
 
     def smallest(self) -> tuple[SmallDivisor, ...]:
         """None: bounds are not divisors."""

@@ -13,11 +13,16 @@ from numpy.typing import NDArray
 from symfpu.algebra.fixedpoint import FixedPointRing, Precision
 from symfpu.algebra.majorant import MajorantRing
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.words import LIMB_BITS
+from symfpu.algebra.words import LIMB_BITS, whole_places
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
-from symfpu.series.divisors import Divisors, FixedPointDivisors, Float64Divisors
+from symfpu.series.divisors import (
+    Divisors,
+    EnlargedMultipliers,
+    FixedPointDivisors,
+    Float64Divisors,
+)
 from symfpu.series.force import positive_growths
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import monomial_space
@@ -28,7 +33,9 @@ from symfpu.series.tables import LOG10_2
 
 SPARE_DIGITS = 6  # beyond the promised ones, for what is computed from the coefficients
 ATTEMPTS = 4
-LEAST_LIMBS = 5  # 100 bits: below any divisor that doubles, which come first, let pass
+# of the moduli of doubles, which those of many digits are to stay below
+ENLARGED, ENLARGED_BY_LARGEST = 2.0**-20, 2.0**-36
+LEAST_BITS = 100  # below any divisor that doubles, which come first, let pass
 
 
 def fixed_point_series(
@@ -43,9 +50,10 @@ def fixed_point_series(
 ) -> LindstedtSeries:
     """The series in fixed-point numbers of as many binary places as its digits need.
 
-    Doubles come first: their moduli bound the rounding errors, and so say how many places. The
-    errors are bounded again with the result; if doubles had misled, the work is repeated with
-    more places.
+    Doubles come first: their moduli, a little enlarged, bound the rounding errors, and so say how
+    many places. That holds if the moduli of the result are below them, one by one. Where they are
+    not, the errors are bounded again with those of the result; if doubles had misled, the work is
+    repeated with more places.
     """
     _require_known(chain, digits)
     chosen = chosen_frequencies(frequencies, "fixed-point")
@@ -61,12 +69,16 @@ def fixed_point_series(
     known = named_series(FLOAT64, chain, space, chosen, order, stage(0))
     unit = _fitting_unit(known)
     doubles = Float64Divisors(chain, seeds, chosen, space.grading.degree)
-    bounds = _rounding_bounds(known, space, unit, doubles, stage(1))
+    multipliers = EnlargedMultipliers(doubles)
+    expected = _enlarged(_moduli(known, unit), space)
+    bounds = _bounds(chain, space, expected, unit, multipliers, 2.0**-LEAST_BITS, stage(1))
+    lost, grown = _lost(bounds, expected, order), bool(chain.potential.growths())
+    least = min((divisor.size for divisor in known.smallest_divisors), default=0.0)
     for attempt in range(ATTEMPTS):
-        bits = _places(digits, bounds.lost_bits)
+        bits = _places(digits, lost, whole_limbs=grown)
         headroom = math.ceil(math.log2(bounds.largest)) + 3
         precision = Precision(bits, headroom, unit)
-        divisors = FixedPointDivisors(chain, seeds, chosen, bits)
+        divisors = FixedPointDivisors(chain, seeds, chosen, bits, least=least)
         try:
             ring = FixedPointRing(space, precision)
             result = ring_series(chain, chosen, order, ring, divisors, stage(2 + attempt))
@@ -75,9 +87,15 @@ def fixed_point_series(
             continue
         smallest = known.smallest_divisors
         result = replace(result, smallest_divisors=smallest, digits=digits, bits=bits)
-        bounds = _rounding_bounds(result, space, unit, divisors.moduli(), stage(3))
+        found = _moduli(result, unit)
+        if not (_cover(expected, found) and multipliers.cover(divisors)):
+            proved, place = divisors.moduli(), 2.0**-bits
+            bounds = _bounds(chain, space, found, unit, proved, place, stage(3))
+        lost = _lost(bounds, found, order)
         fits = math.log2(bounds.largest) <= precision.headroom
-        if fits and bounds.lost_bits <= bits - digits / LOG10_2:
+        if fits and lost <= bits - digits / LOG10_2:
+            if progress is not None:
+                progress("series", 1.0)
             return replace(result, radii=bounds.radii)
     errors = f"the rounding errors of order {order} stay above 10^-{digits}"
     raise SymfpuError(f"{errors} at {bits} binary places; take a lower order")
@@ -92,29 +110,32 @@ def _require_known(chain: Chain, digits: int) -> None:
         raise InputError("digits", digits, allowed, advice)
 
 
-def _places(digits: int, lost_bits: float) -> int:
-    """Binary places, in whole limbs, for so many digits where so many bits are lost."""
-    wanted = (digits + SPARE_DIGITS) / LOG10_2 + lost_bits
-    limbs = math.ceil(wanted / LIMB_BITS)
-    return LIMB_BITS * max(LEAST_LIMBS, limbs)
+def _places(digits: int, lost_bits: float, *, whole_limbs: bool) -> int:
+    """Binary places for so many digits where so many bits are lost; whole limbs for growths."""
+    wanted = math.ceil((digits + SPARE_DIGITS) / LOG10_2 + lost_bits)
+    enough = max(LEAST_BITS, whole_places(wanted))
+    return LIMB_BITS * -(-enough // LIMB_BITS) if whole_limbs else enough
+
+
+class _Moduli(NamedTuple):
+    """Moduli of the coordinates and corrections of a series, by degree, in a common unit."""
+
+    tables: dict[int, NDArray[np.float64]]
+    corrections: dict[int, NDArray[np.float64]]
 
 
 class _RoundingBounds(NamedTuple):
     """How far the coefficients of a series can be off.
 
-    radii : as LindstedtSeries has them. lost_bits : of the worst order, relative to its largest
-        coefficient.
+    radii : as LindstedtSeries has them. largest : as of MajorantRing.
     """
 
     radii: tuple[tuple[float, NDArray[np.float64]], ...]
-    lost_bits: float
     largest: float
 
 
-def _moduli(
-    series: LindstedtSeries, unit: Fraction
-) -> tuple[dict[int, NDArray[np.float64]], dict[int, NDArray[np.float64]]]:
-    """Moduli of the tables of coordinates and corrections by degree, scaled to another unit."""
+def _moduli(series: LindstedtSeries, unit: Fraction) -> _Moduli:
+    """Those of a series, scaled to another unit."""
     ratio = math.log2(series.unit) - math.log2(unit)
     tables, corrections = {}, {}
     for k in range(series.order + 1):
@@ -124,7 +145,32 @@ def _moduli(
         diagonal = series.tables.doubles(series.corrections[k])
         tables[degree] = np.abs(coordinates) * factor
         corrections[degree - 1] = np.abs(diagonal) * factor
-    return tables, corrections
+    return _Moduli(tables, corrections)
+
+
+def _enlarged(moduli: _Moduli, space: CosineModes) -> _Moduli:
+    """More than doubles are off by: relative to each, and to the largest of its degree."""
+    tables = {
+        degree: np.where(space.mask(degree), _above(table), 0.0)
+        for degree, table in moduli.tables.items()
+    }
+    corrections = {degree: _above(table) for degree, table in moduli.corrections.items()}
+    return _Moduli(tables, corrections)
+
+
+def _above(table: NDArray[np.float64]) -> NDArray[np.float64]:
+    largest = table.max(initial=0.0)
+    return np.asarray(table * (1 + ENLARGED) + largest * ENLARGED_BY_LARGEST)
+
+
+def _cover(expected: _Moduli, found: _Moduli) -> bool:
+    """Whether all that was expected is above what was found."""
+    pairs = [
+        (own[degree], table)
+        for own, other in zip(expected, found, strict=True)
+        for degree, table in other.items()
+    ]
+    return all(bool((b * (1 + ENLARGED / 2) <= a).all()) for a, b in pairs)
 
 
 def _fitting_unit(series: LindstedtSeries) -> Fraction:
@@ -144,41 +190,49 @@ def _fitting_unit(series: LindstedtSeries) -> Fraction:
     return unit.limit_denominator(64) or Fraction(1, 64)
 
 
-def _rounding_bounds(
-    series: LindstedtSeries,
+def _bounds(
+    chain: Chain,
     space: CosineModes,
+    moduli: _Moduli,
     unit: Fraction,
-    divisors: Divisors,
+    multipliers: Divisors,
+    place: float,
     progress: Progress | None,
 ) -> _RoundingBounds:
-    """How far the coefficients can be off, in units of the last place."""
-    chain, order = series.chain, series.order
-    tables, corrections = _moduli(series, unit)
-    place = 2.0**-series.bits if series.bits else 0.0
+    """How far coefficients of these moduli can be off, in units of the last place.
+
+    place : no less than that unit.
+    """
+    order = len(moduli.tables) - 1
     positive = positive_growths(chain, space.grading.degree)
-    ring = MajorantRing(space, tables, corrections, unit, place, positive=positive)
+    ring = MajorantRing(space, *moduli, unit, place, positive=positive)
     with np.errstate(over="ignore", invalid="ignore"):
-        run_recursion(ring, divisors, chain, order, progress)
+        run_recursion(ring, multipliers, chain, order, progress)
     modes, diagonal, _ = ring.results()
     none = np.zeros((0, len(space.seeds)))
-    radii = []
+    pairs = zip(modes, [none, *diagonal], strict=True)
+    radii = tuple((float(errors.max(initial=0.0)), others) for errors, others in pairs)
+    return _RoundingBounds(radii, ring.largest)
+
+
+def _lost(bounds: _RoundingBounds, moduli: _Moduli, order: int) -> float:
+    """The bits of the errors of the worst order, relative to its largest coefficient."""
     lost = 0.0
-    for errors, correction_errors, degree in zip(
-        modes, [none, *diagonal], tables, strict=True
-    ):
-        radius = float(errors.max(initial=0.0))
-        radii.append((radius, correction_errors))
-        lost = max(lost, _lost_bits(radius, tables[degree]))
-        correction_radius = correction_errors.max(initial=0.0)
-        lost = max(lost, _lost_bits(correction_radius, corrections[degree - 1]))
-    if not math.isfinite(lost) or not math.isfinite(ring.largest):
+    for (radius, errors), degree in zip(bounds.radii, moduli.tables, strict=True):
+        lost = max(lost, _lost_bits(radius, moduli.tables[degree]))
+        largest = float(errors.max(initial=0.0))
+        lost = max(lost, _lost_bits(largest, moduli.corrections[degree - 1]))
+    if not math.isfinite(lost) or not math.isfinite(bounds.largest):
         allowed = "an order whose rounding errors can be bounded"
         raise InputError("order", order, allowed, "take a lower one, or leave digits out")
-    return _RoundingBounds(tuple(radii), lost, ring.largest)
+    return lost
 
 
 def _lost_bits(radius: float, moduli: NDArray[np.float64]) -> float:
-    """The bits of an error relative to the largest of these moduli; 0 where either is zero."""
+    """The bits of an error relative to the largest of these moduli; 0 where either is zero.
+
+    Infinite where the error is no number.
+    """
     size = moduli.max(initial=0.0)
     if not size or not radius:
         return 0.0

@@ -240,13 +240,14 @@ def test_a_longer_chain_has_more_modes_not_other_ones(fixed):
     assert not (series.coordinates[2].integers() == other.coordinates[2].integers()).all()
 
 
+@pytest.mark.parametrize("least", [0.0, 1e-9])
 @pytest.mark.parametrize("bits", [40, 200])
 @pytest.mark.parametrize(
     ("N", "seeds", "frequencies"), [(8, (1, 3), ("0.391", "1.113")), (9, (2,), ("0.68404",)), (8, (1,), ("0.382683433",))]
 )
-def test_multipliers_are_their_definition_rounded_down(N, seeds, frequencies, bits):
+def test_multipliers_are_their_definition_rounded_down(N, seeds, frequencies, bits, least):
     """2^bits L_q(nu) by mpmath at far more bits, to one unit, also next to a resonance; zero elsewhere."""
-    divisors = FixedPointDivisors(Chain(N, 1), seeds, [Fraction(w) for w in frequencies], bits)
+    divisors = FixedPointDivisors(Chain(N, 1), seeds, [Fraction(w) for w in frequencies], bits, least=least)
     grading = Grading(len(seeds), 6)
     space = CosineModes(N, seeds, grading)
     count = 0

@@ -63,3 +63,32 @@ def test_the_largest_sums_of_one_seed_stay_exact():
     for found, count in zip(ours[first:], counts[first:], strict=True):
         for lane, p in enumerate(moduli):
             assert (int(found[lane]) - int(count[lane]) * int(values[0, lane]) ** 2) % int(p) == 0
+
+
+@pytest.mark.parametrize(("seeds", "top"), [(1, 12), (2, 9), (3, 6), (4, 6)])
+@pytest.mark.parametrize("modular", [True, False])
+def test_products_with_a_diagonal_series_are_those_of_all_its_rows(seeds, top, modular):
+    """Whole numbers, so that the order of sums does not matter."""
+    grading = Grading(seeds=seeds, degree=top)
+    generator = np.random.default_rng(top)
+    rows, first = int(grading.first_row[-1]), int(grading.first_row[top])
+    active = np.zeros(rows, dtype=bool)
+    for n in range(2, top, 2):
+        active[grading.first_row[n] + grading.rows(np.repeat(grading.diagonal(n), 2, axis=1))] = True
+    left, right = generator.integers(-1000, 1000, (2, 2, rows, WIDTH)).astype(float)
+    left[:, ~active] = 0
+    splits = np.array([(n, top - n) for n in range(2, top, 2)])
+    has = np.zeros((2, top + 1), dtype=bool)
+    has[0, splits[:, 0]] = has[1, splits[:, 1]] = True
+    lanes, blocks, prime = (0.0,) * WIDTH, grading.wanted_blocks(top), 10007.0
+    moduli = np.full((2, WIDTH), prime) if modular else None
+    ours, theirs = np.zeros((2, 2, rows - first, WIDTH))
+    kernels.multiply_diagonal(lanes, left, right, ours, top, *has, blocks, grading.tables, grading.diagonal_tables, moduli, 5)
+    for part in range(2):
+        pair = (left[part], right[part], theirs[part])
+        kernels.multiply(lanes, *pair, top, first, splits, False, active, blocks, grading.tables, None)
+    canonical = grading.canonical(top)
+    difference = (ours - theirs)[:, canonical]
+    assert theirs.any()
+    assert not (difference % prime if modular else difference).any()
+    assert not modular or np.abs(ours).max() <= prime / 2

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symfpu.algebra.words import LIMB_BITS, WORD_BITS, IntegerTable, ResidueBasis, words_of
+from symfpu.algebra.words import LEAST_TOP, LIMB_BITS, WORD_BITS, IntegerTable, ResidueBasis, TooFewPrimes, whole_places, words_of
 from tests.tolerances import EPS, NEAREST
 
 BITS = 150
@@ -158,6 +158,9 @@ def test_floats_of_entries_that_only_fit_with_their_exponent():
 SMALL = ResidueBasis(BITS, 2**23)
 
 
+FIRST = {basis: ResidueBasis(BITS, max(basis.primes)) for basis in (SMALL, BASIS)}
+
+
 @pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
 @given(st.lists(st.tuples(within, st.booleans()), max_size=300), st.integers(0, BITS // LIMB_BITS))
 def test_rounding_in_place_is_that_by_limbs(basis, entries, drop):
@@ -167,9 +170,49 @@ def test_rounding_in_place_is_that_by_limbs(basis, entries, drop):
     limbs = basis.limbs(residues[:, wanted], drop)
     expected = np.zeros_like(residues)
     expected[:, wanted] = basis.residues(limbs)
-    words = basis.round_in_place(residues, wanted, drop)
+    again = residues.copy()
+    words = basis.rounded_words(residues, wanted, LIMB_BITS * drop, FIRST[basis])
+    basis.round_in_place(again, wanted, LIMB_BITS * drop)
     assert np.array_equal(residues, expected)
+    assert np.array_equal(again, expected)
     assert of_words(words) == of_words(words_of(limbs))
+
+
+@pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
+@given(lists, st.integers(0, BITS + LIMB_BITS))
+def test_any_number_of_places_is_rounded_to_the_nearest(basis, integers, places):
+    """Half a unit, and what the limbs below the highest one add to it; words are those of the residues."""
+    bits = whole_places(places)
+    assert places <= bits < places + LEAST_TOP
+    residues = basis.of_integers(row(integers))
+    words = of_words(basis.rounded_words(residues, np.ones(len(integers), dtype=bool), bits, FIRST[basis]))
+    assert all(abs(Fraction(x, 2**bits) - r) <= NEAREST for x, r in zip(integers, words, strict=True))
+    assert np.array_equal(residues, basis.of_integers(row(words)))
+
+
+@pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
+@given(st.lists(st.tuples(st.integers(0, 3), st.booleans()), min_size=1, max_size=50))
+def test_products_with_factors_in_their_places(basis, entries):
+    factors = row([-(2**60), 5, 0, 2**31])
+    places, wanted = np.array([at for at, _ in entries]), np.array([kept for _, kept in entries])
+    residues = basis.of_integers(row([7**20 + n for n in range(len(entries))]))
+    basis.multiply_places(residues, wanted, basis.of_integers(factors), places)
+    expected = [(7**20 + n) * factors[at] if kept else 0 for n, (at, kept) in enumerate(entries)]
+    for p, found in zip(basis.primes, residues, strict=True):
+        assert [int(x) % p for x in found] == [x % p for x in expected]
+
+
+@pytest.mark.parametrize("divisor", [2, 4, 1008, 10**4])
+def test_a_divisor_of_all_primes_less_one(divisor):
+    basis = ResidueBasis(BITS, 2**23, divisor)
+    assert all(p % divisor == 1 for p in basis.primes)
+    assert prod(basis.primes) > 2 ** (BITS + 4)
+    assert len(set(basis.primes)) == len(basis)
+
+
+def test_too_few_primes_are_named():
+    with pytest.raises(TooFewPrimes, match="too few primes up to 50"):
+        ResidueBasis(BITS, 50)
 
 
 def test_which_primes_are_small():
@@ -181,7 +224,7 @@ def test_which_primes_are_small():
 def test_rounding_in_place_sees_an_integer_beyond_the_promised_bits(sign):
     residues = SMALL.of_integers(row([1, sign * 2 ** (BITS + 1)]))
     with pytest.raises(OverflowError, match="range"):
-        SMALL.round_in_place(residues, np.ones(2, dtype=bool), 1)
+        SMALL.round_in_place(residues, np.ones(2, dtype=bool), LIMB_BITS)
 
 
 @given(st.lists(st.integers(-(2**900), 2**900), max_size=5))
