@@ -319,9 +319,7 @@ NEWTON: dict[str, Door] = {
     "refine_at_energy": lambda c: symfpu.refine_at_energy(
         c.solution, c.solution.energy(), harmonic=False
     ),
-    "refine_at_start": lambda c: symfpu.refine_at_start(
-        c.solution, {q: float(c.solution.positions(0.0)[q - 1]) for q in c.solution.seeds}
-    ),
+    "refine_at_start": lambda c: symfpu.refine_at_start(c.solution, c.amplitudes),
     "travelling_breather": lambda c: c.wave,
     "shoot": lambda c: symfpu.shoot(c.chain, 1, c.breather.frequency),
     "twist": lambda c: symfpu.twist(c.periodic),

@@ -15,6 +15,7 @@ import mpmath
 import numpy as np
 
 from symfpu.chain.chain import Chain
+from symfpu.errors import TorusTooLarge
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import Condition
@@ -34,6 +35,9 @@ WIDENINGS, GAIN = 20, 0.8
 # on the way: accuracy of a Krylov solution, and of coefficients in the residual of the choice
 # before; that of a guess is taken for so much
 ROUGH_KRYLOV, ROUGH, OF_A_GUESS = 1e-7, 1e-3, 1e-3
+
+
+NO_GAIN = "more harmonics change nothing and"  # a reason to stop
 
 
 class Unknowns(NamedTuple):
@@ -102,8 +106,10 @@ class Search:
             solved = self._solved(harmonics, _rows(known, harmonics), shifts)
             if solved.failure or solved.residual <= self.tolerance:
                 return replace(solved, reached=reached)
-            if full or solved.residual > before / 2:
-                return self._doubtful(solved, full=full)
+            if full:
+                return self._doubtful(solved, self._all_that_fit)
+            if solved.residual > before / 2:
+                return self._doubtful(solved, NO_GAIN)
             before, shifts, reached = solved.residual, solved.found.shifts, solved.torus
             known = known_rows(harmonics, np.asarray(solved.found.cosines))
         doubt = f"the residual is {solved.residual:.2g} after {ROUNDS} choices of harmonics"
@@ -131,15 +137,24 @@ class Search:
         for _ in range(WIDENINGS):
             before = OF_A_GUESS if best is None else best.residual
             aim = Aim(ROUGH * before, ROUGH_KRYLOV)
-            solved = self._solved(choice.harmonics, choice.cosines, shifts, aim)
+            try:
+                solved = self._solved(choice.harmonics, choice.cosines, shifts, aim)
+            except TorusTooLarge as too_large:
+                if best is None:
+                    raise
+                return self._settled(
+                    best, f"{too_large}; these {len(best.torus.harmonics)}"
+                )
             if solved.failure:
                 return replace(solved, reached=best and best.torus)
+            if choice.full:
+                return self._settled(solved, self._all_that_fit)
             gained = best is None or solved.residual < GAIN * best.residual
-            if solved.residual <= self.tolerance or choice.full or not gained:
-                return self._settled(solved, full=choice.full)
+            if solved.residual <= self.tolerance or not gained:
+                return self._settled(solved, NO_GAIN)
             best, shifts = solved, solved.found.shifts
             choice = self._wider(solved)
-        return self._settled(solved, full=False)
+        return self._settled(solved, NO_GAIN)
 
     def _wider(self, solved: Solved) -> Widened:
         found = solved.found
@@ -147,7 +162,7 @@ class Search:
             solved.equation, found.cosines, found.shifts, self.tolerance, self.most
         )
 
-    def _settled(self, solved: Solved, *, full: bool) -> Solved:
+    def _settled(self, solved: Solved, reason: str) -> Solved:
         """The same solved to rounding, with a doubt where the tolerance is not reached."""
         again = self._newton(solved.equation, solved.found.cosines, solved.found.shifts)
         settled = self._judged(solved.equation, again)
@@ -155,7 +170,7 @@ class Search:
             return replace(settled, reached=solved.torus)
         if settled.residual <= self.tolerance:
             return settled
-        return self._doubtful(settled, full=full)
+        return self._doubtful(settled, reason)
 
     def _solved(
         self, harmonics: Ints, cosines: Floats, shifts: Floats, aim: Aim = SETTLED
@@ -182,11 +197,12 @@ class Search:
             self.tell(f"residual {residual:.1e} between the grid points", NO_FRACTION)
         return Solved(equation, found, torus, residual)
 
-    def _doubtful(self, solved: Solved, *, full: bool) -> Solved:
+    @property
+    def _all_that_fit(self) -> str:
+        return f"as many harmonics as fit (most_harmonics={self.most})"
+
+    def _doubtful(self, solved: Solved, reason: str) -> Solved:
         """With the reason why its residual stays above the tolerance."""
-        reason = "more harmonics change nothing and"
-        if full:
-            reason = f"as many harmonics as fit (most_harmonics={self.most})"
         left = f"leave a residual of {solved.residual:.2g}"
         doubt = f"{reason} {left}, above the tolerance {self.tolerance:.0e}"
         return replace(solved, doubt=doubt)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from symfpu.chain.chain import require_fixed_ends
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import Number, exact
@@ -17,6 +18,7 @@ from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.invariance import long
 from symfpu.refinement.tori import TOLERANCE, RefinedTorus, refined_torus
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.ring_torus import RingTorus
 
 
 def refine_at_start(
@@ -44,6 +46,8 @@ def refine_at_start(
     >>> refine_at_start(guess, {1: "0.4", 2: 0}).positions(0.0)[:3].round(6) + 0.0
     array([0.4     , 0.      , 0.001246])
     """
+    if isinstance(torus, RingTorus):
+        require_fixed_ends(torus.chain)
     require_solution(torus, "torus")
     given = _coordinates(torus, coordinates)
     size = float(max(abs(x) for x in given.values()))

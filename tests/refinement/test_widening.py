@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from symfpu.chain.chain import Chain
+from symfpu.errors import TorusTooLarge
 from symfpu.refinement import search, widening
 from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated, has_holes, low_harmonics, neighbours, told_apart
 from symfpu.refinement.newton import newton
@@ -212,6 +213,21 @@ def test_a_failure_with_more_harmonics_gives_the_best_torus_with_a_doubt(monkeyp
     assert ended_early(torus)
     assert "no way" in torus.warnings[0]
     assert len(torus.harmonics) == calls[-2] < 120 <= calls[-1]
+
+
+@pytest.mark.usefixtures("small_polytopes")
+def test_what_does_not_fit_into_memory_leaves_the_best_torus_with_a_doubt(monkeypatch):
+    guess = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.1"}, order=4)
+
+    def small(sizes, chain):
+        if sizes.harmonics > 100:
+            raise TorusTooLarge(chain.N, sizes.harmonics, 10, 1, 100)
+
+    monkeypatch.setattr(search, "require_memory", small)
+    torus = refine_at_amplitudes(guess, guess.amplitudes)
+    assert torus.verdict == "doubtful"
+    assert 50 < len(torus.harmonics) <= 100
+    assert f"leave a residual of {torus.residual():.2g}" in torus.warnings[0]
 
 
 @pytest.mark.usefixtures("small_polytopes")
