@@ -783,3 +783,10 @@ NO_HARMONIC = 1e-20
 EIGHT_DIGITS = 1e-7
 # Forces by differences of neighbours in a ring of 1024: rounding of positions over Omega_1^2 = 4e-5, 1e-11; well beyond doubles' own.
 LEAST_BY_NEIGHBOURS, MOST_BY_NEIGHBOURS = 1e-13, 1e-9
+
+# Coefficients of tori of two choices of harmonics: both solve the equations to 1e-13 of the largest acceleration, and the
+# smallest divisor of the cases magnifies it ten times.
+SAME_TORUS = 1e-12
+
+# Coordinates of seeds at t = 0 of tori with some thousand harmonics, each coefficient rounded.
+AT_THE_START = 1e-12

@@ -162,8 +162,8 @@ class Atlas(Shown, Tabled):
         >>> from symfpu import Chain, atlas
         >>> how = {"borders": ["chaos"], "time": 1e3, "draws": 1}
         >>> with ThreadPoolExecutor(1) as pool:
-        ...     found = atlas([Chain(4, beta=1)], ["low:2"], 1, executor=pool, **how)
-        >>> found.by_time(200).borders[0].energy > found.borders[0].energy
+        ...     found = atlas([Chain(4, alpha=1)], ["low:2"], 1, executor=pool, **how)
+        >>> found.by_time(100).borders[0].energy > found.borders[0].energy
         True
         """
         latest = float(self.rows.fixed.get("time", TIME))

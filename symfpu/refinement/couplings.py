@@ -18,7 +18,8 @@ from symfpu.refinement.lattice import (
 
 # harmonics of the slopes that sparse rows hold, and their least height, relative
 MOST_SLOPES, SHARE = 12, 0.1
-LEAST_STEP = 1e-3  # height of those by which further harmonics are reached, relative
+# those by which further harmonics are reached: how many, and their least height, relative
+MOST_STEPS, LEAST_STEP = 40, 1e-3
 
 
 def largest_slopes(grid: Lattice, spectrum: Floats) -> Ints:
@@ -26,15 +27,15 @@ def largest_slopes(grid: Lattice, spectrum: Floats) -> Ints:
 
     spectrum : of the slopes, (bonds, points).
     """
-    return _tallest(grid, spectrum, SHARE)
+    return _tallest(grid, spectrum, MOST_SLOPES, SHARE)
 
 
 def steps_by_slopes(grid: Lattice, spectrum: Floats) -> Ints:
     """The same with smaller ones: steps from a harmonic to those that it drives."""
-    return _tallest(grid, spectrum, LEAST_STEP)
+    return _tallest(grid, spectrum, MOST_STEPS, LEAST_STEP)
 
 
-def _tallest(grid: Lattice, spectrum: Floats, share: float) -> Ints:
+def _tallest(grid: Lattice, spectrum: Floats, most: int, share: float) -> Ints:
     """The largest harmonics of the slopes above a share of the height of the first of all.
 
     They are among all harmonics as large as the chosen ones, or among low ones where those have
@@ -44,7 +45,7 @@ def _tallest(grid: Lattice, spectrum: Floats, share: float) -> Ints:
     nu = without_opposites(_possible(grid.harmonics))
     height = heights[grid.entries(nu)]
     order = np.argsort(-height, kind="stable")
-    chosen = nu[order[:MOST_SLOPES]]
+    chosen = nu[order[:most]]
     tall = chosen[heights[grid.entries(chosen)] > share * heights.max()]
     return np.unique(np.concatenate([tall, -tall]), axis=0)
 

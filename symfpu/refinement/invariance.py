@@ -84,9 +84,15 @@ class InvarianceEquation:
     Coefficients are unknown where `mask` holds.
     """
 
-    def __init__(self, chain: Chain, seeds: Sequence[int], harmonics: Ints) -> None:
+    def __init__(
+        self,
+        chain: Chain,
+        seeds: Sequence[int],
+        harmonics: Ints,
+        apart: Ints | None = None,
+    ) -> None:
         self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
-        self.grid = Lattice(harmonics)
+        self.grid = Lattice(harmonics, apart)
         self.mask = self.allowed(harmonics)
         units = np.eye(len(seeds), dtype=np.int64)
         places = [np.flatnonzero((harmonics == e).all(axis=1)) for e in units]

@@ -88,11 +88,13 @@ class Sizes:
         return KEPT_BYTES + int(KEPT_PART * (kept + max(parts)))
 
 
-def least_sizes(chain: Chain, columns: int, bonds: int, harmonics: Ints) -> Sizes:
+def least_sizes(
+    chain: Chain, columns: int, bonds: int, harmonics: Ints, apart: Ints | None = None
+) -> Sizes:
     """Before the equations are made: with the smallest block, and what symmetry leaves unknown."""
     count, s = harmonics.shape
     halves = (not chain.periodic) + bool(chain.potential.even)
-    points, unknowns = Lattice(harmonics).points, columns * count // 2**halves
+    points, unknowns = Lattice(harmonics, apart).points, columns * count // 2**halves
     block = min(SMALLEST_BLOCK, unknowns)
     angles, ring = _angles(chain, s), chain.periodic
     return Sizes(count, columns, unknowns, bonds, points, block, angles, ring)

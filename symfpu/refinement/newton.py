@@ -20,7 +20,7 @@ from symfpu.refinement.conditions import Condition
 from symfpu.refinement.equation import Floats, TorusEquation
 from symfpu.refinement.linear_system import LinearSystem, Preconditioner
 
-KRYLOV, RESTARTS = 150, 2
+KRYLOV, RESTARTS = 60, 4
 ACCURACY = 1e-8  # of a Krylov solution
 # of the right-hand side, up to which what a Krylov solution leaves makes a step like any other
 INEXACT = 0.5

@@ -30,8 +30,9 @@ MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
 ROUNDS = 8  # choices of a polytope
 # harmonics of the largest polytope, and of the one that choices by forces begin with
 LARGEST_POLYTOPE, FIRST_POLYTOPE = 10_000, 1500
-# choices by forces, and the residual in that of the choice before below which one gains
-WIDENINGS, GAIN = 20, 0.8
+# choices by forces, those in turn that may gain nothing, and the residual in that of the best
+# before below which one gains: what is driven over a resonance comes late
+WIDENINGS, PATIENCE, GAIN = 20, 3, 0.8
 # on the way: accuracy of a Krylov solution, and of coefficients in the residual of the choice
 # before; that of a guess is taken for so much
 ROUGH_KRYLOV, ROUGH, OF_A_GUESS = 1e-7, 1e-3, 1e-3
@@ -44,13 +45,13 @@ class Unknowns(NamedTuple):
     """What the tori of one kind of ends differ in.
 
     coefficients : of a torus, harmonics (H, s) and coefficients (H, C) in doubles. functions : of
-    the angles that a lattice holds. equation : of chain, seeds and harmonics. result : of torus,
-    equation, iterate and frequencies.
+    the angles that a lattice holds. equation : of chain, seeds, harmonics and what is told apart.
+    result : of torus, equation, iterate and frequencies.
     """
 
     coefficients: Callable[[Any], tuple[Ints, Floats]]
     functions: Callable[[Chain], int]
-    equation: Callable[[Chain, Sequence[int], Ints], TorusEquation]
+    equation: Callable[[Chain, Sequence[int], Ints, Ints | None], TorusEquation]
     result: Callable[..., Any]
 
 
@@ -103,7 +104,8 @@ class Search:
             if attempt:
                 least = self.tolerance * MARGIN / 10**attempt
                 harmonics, full = self._polytope(known, least, self.most)
-            solved = self._solved(harmonics, _rows(known, harmonics), shifts)
+            choice = Widened(harmonics, _rows(known, harmonics), full)
+            solved = self._solved(choice, shifts, SETTLED)
             if solved.failure or solved.residual <= self.tolerance:
                 return replace(solved, reached=reached)
             if full:
@@ -134,11 +136,12 @@ class Search:
     def _widening(self, choice: Widened, shifts: Floats) -> Solved:
         """Choices by forces from a first one on; the best met where none is enough."""
         best: Solved | None = None
+        idle = 0
         for _ in range(WIDENINGS):
             before = OF_A_GUESS if best is None else best.residual
             aim = Aim(ROUGH * before, ROUGH_KRYLOV)
             try:
-                solved = self._solved(choice.harmonics, choice.cosines, shifts, aim)
+                solved = self._solved(choice, shifts, aim)
             except TorusTooLarge as too_large:
                 if best is None:
                     raise
@@ -149,11 +152,13 @@ class Search:
                 return replace(solved, reached=best and best.torus)
             if choice.full:
                 return self._settled(solved, self._all_that_fit)
-            gained = best is None or solved.residual < GAIN * best.residual
-            if solved.residual <= self.tolerance or not gained:
-                return self._settled(solved, NO_GAIN)
-            best, shifts = solved, solved.found.shifts
-            choice = self._wider(solved)
+            if best is None or solved.residual < GAIN * best.residual:
+                best, idle = solved, 0
+            else:
+                idle += 1
+            if solved.residual <= self.tolerance or idle == PATIENCE:
+                break
+            choice, shifts = self._wider(solved), solved.found.shifts
         return self._settled(solved, NO_GAIN)
 
     def _wider(self, solved: Solved) -> Widened:
@@ -172,15 +177,15 @@ class Search:
             return settled
         return self._doubtful(settled, reason)
 
-    def _solved(
-        self, harmonics: Ints, cosines: Floats, shifts: Floats, aim: Aim = SETTLED
-    ) -> Solved:
-        chain = self.torus.chain
-        least = least_sizes(chain, cosines.shape[1], self.functions, harmonics)
+    def _solved(self, choice: Widened, shifts: Floats, aim: Aim) -> Solved:
+        chain, harmonics = self.torus.chain, choice.harmonics
+        least = least_sizes(
+            chain, choice.cosines.shape[1], self.functions, harmonics, choice.apart
+        )
         require_memory(least, chain)
-        equation = self.kind.equation(chain, self.torus.seeds, harmonics)
+        equation = self.kind.equation(chain, self.torus.seeds, harmonics, choice.apart)
         self.tell(f"{len(harmonics)} harmonics, {equation.points} points", NO_FRACTION)
-        start = np.where(equation.mask, cosines, 0)
+        start = np.where(equation.mask, choice.cosines, 0)
         require_memory(sizes_of(chain, equation, start, shifts), chain)
         return self._judged(equation, self._newton(equation, start, shifts, aim))
 

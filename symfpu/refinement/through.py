@@ -34,17 +34,18 @@ def refine_at_start(
     torus : the guess, of the same seeds; its phases (radians) are kept, so that 0 and pi are those
         of an orbit that starts at rest. Of fixed ends.
     coordinates : Q_q(0) by seed, exact numbers, dimensionless; 0 is allowed.
-    tolerance, most_harmonics, progress : as of `refine`.
+    tolerance, most_harmonics : as of `refine`.
+    progress : called as (label, NO_FRACTION) on every step.
 
     s conditions for s angles: an orbit that starts at rest is on it but for the modes that are no
     seeds, whose coordinates at t = 0 say how far off it is. Ours; Eq. eqmo on a torus. Raises
     InputError, also for a seed left out, and NoTorus with the best iterate.
 
-    >>> from symfpu import Chain, torus_at_amplitudes
+    >>> from symfpu import Chain, refine_at_start, torus_at_amplitudes
     >>> amplitudes, phases = {1: "0.4", 2: "0.02"}, {2: "3.14159265358979324"}
     >>> guess = torus_at_amplitudes(Chain(8, alpha="0.3"), amplitudes, order=4, phases=phases)
     >>> refine_at_start(guess, {1: "0.4", 2: 0}).positions(0.0)[:3].round(6) + 0.0
-    array([0.4     , 0.      , 0.001246])
+    array([ 0.4     ,  0.      , -0.000641])
     """
     if isinstance(torus, RingTorus):
         require_fixed_ends(torus.chain)

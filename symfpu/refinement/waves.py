@@ -38,9 +38,15 @@ class WaveEquation:
     Those of the seeds are their amplitudes. `mask` leaves out mode 0, which does not move.
     """
 
-    def __init__(self, chain: Chain, seeds: Sequence[int], harmonics: Ints) -> None:
+    def __init__(
+        self,
+        chain: Chain,
+        seeds: Sequence[int],
+        harmonics: Ints,
+        apart: Ints | None = None,
+    ) -> None:
         self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
-        self.grid = Lattice(harmonics)
+        self.grid = Lattice(harmonics, apart)
         self.waves = harmonics @ np.array(seeds) % chain.N
         self.mask = self._allowed()
         units = np.eye(len(seeds), dtype=np.int64)

@@ -17,6 +17,7 @@ from symfpu.refinement.lattice import Lattice, beside, without_opposites
 # of the number of harmonics from one choice to the next, at most: with more, those of large
 # forces beyond the candidates would be left out for candidates of small ones. And at least
 GROWTH, LEAST_GROWTH = 1.5, 1.25
+APART = 3  # times as many harmonics of the largest forces are told apart
 # of divisors, in squares of linear frequencies, above which force / divisor is a guess
 RESONANT = 1e-3
 
@@ -25,12 +26,14 @@ class Widened(NamedTuple):
     """A choice of harmonics with a guess of their coefficients.
 
     harmonics : the nu, (H, s). cosines : (H, C), long doubles. full : whether more were wanted than
-    allowed.
+    allowed. apart : harmonics of both signs that the lattice is to tell apart, where they are not
+    those of `told_apart`.
     """
 
     harmonics: Ints
     cosines: Floats
     full: bool
+    apart: Ints | None = None
 
 
 @np.errstate(divide="ignore", invalid="ignore")
@@ -57,12 +60,14 @@ def widened(
     divisors = rates[:, None] ** 2 - squares
     guess = np.where(np.abs(divisors) > RESONANT * squares, forces / divisors, 0)
     guess[own] = cosines
-    weights = _weights(equation, cosines, shifts, forces)
+    weights = _weights(equation, cosines, shifts, forces, squares * np.abs(guess))
     weights[own[equation.seed_rows]] = np.inf
     order = np.argsort(-weights, kind="stable")
     wanted = _count(weights[order], len(equation.harmonics), tolerance)
-    chosen = np.sort(order[: min(wanted, most)])
-    return Widened(candidates[chosen], guess[chosen], wanted > most)
+    count = min(wanted, most)
+    chosen, apart = np.sort(order[:count]), candidates[order[: APART * count]]
+    both = np.concatenate([apart, -apart[(apart != 0).any(axis=1)]])
+    return Widened(candidates[chosen], guess[chosen], wanted > most, both)
 
 
 def _candidates(equation: TorusEquation, cosines: Floats) -> Lattice:
@@ -74,12 +79,21 @@ def _candidates(equation: TorusEquation, cosines: Floats) -> Lattice:
 
 
 def _weights(
-    equation: TorusEquation, cosines: Floats, shifts: Floats, forces: Floats
+    equation: TorusEquation,
+    cosines: Floats,
+    shifts: Floats,
+    forces: Floats,
+    moved: Floats,
 ) -> Floats:
-    """What the equations of a harmonic miss without it, in the largest acceleration; (M,)."""
+    """What leaving out a harmonic costs, relative to the largest acceleration; shape (M,).
+
+    Its own equations miss the force on it, those of others what its motion adds to theirs: near a
+    resonance a small force moves much. moved : Omega^2 |c|.
+    """
     accelerations = equation.rates(shifts).astype(float) ** 2 @ np.abs(cosines)
-    missed = np.abs(forces).max(axis=1) / accelerations.max()
-    return np.asarray(missed.astype(float))
+    coupling = float(np.abs(equation.slopes(cosines)).max())
+    missed = np.maximum(np.abs(forces), coupling * moved).max(axis=1)
+    return np.asarray((missed / accelerations.max()).astype(float))
 
 
 def _count(falling: Floats, before: int, tolerance: float) -> int:

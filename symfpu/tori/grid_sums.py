@@ -16,8 +16,9 @@ def grid_sums(harmonics: Ints, coefficients: Floats, number: int) -> Floats:
     harmonics : (H, s). coefficients : (H, M). number : of points for each angle, P = number^s, in
     the order of `np.ndindex`. Harmonics that agree modulo the number are one on the grid.
 
+    >>> import numpy as np
     >>> theta = 2 * np.pi * (3 * np.arange(2) + 1) / 6
-    >>> grid_sums(np.array([[1], [3]]), np.array([[2.0], [1.0]]), 2).ravel().round(9)
+    >>> grid_sums(np.array([[1], [3]]), np.array([[2.0], [1.0]]), 2).ravel().round(9) + 0.0
     array([0., 0.])
     >>> (2 * np.cos(theta) + np.cos(3 * theta)).round(9) + 0.0
     array([0., 0.])

@@ -10,7 +10,7 @@ import pytest
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, TorusTooLarge
-from symfpu.refinement import memory, newton, tori
+from symfpu.refinement import memory, newton, search, tori
 from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.tori.test_ring_torus import torus as waves
@@ -19,13 +19,13 @@ MEASURE = """
 from pathlib import Path
 import scipy.fft, scipy.linalg, scipy.sparse.linalg
 from symfpu.chain.chain import Chain
-from symfpu.refinement import tori
+from symfpu.refinement import search, tori
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.ring_torus import travelling_torus
 from symfpu.series.travelling import travelling_waves
 {guess}
 sizes = []
-tori.require_memory = lambda found, chain: sizes.append(found.bytes())
+search.require_memory = lambda found, chain: sizes.append(found.bytes())
 status = lambda name: int(Path("/proc/self/status").read_text().split(name)[1].split()[0]) * 1024
 Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
 before = status("VmRSS:")
@@ -84,7 +84,7 @@ def test_what_does_not_fit_is_refused_before_it_is_begun(monkeypatch, stage):
     chain, wanted = Chain(16, alpha="0.3"), {1: "1.0", 2: "0.5"}
     guess, needed = near(chain, wanted), []
     with monkeypatch.context() as here:
-        here.setattr(tori, "require_memory", lambda sizes, chain: needed.append(sizes.bytes()))
+        here.setattr(search, "require_memory", lambda sizes, chain: needed.append(sizes.bytes()))
         refine_at_amplitudes(guess, wanted)
     least, whole = needed
     assert least < whole
@@ -94,7 +94,7 @@ def test_what_does_not_fit_is_refused_before_it_is_begun(monkeypatch, stage):
         raise AssertionError("it was begun")
 
     monkeypatch.setattr(psutil, "virtual_memory", lambda: type("Memory", (), {"available": free}))
-    monkeypatch.setattr(tori, "newton", none)
+    monkeypatch.setattr(search, "newton", none)
     if free < least:
         monkeypatch.setattr(tori, "COSINES", tori.COSINES._replace(equation=none))
     with pytest.raises(TorusTooLarge) as refused:
@@ -136,7 +136,7 @@ def test_the_block_that_is_predicted_is_the_one_that_is_made():
             made.append(len(self.inside) - system.s)
 
     with pytest.MonkeyPatch.context() as here:
-        here.setattr(tori, "require_memory", lambda found, chain: sizes.append(found))
+        here.setattr(search, "require_memory", lambda found, chain: sizes.append(found))
         here.setattr(newton, "Preconditioner", Counted)
         refine_at_amplitudes(near(chain, wanted), wanted)
     assert sizes[1].block == made[0] > 300

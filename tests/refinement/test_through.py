@@ -45,7 +45,7 @@ def test_the_gradient_is_the_derivative_of_the_value():
     assert float(moved) == pytest.approx((by_cosine * change).sum(), rel=ROUNDING)
     assert not by_shift.any()
     torus_value = (c[:, 1] @ np.cos(equation.harmonics @ np.array([0.4, 1.0, 2.0])) - 0.3) / 0.7
-    assert float(condition.value(equation, c, shifts)) == pytest.approx(torus_value, rel=1e-12)
+    assert float(condition.value(equation, c, shifts)) == pytest.approx(torus_value, rel=ROUNDING)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 
 from symfpu import Chain, frequency_analysis, integrate, packet_state, refine, refine_at_amplitudes, refine_at_start, torus_near
 from symfpu.tori.quasiperiodic import FourierTorus
-from tests.tolerances import COMBINATION_HEIGHT, FALL_BY_AN_ANGLE
+from tests.tolerances import AT_THE_START, COMBINATION_HEIGHT, FALL_BY_AN_ANGLE
 
 pytestmark = pytest.mark.long
 
@@ -83,7 +83,7 @@ def test_up_to_six_angles_none_is_the_last_of_fig_9():
             near = with_mode_6(near)
         near = refine_at_start(near, {q: float(start[q - 1]) for q in near.seeds}, most_harmonics=FEW)
         left = np.abs(near.positions(0.0) - start) / start[0]
-        assert left[:s].max() < 1e-12
+        assert left[:s].max() < AT_THE_START
         assert near.energy() == pytest.approx(0.014915, rel=10.0 ** (-s))
         distances.append(left.max())
     falls = np.divide(distances[:-1], distances[1:])
