@@ -18,8 +18,7 @@ from symfpu.refinement.lattice import (
 
 # harmonics of the slopes that sparse rows hold, and their least height, relative
 MOST_SLOPES, SHARE = 12, 0.1
-# those by which further harmonics are reached: how many, and their least height, relative
-MOST_STEPS, LEAST_STEP = 40, 1e-3
+LEAST_STEP = 1e-3  # height of those by which further harmonics are reached, relative
 
 
 def largest_slopes(grid: Lattice, spectrum: Floats) -> Ints:
@@ -30,9 +29,9 @@ def largest_slopes(grid: Lattice, spectrum: Floats) -> Ints:
     return _tallest(grid, spectrum, MOST_SLOPES, SHARE)
 
 
-def steps_by_slopes(grid: Lattice, spectrum: Floats) -> Ints:
+def steps_by_slopes(grid: Lattice, spectrum: Floats, most: int) -> Ints:
     """The same with smaller ones: steps from a harmonic to those that it drives."""
-    return _tallest(grid, spectrum, MOST_STEPS, LEAST_STEP)
+    return _tallest(grid, spectrum, most, LEAST_STEP)
 
 
 def _tallest(grid: Lattice, spectrum: Floats, most: int, share: float) -> Ints:

@@ -66,8 +66,8 @@ class TorusEquation(Protocol):
         """V''(r) - 1 at the points, in doubles."""
         ...
 
-    def steps(self, slopes: Floats) -> Ints:
-        """The largest harmonics of the slopes, with both signs; (k, s)."""
+    def steps(self, slopes: Floats, most: int) -> Ints:
+        """The largest harmonics of the slopes, so many at most, with both signs; (k, s)."""
         ...
 
     def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:

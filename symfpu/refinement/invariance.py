@@ -271,9 +271,9 @@ class InvarianceEquation:
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
 
-    def steps(self, slopes: Floats) -> Ints:
-        """The largest harmonics of the slopes, with both signs; (k, s)."""
-        return steps_by_slopes(self.grid, self._spectrum(slopes))
+    def steps(self, slopes: Floats, most: int) -> Ints:
+        """The largest harmonics of the slopes, so many at most, with both signs; (k, s)."""
+        return steps_by_slopes(self.grid, self._spectrum(slopes), most)
 
     def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
         """Derivatives of the mean of weights times slopes, (H, N-1); weights (bonds, points)."""

@@ -19,7 +19,7 @@ from symfpu.refinement.invariance import PORTION
 from symfpu.refinement.lattice import Lattice
 from symfpu.refinement.linear_system import SMALLEST_BLOCK, block_size
 from symfpu.refinement.newton import KRYLOV
-from symfpu.tori.quasiperiodic import CHUNK, GRID_POINTS
+from symfpu.tori.quasiperiodic import GRID_POINTS
 from symfpu.tori.ring_torus import CHUNK as ANGLES_OF_A_RING
 
 DOUBLE = 8
@@ -31,10 +31,13 @@ HARMONIC_BYTES = 600  # of the numbers of a harmonic in Python
 COUPLED_MODES = 5  # that a harmonic of the slopes couples a mode to, at most about
 COUPLING_BYTES = 84  # of one in all its forms, of which half go on
 EXPONENTIAL = 48  # bytes of one, with what it is made of
-BYTES_AT_AN_ANGLE = 24  # of a mode, where the residual is taken
+# of a mode at one angle, where the residual is taken: on a ring, and with fixed ends by a Fourier
+# transform of coordinates and what is linear in them
+BYTES_AT_AN_ANGLE, TRANSFORMED_BYTES = 24, 72
 # what an allocator holds beyond the arrays, and of them
 KEPT_BYTES, KEPT_PART = 2**24, 1.2
 LESS = 0.95
+TABLES_OF_CANDIDATES = 4  # in doubles, where harmonics are chosen by forces
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,8 @@ class Sizes:
 
     harmonics, columns : H, C of the coefficients. unknowns : among them. bonds, points : of the
     functions on the lattice. block : unknowns that are solved for directly. angles : where the
-    residual is taken, held at once. ring : whether by exponentials of all harmonics.
+    residual is taken, held at once. ring : whether by exponentials of all harmonics. candidates :
+    coefficients of those among which the next harmonics are chosen.
     """
 
     harmonics: int
@@ -54,6 +58,7 @@ class Sizes:
     block: int
     angles: int
     ring: bool
+    candidates: int = 0
 
     def scaled(self, factor: float) -> Sizes:
         """With fewer harmonics, about."""
@@ -78,12 +83,15 @@ class Sizes:
         spectra = functions + DOUBLE * self.points * (self.columns + 2)
         step = TABLES_OF_A_STEP * table + FUNCTIONS * portion
         vectors = (KRYLOV + 6) * DOUBLE * self.unknowns
-        entries = self.angles * self.harmonics
-        cosines = EXPONENTIAL * entries if self.ring else 2 * DOUBLE * min(entries, CHUNK)
+        residual = TRANSFORMED_BYTES * self.angles * self.columns
+        if self.ring:
+            residual = EXPONENTIAL * self.angles * self.harmonics
+            residual += BYTES_AT_AN_ANGLE * self.angles * self.columns
         parts = (
             2 * block + coupled + spectra,
             block + coupled // 2 + vectors + step,
-            cosines + BYTES_AT_AN_ANGLE * self.angles * self.columns,
+            residual,
+            TABLES_OF_CANDIDATES * DOUBLE * self.candidates,
         )
         return KEPT_BYTES + int(KEPT_PART * (kept + max(parts)))
 

@@ -24,7 +24,12 @@ from symfpu.refinement.harmonics import chosen_harmonics, known_rows
 from symfpu.refinement.invariance import DIGITS, rational
 from symfpu.refinement.memory import least_sizes, require_memory, sizes_of
 from symfpu.refinement.newton import SETTLED, Aim, Iterate, newton
-from symfpu.refinement.widening import Widened, widened
+from symfpu.refinement.widening import (
+    MOST_COEFFICIENTS,
+    MOST_STEPS,
+    Widened,
+    widened,
+)
 
 MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
 ROUNDS = 8  # choices of a polytope
@@ -186,7 +191,11 @@ class Search:
         equation = self.kind.equation(chain, self.torus.seeds, harmonics, choice.apart)
         self.tell(f"{len(harmonics)} harmonics, {equation.points} points", NO_FRACTION)
         start = np.where(equation.mask, choice.cosines, 0)
-        require_memory(sizes_of(chain, equation, start, shifts), chain)
+        sizes = sizes_of(chain, equation, start, shifts)
+        if aim is not SETTLED:
+            reached = (2 * MOST_STEPS + 1) * choice.cosines.size
+            sizes = replace(sizes, candidates=min(reached, 2 * MOST_COEFFICIENTS))
+        require_memory(sizes, chain)
         return self._judged(equation, self._newton(equation, start, shifts, aim))
 
     def _newton(

@@ -139,9 +139,9 @@ class WaveEquation:
         r = self._stretches(cosines.astype(float))
         return np.asarray(bonds.anharmonic_stiffness(self.chain.law(), r))
 
-    def steps(self, slopes: Floats) -> Ints:
-        """The largest harmonics of the slopes, with both signs; (k, s)."""
-        return steps_by_slopes(self.grid, self.grid.spectrum(slopes))
+    def steps(self, slopes: Floats, most: int) -> Ints:
+        """The largest harmonics of the slopes, so many at most, with both signs; (k, s)."""
+        return steps_by_slopes(self.grid, self.grid.spectrum(slopes), most)
 
     def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
         """Derivatives of the mean of weights times slopes, (H, 1); weights (1, points)."""

@@ -18,6 +18,9 @@ from symfpu.refinement.lattice import Lattice, beside, without_opposites
 # forces beyond the candidates would be left out for candidates of small ones. And at least
 GROWTH, LEAST_GROWTH = 1.5, 1.25
 APART = 3  # times as many harmonics of the largest forces are told apart
+# harmonics of the slopes that lead to candidates, at most; coefficients of all candidates, about;
+# and candidates that are weighed at once
+MOST_STEPS, MOST_COEFFICIENTS, PORTION = 40, 10_000_000, 1000
 # of divisors, in squares of linear frequencies, above which force / divisor is a guess
 RESONANT = 1e-3
 
@@ -36,7 +39,6 @@ class Widened(NamedTuple):
     apart: Ints | None = None
 
 
-@np.errstate(divide="ignore", invalid="ignore")
 def widened(
     equation: TorusEquation,
     cosines: Floats,
@@ -55,25 +57,40 @@ def widened(
     known = np.zeros((len(candidates), cosines.shape[1]))
     known[own] = cosines
     forces = equation.force_on(grid, known)
-    squares = equation.linear_at(candidates) ** 2
-    rates = candidates @ (equation.seed_frequencies + shifts)
-    divisors = rates[:, None] ** 2 - squares
-    guess = np.where(np.abs(divisors) > RESONANT * squares, forces / divisors, 0)
-    guess[own] = cosines
-    weights = _weights(equation, cosines, shifts, forces, squares * np.abs(guess))
+    del known
+    omega = equation.seed_frequencies + shifts
+    weights = _weights(equation, cosines, omega, candidates, forces)
     weights[own[equation.seed_rows]] = np.inf
     order = np.argsort(-weights, kind="stable")
     wanted = _count(weights[order], len(equation.harmonics), tolerance)
     count = min(wanted, most)
     chosen, apart = np.sort(order[:count]), candidates[order[: APART * count]]
+    guess = _driven(equation, candidates[chosen], forces[chosen], omega)
+    kept, at, _ = np.intersect1d(chosen, own, return_indices=True)
+    places = {place: row for row, place in enumerate(own.tolist())}
+    guess[at] = cosines[[places[place] for place in kept.tolist()]]
     both = np.concatenate([apart, -apart[(apart != 0).any(axis=1)]])
-    return Widened(candidates[chosen], guess[chosen], wanted > most, both)
+    return Widened(candidates[chosen], guess, wanted > most, both)
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def _driven(
+    equation: TorusEquation, harmonics: Ints, forces: Floats, omega: Floats
+) -> Floats:
+    """Coefficients that forces drive, (M, C); 0 next to a resonance."""
+    squares = equation.linear_at(harmonics) ** 2
+    divisors = (harmonics @ omega)[:, None] ** 2 - squares
+    return np.where(np.abs(divisors) > RESONANT * squares, forces / divisors, 0)
 
 
 def _candidates(equation: TorusEquation, cosines: Floats) -> Lattice:
-    """The harmonics of an equation and those that its slopes couple to them, told apart."""
+    """The harmonics of an equation and those that its slopes couple to them, told apart.
+
+    By as many harmonics of the slopes as the tables of all candidates have room for.
+    """
     units = np.eye(equation.harmonics.shape[1], dtype=np.int64)
-    steps = equation.steps(equation.slopes(cosines))
+    most = max(1, MOST_COEFFICIENTS // cosines.size)
+    steps = equation.steps(equation.slopes(cosines), min(most, MOST_STEPS))
     reached = beside(equation.harmonics, np.concatenate([units, -units, steps]))
     return Lattice(without_opposites(reached), reached)
 
@@ -81,19 +98,26 @@ def _candidates(equation: TorusEquation, cosines: Floats) -> Lattice:
 def _weights(
     equation: TorusEquation,
     cosines: Floats,
-    shifts: Floats,
+    omega: Floats,
+    candidates: Ints,
     forces: Floats,
-    moved: Floats,
 ) -> Floats:
     """What leaving out a harmonic costs, relative to the largest acceleration; shape (M,).
 
     Its own equations miss the force on it, those of others what its motion adds to theirs: near a
-    resonance a small force moves much. moved : Omega^2 |c|.
+    resonance a small force moves much.
     """
-    accelerations = equation.rates(shifts).astype(float) ** 2 @ np.abs(cosines)
+    rates = (equation.harmonics @ omega).astype(float)
+    largest = float((rates**2 @ np.abs(cosines)).max())
     coupling = float(np.abs(equation.slopes(cosines)).max())
-    missed = np.maximum(np.abs(forces), coupling * moved).max(axis=1)
-    return np.asarray((missed / accelerations.max()).astype(float))
+    weights = np.empty(len(candidates))
+    for first in range(0, len(candidates), PORTION):
+        part = slice(first, first + PORTION)
+        squares = equation.linear_at(candidates[part]).astype(float) ** 2
+        moved = squares * np.abs(_driven(equation, candidates[part], forces[part], omega))
+        missed = np.maximum(np.abs(forces[part]), coupling * moved.astype(float))
+        weights[part] = missed.max(axis=1) / largest
+    return weights
 
 
 def _count(falling: Floats, before: int, tolerance: float) -> int:

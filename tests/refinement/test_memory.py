@@ -25,6 +25,7 @@ from symfpu.tori.ring_torus import travelling_torus
 from symfpu.series.travelling import travelling_waves
 {guess}
 sizes = []
+search.FIRST_POLYTOPE = {first}
 search.require_memory = lambda found, chain: sizes.append(found.bytes())
 status = lambda name: int(Path("/proc/self/status").read_text().split(name)[1].split()[0]) * 1024
 Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
@@ -55,11 +56,12 @@ CASES = {
     "N = 16, s = 5": {"N": 16, "s": 5, "law": "alpha='0.3'", "scale": 0.3, "order": 2, "most": 8000},
     "N = 1024, s = 2": {"N": 1024, "s": 2, "law": "beta='0.3'", "scale": 0.3, "order": 2, "most": 2000},
     "ring, s = 3": {"most": 20000},
+    "by forces": {"N": 128, "s": 3, "law": "beta='0.3'", "scale": 1.0, "order": 2, "most": 3000, "first": 1500},
 }
 QUICK = {"N = 32, s = 4", "N = 1024, s = 2", "ring, s = 3"}
 ALL = [pytest.param(name, marks=[] if name in QUICK else pytest.mark.long) for name in CASES]
 TOO_MUCH = 1.5  # as promised: of the peak, what is predicted at most
-LEAST = 60e6  # bytes from which on it is; below, what an allocator keeps counts for more
+LEAST = 120e6  # bytes from which on it is; below, what an allocator keeps counts for more
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads the peak of a process from /proc")
@@ -67,10 +69,11 @@ LEAST = 60e6  # bytes from which on it is; below, what an allocator keeps counts
 def test_the_peak_is_that_predicted_or_less(name):
     case = CASES[name]
     guess = FIXED.format(**case) if "N" in case else RING
-    script = MEASURE.format(guess=guess, most=case["most"])
+    script = MEASURE.format(guess=guess, most=case["most"], first=case.get("first", 10**9))
     result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     measured, predicted = map(int, re.findall(r"\d+", result.stdout))
-    assert LEAST < measured < predicted < TOO_MUCH * measured
+    assert 0 < measured < predicted
+    assert predicted < TOO_MUCH * max(measured, LEAST)
 
 
 def near(chain, wanted):
@@ -80,7 +83,7 @@ def near(chain, wanted):
 @pytest.mark.parametrize("stage", ["before its equations", "before the first step"])
 def test_what_does_not_fit_is_refused_before_it_is_begun(monkeypatch, stage):
     """With less free memory than the smallest block asks for, and with less than the block that it has; the residual's angles left out."""
-    monkeypatch.setattr(memory, "CHUNK", 1)
+    monkeypatch.setattr(memory, "TRANSFORMED_BYTES", 0)
     chain, wanted = Chain(16, alpha="0.3"), {1: "1.0", 2: "0.5"}
     guess, needed = near(chain, wanted), []
     with monkeypatch.context() as here:
@@ -110,7 +113,7 @@ def test_what_does_not_fit_is_refused_before_it_is_begun(monkeypatch, stage):
 def test_as_many_harmonics_as_it_names_fit(monkeypatch):
     chain, wanted = Chain(8, alpha="0.3"), {1: "0.3", 3: "0.15"}
     guess = near(chain, wanted)
-    free = int(memory.KEPT_BYTES * 1.1)
+    free = int(memory.KEPT_BYTES * 1.25)
     monkeypatch.setattr(psutil, "virtual_memory", lambda: type("Memory", (), {"available": free}))
     with pytest.raises(TorusTooLarge) as refused:
         refine_at_amplitudes(guess, wanted)
