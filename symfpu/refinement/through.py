@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from symfpu.chain.chain import require_fixed_ends
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import Number, exact
@@ -48,7 +47,9 @@ def refine_at_start(
     array([ 0.4     ,  0.      , -0.000641])
     """
     if isinstance(torus, RingTorus):
-        require_fixed_ends(torus.chain)
+        allowed = "a torus of a chain with fixed ends"
+        advice = "on a ring give amplitudes to refine_at_amplitudes"
+        raise InputError("torus", type(torus).__name__, allowed, advice)
     require_solution(torus, "torus")
     given = _coordinates(torus, coordinates)
     size = float(max(abs(x) for x in given.values()))
