@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
@@ -61,7 +61,7 @@ ROUGH = 1e-6  # of the way, from which an event is said to be interpolated
 LEAST_GAP = 5e-4
 
 
-Solution = QuasiPeriodic | RingTorus
+Solution: TypeAlias = QuasiPeriodic | RingTorus
 
 
 @dataclass(frozen=True)

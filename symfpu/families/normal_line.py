@@ -6,7 +6,7 @@ Standing waves of a ring are found with fixed ends and unfolded.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from symfpu.refinement.tori import (
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed, unfold
 
-Solution = QuasiPeriodic | RingTorus
+Solution: TypeAlias = QuasiPeriodic | RingTorus
 HALVINGS = 6  # of a step to a torus that Newton's method does not reach at once
 
 
