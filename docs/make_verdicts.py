@@ -1,4 +1,4 @@
-"""The tables of verdicts in docs/errata.md, from the report of a reproduction.
+"""The tables of verdicts in docs/errata.md, and their counts in docs/paper.md, from the report of a reproduction.
 
 .venv/bin/symfpu reproduce all -o out && .venv/bin/python docs/make_verdicts.py out/report.json
 """
@@ -8,17 +8,21 @@ from __future__ import annotations
 import json
 import re
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
+from symfpu.paper.claims import VERDICTS
+
 PAGE = Path(__file__).parent / "errata.md"
+COUNTED = Path(__file__).parent / "paper.md"
 # by the heading above its table, the target whose claims it has
 TARGETS = {
     "Section 5 and the sets of section 6": "section5",
     "Statements that no figure shows": "statements",
     **{f"Fig. {i}": f"fig{i}" for i in range(1, 10)},
-    "Convergence of the series of Fig. 1": "convergence",
     "Appendix F and the captions": "table",
+    "Convergence of the series of Fig. 1": "convergence",
 }
 HEAD = "| section | the paper says | verdict | evidence |\n| --- | --- | --- | --- |\n"
 
@@ -50,9 +54,33 @@ def _with_table(page: str, heading: str, rows: list[str]) -> str:
     return made
 
 
+def with_counts(page: str, verdicts: str) -> str:
+    """The page with a row of counts for each table of the page of verdicts."""
+    head = f"| claims about | {' | '.join(VERDICTS)} |\n|{' --- |' * (1 + len(VERDICTS))}\n"
+    made, count = re.subn(
+        rf"({re.escape(head)})(?:\|.*\n)+", lambda found: found[1] + _counts(verdicts), page
+    )
+    if count != 1:
+        raise KeyError(f"paper.md has no table under {head!r}")
+    return made
+
+
+def _counts(verdicts: str) -> str:
+    rows = ""
+    for heading in TARGETS:
+        table = verdicts.split(f"### {heading}\n\n")[1].split("\n\n")[0]
+        found = Counter(re.findall(rf"\| \*\*({'|'.join(VERDICTS)})\*\* \|", table))
+        anchor = re.sub("[^a-z0-9-]", "", heading.lower().replace(" ", "-"))
+        cells = " | ".join(str(found[verdict] or "") for verdict in VERDICTS)
+        rows += f"| [{heading}](errata.md#{anchor}) | {cells} |\n"
+    return rows
+
+
 def main(report: str) -> None:
     figures = json.loads(Path(report).read_text())["figures"]
-    PAGE.write_text(with_verdicts(PAGE.read_text(), figures))
+    verdicts = with_verdicts(PAGE.read_text(), figures)
+    PAGE.write_text(verdicts)
+    COUNTED.write_text(with_counts(COUNTED.read_text(), verdicts))
 
 
 if __name__ == "__main__":

@@ -46,11 +46,22 @@ def test_a_figure_without_a_table_is_an_error():
 def test_every_target_with_claims_has_a_table():
     assert set(verdicts.TARGETS.values()) == TARGETS.keys() - {"toda"}
     headings = PAGE.read_text().split("## Claims of sections")[1].split("\n### ")[1:]
-    assert [part.splitlines()[0] for part in headings] == [
-        *list(verdicts.TARGETS)[:-2],
-        "Appendix F and the captions",
-        "Convergence of the series of Fig. 1",
-    ]
+    assert [part.splitlines()[0] for part in headings] == list(verdicts.TARGETS)
+
+
+def test_counts_are_of_each_table():
+    every = "".join(page(heading) for heading in verdicts.TARGETS)
+    head = "| claims about | holds | holds in part | does not hold | undecided |\n| --- | --- | --- | --- | --- |\n"
+    made = verdicts.with_counts(f"{head}| old |\n\nWords.\n", every.replace("**holds**", "**holds in part**", 1))
+    rows = made.removeprefix(head).splitlines()
+    assert rows[0] == "| [Section 5 and the sets of section 6](errata.md#section-5-and-the-sets-of-section-6) | 1 | 1 |  |  |"
+    assert rows[3] == "| [Fig. 2](errata.md#fig-2) | 2 |  |  |  |"
+    assert rows[-2:] == ["", "Words."]
+
+
+def test_counts_of_a_page_without_their_table():
+    with pytest.raises(KeyError, match=r"paper\.md has no table"):
+        verdicts.with_counts("Words.\n", PAGE.read_text())
 
 
 @pytest.mark.long
