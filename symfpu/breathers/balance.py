@@ -241,10 +241,13 @@ class Balance:
         table = slope @ self.products
         J = np.empty((len(self.n), len(self.n)))
         rows = [(n, self._of_harmonic(n)) for n in np.unique(self.n).tolist()]
-        for n, those in rows:
-            for other, columns in rows:
-                both = table[abs(n - other)] + (table[n + other] if n else 0.0)
-                J[those, columns] = -self._by_modes(both, those, columns)
+        for place, (n, those) in enumerate(rows):
+            for other, columns in rows[: place + 1]:
+                both = table[n - other] + (table[n + other] if n else 0.0)
+                block = self._by_modes(both, those, columns)
+                J[those, columns] = -block
+                # the mean takes the slope of one sign alone
+                J[columns, those] = -block.T if other or not n else -block.T / 2
         return J
 
     def _of_harmonic(self, n: int) -> slice:
