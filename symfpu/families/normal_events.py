@@ -46,7 +46,7 @@ from symfpu.normal.resonances import (
 )
 from symfpu.normal.search import followed_modes
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.tori import NoTorus
+from symfpu.refinement.refined_torus import NoTorus
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
 

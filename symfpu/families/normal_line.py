@@ -15,11 +15,8 @@ from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import Between, followed_modes
 from symfpu.refinement.conditions import AmplitudeLine, Condition
-from symfpu.refinement.tori import (
-    NoTorus,
-    refine_at_amplitudes,
-    refined_torus,
-)
+from symfpu.refinement.refined_torus import NoTorus, refined_torus
+from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed, unfold
 

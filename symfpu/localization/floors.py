@@ -27,9 +27,9 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.chain.tension_terms import highest_product
 from symfpu.refinement.digits import PreciseTorus
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import dilated, told_apart
-from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.torus import QTorus
 

@@ -15,7 +15,7 @@ from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import Start
 from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.invariance import long
-from symfpu.refinement.tori import TOLERANCE, RefinedTorus, refined_torus
+from symfpu.refinement.refined_torus import TOLERANCE, RefinedTorus, refined_torus
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.ring_torus import RingTorus
 
