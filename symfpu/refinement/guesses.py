@@ -9,7 +9,8 @@ import mpmath
 import numpy as np
 
 from symfpu.errors import InputError
-from symfpu.numbers.typed import exact
+from symfpu.numbers.arithmetic import mpf
+from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.equation import Floats
 from symfpu.refinement.invariance import DIGITS, long
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
@@ -28,15 +29,22 @@ def require_torus(torus: object) -> None:
 
 
 def numbers_by_seed(
-    argument: str, values: object, torus: QuasiPeriodic | RingTorus, *, signed: bool
+    argument: str, values: object, seeds: tuple[int, ...], allowed: str
+) -> dict[int, Fraction]:
+    """An exact number for each seed; else InputError, which says what is allowed."""
+    if not isinstance(values, Mapping) or set(values) != set(seeds):
+        advice = "write it as {seed: number} and name every seed"
+        raise InputError(argument, values, allowed, advice)
+    return {q: exact(values[q], f"{argument}, {q}") for q in seeds}
+
+
+def moderate_by_seed(
+    argument: str, values: Mapping[int, Number], seeds: tuple[int, ...], *, signed: bool
 ) -> dict[int, Fraction]:
     """A number for each seed, not 0 and not beyond doubles; positive unless signed."""
     kind = "number that is not 0" if signed else "positive number"
-    allowed = f"a {kind} for each of the seeds {torus.seeds}, by seed"
-    if not isinstance(values, Mapping) or set(values) != set(torus.seeds):
-        advice = "write it as {seed: number} and name every seed"
-        raise InputError(argument, values, allowed, advice)
-    numbers = {q: exact(values[q], f"{argument}, {q}") for q in torus.seeds}
+    allowed = f"a {kind} for each of the seeds {seeds}, by seed"
+    numbers = numbers_by_seed(argument, values, seeds, allowed)
     sizes = [abs(x) if signed else x for x in numbers.values()]
     if not all(LEAST_SIZE < size < 1 / LEAST_SIZE for size in sizes):
         advice = "leave out a seed that is at rest"
@@ -57,6 +65,5 @@ def shifts_of(torus: QuasiPeriodic | RingTorus) -> Floats:
     """omega - Omega of the seeds in long doubles; shape (s,)."""
     with mpmath.workdps(2 * DIGITS):
         linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
-        chosen = [mpmath.mpf(w.numerator) / w.denominator for w in torus.frequencies]
-        shifts = [w - x for w, x in zip(chosen, linear, strict=True)]
-    return np.array([long(shift) for shift in shifts])
+        pairs = zip(torus.frequencies, linear, strict=True)
+        return np.array([long(mpf(w) - x) for w, x in pairs])

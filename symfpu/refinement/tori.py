@@ -31,7 +31,7 @@ from symfpu.refinement.digits import (
     require_digits,
     resumed,
 )
-from symfpu.refinement.guesses import numbers_by_seed, require_torus, shifts_of
+from symfpu.refinement.guesses import moderate_by_seed, require_torus, shifts_of
 from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.invariance import long
 from symfpu.refinement.kept_sweeps import SweepsFile, require_digits_beside, unkept
@@ -124,7 +124,7 @@ def refine(
         "progress": progress,
     }
     if digits is not None:
-        return _of_digits(torus, digits, None, file, **how)
+        return _of_digits(torus, digits, None, file, how)
     if isinstance(torus, RingTorus):
         require_independent(torus)
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
@@ -189,7 +189,8 @@ def refine_at_amplitudes(
     0.390507682
     """
     require_torus(torus)
-    given = tuple(numbers_by_seed("amplitudes", amplitudes, torus, signed=True).values())
+    by_seed = moderate_by_seed("amplitudes", amplitudes, torus.seeds, signed=True)
+    given = tuple(by_seed.values())
     how: dict[str, Any] = {
         "tolerance": tolerance,
         "most_harmonics": most_harmonics,
@@ -197,7 +198,7 @@ def refine_at_amplitudes(
     }
     require_digits_beside(file, digits)
     if digits is not None:
-        return _of_digits(torus, digits, given, file, **how)
+        return _of_digits(torus, digits, given, file, how)
     found: RefinedTorus | RefinedRingTorus = _at_amplitudes(torus, given, **how)
     return found
 
@@ -212,30 +213,19 @@ def _of_digits(
     digits: int,
     amplitudes: tuple[Fraction, ...] | None,
     file: Path | str | None,
-    *,
-    tolerance: float,
-    most_harmonics: int,
-    progress: Progress | None,
+    how: dict[str, Any],
 ) -> PreciseTorus:
-    """The torus of the same frequencies, or of given amplitudes, with digits."""
+    """The torus of the same frequencies, or of given amplitudes, with digits.
+
+    how : tolerance, most_harmonics and progress, as of `refine`.
+    """
     if isinstance(torus, RingTorus):
         allowed = "nothing for a torus on a ring, which is refined in doubles"
         raise InputError("digits", digits, allowed, "leave it out")
     require_digits(torus.chain, digits)
     path = None if file is None else checkpoint_path(file)
-    how: dict[str, Any] = {
-        "tolerance": tolerance,
-        "most_harmonics": most_harmonics,
-        "progress": progress,
-    }
-    near: QuasiPeriodic
-    if amplitudes is not None:
-        near = _at_amplitudes(torus, amplitudes, **how)
-    elif isinstance(torus, (RefinedTorus, PreciseTorus)):
-        near = torus
-    else:
-        near = refine(torus, **how)
-    frequencies = near.frequencies if amplitudes is not None else torus.frequencies
+    near = _near(torus, amplitudes, how)
+    frequencies = torus.frequencies if amplitudes is None else near.frequencies
     guess, keep = guess_of(near, frequencies, amplitudes), unkept
     if path is not None:
         held = frequencies if amplitudes is None else None
@@ -250,9 +240,21 @@ def _of_digits(
         before, keep = kept.read(), kept.write
         guess = guess if before is None else resumed(guess, before)
     try:
-        return precise_torus(guess, digits, progress or unheard, keep)
+        return precise_torus(guess, digits, how["progress"] or unheard, keep)
     except Failure as failure:
         raise NoTorus(str(failure), near, near.residual()) from None
+
+
+def _near(
+    torus: QuasiPeriodic, amplitudes: tuple[Fraction, ...] | None, how: dict[str, Any]
+) -> QuasiPeriodic:
+    """The torus that the sweeps start from."""
+    near = torus
+    if amplitudes is not None:
+        near = _at_amplitudes(torus, amplitudes, **how)
+    elif not isinstance(torus, (RefinedTorus, PreciseTorus)):
+        near = refine(torus, **how)
+    return near
 
 
 @overload
@@ -316,30 +318,12 @@ def refine_at_energy(
     require_torus(torus)
     value = exact(energy, "energy")
     if value <= 0:
-        raise InputError(
-            "energy", energy, "a positive number", "take one near the energy of the torus"
-        )
+        advice = "take one near the energy of the torus"
+        raise InputError("energy", energy, "a positive number", advice)
     if not isinstance(harmonic, (bool, np.bool_)):
-        raise InputError(
-            "harmonic",
-            harmonic,
-            "True for sum E_q, False for H",
-            "say which energy is meant",
-        )
-    if amplitude_ratio is not None and energy_ratio is not None:
-        raise InputError(
-            "energy_ratio",
-            energy_ratio,
-            "only one of amplitude_ratio and energy_ratio",
-            "leave one out",
-        )
-    if energy_ratio is not None:
-        _require_energies(torus)
-        ratio = numbers_by_seed("energy_ratio", energy_ratio, torus, signed=False)
-    elif amplitude_ratio is not None:
-        ratio = numbers_by_seed("amplitude_ratio", amplitude_ratio, torus, signed=True)
-    else:
-        ratio = {q: exact(float(a), "amplitude") for q, a in _amplitudes(torus).items()}
+        allowed = "True for sum E_q, False for H"
+        raise InputError("harmonic", harmonic, allowed, "say which energy is meant")
+    ratio = _ratio(torus, amplitude_ratio, energy_ratio)
     numbers = {q: float(x) for q, x in ratio.items()}
     conditions = [
         Energy(long(value), bool(harmonic)),
@@ -354,8 +338,24 @@ def refine_at_energy(
     )
 
 
-def _amplitudes(torus: QuasiPeriodic | RingTorus) -> Mapping[int, Any]:
-    return torus.amplitudes if isinstance(torus, RingTorus) else amplitudes_of(torus)
+def _ratio(
+    torus: QuasiPeriodic | RingTorus,
+    amplitudes: Mapping[int, Number] | None,
+    energies: Mapping[int, Number] | None,
+) -> dict[int, Fraction]:
+    """The one that was given, by seed, or that of the amplitudes of the guess."""
+    if amplitudes is not None and energies is not None:
+        allowed = "only one of amplitude_ratio and energy_ratio"
+        raise InputError("energy_ratio", energies, allowed, "leave one out")
+    if energies is not None:
+        _require_energies(torus)
+        return moderate_by_seed("energy_ratio", energies, torus.seeds, signed=False)
+    if amplitudes is not None:
+        return moderate_by_seed("amplitude_ratio", amplitudes, torus.seeds, signed=True)
+    found: Mapping[int, Any] = (
+        torus.amplitudes if isinstance(torus, RingTorus) else amplitudes_of(torus)
+    )
+    return {q: exact(float(a), "amplitude") for q, a in found.items()}
 
 
 def _require_energies(torus: QuasiPeriodic | RingTorus) -> None:
