@@ -17,7 +17,7 @@ import numpy as np
 from symfpu.chain.chain import Chain
 from symfpu.errors import TorusTooLarge
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.numbers.arithmetic import text
+from symfpu.numbers.arithmetic import mpf, text
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.harmonics import chosen_harmonics, known_rows
@@ -41,7 +41,7 @@ WIDENINGS, PATIENCE, GAIN = 20, 3, 0.8
 # on the way: accuracy of a Krylov solution, and of coefficients in the residual of the choice
 # before; that of a guess is taken for so much
 ROUGH_KRYLOV, ROUGH, OF_A_GUESS = 1e-7, 1e-3, 1e-3
-
+FREQUENCY_DIGITS = 25  # of those that are found, which long doubles do not fill
 
 NO_GAIN = "more harmonics change nothing and"  # a reason to stop
 
@@ -235,13 +235,5 @@ def _frequencies(
     with mpmath.workdps(2 * DIGITS):
         linear = [chain.linear_frequency(q) for q in seeds]
         pairs = zip(linear, shifts, strict=True)
-        return tuple(_fraction(w + _mpf(shift)) for w, shift in pairs)
-
-
-def _mpf(value: np.longdouble) -> Any:
-    number = rational(value)
-    return mpmath.mpf(number.numerator) / number.denominator
-
-
-def _fraction(value: Any) -> Fraction:
-    return Fraction(text(value, 25))
+        found = [w + mpf(rational(shift)) for w, shift in pairs]
+        return tuple(Fraction(text(omega, FREQUENCY_DIGITS)) for omega in found)
