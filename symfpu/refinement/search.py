@@ -33,6 +33,7 @@ from symfpu.refinement.widening import (
 
 MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
 ROUNDS = 8  # choices of a polytope
+FREQUENCY_DIGITS = 25  # of those that are found, which long doubles do not fill
 # harmonics of the largest polytope, and of the one that choices by forces begin with
 LARGEST_POLYTOPE, FIRST_POLYTOPE = 10_000, 1500
 # choices by forces, those in turn that may gain nothing, and the residual in that of the best
@@ -41,7 +42,7 @@ WIDENINGS, PATIENCE, GAIN = 20, 3, 0.8
 # on the way: accuracy of a Krylov solution, and of coefficients in the residual of the choice
 # before; that of a guess is taken for so much
 ROUGH_KRYLOV, ROUGH, OF_A_GUESS = 1e-7, 1e-3, 1e-3
-FREQUENCY_DIGITS = 25  # of those that are found, which long doubles do not fill
+
 
 NO_GAIN = "more harmonics change nothing and"  # a reason to stop
 
