@@ -61,7 +61,7 @@ from symfpu.tori.verdict import assess as assess
 from symfpu.refinement.digits import PreciseTorus as PreciseTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus as RefinedRingTorus
 from symfpu.refinement.through import refine_at_start as refine_at_start
-from symfpu.refinement.tori import RefinedTorus as RefinedTorus
+from symfpu.refinement.refined_torus import RefinedTorus as RefinedTorus
 from symfpu.refinement.tori import refine as refine
 from symfpu.refinement.tori import refine_at_amplitudes as refine_at_amplitudes
 from symfpu.refinement.tori import refine_at_energy as refine_at_energy
@@ -252,7 +252,7 @@ from symfpu.errors import UndeterminedAmplitudes as UndeterminedAmplitudes
 from symfpu.families.family import NotInFamily as NotInFamily
 from symfpu.files.archive import BundleError as BundleError
 from symfpu.localization.recurrence import NoRecurrence as NoRecurrence
-from symfpu.refinement.tori import NoTorus as NoTorus
+from symfpu.refinement.refined_torus import NoTorus as NoTorus
 from symfpu.integrable.discriminant import NoDiscriminant as NoDiscriminant
 from symfpu.integrable.quadrature import BandsTooNarrow as BandsTooNarrow
 from symfpu.integrable.search import NoTodaTorus as NoTodaTorus

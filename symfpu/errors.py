@@ -68,6 +68,10 @@ class InputError(SymfpuError, ValueError):
         super().__init__(f"{argument} = {value!r}: allowed is {allowed}; {advice}")
 
 
+def _what_fits(needed: int, free: int) -> str:
+    return f"what fits into the {free:,} bytes of free memory ({needed:,} are needed)"
+
+
 class TooLarge(InputError):
     """A series whose arrays would not fit into the free memory.
 
@@ -81,9 +85,7 @@ class TooLarge(InputError):
         self.needed = needed
         self.free = free
         self.largest = largest
-        allowed = (
-            f"what fits into the {free:,} bytes of free memory ({needed:,} are needed)"
-        )
+        allowed = _what_fits(needed, free)
         advice = "take fewer seeds or a shorter chain"
         if largest >= 0:
             advice = f"take order {largest} or less, or fewer seeds"
@@ -107,9 +109,7 @@ class TorusTooLarge(InputError):
         self.needed = needed
         self.free = free
         self.largest = largest
-        allowed = (
-            f"what fits into the {free:,} bytes of free memory ({needed:,} are needed)"
-        )
+        allowed = _what_fits(needed, free)
         advice = "take a shorter chain"
         if largest:
             advice = f"take most_harmonics={largest} or less, or a larger tolerance"

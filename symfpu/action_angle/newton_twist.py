@@ -20,10 +20,10 @@ from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.refinement.conditions import Amplitude, seed_amplitudes
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.harmonics import unit_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.newton import responses
-from symfpu.refinement.tori import shifts_of
 from symfpu.refinement.waves import WaveEquation
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus

@@ -34,9 +34,9 @@ from symfpu.refinement.digits import (
     SWEEPS,
 )
 from symfpu.refinement.equation import Floats
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.kronecker import Integers
 from symfpu.refinement.newton import Correction
-from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 

@@ -57,7 +57,7 @@ from symfpu.files.formats import ARCHIVE, BUNDLE, format_of, opened_by
 from symfpu.frames.recorded import Recorded
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import integer
-from symfpu.refinement.tori import RefinedTorus
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.series.series import LindstedtSeries
 from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution

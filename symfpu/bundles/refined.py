@@ -12,9 +12,9 @@ from symfpu.bundles.entries import chain_entries, chain_from
 from symfpu.files.archive import Archive, Json
 from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
 from symfpu.refinement.newton import NewtonStep
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.resonances import NearResonance
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import RefinedTorus
 
 Array = NDArray[Any]
 FLOATS, INTEGERS = "<f8", "<i8"

@@ -49,13 +49,9 @@ from symfpu.files.writing import output_folder
 from symfpu.numbers.counted import counted
 from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.harmonics import MOST_HARMONICS
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import (
-    RefinedTorus,
-    refine,
-    refine_at_amplitudes,
-    refine_at_energy,
-)
+from symfpu.refinement.tori import refine, refine_at_amplitudes, refine_at_energy
 from symfpu.reports.family import (
     family_table,
     family_text,

@@ -15,8 +15,8 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.numbers.arithmetic import text
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.family import refined_text
 from symfpu.reports.solution import solution_text
 from symfpu.saved.results import load

@@ -43,8 +43,8 @@ def chaos_times(chain: Chain, states: Sequence[State], T: float) -> Floats:
     time; dimensionless. Infinite where neither is seen by T.
 
     Times are of a grid of SAMPLES_A_DECADE in every decade. Deviations begin at random, with the
-    same one in every orbit. Raises UnstableStep where
-    an orbit in its well does not keep its energy with the finest step.
+    same one in every orbit. Raises UnstableStep where an orbit in its well does not keep its
+    energy with the finest step.
     """
     # lazy: numba takes longer to import than all the rest
     from symfpu.numbers.lanes import LANES

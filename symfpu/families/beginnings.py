@@ -21,12 +21,8 @@ from symfpu.files.progress import Progress
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.conditions import Amplitude, Condition, ratio_conditions
 from symfpu.refinement.invariance import DIGITS
-from symfpu.refinement.tori import (
-    TOLERANCE,
-    NoTorus,
-    refine_at_amplitudes,
-    refined_torus,
-)
+from symfpu.refinement.refined_torus import TOLERANCE, NoTorus, refined_torus
+from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.short_waves import short_waves

@@ -33,11 +33,8 @@ from symfpu.refinement.conditions import (
     ratio_conditions,
 )
 from symfpu.refinement.equation import Floats
-from symfpu.refinement.tori import (
-    NoTorus,
-    refined_torus,
-    shifts_of,
-)
+from symfpu.refinement.guesses import shifts_of
+from symfpu.refinement.refined_torus import NoTorus, refined_torus
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
 

@@ -26,8 +26,9 @@ from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_way import NormalWay
 from symfpu.refinement.conditions import Crossing
 from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import DIGITS, long
-from symfpu.refinement.tori import NoTorus, RefinedTorus, shifts_of
+from symfpu.refinement.refined_torus import NoTorus, RefinedTorus
 
 # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
 LEAST_COEFFICIENT = 1e-11

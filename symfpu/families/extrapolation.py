@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 
 from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import RefinedTorus
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.travelling import wave_coefficients

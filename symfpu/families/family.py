@@ -31,10 +31,8 @@ from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
 from symfpu.refinement.invariance import DIGITS, long
-from symfpu.refinement.tori import (
-    refine_at_energy,
-    refined_torus,
-)
+from symfpu.refinement.refined_torus import refined_torus
+from symfpu.refinement.tori import refine_at_energy
 
 # in the order in which they are told, as one and as several
 KINDS_OF_EVENTS = {

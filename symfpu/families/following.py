@@ -34,10 +34,7 @@ from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, integer
 from symfpu.refinement.conditions import ratio_conditions
-from symfpu.refinement.tori import (
-    TOLERANCE,
-    NoTorus,
-)
+from symfpu.refinement.refined_torus import TOLERANCE, NoTorus
 from symfpu.tori.torus import QTorus
 
 SECOND_RATIO = 1.1  # ratio of the amplitudes of the second member and the first

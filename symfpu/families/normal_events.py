@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, TypeAlias
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -45,10 +45,10 @@ from symfpu.normal.resonances import (
     locked_resonances,
 )
 from symfpu.normal.search import followed_modes
+from symfpu.normal.torus import Solution
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.tori import NoTorus
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
+from symfpu.refinement.refined_torus import NoTorus
+from symfpu.tori.ring_torus import amplitudes_by_seed
 
 STABILITY, RESONANCE = "stability", "resonance"
 RESONANCE_LENGTH = 4  # sum |nu_i| up to which a resonance that is crossed is an event
@@ -59,9 +59,6 @@ MET = 1e-8  # distance up to which a resonance was crossed, and not jumped over
 ROUGH = 1e-6  # of the way, from which an event is said to be interpolated
 # where two frequencies are nearer than this, relative, D is not computed but interpolated
 LEAST_GAP = 5e-4
-
-
-Solution: TypeAlias = QuasiPeriodic | RingTorus
 
 
 @dataclass(frozen=True)

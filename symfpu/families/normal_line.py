@@ -6,7 +6,7 @@ Standing waves of a ring are found with fixed ends and unfolded.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -14,16 +14,13 @@ from symfpu.families.extrapolation import extrapolated, in_doubles
 from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import Between, followed_modes
+from symfpu.normal.torus import Solution
 from symfpu.refinement.conditions import AmplitudeLine, Condition
-from symfpu.refinement.tori import (
-    NoTorus,
-    refine_at_amplitudes,
-    refined_torus,
-)
+from symfpu.refinement.refined_torus import NoTorus, refined_torus
+from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed, unfold
 
-Solution: TypeAlias = QuasiPeriodic | RingTorus
 HALVINGS = 6  # of a step to a torus that Newton's method does not reach at once
 
 

@@ -27,9 +27,9 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.chain.tension_terms import highest_product
 from symfpu.refinement.digits import PreciseTorus
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.lattice import dilated, told_apart
-from symfpu.refinement.tori import shifts_of
+from symfpu.refinement.lattice import canonical_signs, dilated, places_of, told_apart
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.torus import QTorus
 
@@ -98,12 +98,8 @@ def coefficient_errors(solution: QuasiPeriodic) -> NDArray[np.float64]:
     True
     """
     errors = _errors(solution)
-    wanted = solution.harmonics
-    rows = {
-        nu: i
-        for i, nu in enumerate(map(tuple, _canonical_signs(errors.harmonics).tolist()))
-    }
-    places = [rows[nu] for nu in map(tuple, _canonical_signs(wanted).tolist())]
+    known = canonical_signs(errors.harmonics)
+    places = places_of(canonical_signs(solution.harmonics), known)
     return np.asarray(errors.sizes[places], dtype=np.float64)
 
 
@@ -116,12 +112,6 @@ def _errors(solution: QuasiPeriodic) -> _Errors:
     if isinstance(solution, PreciseTorus):
         return _of_many_angles(solution)
     return _of_newton(solution)
-
-
-def _canonical_signs(harmonics: Ints) -> Ints:
-    """One of each pair +-nu: the first number that is not zero is positive."""
-    lead = harmonics[np.arange(len(harmonics)), np.argmax(harmonics != 0, axis=1)]
-    return np.asarray(np.where((lead < 0)[:, None], -harmonics, harmonics))
 
 
 @lru_cache(maxsize=64)
@@ -197,7 +187,7 @@ def _harmonics(torus: QuasiPeriodic) -> Ints:
 
     Of one angle also those up to WIDENING times as large.
     """
-    own = _canonical_signs(np.asarray(torus.harmonics))
+    own = canonical_signs(np.asarray(torus.harmonics))
     if len(torus.seeds) == 1:
         own = np.arange(int(WIDENING * own.max()) + 1)[:, None]
     return np.unique(own, axis=0)
@@ -208,7 +198,7 @@ def _left_out(
 ) -> tuple[Ints, Floats, Floats]:
     """Harmonics next to those of the equation, their frequencies, and coefficients by forces."""
     known = set(map(tuple, equation.harmonics.tolist()))
-    around = np.unique(_canonical_signs(told_apart(equation.harmonics)), axis=0)
+    around = np.unique(canonical_signs(told_apart(equation.harmonics)), axis=0)
     harmonics = around[[nu not in known for nu in map(tuple, around.tolist())]]
     forces = equation.force_at(cosines, harmonics)
     rates = harmonics @ (equation.linear[equation.seed_columns] + shifts)
@@ -222,11 +212,7 @@ def _left_out(
 
 def _on(torus: QuasiPeriodic, harmonics: Ints) -> Floats:
     """The coefficients of a torus, in long doubles, at given harmonics; shape (H, N-1)."""
-    rows = {nu: i for i, nu in enumerate(map(tuple, harmonics.tolist()))}
-    places = [
-        rows[nu]
-        for nu in map(tuple, _canonical_signs(np.asarray(torus.harmonics)).tolist())
-    ]
+    places = places_of(canonical_signs(np.asarray(torus.harmonics)), harmonics)
     cosines = np.zeros((len(harmonics), torus.chain.N - 1), dtype=np.longdouble)
     cosines[places] = torus.cosines.astype(float)
     return cosines
@@ -330,10 +316,9 @@ def _of_digits(orbit: PreciseOrbit) -> _Errors:
 def _of_many_angles(torus: PreciseTorus) -> _Errors:
     """The same of a torus, at harmonics next to its own, too."""
     chain, seeds = torus.chain, torus.seeds
-    equation = InvarianceEquation(chain, seeds, _canonical_signs(torus.harmonics))
-    around = np.unique(_canonical_signs(dilated(torus.harmonics, WIDENING)), axis=0)
-    own = {nu: i for i, nu in enumerate(map(tuple, around.tolist()))}
-    rows = np.array([own[tuple(nu)] for nu in equation.harmonics.tolist()])
+    equation = InvarianceEquation(chain, seeds, canonical_signs(torus.harmonics))
+    around = np.unique(canonical_signs(dilated(torus.harmonics, WIDENING)), axis=0)
+    rows = places_of(equation.harmonics, around)
     rates = around @ (equation.linear[equation.seed_columns] + shifts_of(torus))
     divisors = np.abs(
         (rates[:, None] - equation.linear) * (rates[:, None] + equation.linear)

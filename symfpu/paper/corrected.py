@@ -13,7 +13,8 @@ from symfpu.errors import SymfpuError
 from symfpu.files.progress import NO_FRACTION, Progress, labelled, unheard
 from symfpu.paper.printed import PrintedTorus
 from symfpu.paper.series_errors import Decay, SeriesErrors, decay, series_errors
-from symfpu.refinement.tori import RefinedTorus, refine
+from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import solve_amplitudes

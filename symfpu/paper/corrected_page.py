@@ -16,7 +16,7 @@ from symfpu.figures.panels import Curve, Panel
 from symfpu.paper.corrected import LEAST_DIGITS, LIMIT, CorrectedRow
 from symfpu.paper.series_errors import Decay, ScalingStudy, SeriesErrors
 from symfpu.paper.table import rounds_to
-from symfpu.refinement.tori import RefinedTorus
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.reports.tables import fifteen_digits, markdown_table
 
 ErrorsByLabel = Mapping[str, Mapping[int, float]]

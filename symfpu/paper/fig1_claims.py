@@ -25,7 +25,7 @@ from symfpu.paper.printed import (
     TWO_TORUS,
 )
 from symfpu.paper.table import rounds_to
-from symfpu.refinement.tori import RefinedTorus
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.tori.torus import QTorus
 
 LEAST_DIFFERENCES = (3e-9, 3e-7)  # "a minimum level of 1e-8 .. 1e-7", to a factor of three

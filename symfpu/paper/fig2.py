@@ -42,7 +42,8 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.refinement.tori import RefinedTorus, refine
+from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.tori import refine
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]

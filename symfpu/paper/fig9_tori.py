@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -75,31 +75,19 @@ def approach(
 def _at_rest(torus: FourierTorus) -> FourierTorus:
     """With phases 0 and pi, those of an orbit that starts at rest."""
     phases = {q: math.pi * round(float(x) / math.pi) for q, x in torus.phases.items()}
-    return FourierTorus(
-        torus.chain,
-        torus.seeds,
-        torus.frequencies,
-        torus.harmonics,
-        torus.cosines,
-        phases,
-    )
+    return replace(torus, phases=phases)
 
 
 def tori_claim(found: Approach) -> Claim:
     """How many frequencies the trajectory has, by the tori that it is near."""
-    parts = []
-    for s, off, count in zip(found.angles, found.distances, found.harmonics, strict=True):
-        parts.append(f"{s} angles {off:.2g} ({count} harmonics)")
+    tori = zip(found.angles, found.distances, found.harmonics, strict=True)
+    parts = [f"{s} angles {off:.2g} ({count} harmonics)" for s, off, count in tori]
     falls = ", ".join(f"{fall:.2g}" for fall in found.falls)
-    ours = (
-        "tori by Newton's method through the start of their seeds miss it, in the largest "
-    )
-    ours += (
-        f"coordinate, by: {', '.join(parts)}; an angle more divides the distance by {falls}"
-    )
     ended = found.falls[-1] < LAST_FALL
-    if not ended:
-        ours += ", so that none of these is the last"
+    last = "" if ended else ", so that none of these is the last"
+    which = "tori by Newton's method through the start of their seeds"
+    missed = f"{which} miss it, in the largest coordinate, by: {', '.join(parts)}"
+    ours = f"{missed}; an angle more divides the distance by {falls}{last}"
     text = "the dimension of the object associated with the FPU-trajectory is around 5"
     near = found.distances[-1] < NEAR
     return Claim("6.4.3", text, "5", ours, judged(ended and near, near))

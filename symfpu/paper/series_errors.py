@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import exact
-from symfpu.refinement.tori import RefinedTorus, refine_at_amplitudes
+from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, amplitude_history

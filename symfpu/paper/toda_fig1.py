@@ -29,7 +29,8 @@ from symfpu.paper.convergence_fig1 import (
     resonant_pole,
 )
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, TWO_TORUS
-from symfpu.refinement.tori import RefinedTorus, refine
+from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.resummation import resum_by_order

@@ -22,7 +22,8 @@ from symfpu.integrable.invariants import toda_gaps
 from symfpu.integrable.torus import toda_torus
 from symfpu.paper.printed import TWO_TORUS, PrintedTorus
 from symfpu.paper.starts import AMPLITUDE_ORDERS, printed_row
-from symfpu.refinement.tori import RefinedTorus, refine, refine_at_amplitudes
+from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.tori import refine, refine_at_amplitudes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 

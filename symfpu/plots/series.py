@@ -22,8 +22,8 @@ from symfpu.plots.style import (
     rounding_below,
     whole_numbers,
 )
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import RefinedTorus
 from symfpu.series.series import LindstedtSeries
 from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders

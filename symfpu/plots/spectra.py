@@ -29,8 +29,8 @@ from symfpu.plots.style import (
     look,
     whole_numbers,
 )
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import RefinedTorus
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus

@@ -35,6 +35,7 @@ from symfpu.refinement.harmonics import within_reach
 from symfpu.refinement.invariance import InvarianceEquation, long
 from symfpu.refinement.kept_sweeps import Keep, Reached, unkept
 from symfpu.refinement.kronecker import Box, Integers, KroneckerForce
+from symfpu.refinement.lattice import canonical_signs, places_of
 from symfpu.refinement.newton import Correction
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, show
 
@@ -398,19 +399,18 @@ class TorusSweeps:
     def left_over(self) -> LeftOfTorus:
         """The residual at all harmonics of a larger box, in more digits."""
         finer = self._finer()
-        chosen = {tuple(nu) for nu in self.harmonics.tolist()}
-        wanted = _one_of_each_pair(finer.box.harmonics)
+        wanted = canonical_signs(finer.box.harmonics)
         c = self.c << CHECK_BITS
         force, off = finer.force(self.harmonics, c, wanted)
-        place = {tuple(nu): i for i, nu in enumerate(wanted.tolist())}
-        rows = np.array([place[tuple(nu)] for nu in self.harmonics.tolist()])
+        rows = places_of(self.harmonics, wanted)
         omega = np.array([finer.fixed(w) for w in self.frequencies], dtype=object)
         rates = wanted.astype(object) @ omega
         divisors = ((rates**2) >> finer.bits)[:, None] - finer.squares
         allowed = self.equation.allowed(wanted)
         imbalance = np.where(allowed, -force, 0)
         imbalance[rows] += (divisors[rows] * c) >> finer.bits
-        out = np.array([tuple(nu) not in chosen for nu in wanted.tolist()])
+        out = np.ones(len(wanted), dtype=bool)
+        out[rows] = False
         outside = self._relative(imbalance[out], divisors[out], finer.bits)
         rounding = len(c) * (1 + max(abs(int(w)) for w in omega) >> finer.bits)
         total = max(abs(imbalance).sum(axis=0) + off) + rounding
@@ -475,10 +475,3 @@ class TorusSweeps:
             error=left.error,
             sweeps=self.number,
         )
-
-
-def _one_of_each_pair(harmonics: Ints) -> Ints:
-    """With the first number that is not 0 positive, as the chosen harmonics are."""
-    first = np.argmax(harmonics != 0, axis=1)
-    sign = np.sign(harmonics[np.arange(len(harmonics)), first])
-    return np.asarray(np.where(sign[:, None] < 0, -harmonics, harmonics))

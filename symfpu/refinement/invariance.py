@@ -29,7 +29,7 @@ from symfpu.refinement.couplings import (
     steps_by_slopes,
 )
 from symfpu.refinement.equation import Floats, Ints, Slopes
-from symfpu.refinement.lattice import Lattice, halves_of_pairs
+from symfpu.refinement.lattice import Lattice, halves_of_pairs, places_of
 
 PORTION = 4_000_000  # values of all bonds transformed at once
 LEAST_COUPLING = (
@@ -67,9 +67,7 @@ def halves(value: Any) -> tuple[np.longdouble, np.longdouble]:
     """An mpf as the sum of two long doubles."""
     high = long(value)
     with mpmath.workdps(2 * DIGITS):
-        exact = rational(high)
-        low = value - mpmath.mpf(exact.numerator) / exact.denominator
-        return high, long(low)
+        return high, long(value - mpf(rational(high)))
 
 
 def curvature(law: bonds.Law, r: Floats) -> Floats:
@@ -94,9 +92,7 @@ class InvarianceEquation:
         self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
         self.grid = Lattice(harmonics, apart)
         self.mask = self.allowed(harmonics)
-        units = np.eye(len(seeds), dtype=np.int64)
-        places = [np.flatnonzero((harmonics == e).all(axis=1)) for e in units]
-        self.seed_rows = np.array([int(place[0]) for place in places])
+        self.seed_rows = places_of(np.eye(len(seeds), dtype=np.int64), harmonics)
         self.seed_columns = np.array(seeds) - 1
         with mpmath.workdps(2 * DIGITS):
             linear = [chain.linear_frequency(q) for q in range(1, chain.N)]
@@ -172,9 +168,9 @@ class InvarianceEquation:
         omega = self.seed_frequencies + shifts
         return np.asarray(self.harmonics @ omega)
 
-    def _portions(self, points: int | None = None) -> list[slice]:
-        """Bonds whose values fit into a portion, on so many points, or those of its own grid."""
-        step = max(1, PORTION // (points or self.grid.points))
+    def _portions(self, grid: Lattice) -> list[slice]:
+        """Bonds whose values on the points of a lattice fit into a portion."""
+        step = max(1, PORTION // grid.points)
         count = self._stretch.shape[1]
         return [slice(j, j + step) for j in range(0, count, step)]
 
@@ -193,7 +189,7 @@ class InvarianceEquation:
         kind = cosines.dtype
         law = bonds.cast(self._law, kind)
         total = np.zeros(cosines.shape, dtype=kind)
-        for part in self._portions(grid.points):
+        for part in self._portions(grid):
             there = self._stretch[:, part].astype(kind)
             back = self._back[:, part].T.astype(kind)
             r = grid.values(cosines @ there)
@@ -204,7 +200,7 @@ class InvarianceEquation:
     def force_at(self, cosines: Floats, harmonics: Ints) -> Floats:
         """The same at other harmonics (M, s) that the lattice tells apart; shape (M, N-1)."""
         total = np.zeros((len(harmonics), cosines.shape[1]), dtype=np.longdouble)
-        for part in self._portions():
+        for part in self._portions(self.grid):
             r = self.grid.values(cosines @ self._stretch[:, part])
             tension = bonds.anharmonic_tension(self._law, r)
             total += self.grid.coefficients_at(tension, harmonics) @ self._back[:, part].T
@@ -221,7 +217,7 @@ class InvarianceEquation:
         """
         law, (stretch, back) = self.chain.law(), self.stretches_of_half()
         c, tension = cosines.astype(float), np.zeros(stretch.shape[1])
-        for part in self._portions():
+        for part in self._portions(self.grid):
             r = self.grid.values(c @ stretch[:, part])
             tension[part] = np.mean(bonds.anharmonic_tension(law, r) ** 2, axis=1)
         sizes = np.sqrt(back**2 @ tension)
@@ -266,7 +262,7 @@ class InvarianceEquation:
         """V''(r) - 1 on the lattice, in doubles; shape (bonds, points)."""
         law, (stretch, _) = self.chain.law(), self.stretches_of_half()
         c, result = cosines.astype(float), np.empty((stretch.shape[1], self.grid.points))
-        for part in self._portions():
+        for part in self._portions(self.grid):
             r = self.grid.values(c @ stretch[:, part])
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
@@ -289,7 +285,7 @@ class InvarianceEquation:
         Shapes (H, N-1).
         """
         total = np.zeros(change.shape)
-        for part in self._portions():
+        for part in self._portions(self.grid):
             there = self._stretch[:, part].astype(float)
             back = self._back[:, part].T.astype(float)
             d = self.grid.values(change @ there)
@@ -346,7 +342,7 @@ class InvarianceEquation:
     def _spectrum(self, slopes: Floats) -> Floats:
         """Coefficients of the slopes of all bonds, by place; shape (bonds, points)."""
         spectrum = np.empty_like(slopes)
-        for part in self._portions():
+        for part in self._portions(self.grid):
             spectrum[part] = self.grid.spectrum(slopes[part])
         return spectrum
 

@@ -177,6 +177,18 @@ def without_opposites(harmonics: Ints) -> Ints:
     return np.asarray(harmonics[lead >= 0])
 
 
+def canonical_signs(harmonics: Ints) -> Ints:
+    """One of each pair +-nu: the first number that is not 0 is positive, as of chosen harmonics."""
+    lead = harmonics[np.arange(len(harmonics)), np.argmax(harmonics != 0, axis=1)]
+    return np.asarray(np.where((lead < 0)[:, None], -harmonics, harmonics))
+
+
+def places_of(rows: Ints, among: Ints) -> Ints:
+    """Where harmonics stand among others, which hold them all; shape (len(rows),)."""
+    places = {nu: i for i, nu in enumerate(map(tuple, among.tolist()))}
+    return np.array([places[nu] for nu in map(tuple, rows.tolist())], dtype=np.int64)
+
+
 @lru_cache(maxsize=8)
 def _known_lattice(content: bytes, s: int) -> tuple[int, tuple[int, ...]]:
     from scipy import fft

@@ -19,7 +19,7 @@ from symfpu.refinement.invariance import PORTION
 from symfpu.refinement.lattice import Lattice
 from symfpu.refinement.linear_system import SMALLEST_BLOCK, block_size
 from symfpu.refinement.newton import KRYLOV
-from symfpu.tori.quasiperiodic import GRID_POINTS
+from symfpu.tori.quasiperiodic import GRID_POINTS, points_of_each_angle
 from symfpu.tori.ring_torus import CHUNK as ANGLES_OF_A_RING
 
 DOUBLE = 8
@@ -102,10 +102,17 @@ def least_sizes(
     """Before the equations are made: with the smallest block, and what symmetry leaves unknown."""
     count, s = harmonics.shape
     halves = (not chain.periodic) + bool(chain.potential.even)
-    points, unknowns = Lattice(harmonics, apart).points, columns * count // 2**halves
-    block = min(SMALLEST_BLOCK, unknowns)
-    angles, ring = _angles(chain, s), chain.periodic
-    return Sizes(count, columns, unknowns, bonds, points, block, angles, ring)
+    unknowns = columns * count // 2**halves
+    return Sizes(
+        harmonics=count,
+        columns=columns,
+        unknowns=unknowns,
+        bonds=bonds,
+        points=Lattice(harmonics, apart).points,
+        block=min(SMALLEST_BLOCK, unknowns),
+        angles=_angles(chain, s),
+        ring=chain.periodic,
+    )
 
 
 def sizes_of(
@@ -113,11 +120,16 @@ def sizes_of(
 ) -> Sizes:
     """Of the first step from an iterate."""
     count, columns = equation.mask.shape
-    slopes, unknowns = equation.slopes(cosines), int(equation.mask.sum())
-    block = block_size(equation, equation.divisors(shifts).astype(float), slopes)
-    angles, ring = _angles(chain, len(shifts)), chain.periodic
+    slopes, divisors = equation.slopes(cosines), equation.divisors(shifts)
     return Sizes(
-        count, columns, unknowns, len(slopes), equation.points, block, angles, ring
+        harmonics=count,
+        columns=columns,
+        unknowns=int(equation.mask.sum()),
+        bonds=len(slopes),
+        points=equation.points,
+        block=block_size(equation, divisors.astype(float), slopes),
+        angles=_angles(chain, len(shifts)),
+        ring=chain.periodic,
     )
 
 
@@ -125,8 +137,7 @@ def _angles(chain: Chain, s: int) -> int:
     """At which the residual of a torus of s angles is taken, as many as are held at once."""
     if chain.periodic:
         return ANGLES_OF_A_RING
-    number: int = max(2, min(64, round(GRID_POINTS ** (1 / s))))
-    return int(number**s)
+    return int(points_of_each_angle(GRID_POINTS, s) ** s)
 
 
 def require_memory(sizes: Sizes, chain: Chain) -> None:

@@ -154,13 +154,9 @@ def newton(
         system = LinearSystem(equation, conditions, cosines, shifts)
         right = -np.concatenate([imbalance, values])
         try:
-            found = _solved(system, Preconditioner(system), right, aim.krylov)
-            change, products, left = found
-        except (np.linalg.LinAlgError, ValueError) as failure:
-            reason = f"the matrix of Newton's method is singular ({failure})"
-            return failed(reason, unsolved=True)
-        if not left < 1:
-            return failed(_unsolved(products, left), unsolved=True)
+            change, products, left = _change(system, right, aim.krylov)
+        except np.linalg.LinAlgError as failure:
+            return failed(str(failure), unsolved=True)
         moved = np.zeros(cosines.shape)
         moved[equation.mask] = change[: -len(shifts)]
         cosines = cosines + moved
@@ -169,10 +165,8 @@ def newton(
         steps.append(NewtonStep(residual, relative, violation, products))
         line = f"step {len(steps)}: residual {residual:.1e}, change {relative:.1e}"
         progress(line, NO_FRACTION)
-        reached = zip(_names(equation), sizes, _sizes(equation, cosines), strict=True)
-        for name, old, new in reached:
-            if not old / GROWTH < new < old * GROWTH:
-                return failed(f"{name} goes from {old:.3g} to {new:.3g}")
+        if runs_away := _runs_away(sizes, _sizes(equation, cosines)):
+            return failed(runs_away)
         if left > INEXACT:
             continue
         before = steps[-2].change if len(steps) > 1 else 1.0
@@ -186,15 +180,21 @@ def _unsolved(products: int, left: float) -> str:
     return f"{products} products leave {left:.2g} of the right-hand side of Newton's method"
 
 
-def _sizes(equation: TorusEquation, cosines: Floats) -> list[float]:
+def _sizes(equation: TorusEquation, cosines: Floats) -> dict[str, float]:
     """What must not run away or vanish: the largest coefficient, and every seed's amplitude."""
-    amplitudes = cosines[equation.seed_rows, equation.seed_columns]
+    amplitudes = np.abs(cosines[equation.seed_rows, equation.seed_columns])
+    by_seed = zip(equation.seeds, amplitudes, strict=True)
     largest = float(np.abs(cosines).max())
-    return [largest, *(float(abs(a)) for a in amplitudes)]
+    return {"the largest coefficient": largest} | {f"A_{q}": float(a) for q, a in by_seed}
 
 
-def _names(equation: TorusEquation) -> list[str]:
-    return ["the largest coefficient", *(f"A_{q}" for q in equation.seeds)]
+def _runs_away(sizes: dict[str, float], reached: dict[str, float]) -> str:
+    """The first size that has left that of the guess, in words; empty where there is none."""
+    for name, old in sizes.items():
+        new = reached[name]
+        if not old / GROWTH < new < old * GROWTH:
+            return f"{name} goes from {old:.3g} to {new:.3g}"
+    return ""
 
 
 class Solution(NamedTuple):
@@ -212,7 +212,7 @@ def _solved(
     system: LinearSystem,
     preconditioner: Preconditioner,
     right: Floats,
-    accuracy: float = ACCURACY,
+    accuracy: float,
 ) -> Solution:
     """The solution of the system for a right-hand side, as far as it is found."""
     from scipy.sparse.linalg import LinearOperator, gmres
@@ -234,6 +234,18 @@ def _solved(
         missed = operator @ solution - right
         left = float(np.linalg.norm(missed) / np.linalg.norm(right))
     return Solution(preconditioner(solution), count, left)
+
+
+def _change(system: LinearSystem, right: Floats, accuracy: float) -> Solution:
+    """A step, as far as it is found; LinAlgError with the reason where there is none."""
+    try:
+        found = _solved(system, Preconditioner(system), right, accuracy)
+    except (np.linalg.LinAlgError, ValueError) as failure:
+        reason = f"the matrix of Newton's method is singular ({failure})"
+        raise np.linalg.LinAlgError(reason) from failure
+    if not found.left < 1:
+        raise np.linalg.LinAlgError(_unsolved(found.products, found.left))
+    return found
 
 
 def _solution(

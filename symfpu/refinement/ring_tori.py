@@ -11,7 +11,7 @@ import numpy as np
 from symfpu.errors import InputError
 from symfpu.numbers.counted import counted
 from symfpu.refinement.conditions import seed_amplitudes
-from symfpu.refinement.lattice import dilated
+from symfpu.refinement.lattice import low_harmonics
 from symfpu.refinement.newton import Iterate, NewtonStep
 from symfpu.refinement.resonances import NearResonance, near_resonances
 from symfpu.refinement.waves import WaveEquation
@@ -20,7 +20,6 @@ from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.travelling import signs_of
 
 SUSPECT = 1e-9  # of nu.omega, below which it is decided exactly
-LOW = 4.0  # sum |nu_i| of the harmonics that are looked at beside those of the guess
 STANDING = (
     "opposite waves of one frequency stand: refine the solution of Chain(N // 2, ...) with "
     "fixed ends and unfold it; else change a frequency"
@@ -73,8 +72,7 @@ class RefinedRingTorus(RingTorus):
 def require_independent(torus: RingTorus) -> None:
     """InputError where nu.omega = 0 for a low harmonic: the angles are not independent then."""
     frequencies = torus.frequencies
-    low = dilated(np.eye(len(frequencies), dtype=np.int64), LOW)
-    harmonics = np.concatenate([low, torus.harmonics])
+    harmonics = np.concatenate([low_harmonics(len(frequencies)), torus.harmonics])
     shared = lcm(*(w.denominator for w in frequencies))
     whole = [int(w * shared) for w in frequencies]
     near = np.abs(harmonics @ np.array([float(w) for w in frequencies])) < SUSPECT

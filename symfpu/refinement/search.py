@@ -17,7 +17,7 @@ import numpy as np
 from symfpu.chain.chain import Chain
 from symfpu.errors import TorusTooLarge
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.numbers.arithmetic import text
+from symfpu.numbers.arithmetic import mpf, text
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.harmonics import chosen_harmonics, known_rows
@@ -33,6 +33,7 @@ from symfpu.refinement.widening import (
 
 MARGIN = 1e-3  # of the tolerance, to which coefficients are kept
 ROUNDS = 8  # choices of a polytope
+FREQUENCY_DIGITS = 25  # of those that are found, which long doubles do not fill
 # harmonics of the largest polytope, and of the one that choices by forces begin with
 LARGEST_POLYTOPE, FIRST_POLYTOPE = 10_000, 1500
 # choices by forces, those in turn that may gain nothing, and the residual in that of the best
@@ -235,13 +236,5 @@ def _frequencies(
     with mpmath.workdps(2 * DIGITS):
         linear = [chain.linear_frequency(q) for q in seeds]
         pairs = zip(linear, shifts, strict=True)
-        return tuple(_fraction(w + _mpf(shift)) for w, shift in pairs)
-
-
-def _mpf(value: np.longdouble) -> Any:
-    number = rational(value)
-    return mpmath.mpf(number.numerator) / number.denominator
-
-
-def _fraction(value: Any) -> Fraction:
-    return Fraction(text(value, 25))
+        found = [w + mpf(rational(shift)) for w, shift in pairs]
+        return tuple(Fraction(text(omega, FREQUENCY_DIGITS)) for omega in found)

@@ -11,11 +11,12 @@ from fractions import Fraction
 
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
-from symfpu.numbers.typed import Number, exact
+from symfpu.numbers.typed import Number
 from symfpu.refinement.conditions import Start
+from symfpu.refinement.guesses import numbers_by_seed
 from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.invariance import long
-from symfpu.refinement.tori import TOLERANCE, RefinedTorus, refined_torus
+from symfpu.refinement.refined_torus import TOLERANCE, RefinedTorus, refined_torus
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 from symfpu.tori.ring_torus import RingTorus
 
@@ -66,13 +67,10 @@ def refine_at_start(
     )
 
 
-def _coordinates(torus: QuasiPeriodic, values: object) -> dict[int, Fraction]:
+def _coordinates(torus: QuasiPeriodic, values: Mapping[int, Number]) -> dict[int, Fraction]:
     """A number for each seed, not all of them 0."""
     allowed = f"a number for each of the seeds {torus.seeds}, by seed"
-    if not isinstance(values, Mapping) or set(values) != set(torus.seeds):
-        advice = "write it as {seed: number} and name every seed"
-        raise InputError("coordinates", values, allowed, advice)
-    numbers = {q: exact(values[q], f"coordinates, {q}") for q in torus.seeds}
+    numbers = numbers_by_seed("coordinates", values, torus.seeds, allowed)
     if not any(numbers.values()):
         advice = "take the coordinates of an orbit that moves"
         raise InputError("coordinates", dict(values), f"{allowed}, not all 0", advice)

@@ -6,27 +6,22 @@ Their series only approximate them.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from fractions import Fraction
-from numbers import Real
 from pathlib import Path
 from typing import Any, overload
 
-import mpmath
 import numpy as np
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError, SymfpuError
+from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path
 from symfpu.files.progress import Progress, unheard
-from symfpu.numbers.typed import Number, exact, integer
+from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import (
     Amplitude,
-    Condition,
     Energy,
     FrequencyShift,
     ratio_conditions,
-    seed_amplitudes,
 )
 from symfpu.refinement.digits import (
     Failure,
@@ -36,108 +31,35 @@ from symfpu.refinement.digits import (
     require_digits,
     resumed,
 )
-from symfpu.refinement.equation import Floats, Ints
-from symfpu.refinement.harmonics import MOST_HARMONICS, known_rows
-from symfpu.refinement.invariance import DIGITS, InvarianceEquation, long
+from symfpu.refinement.guesses import moderate_by_seed, require_torus, shifts_of
+from symfpu.refinement.harmonics import MOST_HARMONICS
+from symfpu.refinement.invariance import long
 from symfpu.refinement.kept_sweeps import SweepsFile, require_digits_beside, unkept
-from symfpu.refinement.newton import Iterate, NewtonStep
-from symfpu.refinement.resonances import NearResonance, near_resonances
-from symfpu.refinement.ring_tori import (
-    RefinedRingTorus,
-    driven_in_resonance,
-    refined_waves,
-    require_independent,
+from symfpu.refinement.refined_torus import (
+    TOLERANCE,
+    USEFUL,
+    NoTorus,
+    RefinedTorus,
+    ended_early,
+    refined_torus,
 )
-from symfpu.refinement.search import Search, Unknowns
-from symfpu.refinement.waves import WaveEquation
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
+from symfpu.refinement.ring_tori import RefinedRingTorus, require_independent
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 from symfpu.tori.ring_torus import RingTorus
-from symfpu.tori.travelling import require_travelling, wave_coefficients
 
-# residual of the equations of motion, relative to the largest acceleration, that ends the search
-# for harmonics
-TOLERANCE = 1e-13
-LEAST_SIZE = Fraction(1, 10**40)  # of amplitudes and coefficients
-USEFUL = 1e-9  # residual of a torus up to which normal modes and others take it
-ENDED_EARLY = "Newton's method ended early"  # how the warning of such a torus begins
-
-
-@dataclass(frozen=True, eq=False)
-class RefinedTorus(QuasiPeriodic):
-    """A torus found by Newton's method, Q_q(t) = sum c_q[nu] cos(nu.(omega t + phi)).
-
-    Made by `refine` and its sisters; dimensionless, phases in radians. Ours: the paper has series
-    alone.
-
-    chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
-    amplitudes : by seed, of cos(theta_q) in Q_q. phases : by seed.
-    harmonics : the nu, shape (H, s). cosines : c_q[nu] in doubles, shape (H, N-1).
-    steps : of Newton's method with the final harmonics.
-    near_resonances : the smallest divisors (nu.omega)^2 - Omega_q^2, with the coefficients under
-        them.
-    warnings : reasons to doubt it: a residual above the tolerance, or that Newton's method failed
-        when it had reached a residual of 1e-9 or less. digits : None, of doubles.
-
-    >>> from symfpu import Chain, lindstedt, refine, solve_amplitudes
-    >>> refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
-    RefinedTorus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4051586230417, H=0.0127984220834,
-    20 harmonics, residual ..., smallest divisor 0.024 at mode 2, harmonic (2), coefficient 0.031)
-    """
-
-    chain: Chain
-    seeds: tuple[int, ...]
-    frequencies: tuple[Fraction, ...]
-    amplitudes: Mapping[int, float]
-    phases: Mapping[int, float]
-    harmonics: Ints = field(repr=False)
-    cosines: Floats = field(repr=False)
-    steps: tuple[NewtonStep, ...] = field(repr=False)
-    near_resonances: tuple[NearResonance, ...] = field(repr=False)
-    warnings: tuple[str, ...] = ()
-    digits: int | None = None
-
-    @property
-    def verdict(self) -> str:
-        """'torus', or 'doubtful' with the reasons in `warnings`."""
-        return "doubtful" if self.warnings else "torus"
-
-    def __repr__(self) -> str:
-        chain = repr(self.chain)[6:-1]
-        amplitudes = ", ".join(f"A_{q}={a:.13g}" for q, a in self.amplitudes.items())
-        by_seed = zip(self.seeds, self.frequencies, strict=True)
-        rates = ", ".join(f"omega_{q}={float(w):.16g}" for q, w in by_seed)
-        energy = float(self.energy())
-        doubts = "".join(f"; {warning}" for warning in self.warnings)
-        nearest = (
-            f", smallest divisor {self.near_resonances[0]}" if self.near_resonances else ""
-        )
-        found = f"{len(self.harmonics)} harmonics, residual {self.residual():.2g}"
-        return (
-            f"RefinedTorus({chain}, {rates}, {amplitudes}, H={energy:.12g}, "
-            f"{found}{nearest}{doubts})"
-        )
-
-
-class NoTorus(SymfpuError):
-    """Newton's method found no torus: raised by `refine`, its sisters and `family`.
-
-    Where it fails with a residual of 1e-9 or less left, they give that torus with a warning.
-
-    iterate : the best one, a RefinedTorus or RefinedRingTorus, or where digits were asked for the
-        torus from which they were tried; residual : what it leaves of the
-        equations of motion, relative to the largest acceleration, dimensionless; reason : why it
-        ended. Ours.
-    """
-
-    def __init__(
-        self, reason: str, iterate: QuasiPeriodic | RefinedRingTorus, residual: float
-    ) -> None:
-        self.reason, self.iterate, self.residual = reason, iterate, residual
-        left = f"the best iterate leaves {residual:.2g} of the largest acceleration"
-        advice = "start from a torus nearer to it, such as one of less energy"
-        super().__init__(
-            f"no torus of the seeds {iterate.seeds}: {reason}; {left}; {advice}"
-        )
+# the tori that are given, and what is asked of them, too
+__all__ = [
+    "TOLERANCE",
+    "USEFUL",
+    "NoTorus",
+    "RefinedTorus",
+    "ended_early",
+    "refine",
+    "refine_at_amplitudes",
+    "refine_at_energy",
+    "refined_torus",
+    "shifts_of",
+]
 
 
 @overload
@@ -188,14 +110,13 @@ def refine(
     torus, which the paper solves by series. Raises InputError, on a ring also for frequencies
     with an integer relation and for digits, and NoTorus with the best iterate.
 
-    >>> from symfpu.tori.amplitudes import solve_amplitudes
-    >>> from symfpu.series.lindstedt import lindstedt
+    >>> from symfpu import Chain, lindstedt, solve_amplitudes
     >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)
     >>> breather = refine(solve_amplitudes(series))
     >>> breather.residual() < 1e-13
     True
     """
-    _require_torus(torus)
+    require_torus(torus)
     require_digits_beside(file, digits)
     how: dict[str, Any] = {
         "tolerance": tolerance,
@@ -203,7 +124,7 @@ def refine(
         "progress": progress,
     }
     if digits is not None:
-        return _of_digits(torus, digits, None, file, **how)
+        return _of_digits(torus, digits, None, file, how)
     if isinstance(torus, RingTorus):
         require_independent(torus)
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
@@ -267,8 +188,9 @@ def refine_at_amplitudes(
     >>> round(float(refine_at_amplitudes(guess, {1: "0.41"}).frequencies[0]), 9)
     0.390507682
     """
-    _require_torus(torus)
-    given = tuple(_by_seed("amplitudes", amplitudes, torus, signed=True).values())
+    require_torus(torus)
+    by_seed = moderate_by_seed("amplitudes", amplitudes, torus.seeds, signed=True)
+    given = tuple(by_seed.values())
     how: dict[str, Any] = {
         "tolerance": tolerance,
         "most_harmonics": most_harmonics,
@@ -276,7 +198,7 @@ def refine_at_amplitudes(
     }
     require_digits_beside(file, digits)
     if digits is not None:
-        return _of_digits(torus, digits, given, file, **how)
+        return _of_digits(torus, digits, given, file, how)
     found: RefinedTorus | RefinedRingTorus = _at_amplitudes(torus, given, **how)
     return found
 
@@ -291,30 +213,19 @@ def _of_digits(
     digits: int,
     amplitudes: tuple[Fraction, ...] | None,
     file: Path | str | None,
-    *,
-    tolerance: float,
-    most_harmonics: int,
-    progress: Progress | None,
+    how: dict[str, Any],
 ) -> PreciseTorus:
-    """The torus of the same frequencies, or of given amplitudes, with digits."""
+    """The torus of the same frequencies, or of given amplitudes, with digits.
+
+    how : tolerance, most_harmonics and progress, as of `refine`.
+    """
     if isinstance(torus, RingTorus):
         allowed = "nothing for a torus on a ring, which is refined in doubles"
         raise InputError("digits", digits, allowed, "leave it out")
     require_digits(torus.chain, digits)
     path = None if file is None else checkpoint_path(file)
-    how: dict[str, Any] = {
-        "tolerance": tolerance,
-        "most_harmonics": most_harmonics,
-        "progress": progress,
-    }
-    near: QuasiPeriodic
-    if amplitudes is not None:
-        near = _at_amplitudes(torus, amplitudes, **how)
-    elif isinstance(torus, (RefinedTorus, PreciseTorus)):
-        near = torus
-    else:
-        near = refine(torus, **how)
-    frequencies = near.frequencies if amplitudes is not None else torus.frequencies
+    near = _near(torus, amplitudes, how)
+    frequencies = torus.frequencies if amplitudes is None else near.frequencies
     guess, keep = guess_of(near, frequencies, amplitudes), unkept
     if path is not None:
         held = frequencies if amplitudes is None else None
@@ -329,9 +240,21 @@ def _of_digits(
         before, keep = kept.read(), kept.write
         guess = guess if before is None else resumed(guess, before)
     try:
-        return precise_torus(guess, digits, progress or unheard, keep)
+        return precise_torus(guess, digits, how["progress"] or unheard, keep)
     except Failure as failure:
         raise NoTorus(str(failure), near, near.residual()) from None
+
+
+def _near(
+    torus: QuasiPeriodic, amplitudes: tuple[Fraction, ...] | None, how: dict[str, Any]
+) -> QuasiPeriodic:
+    """The torus that the sweeps start from."""
+    near = torus
+    if amplitudes is not None:
+        near = _at_amplitudes(torus, amplitudes, **how)
+    elif not isinstance(torus, (RefinedTorus, PreciseTorus)):
+        near = refine(torus, **how)
+    return near
 
 
 @overload
@@ -392,33 +315,15 @@ def refine_at_energy(
     >>> round(float(refine_at_energy(guess, "0.012", harmonic=False).energy()), 12)
     0.012
     """
-    _require_torus(torus)
+    require_torus(torus)
     value = exact(energy, "energy")
     if value <= 0:
-        raise InputError(
-            "energy", energy, "a positive number", "take one near the energy of the torus"
-        )
+        advice = "take one near the energy of the torus"
+        raise InputError("energy", energy, "a positive number", advice)
     if not isinstance(harmonic, (bool, np.bool_)):
-        raise InputError(
-            "harmonic",
-            harmonic,
-            "True for sum E_q, False for H",
-            "say which energy is meant",
-        )
-    if amplitude_ratio is not None and energy_ratio is not None:
-        raise InputError(
-            "energy_ratio",
-            energy_ratio,
-            "only one of amplitude_ratio and energy_ratio",
-            "leave one out",
-        )
-    if energy_ratio is not None:
-        _require_energies(torus)
-        ratio = _by_seed("energy_ratio", energy_ratio, torus, signed=False)
-    elif amplitude_ratio is not None:
-        ratio = _by_seed("amplitude_ratio", amplitude_ratio, torus, signed=True)
-    else:
-        ratio = {q: exact(float(a), "amplitude") for q, a in _amplitudes(torus).items()}
+        allowed = "True for sum E_q, False for H"
+        raise InputError("harmonic", harmonic, allowed, "say which energy is meant")
+    ratio = _ratio(torus, amplitude_ratio, energy_ratio)
     numbers = {q: float(x) for q, x in ratio.items()}
     conditions = [
         Energy(long(value), bool(harmonic)),
@@ -433,16 +338,24 @@ def refine_at_energy(
     )
 
 
-def _require_torus(torus: object) -> None:
-    """InputError for what is no solution, and for standing waves on a ring."""
-    if isinstance(torus, RingTorus):
-        require_travelling(torus)
-    else:
-        require_solution(torus, "torus")
-
-
-def _amplitudes(torus: QuasiPeriodic | RingTorus) -> Mapping[int, Any]:
-    return torus.amplitudes if isinstance(torus, RingTorus) else amplitudes_of(torus)
+def _ratio(
+    torus: QuasiPeriodic | RingTorus,
+    amplitudes: Mapping[int, Number] | None,
+    energies: Mapping[int, Number] | None,
+) -> dict[int, Fraction]:
+    """The one that was given, by seed, or that of the amplitudes of the guess."""
+    if amplitudes is not None and energies is not None:
+        allowed = "only one of amplitude_ratio and energy_ratio"
+        raise InputError("energy_ratio", energies, allowed, "leave one out")
+    if energies is not None:
+        _require_energies(torus)
+        return moderate_by_seed("energy_ratio", energies, torus.seeds, signed=False)
+    if amplitudes is not None:
+        return moderate_by_seed("amplitude_ratio", amplitudes, torus.seeds, signed=True)
+    found: Mapping[int, Any] = (
+        torus.amplitudes if isinstance(torus, RingTorus) else amplitudes_of(torus)
+    )
+    return {q: exact(float(a), "amplitude") for q, a in found.items()}
 
 
 def _require_energies(torus: QuasiPeriodic | RingTorus) -> None:
@@ -452,150 +365,3 @@ def _require_energies(torus: QuasiPeriodic | RingTorus) -> None:
         allowed = "a ratio of modes of different energies: E_q = E_(-q) on a ring"
         given = f"of the seeds {opposite[0]} and {-opposite[0]}"
         raise InputError("energy_ratio", given, allowed, "give amplitude_ratio")
-
-
-def _by_seed(
-    argument: str, values: object, torus: QuasiPeriodic | RingTorus, *, signed: bool
-) -> dict[int, Fraction]:
-    """A number for each seed, not 0 and not beyond doubles; positive unless signed."""
-    kind = "number that is not 0" if signed else "positive number"
-    allowed = f"a {kind} for each of the seeds {torus.seeds}, by seed"
-    if not isinstance(values, Mapping) or set(values) != set(torus.seeds):
-        advice = "write it as {seed: number} and name every seed"
-        raise InputError(argument, values, allowed, advice)
-    numbers = {q: exact(values[q], f"{argument}, {q}") for q in torus.seeds}
-    sizes = [abs(x) if signed else x for x in numbers.values()]
-    if not all(LEAST_SIZE < size < 1 / LEAST_SIZE for size in sizes):
-        advice = "leave out a seed that is at rest"
-        raise InputError(argument, dict(values), f"{allowed}, of moderate size", advice)
-    return numbers
-
-
-@overload
-def refined_torus(
-    torus: RingTorus,
-    conditions: Sequence[Condition],
-    *,
-    tolerance: float = ...,
-    most_harmonics: int = ...,
-    progress: Progress | None = ...,
-) -> RefinedRingTorus: ...
-@overload
-def refined_torus(
-    torus: QuasiPeriodic,
-    conditions: Sequence[Condition],
-    *,
-    tolerance: float = ...,
-    most_harmonics: int = ...,
-    progress: Progress | None = ...,
-) -> RefinedTorus: ...
-def refined_torus(
-    torus: QuasiPeriodic | RingTorus,
-    conditions: Sequence[Condition],
-    *,
-    tolerance: float = TOLERANCE,
-    most_harmonics: int = MOST_HARMONICS,
-    progress: Progress | None = None,
-) -> RefinedTorus | RefinedRingTorus:
-    """The torus near a guess that meets as many conditions as it has angles.
-
-    With as many harmonics as the tolerance needs.
-    """
-    _require_torus(torus)
-    if not isinstance(tolerance, Real) or not 0 < tolerance < 1:
-        raise InputError(
-            "tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more"
-        )
-    most = integer(most_harmonics, "most_harmonics", len(torus.seeds))
-    kind = WAVES if isinstance(torus, RingTorus) else COSINES
-    guess = kind.coefficients(torus)
-    _require_moderate(guess[1])
-    search = Search(
-        kind,
-        torus,
-        conditions,
-        tolerance=tolerance,
-        most=most,
-        tell=progress or unheard,
-    )
-    solved = search(known_rows(*guess), shifts_of(torus))
-    found: RefinedTorus | RefinedRingTorus = solved.torus
-    if solved.failure:
-        settled = found if solved.found.settled else None
-        return _ended_early(_because(solved.failure, found), settled, solved.reached, found)
-    if solved.doubt:
-        return replace(found, warnings=(_because(solved.doubt, found),))
-    return found
-
-
-def _ended_early(reason: str, settled: Any, reached: Any, last: Any) -> Any:
-    """The best torus there is where Newton's method failed, with a warning; else NoTorus.
-
-    settled : the last iterate, if nothing but rounding was left to be gained. reached : the torus
-    of fewer harmonics, on which the method converged.
-    """
-    tori = [torus for torus in (settled, reached) if torus is not None]
-    best = min(tori, key=lambda torus: torus.residual(), default=None)
-    if best is None or not best.residual() <= USEFUL:
-        raise NoTorus(reason, last, last.residual())
-    left = f"the residual is {best.residual():.2g} with {len(best.harmonics)} harmonics"
-    return replace(best, warnings=(f"{ENDED_EARLY}: {reason}; {left}",))
-
-
-def ended_early(torus: RefinedTorus | RefinedRingTorus) -> bool:
-    """Whether it is what Newton's method had reached when it failed."""
-    return any(warning.startswith(ENDED_EARLY) for warning in torus.warnings)
-
-
-def _because(reason: str, torus: RefinedTorus | RefinedRingTorus) -> str:
-    """With the resonance of a ring that may be the cause."""
-    cause = driven_in_resonance(torus) if isinstance(torus, RefinedRingTorus) else ""
-    return f"{reason}; {cause}" if cause else reason
-
-
-def _cosines(torus: QuasiPeriodic) -> tuple[Ints, Floats]:
-    with np.errstate(over="ignore"):
-        return torus.harmonics, torus.cosines.astype(float)
-
-
-def _require_moderate(coefficients: Floats) -> None:
-    """InputError where coefficients are all 0 or of no moderate size."""
-    largest = float(np.abs(coefficients).max(initial=0))
-    if not LEAST_SIZE < largest < 1 / LEAST_SIZE:  # also where it is not a number
-        given = f"coefficients up to {largest:.3g}"
-        allowed = "coefficients not all 0 and of moderate size"
-        raise InputError("torus", given, allowed, "take another guess")
-
-
-def shifts_of(torus: QuasiPeriodic | RingTorus) -> Floats:
-    """omega - Omega of the seeds in long doubles; shape (s,)."""
-    with mpmath.workdps(2 * DIGITS):
-        linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
-        chosen = [mpmath.mpf(w.numerator) / w.denominator for w in torus.frequencies]
-        shifts = [w - x for w, x in zip(chosen, linear, strict=True)]
-    return np.array([long(shift) for shift in shifts])
-
-
-def _result(
-    torus: QuasiPeriodic,
-    equation: InvarianceEquation,
-    found: Iterate,
-    frequencies: tuple[Fraction, ...],
-) -> RefinedTorus:
-    amplitudes = map(float, seed_amplitudes(equation, found.cosines))
-    modes = np.array(torus.chain.mode_numbers)
-    return RefinedTorus(
-        chain=torus.chain,
-        seeds=torus.seeds,
-        frequencies=frequencies,
-        amplitudes=dict(zip(torus.seeds, amplitudes, strict=True)),
-        phases={q: float(phi) for q, phi in torus.phases.items()},
-        harmonics=equation.harmonics,
-        cosines=found.cosines.astype(float),
-        steps=found.steps,
-        near_resonances=near_resonances(equation, found.cosines, found.shifts, modes),
-    )
-
-
-COSINES = Unknowns(_cosines, lambda chain: (chain.N + 1) // 2, InvarianceEquation, _result)
-WAVES = Unknowns(wave_coefficients, lambda chain: 1, WaveEquation, refined_waves)

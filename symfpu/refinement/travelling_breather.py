@@ -18,9 +18,10 @@ from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import Amplitude, Condition, Energy, FrequencyShift
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import long
+from symfpu.refinement.refined_torus import NoTorus, refined_torus
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import NoTorus, refined_torus, shifts_of
 from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.short_waves import plain_waves, shifts_by_squares
 

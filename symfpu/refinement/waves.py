@@ -29,7 +29,7 @@ from symfpu.refinement.couplings import (
 )
 from symfpu.refinement.equation import Floats, Ints, Slopes
 from symfpu.refinement.invariance import DIGITS, LONG_DOUBLES, curvature, long
-from symfpu.refinement.lattice import Lattice
+from symfpu.refinement.lattice import Lattice, places_of
 
 
 class WaveEquation:
@@ -47,11 +47,9 @@ class WaveEquation:
     ) -> None:
         self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
         self.grid = Lattice(harmonics, apart)
-        self.waves = harmonics @ np.array(seeds) % chain.N
+        self.waves = self._waves_of(harmonics)
         self.mask = self._allowed()
-        units = np.eye(len(seeds), dtype=np.int64)
-        places = [np.flatnonzero((harmonics == e).all(axis=1)) for e in units]
-        self.seed_rows = np.array([int(place[0]) for place in places])
+        self.seed_rows = places_of(np.eye(len(seeds), dtype=np.int64), harmonics)
         self.seed_columns = np.zeros(len(seeds), dtype=np.int64)
         with mpmath.workdps(2 * DIGITS):
             linear = [chain.linear_frequency(m) for m in range(chain.N)]
@@ -61,6 +59,10 @@ class WaveEquation:
         self._stretch, self._back = self.linear / self._root, self.linear * self._root
         self._law = chain.law(LONG_DOUBLES)
         self._set_divisors(linear)
+
+    def _waves_of(self, harmonics: Ints) -> Ints:
+        """The m that carry harmonics (M, s), of 0 .. N-1; shape (M,)."""
+        return np.asarray(harmonics @ np.array(self.seeds) % self.chain.N)
 
     def _allowed(self) -> NDArray[np.bool_]:
         """Waves that move; where V is even only those of odd harmonics."""
@@ -121,8 +123,7 @@ class WaveEquation:
 
     def linear_at(self, harmonics: Ints) -> Floats:
         """Omega of the wave that carries each harmonic, (M, 1)."""
-        waves = harmonics @ np.array(self.seeds) % self.chain.N
-        return np.asarray(self._linear[waves][:, None])
+        return np.asarray(self._linear[self._waves_of(harmonics)][:, None])
 
     def rounding(self, cosines: Floats, kind: type) -> Floats:
         """What rounding in numbers of a kind makes of the force, about; shape (H, 1)."""

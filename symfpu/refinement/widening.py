@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symfpu.refinement.equation import Floats, Ints, TorusEquation
-from symfpu.refinement.lattice import Lattice, beside, without_opposites
+from symfpu.refinement.lattice import Lattice, beside, places_of, without_opposites
 
 # of the number of harmonics from one choice to the next, at most: with more, those of large
 # forces beyond the candidates would be left out for candidates of small ones. And at least
@@ -67,9 +67,8 @@ def widened(
     count = min(wanted, most)
     chosen, apart = np.sort(order[:count]), candidates[order[: APART * count]]
     guess = _driven(equation, candidates[chosen], forces[chosen], omega)
-    kept, at, _ = np.intersect1d(chosen, own, return_indices=True)
-    places = {place: row for row, place in enumerate(own.tolist())}
-    guess[at] = cosines[[places[place] for place in kept.tolist()]]
+    _, at, kept = np.intersect1d(chosen, own, return_indices=True)
+    guess[at] = cosines[kept]
     both = np.concatenate([apart, -apart[(apart != 0).any(axis=1)]])
     return Widened(candidates[chosen], guess, wanted > most, both)
 
@@ -129,9 +128,3 @@ def _count(falling: Floats, before: int, tolerance: float) -> int:
     needed = int((left > tolerance).sum())
     least = int(np.ceil(LEAST_GROWTH * before))
     return min(max(needed, least), int(GROWTH * before), len(falling))
-
-
-def places_of(rows: Ints, among: Ints) -> Ints:
-    """Where rows stand among others, which hold them all; shape (len(rows),)."""
-    places = {nu: i for i, nu in enumerate(map(tuple, among.tolist()))}
-    return np.array([places[nu] for nu in map(tuple, rows.tolist())], dtype=np.int64)

@@ -97,8 +97,8 @@ def _ended(border: AtlasBorder) -> str:
         words.append(f"mode {details['mode']}, harmonic {nu}")
     if details.get("growth") is not None:
         words.append(f"growth {details['growth']:.3g}")
-    if known_span := details.get("between") if "time" in details else None:
-        lowest, highest = (math.inf if H is None else H for H in known_span)
+    if "time" in details and details.get("between"):
+        lowest, highest = (math.inf if H is None else H for H in details["between"])
         words.append(f"chaos by t = {details['time']:g}, {lowest:.3g} .. {highest:.3g}")
     return "; ".join(words)
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.normal import normal_event_record, normal_frequencies_record
 from symfpu.reports.solution import frequencies_record, solution_record
 from symfpu.reports.tables import fifteen_digits, number_text

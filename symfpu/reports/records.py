@@ -36,8 +36,8 @@ from symfpu.numbers.arithmetic import text
 from symfpu.proofs.certificates import PropagationProof
 from symfpu.proofs.sweeps import Sweep
 from symfpu.proofs.theorem import RuleForAllN
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import RefinedTorus
 from symfpu.reports.action_angle import twist_record
 from symfpu.reports.borders import atlas_record, law_record
 from symfpu.reports.certified import residual_proof_record, stay_record

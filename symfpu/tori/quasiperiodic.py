@@ -347,8 +347,7 @@ class QuasiPeriodic(Shown, Gridded, Parts):
     def _grid_points(self) -> int:
         """Points for each of the angles by default."""
         wanted = GRID_POINTS if self.digits is None else GRID_POINTS_DIGITS
-        number: int = round(wanted ** (1 / len(self.seeds)))
-        return max(2, min(64, number))
+        return points_of_each_angle(wanted, len(self.seeds))
 
     def _worst_on_grid(self, number: int) -> tuple[Numbers, Any]:
         """By mode the largest |d^2Q_q/dt^2 - force|, and the largest force.
@@ -430,6 +429,12 @@ class QuasiPeriodic(Shown, Gridded, Parts):
             rows=("harmonic", "mode"),
             across="seed",
         )
+
+
+def points_of_each_angle(wanted: int, s: int) -> int:
+    """Of a grid of s angles that has about so many points."""
+    number: int = round(wanted ** (1 / s))
+    return max(2, min(64, number))
 
 
 def require_solution(solution: object, argument: str) -> None:

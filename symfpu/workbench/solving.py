@@ -9,8 +9,9 @@ from symfpu.bundles.bundle import load
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import decimal
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import RefinedTorus, refine
+from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.series.travelling import TravellingSeries, travelling_waves

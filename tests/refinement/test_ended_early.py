@@ -7,8 +7,9 @@ import scipy.sparse.linalg
 from symfpu.borders import newton_end
 from symfpu.borders.point import Ray
 from symfpu.chain.chain import Chain
-from symfpu.refinement import linear_system, newton, tori
-from symfpu.refinement.tori import ENDED_EARLY, USEFUL, NoTorus, ended_early, refine_at_amplitudes
+from symfpu.refinement import linear_system, newton, refined_torus
+from symfpu.refinement.refined_torus import ENDED_EARLY, USEFUL, NoTorus, ended_early
+from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.tolerances import REFINED_COEFFICIENT
 from tests.tori.test_ring_torus import torus as waves
@@ -90,7 +91,7 @@ def two_choices_of_harmonics():
 @pytest.mark.parametrize("level", [USEFUL, 1e-11])
 def test_the_torus_of_fewer_harmonics_is_given_if_it_is_of_use(solver, monkeypatch, level):
     whole = two_choices_of_harmonics()
-    monkeypatch.setattr(tori, "USEFUL", level)
+    monkeypatch.setattr(refined_torus, "USEFUL", level)
     solver(*whole_then_none(monkeypatch))
     if level == USEFUL:
         found = two_choices_of_harmonics()

@@ -10,7 +10,7 @@ import pytest
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, TorusTooLarge
-from symfpu.refinement import memory, newton, search, tori
+from symfpu.refinement import memory, newton, refined_torus, search, tori
 from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.tori.test_ring_torus import torus as waves
@@ -99,7 +99,7 @@ def test_what_does_not_fit_is_refused_before_it_is_begun(monkeypatch, stage):
     monkeypatch.setattr(psutil, "virtual_memory", lambda: type("Memory", (), {"available": free}))
     monkeypatch.setattr(search, "newton", none)
     if free < least:
-        monkeypatch.setattr(tori, "COSINES", tori.COSINES._replace(equation=none))
+        monkeypatch.setattr(refined_torus, "COSINES", refined_torus.COSINES._replace(equation=none))
     with pytest.raises(TorusTooLarge) as refused:
         refine_at_amplitudes(guess, wanted)
     error = refused.value

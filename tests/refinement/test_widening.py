@@ -11,7 +11,8 @@ from symfpu.errors import TorusTooLarge
 from symfpu.refinement import search, widening
 from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated, has_holes, low_harmonics, neighbours, told_apart
 from symfpu.refinement.newton import newton
-from symfpu.refinement.tori import COSINES, TOLERANCE, NoTorus, ended_early, refine, refine_at_amplitudes
+from symfpu.refinement.refined_torus import COSINES, TOLERANCE, NoTorus, ended_early
+from symfpu.refinement.tori import refine, refine_at_amplitudes
 from symfpu.refinement.waves import WaveEquation
 from symfpu.refinement.widening import GROWTH, widened
 from symfpu.tori.frequencies import torus_at_amplitudes

@@ -1,0 +1,69 @@
+"""What a guess of a torus has to be for Newton's method, and what it gives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import mpf
+from symfpu.numbers.typed import Number, exact
+from symfpu.refinement.equation import Floats
+from symfpu.refinement.invariance import DIGITS, long
+from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.travelling import require_travelling
+
+LEAST_SIZE = Fraction(1, 10**40)  # of amplitudes and coefficients
+
+
+def require_torus(torus: object) -> None:
+    """InputError for what is no solution, and for standing waves on a ring."""
+    if isinstance(torus, RingTorus):
+        require_travelling(torus)
+    else:
+        require_solution(torus, "torus")
+
+
+def numbers_by_seed(
+    argument: str, values: object, seeds: tuple[int, ...], allowed: str
+) -> dict[int, Fraction]:
+    """An exact number for each seed; else InputError, which says what is allowed."""
+    if not isinstance(values, Mapping) or set(values) != set(seeds):
+        advice = "write it as {seed: number} and name every seed"
+        raise InputError(argument, values, allowed, advice)
+    return {q: exact(values[q], f"{argument}, {q}") for q in seeds}
+
+
+def moderate_by_seed(
+    argument: str, values: Mapping[int, Number], seeds: tuple[int, ...], *, signed: bool
+) -> dict[int, Fraction]:
+    """A number for each seed, not 0 and not beyond doubles; positive unless signed."""
+    kind = "number that is not 0" if signed else "positive number"
+    allowed = f"a {kind} for each of the seeds {seeds}, by seed"
+    numbers = numbers_by_seed(argument, values, seeds, allowed)
+    sizes = [abs(x) if signed else x for x in numbers.values()]
+    if not all(LEAST_SIZE < size < 1 / LEAST_SIZE for size in sizes):
+        advice = "leave out a seed that is at rest"
+        raise InputError(argument, dict(values), f"{allowed}, of moderate size", advice)
+    return numbers
+
+
+def require_moderate(coefficients: Floats) -> None:
+    """InputError where coefficients are all 0 or of no moderate size."""
+    largest = float(np.abs(coefficients).max(initial=0))
+    if not LEAST_SIZE < largest < 1 / LEAST_SIZE:  # also where it is not a number
+        given = f"coefficients up to {largest:.3g}"
+        allowed = "coefficients not all 0 and of moderate size"
+        raise InputError("torus", given, allowed, "take another guess")
+
+
+def shifts_of(torus: QuasiPeriodic | RingTorus) -> Floats:
+    """omega - Omega of the seeds in long doubles; shape (s,)."""
+    with mpmath.workdps(2 * DIGITS):
+        linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
+        pairs = zip(torus.frequencies, linear, strict=True)
+        return np.array([long(mpf(w) - x) for w, x in pairs])

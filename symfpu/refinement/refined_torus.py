@@ -1,0 +1,229 @@
+"""What Newton's method makes of a guess and conditions: a torus, or why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from numbers import Real
+from typing import Any, overload
+
+import numpy as np
+
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError, SymfpuError
+from symfpu.files.progress import Progress, unheard
+from symfpu.numbers.typed import integer
+from symfpu.refinement.conditions import Condition, seed_amplitudes
+from symfpu.refinement.equation import Floats, Ints
+from symfpu.refinement.guesses import require_moderate, require_torus, shifts_of
+from symfpu.refinement.harmonics import MOST_HARMONICS, known_rows
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.newton import Iterate, NewtonStep
+from symfpu.refinement.resonances import NearResonance, near_resonances
+from symfpu.refinement.ring_tori import (
+    RefinedRingTorus,
+    driven_in_resonance,
+    refined_waves,
+)
+from symfpu.refinement.search import Search, Unknowns
+from symfpu.refinement.waves import WaveEquation
+from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.travelling import wave_coefficients
+
+# residual of the equations of motion, relative to the largest acceleration, that ends the search
+# for harmonics
+TOLERANCE = 1e-13
+USEFUL = 1e-9  # residual of a torus up to which normal modes and others take it
+ENDED_EARLY = "Newton's method ended early"  # how the warning of such a torus begins
+
+
+@dataclass(frozen=True, eq=False)
+class RefinedTorus(QuasiPeriodic):
+    """A torus found by Newton's method, Q_q(t) = sum c_q[nu] cos(nu.(omega t + phi)).
+
+    Made by `refine` and its sisters; dimensionless, phases in radians. Ours: the paper has series
+    alone.
+
+    chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
+    amplitudes : by seed, of cos(theta_q) in Q_q. phases : by seed.
+    harmonics : the nu, shape (H, s). cosines : c_q[nu] in doubles, shape (H, N-1).
+    steps : of Newton's method with the final harmonics.
+    near_resonances : the smallest divisors (nu.omega)^2 - Omega_q^2, with the coefficients under
+        them.
+    warnings : reasons to doubt it: a residual above the tolerance, or that Newton's method failed
+        when it had reached a residual of 1e-9 or less. digits : None, of doubles.
+
+    >>> from symfpu import Chain, lindstedt, refine, solve_amplitudes
+    >>> refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
+    RefinedTorus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4051586230417, H=0.0127984220834,
+    20 harmonics, residual ..., smallest divisor 0.024 at mode 2, harmonic (2), coefficient 0.031)
+    """
+
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...]
+    amplitudes: Mapping[int, float]
+    phases: Mapping[int, float]
+    harmonics: Ints = field(repr=False)
+    cosines: Floats = field(repr=False)
+    steps: tuple[NewtonStep, ...] = field(repr=False)
+    near_resonances: tuple[NearResonance, ...] = field(repr=False)
+    warnings: tuple[str, ...] = ()
+    digits: int | None = None
+
+    @property
+    def verdict(self) -> str:
+        """'torus', or 'doubtful' with the reasons in `warnings`."""
+        return "doubtful" if self.warnings else "torus"
+
+    def __repr__(self) -> str:
+        chain = repr(self.chain)[6:-1]
+        amplitudes = ", ".join(f"A_{q}={a:.13g}" for q, a in self.amplitudes.items())
+        by_seed = zip(self.seeds, self.frequencies, strict=True)
+        rates = ", ".join(f"omega_{q}={float(w):.16g}" for q, w in by_seed)
+        energy = float(self.energy())
+        doubts = "".join(f"; {warning}" for warning in self.warnings)
+        nearest = (
+            f", smallest divisor {self.near_resonances[0]}" if self.near_resonances else ""
+        )
+        found = f"{len(self.harmonics)} harmonics, residual {self.residual():.2g}"
+        return (
+            f"RefinedTorus({chain}, {rates}, {amplitudes}, H={energy:.12g}, "
+            f"{found}{nearest}{doubts})"
+        )
+
+
+class NoTorus(SymfpuError):
+    """Newton's method found no torus: raised by `refine`, its sisters and `family`.
+
+    Where it fails with a residual of 1e-9 or less left, they give that torus with a warning.
+
+    iterate : the best one, a RefinedTorus or RefinedRingTorus, or where digits were asked for the
+        torus from which they were tried; residual : what it leaves of the
+        equations of motion, relative to the largest acceleration, dimensionless; reason : why it
+        ended. Ours.
+    """
+
+    def __init__(
+        self, reason: str, iterate: QuasiPeriodic | RefinedRingTorus, residual: float
+    ) -> None:
+        self.reason, self.iterate, self.residual = reason, iterate, residual
+        left = f"the best iterate leaves {residual:.2g} of the largest acceleration"
+        advice = "start from a torus nearer to it, such as one of less energy"
+        super().__init__(
+            f"no torus of the seeds {iterate.seeds}: {reason}; {left}; {advice}"
+        )
+
+
+@overload
+def refined_torus(
+    torus: RingTorus,
+    conditions: Sequence[Condition],
+    *,
+    tolerance: float = ...,
+    most_harmonics: int = ...,
+    progress: Progress | None = ...,
+) -> RefinedRingTorus: ...
+@overload
+def refined_torus(
+    torus: QuasiPeriodic,
+    conditions: Sequence[Condition],
+    *,
+    tolerance: float = ...,
+    most_harmonics: int = ...,
+    progress: Progress | None = ...,
+) -> RefinedTorus: ...
+def refined_torus(
+    torus: QuasiPeriodic | RingTorus,
+    conditions: Sequence[Condition],
+    *,
+    tolerance: float = TOLERANCE,
+    most_harmonics: int = MOST_HARMONICS,
+    progress: Progress | None = None,
+) -> RefinedTorus | RefinedRingTorus:
+    """The torus near a guess that meets as many conditions as it has angles.
+
+    With as many harmonics as the tolerance needs.
+    """
+    require_torus(torus)
+    if not isinstance(tolerance, Real) or not 0 < tolerance < 1:
+        raise InputError(
+            "tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more"
+        )
+    most = integer(most_harmonics, "most_harmonics", len(torus.seeds))
+    kind = WAVES if isinstance(torus, RingTorus) else COSINES
+    guess = kind.coefficients(torus)
+    require_moderate(guess[1])
+    search = Search(
+        kind,
+        torus,
+        conditions,
+        tolerance=tolerance,
+        most=most,
+        tell=progress or unheard,
+    )
+    solved = search(known_rows(*guess), shifts_of(torus))
+    found: RefinedTorus | RefinedRingTorus = solved.torus
+    if solved.failure:
+        settled = found if solved.found.settled else None
+        return _ended_early(_because(solved.failure, found), settled, solved.reached, found)
+    if solved.doubt:
+        return replace(found, warnings=(_because(solved.doubt, found),))
+    return found
+
+
+def _ended_early(reason: str, settled: Any, reached: Any, last: Any) -> Any:
+    """The best torus there is where Newton's method failed, with a warning; else NoTorus.
+
+    settled : the last iterate, if nothing but rounding was left to be gained. reached : the torus
+    of fewer harmonics, on which the method converged.
+    """
+    tori = [torus for torus in (settled, reached) if torus is not None]
+    best = min(tori, key=lambda torus: torus.residual(), default=None)
+    if best is None or not best.residual() <= USEFUL:
+        raise NoTorus(reason, last, last.residual())
+    left = f"the residual is {best.residual():.2g} with {len(best.harmonics)} harmonics"
+    return replace(best, warnings=(f"{ENDED_EARLY}: {reason}; {left}",))
+
+
+def ended_early(torus: RefinedTorus | RefinedRingTorus) -> bool:
+    """Whether it is what Newton's method had reached when it failed."""
+    return any(warning.startswith(ENDED_EARLY) for warning in torus.warnings)
+
+
+def _because(reason: str, torus: RefinedTorus | RefinedRingTorus) -> str:
+    """With the resonance of a ring that may be the cause."""
+    cause = driven_in_resonance(torus) if isinstance(torus, RefinedRingTorus) else ""
+    return f"{reason}; {cause}" if cause else reason
+
+
+def _cosines(torus: QuasiPeriodic) -> tuple[Ints, Floats]:
+    with np.errstate(over="ignore"):
+        return torus.harmonics, torus.cosines.astype(float)
+
+
+def _result(
+    torus: QuasiPeriodic,
+    equation: InvarianceEquation,
+    found: Iterate,
+    frequencies: tuple[Fraction, ...],
+) -> RefinedTorus:
+    amplitudes = map(float, seed_amplitudes(equation, found.cosines))
+    modes = np.array(torus.chain.mode_numbers)
+    return RefinedTorus(
+        chain=torus.chain,
+        seeds=torus.seeds,
+        frequencies=frequencies,
+        amplitudes=dict(zip(torus.seeds, amplitudes, strict=True)),
+        phases={q: float(phi) for q, phi in torus.phases.items()},
+        harmonics=equation.harmonics,
+        cosines=found.cosines.astype(float),
+        steps=found.steps,
+        near_resonances=near_resonances(equation, found.cosines, found.shifts, modes),
+    )
+
+
+COSINES = Unknowns(_cosines, lambda chain: (chain.N + 1) // 2, InvarianceEquation, _result)
+WAVES = Unknowns(wave_coefficients, lambda chain: 1, WaveEquation, refined_waves)
