@@ -45,7 +45,13 @@ PARTS = {"1/32": (32, 64, 128, 256), "1/16": (16, 32, 64, 128)}
 REACH = 2
 FLACH_LENGTHS = (8, 12, 16, 24, 32)
 FLACH_SEEDS = ("2", "3")
-NEWTON_PARTS = {"1/8": (8, 16, 32), "1/16": (16, 32, 64), "1/32": (32, 64, 128)}
+NEWTON_SEEDS = {
+    1: (8, 16, 32),
+    2: (8, 16, 32, 64, 128),
+    3: (16, 32, 64, 128),
+    4: (16, 32, 64, 128),
+    8: (64, 128),
+}
 ODD = (9, 17, 33, 65)
 OTHER_MIDDLES = (33, 34, 65, 66, 129, 130)  # lengths that are no multiples of 4
 MIDDLE_LENGTH, FROM_MIDDLE = 128, ("66", "68", "72")
@@ -61,9 +67,9 @@ EIGHT = {"1/16": 128, "1/32": 256}  # with eight seeds, whose series are long
 NEWTON_HOW: dict[str, Any] = {
     "order": 2,
     "borders": ["newton"],
-    "places": ["1e-6"],
-    "reach": 10**6,
-    "most_harmonics": 12000,
+    "places": ["1e-8"],
+    "reach": 10**8,
+    "most_harmonics": 4000,
 }
 CHAOS_PARTS: dict[float, dict[str, tuple[int, ...]]] = {
     1e5: {
@@ -162,10 +168,10 @@ def make_data() -> None:
     for number, arguments in enumerate(grids(), 1):
         found = atlas(**arguments, reach=REACH, file=FILE)
         print(number, found, flush=True)
-    for part, lengths in NEWTON_PARTS.items():
+    for s, lengths in NEWTON_SEEDS.items():
         for model in EXTENSIVE:
             chains = [Chain(N, **MODELS[model]) for N in lengths]
-            print(atlas(chains, [f"low:{part}"], **NEWTON_HOW, file=NEWTON_FILE))
+            print(atlas(chains, [f"low:{s}"], **NEWTON_HOW, file=NEWTON_FILE), flush=True)
     for arguments in one_seed_grids():
         print(atlas(**arguments), flush=True)
     make_chaos_data()
