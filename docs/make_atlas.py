@@ -10,8 +10,9 @@ import math
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from symfpu import Atlas, AtlasBorder, Chain, atlas, read_atlas
 from symfpu.borders.chaos import FACTOR
@@ -64,6 +65,7 @@ LABELS = ("alpha=1, beta=1", "alpha=0.25, beta=1", "beta=-1")  # of the same in 
 DOUBLINGS = (8, 16, 32, 64)
 MORE_SEEDS = {"low:3": (5, 4), "low:4": (4, 3)}  # orders for alpha and beta
 EIGHT = {"1/16": 128, "1/32": 256}  # with eight seeds, whose series are long
+NEEDED = (500, 2000)  # harmonics, at which tori are compared
 NEWTON_HOW: dict[str, Any] = {
     "order": 2,
     "borders": ["newton"],
@@ -229,6 +231,7 @@ def tables(found: Atlas) -> dict[str, str]:
         "packets": packets_table(found),
         "flach": flach_table(found),
         "newton": newton_table(found),
+        "newton-laws": newton_laws_table(),
         "one-seed": one_seed_table(),
         "chaos": chaos_table(),
         "chaos-laws": chaos_laws_table(),
@@ -448,39 +451,94 @@ def flach_table(found: Atlas) -> str:
     return rows_of(head, rows)
 
 
-def newton_table(found: Atlas) -> str:
-    """How far Newton's tori of packets that grow with the chain were followed."""
-    head = ["model", "M", "N", "s", "H/N by ratio", "H/N, last torus", "harmonics"]
-    head += ["with more", "residual", "change", "what ends the search"]
-    rows = read_atlas(NEWTON_FILE).rows.rows
-    cells = []
-    for row in rows:
-        chain, packet, result = row.case["chain"], row.case["packet"], row.result
+class NewtonColumn(NamedTuple):
+    """A column of NEWTON_FILE: seeds 1 .. s of a chain, and H of the tori on the way."""
+
+    model: str
+    s: int
+    N: int
+    end: dict[str, Any]
+    tori: list[dict[str, Any]]
+
+    def at_harmonics(self, count: int) -> float | None:
+        """H at which tori need so many, between the first that has more and the one before."""
+        for before, torus in zip(self.tori, self.tori[1:], strict=False):
+            sizes = [math.log(point["harmonics"]) for point in (before, torus)]
+            if sizes[0] <= math.log(count) < sizes[1]:
+                part = (math.log(count) - sizes[0]) / (sizes[1] - sizes[0])
+                return before["energy"] * (torus["energy"] / before["energy"]) ** part
+        return None
+
+
+def newton_columns() -> list[NewtonColumn]:
+    """All of them, by model, s and N."""
+    columns = []
+    for row in read_atlas(NEWTON_FILE).rows.rows:
+        chain, result = row.case["chain"], row.result
         model = "alpha=1" if chain["alpha"] != "0" else "beta=1"
-        N, end = int(chain["N"]), result["borders"]["newton"]
-        names = (packet, f"low:{len(result['modes'])}")
+        s, end = len(result["modes"]), result["borders"]["newton"]
+        columns.append(NewtonColumn(model, s, int(chain["N"]), end, result["newton"]))
+    return sorted(columns, key=lambda column: column[:3])
+
+
+def newton_table(found: Atlas) -> str:
+    """How far Newton's tori of low packets were followed."""
+    head = ["model", "s", "N", "M", "H/N by ratio", "H/N, last torus", "harmonics"]
+    head += ["with more", "residual", "change", f"chaos by {min(CHAOS_FILES):.0e}"]
+    head += ["what ends the search"]
+    chaos = chaos_by(min(CHAOS_FILES))
+    rows = []
+    for column in newton_columns():
+        model, s, N, end, tori = column
+        names = (f"low:{s}", f"low:1/{N // s}")
         by_name = [chosen(found, name, "ratio", model).get(N) for name in names]
-        ratio = by_name[0] or by_name[1]
-        sharper = end["confirmed"]
-        cells.append(
-            (
-                (model, -N / len(result["modes"]), N),
-                [
-                    model,
-                    packet.partition(":")[2],
-                    str(N),
-                    str(len(result["modes"])),
-                    f"{ratio.energy / N:.3g}" if ratio else "",
-                    f"{end['energy'] / N:.3g}",
-                    str(result["newton"][-1]["harmonics"]),
-                    str(sharper.get("harmonics", "")),
-                    f"{sharper['residual']:.1e}" if "residual" in sharper else "",
-                    f"{sharper['change']:.0e}" if "change" in sharper else "",
-                    end["failure"],
-                ],
-            )
+        ratio, sharper = by_name[0] or by_name[1], end["confirmed"]
+        rows.append(
+            [
+                model,
+                str(s),
+                str(N),
+                f"1/{N // s}" if N % s == 0 else "",
+                f"{ratio.energy / N:.3g}" if ratio else "",
+                f"{end['energy'] / N:.3g}",
+                str(tori[-1]["harmonics"]),
+                str(sharper.get("harmonics", "")),
+                f"{sharper['residual']:.1e}" if "residual" in sharper else "",
+                f"{sharper['change']:.0e}" if "change" in sharper else "",
+                specific(chaos.get((model, s, N))),
+                end["failure"],
+            ]
         )
-    return rows_of(head, [line for _, line in sorted(cells)])
+    return rows_of(head, rows)
+
+
+def newton_laws_table() -> str:
+    """Powers of N of H at which tori need so many harmonics, and of the last torus."""
+    head = ["model", "packets", "N", *(f"{count} harmonics" for count in NEEDED)]
+    head += ["last torus"]
+    columns = [column for column in newton_columns() if column.s > 1]
+    rows = []
+    for model in EXTENSIVE:
+        for name, belongs in NEWTON_GROUPS.items():
+            group = [c for c in columns if c.model == model and belongs(c.s, c.N)]
+            lengths = ", ".join(str(column.N) for column in group)
+            cells = [
+                newton_power({c.N: c.at_harmonics(count) for c in group})
+                for count in NEEDED
+            ]
+            last = newton_power({c.N: c.end["energy"] for c in group})
+            rows.append([model, name, lengths, *cells, last])
+    return rows_of(head, rows)
+
+
+def newton_power(energies: dict[int, float | None]) -> str:
+    """The power of N with its error; empty for fewer than three lengths."""
+    known = {N: H for N, H in energies.items() if H is not None}
+    try:
+        law = power_law(list(known), list(known.values()))
+    except InputError:
+        return ""
+    return f"{law.exponent:.2f} ± {law.error:.2f}"
 
 
 def one_seed_table() -> str:
@@ -557,16 +615,26 @@ def chaos_laws_table() -> str:
     return rows_of(head, rows)
 
 
+def is_number(seeds: int) -> Callable[[int, int], bool]:
+    """Whether s is so many."""
+    return lambda s, N: s == seeds
+
+
 def is_part(part: int) -> Callable[[int, int], bool]:
     """Whether s is this part of N."""
     return lambda s, N: s * part == N
 
 
+NEWTON_GROUPS: dict[str, Callable[[int, int], bool]] = {
+    **{f"s = {s}": is_number(s) for s in (2, 3, 4)},
+    "M = 1/8": is_part(8),
+    "M = 1/16": is_part(16),
+}
 CHAOS_GROUPS: dict[str, Callable[[int, int], bool]] = {
     "M = 1/8": is_part(8),
     "M = 1/16": is_part(16),
     "M = 1/32": is_part(32),
-    "s = 1": lambda s, N: s == 1,
+    "s = 1": is_number(1),
 }
 
 
@@ -649,9 +717,21 @@ def with_chaos(found: Atlas) -> Atlas:
     rows = [
         row for atlas_of in (found, *map(read_atlas, files)) for row in atlas_of.rows.rows
     ]
-    wanted = {f"low:{part}" for part in CHAOS_PARTS[min(CHAOS_FILES)]}
-    kept = tuple(row for row in rows if row.case["packet"] in wanted)
-    return Atlas(replace(found.rows, rows=kept))
+    kept = [
+        replace(row, case={**row.case, "packet": part})
+        for row in rows
+        for part in parts_of(row.case)
+    ]
+    return Atlas(replace(found.rows, rows=tuple(kept)))
+
+
+def parts_of(case: dict[str, Any]) -> list[str]:
+    """Of CHAOS_PARTS, by name, those that the packet of a case is on its chain."""
+    N, packet = int(case["chain"]["N"]), case["packet"]
+    parts = {
+        f"low:{part}": f"low:{N * Fraction(part)}" for part in CHAOS_PARTS[min(CHAOS_FILES)]
+    }
+    return [part for part, seeds in parts.items() if packet in (part, seeds)]
 
 
 def save(axes: Any, name: str) -> None:
