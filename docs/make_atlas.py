@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from symfpu import Atlas, AtlasBorder, Chain, atlas, read_atlas
 from symfpu.borders.chaos import FACTOR
 from symfpu.borders.laws import power_law
+from symfpu.borders.newton_end import WIDE_FACTOR
 from symfpu.errors import InputError
 from symfpu.sweeps.this_process import ThisProcess
 
@@ -65,7 +66,7 @@ LABELS = ("alpha=1, beta=1", "alpha=0.25, beta=1", "beta=-1")  # of the same in 
 DOUBLINGS = (8, 16, 32, 64)
 MORE_SEEDS = {"low:3": (5, 4), "low:4": (4, 3)}  # orders for alpha and beta
 EIGHT = {"1/16": 128, "1/32": 256}  # with eight seeds, whose series are long
-NEEDED = (500, 2000)  # harmonics, at which tori are compared
+NEEDED = (1000, 2000)  # harmonics, at which tori are compared
 NEWTON_HOW: dict[str, Any] = {
     "order": 2,
     "borders": ["newton"],
@@ -514,31 +515,37 @@ def newton_table(found: Atlas) -> str:
 
 def newton_laws_table() -> str:
     """Powers of N of H at which tori need so many harmonics, and of the last torus."""
-    head = ["model", "packets", "N", *(f"{count} harmonics" for count in NEEDED)]
-    head += ["last torus"]
+    head = ["model", "packets", "N", f"lambda at {NEEDED[0]} harmonics"]
+    head += [*(f"power of N, {count} harmonics" for count in NEEDED), "last torus"]
     columns = [column for column in newton_columns() if column.s > 1]
     rows = []
     for model in EXTENSIVE:
         for name, belongs in NEWTON_GROUPS.items():
             group = [c for c in columns if c.model == model and belongs(c.s, c.N)]
-            lengths = ", ".join(str(column.N) for column in group)
-            cells = [
+            energies = [(c, c.at_harmonics(NEEDED[0])) for c in group]
+            sizes = [H and f"{H / unit(model, c.N, c.s):.3g}" for c, H in energies]
+            lists = [", ".join(str(c.N) for c in group), ", ".join(filter(None, sizes))]
+            powers = [
                 newton_power({c.N: c.at_harmonics(count) for c in group})
                 for count in NEEDED
             ]
-            last = newton_power({c.N: c.end["energy"] for c in group})
-            rows.append([model, name, lengths, *cells, last])
+            last = newton_power({c.N: c.end["energy"] for c in group}, WIDE_FACTOR)
+            rows.append([model, name, *lists, *powers, last])
     return rows_of(head, rows)
 
 
-def newton_power(energies: dict[int, float | None]) -> str:
-    """The power of N with its error; empty for fewer than three lengths."""
+def newton_power(energies: dict[int, float | None], factor: float = 1.0) -> str:
+    """The power of N with its error; empty for fewer than three lengths.
+
+    factor : between neighbours of the grid that the energies lie on.
+    """
     known = {N: H for N, H in energies.items() if H is not None}
     try:
         law = power_law(list(known), list(known.values()))
     except InputError:
         return ""
-    return f"{law.exponent:.2f} ± {law.error:.2f}"
+    error = max(law.error, grid_error(law.lengths, factor))
+    return f"{law.exponent:.2f} ± {error:.2f}"
 
 
 def one_seed_table() -> str:
@@ -647,16 +654,16 @@ def power_of_lengths(
     ]
     long_ones = sorted((b for b in borders if b.N >= LONG and b.energy), key=lambda b: b.N)
     law = power_law([b.N for b in long_ones], [b.energy / b.N for b in long_ones])
-    error = max(law.error, grid_error(law.lengths))
+    error = max(law.error, grid_error(law.lengths, FACTOR))
     return f"{law.lengths[0]} .. {law.lengths[-1]}", f"{law.exponent:.2f} ± {error:.2f}"
 
 
-def grid_error(lengths: tuple[int, ...]) -> float:
-    """Of an exponent of energies that lie anywhere between two neighbours of the grid."""
+def grid_error(lengths: tuple[int, ...], factor: float) -> float:
+    """Of an exponent of energies that lie anywhere between two neighbours of a grid."""
     x = [math.log(N) for N in lengths]
     mean = sum(x) / len(x)
     spread_of_lengths = sum((value - mean) ** 2 for value in x)
-    return math.log(FACTOR) / math.sqrt(12 * spread_of_lengths)
+    return math.log(factor) / math.sqrt(12 * spread_of_lengths)
 
 
 def longest_followed(model: str, chosen_by: Callable[[int, int], bool]) -> tuple[int, int]:
