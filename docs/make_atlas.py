@@ -52,7 +52,6 @@ NEWTON_SEEDS = {
     2: (8, 16, 32, 64, 128),
     3: (16, 32, 64, 128),
     4: (16, 32, 64, 128),
-    8: (64, 128),
 }
 ODD = (9, 17, 33, 65)
 OTHER_MIDDLES = (33, 34, 65, 66, 129, 130)  # lengths that are no multiples of 4
@@ -535,15 +534,15 @@ def newton_laws_table() -> str:
 
 
 def newton_power(energies: dict[int, float | None], factor: float = 1.0) -> str:
-    """The power of N with its error; empty for fewer than three lengths.
+    """The power of N with its error, which two lengths do not have.
 
     factor : between neighbours of the grid that the energies lie on.
     """
     known = {N: H for N, H in energies.items() if H is not None}
-    try:
-        law = power_law(list(known), list(known.values()))
-    except InputError:
-        return ""
+    if len(known) == 2:
+        (N, H), (longer, lower) = known.items()
+        return f"{math.log(lower / H) / math.log(longer / N):.1f}"
+    law = power_law(list(known), list(known.values()))
     error = max(law.error, grid_error(law.lengths, factor))
     return f"{law.exponent:.2f} ± {error:.2f}"
 
@@ -634,8 +633,7 @@ def is_part(part: int) -> Callable[[int, int], bool]:
 
 NEWTON_GROUPS: dict[str, Callable[[int, int], bool]] = {
     **{f"s = {s}": is_number(s) for s in (2, 3, 4)},
-    "M = 1/8": is_part(8),
-    "M = 1/16": is_part(16),
+    **{f"M = 1/{part}": is_part(part) for part in (8, 16, 32)},
 }
 CHAOS_GROUPS: dict[str, Callable[[int, int], bool]] = {
     "M = 1/8": is_part(8),
