@@ -170,11 +170,7 @@ def make_data() -> None:
     for number, arguments in enumerate(grids(), 1):
         found = atlas(**arguments, reach=REACH, file=FILE)
         print(number, found, flush=True)
-    for s, lengths in NEWTON_SEEDS.items():
-        for model in EXTENSIVE:
-            chains = [Chain(N, **MODELS[model]) for N in lengths]
-            print(atlas(chains, [f"low:{s}"], **NEWTON_HOW, file=NEWTON_FILE), flush=True)
-    for arguments in one_seed_grids():
+    for arguments in (*newton_grids(), *one_seed_grids()):
         print(atlas(**arguments), flush=True)
     make_chaos_data()
 
@@ -209,6 +205,15 @@ def chaos_grid(chain: Chain, packet: str, T: float, file: Path) -> dict[str, Any
         "time": T,
         "file": file,
     }
+
+
+def newton_grids() -> Iterator[dict[str, Any]]:
+    """The arguments of every call for Newton's tori of low packets."""
+    for s, lengths in NEWTON_SEEDS.items():
+        for model in EXTENSIVE:
+            chains = [Chain(N, **MODELS[model]) for N in lengths]
+            shared = {"chains": chains, "packets": [f"low:{s}"], "file": NEWTON_FILE}
+            yield shared | NEWTON_HOW
 
 
 def one_seed_grids() -> Iterator[dict[str, Any]]:
