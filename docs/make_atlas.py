@@ -19,6 +19,7 @@ from symfpu.borders.chaos import FACTOR
 from symfpu.borders.laws import power_law
 from symfpu.borders.newton_end import WIDE_FACTOR
 from symfpu.errors import InputError
+from symfpu.sweeps.rows import SweepRow
 from symfpu.sweeps.this_process import ThisProcess
 
 HERE = Path(__file__).parent
@@ -723,25 +724,21 @@ def draw(found: Atlas) -> None:
 
 def with_chaos(found: Atlas) -> Atlas:
     """Low packets of the parts 1/8, 1/16 and 1/32: their series, Newton's tori and orbits."""
-    files = (NEWTON_FILE, CHAOS_FILES[min(CHAOS_FILES)])
-    rows = [
-        row for atlas_of in (found, *map(read_atlas, files)) for row in atlas_of.rows.rows
-    ]
-    kept = [
-        replace(row, case={**row.case, "packet": part})
-        for row in rows
-        for part in parts_of(row.case)
-    ]
-    return Atlas(replace(found.rows, rows=tuple(kept)))
+    chaos, newton = (
+        read_atlas(file) for file in (CHAOS_FILES[min(CHAOS_FILES)], NEWTON_FILE)
+    )
+    wanted = {f"low:{part}" for part in CHAOS_PARTS[min(CHAOS_FILES)]}
+    named = [named_by_part(row) for row in newton.rows.rows]
+    rows = [*found.rows.rows, *chaos.rows.rows, *named]
+    kept = tuple(row for row in rows if row.case["packet"] in wanted)
+    return Atlas(replace(found.rows, rows=kept))
 
 
-def parts_of(case: dict[str, Any]) -> list[str]:
-    """Of CHAOS_PARTS, by name, those that the packet of a case is on its chain."""
-    N, packet = int(case["chain"]["N"]), case["packet"]
-    parts = {
-        f"low:{part}": f"low:{N * Fraction(part)}" for part in CHAOS_PARTS[min(CHAOS_FILES)]
-    }
-    return [part for part, seeds in parts.items() if packet in (part, seeds)]
+def named_by_part(row: SweepRow) -> SweepRow:
+    """The same with s seeds as a part of N."""
+    seeds = int(row.case["packet"].removeprefix("low:"))
+    part = Fraction(seeds, int(row.case["chain"]["N"]))
+    return replace(row, case={**row.case, "packet": f"low:{part}"})
 
 
 def save(axes: Any, name: str) -> None:
