@@ -10,13 +10,16 @@ import math
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from symfpu import Atlas, AtlasBorder, Chain, atlas, read_atlas
 from symfpu.borders.chaos import FACTOR
 from symfpu.borders.laws import power_law
+from symfpu.borders.newton_end import WIDE_FACTOR
 from symfpu.errors import InputError
+from symfpu.sweeps.rows import SweepRow
 from symfpu.sweeps.this_process import ThisProcess
 
 HERE = Path(__file__).parent
@@ -45,7 +48,12 @@ PARTS = {"1/32": (32, 64, 128, 256), "1/16": (16, 32, 64, 128)}
 REACH = 2
 FLACH_LENGTHS = (8, 12, 16, 24, 32)
 FLACH_SEEDS = ("2", "3")
-NEWTON_PARTS = {"1/8": (8, 16, 32), "1/16": (16, 32, 64), "1/32": (32, 64, 128)}
+NEWTON_SEEDS = {
+    1: (8, 16, 32),
+    2: (8, 16, 32, 64, 128),
+    3: (16, 32, 64, 128),
+    4: (16, 32, 64, 128),
+}
 ODD = (9, 17, 33, 65)
 OTHER_MIDDLES = (33, 34, 65, 66, 129, 130)  # lengths that are no multiples of 4
 MIDDLE_LENGTH, FROM_MIDDLE = 128, ("66", "68", "72")
@@ -58,12 +66,13 @@ LABELS = ("alpha=1, beta=1", "alpha=0.25, beta=1", "beta=-1")  # of the same in 
 DOUBLINGS = (8, 16, 32, 64)
 MORE_SEEDS = {"low:3": (5, 4), "low:4": (4, 3)}  # orders for alpha and beta
 EIGHT = {"1/16": 128, "1/32": 256}  # with eight seeds, whose series are long
+NEEDED = (1000, 2000)  # harmonics, at which tori are compared
 NEWTON_HOW: dict[str, Any] = {
     "order": 2,
     "borders": ["newton"],
-    "places": ["1e-6"],
-    "reach": 10**6,
-    "most_harmonics": 12000,
+    "places": ["1e-8"],
+    "reach": 10**8,
+    "most_harmonics": 4000,
 }
 CHAOS_PARTS: dict[float, dict[str, tuple[int, ...]]] = {
     1e5: {
@@ -162,11 +171,7 @@ def make_data() -> None:
     for number, arguments in enumerate(grids(), 1):
         found = atlas(**arguments, reach=REACH, file=FILE)
         print(number, found, flush=True)
-    for part, lengths in NEWTON_PARTS.items():
-        for model in EXTENSIVE:
-            chains = [Chain(N, **MODELS[model]) for N in lengths]
-            print(atlas(chains, [f"low:{part}"], **NEWTON_HOW, file=NEWTON_FILE))
-    for arguments in one_seed_grids():
+    for arguments in (*newton_grids(), *one_seed_grids()):
         print(atlas(**arguments), flush=True)
     make_chaos_data()
 
@@ -203,6 +208,15 @@ def chaos_grid(chain: Chain, packet: str, T: float, file: Path) -> dict[str, Any
     }
 
 
+def newton_grids() -> Iterator[dict[str, Any]]:
+    """The arguments of every call for Newton's tori of low packets."""
+    for s, lengths in NEWTON_SEEDS.items():
+        for model in EXTENSIVE:
+            chains = [Chain(N, **MODELS[model]) for N in lengths]
+            shared = {"chains": chains, "packets": [f"low:{s}"], "file": NEWTON_FILE}
+            yield shared | NEWTON_HOW
+
+
 def one_seed_grids() -> Iterator[dict[str, Any]]:
     """The arguments of every call for the end of Newton's breathers."""
     for model, lengths in ONE_SEED_LENGTHS.items():
@@ -223,6 +237,7 @@ def tables(found: Atlas) -> dict[str, str]:
         "packets": packets_table(found),
         "flach": flach_table(found),
         "newton": newton_table(found),
+        "newton-laws": newton_laws_table(),
         "one-seed": one_seed_table(),
         "chaos": chaos_table(),
         "chaos-laws": chaos_laws_table(),
@@ -442,39 +457,100 @@ def flach_table(found: Atlas) -> str:
     return rows_of(head, rows)
 
 
-def newton_table(found: Atlas) -> str:
-    """How far Newton's tori of packets that grow with the chain were followed."""
-    head = ["model", "M", "N", "s", "H/N by ratio", "H/N, last torus", "harmonics"]
-    head += ["with more", "residual", "change", "what ends the search"]
-    rows = read_atlas(NEWTON_FILE).rows.rows
-    cells = []
-    for row in rows:
-        chain, packet, result = row.case["chain"], row.case["packet"], row.result
+class NewtonColumn(NamedTuple):
+    """A column of NEWTON_FILE: seeds 1 .. s of a chain, and H of the tori on the way."""
+
+    model: str
+    s: int
+    N: int
+    end: dict[str, Any]
+    tori: list[dict[str, Any]]
+
+    def at_harmonics(self, count: int) -> float | None:
+        """H at which tori need so many, between the first that has more and the one before."""
+        for before, torus in zip(self.tori, self.tori[1:], strict=False):
+            sizes = [math.log(point["harmonics"]) for point in (before, torus)]
+            if sizes[0] <= math.log(count) < sizes[1]:
+                part = (math.log(count) - sizes[0]) / (sizes[1] - sizes[0])
+                return before["energy"] * (torus["energy"] / before["energy"]) ** part
+        return None
+
+
+def newton_columns() -> list[NewtonColumn]:
+    """All of them, by model, s and N."""
+    columns = []
+    for row in read_atlas(NEWTON_FILE).rows.rows:
+        chain, result = row.case["chain"], row.result
         model = "alpha=1" if chain["alpha"] != "0" else "beta=1"
-        N, end = int(chain["N"]), result["borders"]["newton"]
-        names = (packet, f"low:{len(result['modes'])}")
+        s, end = len(result["modes"]), result["borders"]["newton"]
+        columns.append(NewtonColumn(model, s, int(chain["N"]), end, result["newton"]))
+    return sorted(columns, key=lambda column: column[:3])
+
+
+def newton_table(found: Atlas) -> str:
+    """How far Newton's tori of low packets were followed."""
+    head = ["model", "s", "N", "M", "H/N by ratio", "H/N, last torus", "harmonics"]
+    head += ["with more", "residual", "change", f"chaos by {min(CHAOS_FILES):.0e}"]
+    head += ["what ends the search"]
+    chaos = chaos_by(min(CHAOS_FILES))
+    rows = []
+    for column in newton_columns():
+        model, s, N, end, tori = column
+        names = (f"low:{s}", f"low:1/{N // s}")
         by_name = [chosen(found, name, "ratio", model).get(N) for name in names]
-        ratio = by_name[0] or by_name[1]
-        sharper = end["confirmed"]
-        cells.append(
-            (
-                (model, -N / len(result["modes"]), N),
-                [
-                    model,
-                    packet.partition(":")[2],
-                    str(N),
-                    str(len(result["modes"])),
-                    f"{ratio.energy / N:.3g}" if ratio else "",
-                    f"{end['energy'] / N:.3g}",
-                    str(result["newton"][-1]["harmonics"]),
-                    str(sharper.get("harmonics", "")),
-                    f"{sharper['residual']:.1e}" if "residual" in sharper else "",
-                    f"{sharper['change']:.0e}" if "change" in sharper else "",
-                    end["failure"],
-                ],
-            )
+        ratio, sharper = by_name[0] or by_name[1], end["confirmed"]
+        rows.append(
+            [
+                model,
+                str(s),
+                str(N),
+                f"1/{N // s}" if N % s == 0 else "",
+                f"{ratio.energy / N:.3g}" if ratio else "",
+                f"{end['energy'] / N:.3g}",
+                str(tori[-1]["harmonics"]),
+                str(sharper.get("harmonics", "")),
+                f"{sharper['residual']:.1e}" if "residual" in sharper else "",
+                f"{sharper['change']:.0e}" if "change" in sharper else "",
+                specific(chaos.get((model, s, N))),
+                end["failure"],
+            ]
         )
-    return rows_of(head, [line for _, line in sorted(cells)])
+    return rows_of(head, rows)
+
+
+def newton_laws_table() -> str:
+    """Powers of N of H at which tori need so many harmonics, and of the last torus."""
+    head = ["model", "packets", "N", f"lambda at {NEEDED[0]} harmonics"]
+    head += [*(f"power of N, {count} harmonics" for count in NEEDED), "last torus"]
+    columns = [column for column in newton_columns() if column.s > 1]
+    rows = []
+    for model in EXTENSIVE:
+        for name, belongs in NEWTON_GROUPS.items():
+            group = [c for c in columns if c.model == model and belongs(c.s, c.N)]
+            energies = [(c, c.at_harmonics(NEEDED[0])) for c in group]
+            sizes = [H and f"{H / unit(model, c.N, c.s):.3g}" for c, H in energies]
+            lists = [", ".join(str(c.N) for c in group), ", ".join(filter(None, sizes))]
+            powers = [
+                newton_power({c.N: c.at_harmonics(count) for c in group})
+                for count in NEEDED
+            ]
+            last = newton_power({c.N: c.end["energy"] for c in group}, WIDE_FACTOR)
+            rows.append([model, name, *lists, *powers, last])
+    return rows_of(head, rows)
+
+
+def newton_power(energies: dict[int, float | None], factor: float = 1.0) -> str:
+    """The power of N with its error, which two lengths do not have.
+
+    factor : between neighbours of the grid that the energies lie on.
+    """
+    known = {N: H for N, H in energies.items() if H is not None}
+    if len(known) == 2:
+        (N, H), (longer, lower) = known.items()
+        return f"{math.log(lower / H) / math.log(longer / N):.1f}"
+    law = power_law(list(known), list(known.values()))
+    error = max(law.error, grid_error(law.lengths, factor))
+    return f"{law.exponent:.2f} ± {error:.2f}"
 
 
 def one_seed_table() -> str:
@@ -551,16 +627,25 @@ def chaos_laws_table() -> str:
     return rows_of(head, rows)
 
 
+def is_number(seeds: int) -> Callable[[int, int], bool]:
+    """Whether s is so many."""
+    return lambda s, N: s == seeds
+
+
 def is_part(part: int) -> Callable[[int, int], bool]:
     """Whether s is this part of N."""
     return lambda s, N: s * part == N
 
 
+NEWTON_GROUPS: dict[str, Callable[[int, int], bool]] = {
+    **{f"s = {s}": is_number(s) for s in (2, 3, 4)},
+    **{f"M = 1/{part}": is_part(part) for part in (8, 16, 32)},
+}
 CHAOS_GROUPS: dict[str, Callable[[int, int], bool]] = {
     "M = 1/8": is_part(8),
     "M = 1/16": is_part(16),
     "M = 1/32": is_part(32),
-    "s = 1": lambda s, N: s == 1,
+    "s = 1": is_number(1),
 }
 
 
@@ -573,16 +658,16 @@ def power_of_lengths(
     ]
     long_ones = sorted((b for b in borders if b.N >= LONG and b.energy), key=lambda b: b.N)
     law = power_law([b.N for b in long_ones], [b.energy / b.N for b in long_ones])
-    error = max(law.error, grid_error(law.lengths))
+    error = max(law.error, grid_error(law.lengths, FACTOR))
     return f"{law.lengths[0]} .. {law.lengths[-1]}", f"{law.exponent:.2f} ± {error:.2f}"
 
 
-def grid_error(lengths: tuple[int, ...]) -> float:
-    """Of an exponent of energies that lie anywhere between two neighbours of the grid."""
+def grid_error(lengths: tuple[int, ...], factor: float) -> float:
+    """Of an exponent of energies that lie anywhere between two neighbours of a grid."""
     x = [math.log(N) for N in lengths]
     mean = sum(x) / len(x)
     spread_of_lengths = sum((value - mean) ** 2 for value in x)
-    return math.log(FACTOR) / math.sqrt(12 * spread_of_lengths)
+    return math.log(factor) / math.sqrt(12 * spread_of_lengths)
 
 
 def longest_followed(model: str, chosen_by: Callable[[int, int], bool]) -> tuple[int, int]:
@@ -639,13 +724,21 @@ def draw(found: Atlas) -> None:
 
 def with_chaos(found: Atlas) -> Atlas:
     """Low packets of the parts 1/8, 1/16 and 1/32: their series, Newton's tori and orbits."""
-    files = (NEWTON_FILE, CHAOS_FILES[min(CHAOS_FILES)])
-    rows = [
-        row for atlas_of in (found, *map(read_atlas, files)) for row in atlas_of.rows.rows
-    ]
+    chaos, newton = (
+        read_atlas(file) for file in (CHAOS_FILES[min(CHAOS_FILES)], NEWTON_FILE)
+    )
     wanted = {f"low:{part}" for part in CHAOS_PARTS[min(CHAOS_FILES)]}
+    named = [named_by_part(row) for row in newton.rows.rows]
+    rows = [*found.rows.rows, *chaos.rows.rows, *named]
     kept = tuple(row for row in rows if row.case["packet"] in wanted)
     return Atlas(replace(found.rows, rows=kept))
+
+
+def named_by_part(row: SweepRow) -> SweepRow:
+    """The same with s seeds as a part of N."""
+    seeds = int(row.case["packet"].removeprefix("low:"))
+    part = Fraction(seeds, int(row.case["chain"]["N"]))
+    return replace(row, case={**row.case, "packet": f"low:{part}"})
 
 
 def save(axes: Any, name: str) -> None:

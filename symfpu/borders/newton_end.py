@@ -16,6 +16,7 @@ from symfpu.breathers.floquet import floquet
 from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.resonances import NearResonance
+from symfpu.refinement.search import ALL_THAT_FIT
 from symfpu.refinement.tori import (
     NoTorus,
     RefinedTorus,
@@ -32,6 +33,7 @@ WIDE_FACTOR = 1.6  # and if none is
 LOSS_WIDTH = 1.01  # ratio of the places between which something is lost
 LEAST_FACTOR = 1.01  # a step below which the torus before is the last
 TOLERANCE = 1e-9  # of the residual, as of what `normal_modes` takes
+CONFIRMING = 3  # times as many harmonics for the last torus as for those on the way
 Json = dict[str, Any]
 Test = Callable[[RefinedTorus], Json]
 
@@ -171,14 +173,15 @@ def newton_end(
         points.append(found)
         for name in losses:
             if name not in lost and (loss := _loss(name, points)):
-                lost[name] = _located(ray, TESTS[name], loss)
-    confirmed = _confirmed(ray, points[-1]) if confirm else {}
+                lost[name] = _located(ray, TESTS[name], loss, most_harmonics)
+    confirmed = _confirmed(ray, points[-1], most_harmonics) if confirm else {}
     return NewtonEnd(stop.reason, stop.above, tuple(points), lost, confirmed)
 
 
-def _confirmed(ray: Ray, last: RefinedPoint) -> Json:
+def _confirmed(ray: Ray, last: RefinedPoint, most: int) -> Json:
     def refined(sharper: float) -> RefinedTorus:
-        return _refined(ray, last.torus, last.place, sharper * TOLERANCE)
+        tolerance = sharper * TOLERANCE
+        return _refined(ray, last.torus, last.place, CONFIRMING * most, tolerance)
 
     return confirmation(last.torus, refined)
 
@@ -200,7 +203,7 @@ def _loss(name: str, points: Sequence[RefinedPoint]) -> Loss | None:
     return Loss(before, latest[0], changes[0])
 
 
-def _located(ray: Ray, test: Test, loss: Loss) -> Loss:
+def _located(ray: Ray, test: Test, loss: Loss, most: int) -> Loss:
     """The same between nearer places, by halving, as far as tori are found."""
     below, above, found = loss.below, loss.above, loss.found
     if below is None:
@@ -208,7 +211,7 @@ def _located(ray: Ray, test: Test, loss: Loss) -> Loss:
     while above.place > LOSS_WIDTH * below.place:
         place = math.sqrt(below.place * above.place)
         try:
-            middle = RefinedPoint(place, _refined(ray, below.torus, place))
+            middle = RefinedPoint(place, _refined(ray, below.torus, place, most))
         except NoTorus:
             break
         if change := test(middle.torus):
@@ -262,47 +265,49 @@ def _followed(
     widest: float,
 ) -> Iterator[RefinedPoint | _Stop]:
     """The tori as they come, then why there is no further one."""
-    torus = _refined(ray, guess, place)
+    torus = _refined(ray, guess, place, most)
     yield RefinedPoint(place, torus)
     factor = widest
     while place < end:
         following = min(place * factor, end)
         try:
-            torus = _refined(ray, torus, following)
+            found = _refined(ray, torus, following, most)
         except NoTorus as failure:
             if factor < LEAST_FACTOR:
                 yield _Stop(failure.reason, following)
                 return
             factor = math.sqrt(factor)
             continue
-        if len(torus.harmonics) > most or torus.warnings:
-            yield _Stop(NOT_SMALL if torus.warnings else TOO_MANY, following)
+        if found.warnings:
+            full = any(ALL_THAT_FIT in warning for warning in found.warnings)
+            yield _Stop(TOO_MANY if full else NOT_SMALL, following)
             return
-        place = following
+        torus, place = found, following
         factor = min(widest, factor**1.5)
         yield RefinedPoint(place, torus)
     yield _Stop(NOT_FOLLOWED, math.inf)
 
 
 def _refined(
-    ray: Ray, guess: QuasiPeriodic, place: float, tolerance: float = TOLERANCE
+    ray: Ray,
+    guess: QuasiPeriodic,
+    place: float,
+    most: int,
+    tolerance: float = TOLERANCE,
 ) -> RefinedTorus:
     """The torus of a place; NoTorus also where Newton's method ended early."""
-    found = _at(ray, guess, place, tolerance)
+    found = _at(ray, guess, place, tolerance=tolerance, most_harmonics=most)
     if ended_early(found):
         raise NoTorus("; ".join(found.warnings), found, found.residual())
     return found
 
 
-def _at(ray: Ray, guess: QuasiPeriodic, place: float, tolerance: float) -> RefinedTorus:
+def _at(ray: Ray, guess: QuasiPeriodic, place: float, **how: Any) -> RefinedTorus:
     name = f"{place:.8g}"
     if ray.by == ENERGY:
         equal = dict.fromkeys(ray.seeds, 1)
-        return refine_at_energy(
-            guess, name, harmonic=False, energy_ratio=equal, tolerance=tolerance
-        )
-    amplitudes = dict.fromkeys(ray.seeds, name)
-    return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance)
+        return refine_at_energy(guess, name, harmonic=False, energy_ratio=equal, **how)
+    return refine_at_amplitudes(guess, dict.fromkeys(ray.seeds, name), **how)
 
 
 def _slopes(points: tuple[RefinedPoint, ...]) -> list[float]:

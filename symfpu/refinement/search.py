@@ -44,7 +44,8 @@ WIDENINGS, PATIENCE, GAIN = 20, 3, 0.8
 ROUGH_KRYLOV, ROUGH, OF_A_GUESS = 1e-7, 1e-3, 1e-3
 
 
-NO_GAIN = "more harmonics change nothing and"  # a reason to stop
+# reasons to stop
+NO_GAIN, ALL_THAT_FIT = "more harmonics change nothing and", "as many harmonics as fit"
 
 
 class Unknowns(NamedTuple):
@@ -214,7 +215,7 @@ class Search:
 
     @property
     def _all_that_fit(self) -> str:
-        return f"as many harmonics as fit (most_harmonics={self.most})"
+        return f"{ALL_THAT_FIT} (most_harmonics={self.most})"
 
     def _doubtful(self, solved: Solved, reason: str) -> Solved:
         """With the reason why its residual stays above the tolerance."""

@@ -35,14 +35,13 @@ def test_all_rows_are_of_its_grids():
 
 
 @pytest.mark.skipif(not SCRIPT.exists(), reason="no pages beside an installed package")
-def test_all_orbits_and_breathers_are_of_its_grids():
+def test_all_orbits_and_tori_are_of_its_grids():
     made = importlib.util.spec_from_file_location("make_atlas", SCRIPT)
     module = importlib.util.module_from_spec(made)
     made.loader.exec_module(module)
-    asked = {
-        (g["file"], c.typed["N"], p) for g in (*module.chaos_grids(), *module.one_seed_grids()) for c in g["chains"] for p in g["packets"]
-    }
-    files = (module.ONE_SEED_FILE, *module.CHAOS_FILES.values())
+    grids = (*module.chaos_grids(), *module.newton_grids(), *module.one_seed_grids())
+    asked = {(g["file"], c.typed["N"], p) for g in grids for c in g["chains"] for p in g["packets"]}
+    files = (module.NEWTON_FILE, module.ONE_SEED_FILE, *module.CHAOS_FILES.values())
     held = {(file, str(row.case["chain"]["N"]), row.case["packet"]) for file in files for row in read_atlas(file).rows.rows}
     assert held == {(file, str(N), packet) for file, N, packet in asked}
     for T, file in module.CHAOS_FILES.items():
