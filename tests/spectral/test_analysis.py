@@ -160,7 +160,7 @@ def test_orbits_that_cannot_be_analysed_are_refused():
 
 
 def test_an_orbit_shorter_than_its_slowest_mode_is_refused():
-    """5.3 turns: with fewer a line and its mirror image at -f are one, and errors of 1e-17 were claimed of numbers 20 % off."""
+    """5.3 turns: with fewer a line and its mirror image at -f are one, and errors of 1e-17 were claimed of numbers 24 % off."""
     chain = Chain(N=64, alpha="0.3")
     for modes, T, words in (
         ((1,), 300, "2.3 turns of mode 1.* at least 683, 5.3 turns"),
