@@ -790,3 +790,9 @@ SAME_TORUS = 1e-12
 
 # Coordinates of seeds at t = 0 of tori with some thousand harmonics, each coefficient rounded.
 AT_THE_START = 1e-12
+
+# Squares of logarithms of multipliers next to 1, where two pairs nearly meet: rounding of the torus and of the monodromy matrix.
+BESIDE_MULTIPLIER = 1e-12
+
+# Normal frequencies of doubles against digits, as promised of Fig. 1: measured 2e-16.
+NORMAL_PROMISED = 1e-12

@@ -255,17 +255,6 @@ def followed(flow: Linearised, q: int, sigma: complex, like: Values) -> Reduced 
     return None
 
 
-def hyperbolic(
-    flow: Linearised, q: int, sigma: complex, like: Values | None
-) -> Reduced | None:
-    """One near a complex sigma, the likest to a function, or to the mode q; None without any."""
-    for part in DEFLATED[1:]:
-        found = _found(flow, _Aim(q, sigma, flow.column(q), like), part)
-        if found and complex(found.sigma).imag:
-            return found
-    return None
-
-
 def continued(flow: Linearised, q: int) -> Reduced | None:
     """The same from no coupling to the whole one, step by step; each begins with the last."""
     aim = _Aim(q, flow.frequency(q), flow.column(q))

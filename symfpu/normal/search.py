@@ -10,6 +10,7 @@ import numpy as np
 
 from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress, unheard
+from symfpu.normal.beside import beside, nearness
 from symfpu.normal.collisions import undecided_modes
 from symfpu.normal.digits import PreciseModes
 from symfpu.normal.linearised import Linearised, Values
@@ -21,7 +22,6 @@ from symfpu.normal.reduction import (
     Reduced,
     continued,
     followed,
-    hyperbolic,
     reduced,
 )
 from symfpu.normal.resonances import OWN, ParametricResonance
@@ -45,12 +45,21 @@ TOLERANCE = 1e-10  # residual of a mode whose harmonics are enough
 SHOWN_DIVISORS = 5
 UNRESOLVED = 1e-7  # difference from a frequency of the torus that a double root may have
 SPREAD = 10.0  # times rounding: what is nearer to nu.omega turns as the torus does
+NEARLY_TURNING = 1e-2  # of sigma: a direction so near to nu.omega is looked for beside it
+TOO_NEAR = 1e-4  # to nu.omega, where doubles do not tell a direction from a shift
 STILL = 1e-2  # of sigma: the action of a direction that may turn as the torus does
-GROWTHS = (1e-3, 1e-4, 1e-2)  # over nu.omega, tried where a direction is locked to it
 RESOLVED = 1e-7  # residual of such a direction
 HALVINGS = 4  # of the step between two tori, where a mode cannot be followed at once
 LOST = "its eigenfunction on the torus before does not tell it from others"
 NEARER = "follow it in smaller steps, or together with the modes that it mixes with"
+
+# why a mode is missing, and what to do
+TURNING = (
+    "in doubles it is not told from a shift of the angles, which turns as the torus does"
+)
+AWAY = "move an amplitude by 1e-5 of it or more, or leave the mode out by modes="
+DISPLACED = "to displace the waves costs less than doubles show"
+LARGER = "take larger amplitudes, or leave the mode out by modes="
 
 
 def normal_modes(
@@ -256,7 +265,11 @@ class _Search:
         beside = own and self._beside(q, own, others)
         if beside:
             return beside
-        raise NoNormalModes(q, guess, turning or (nearest[0] if nearest else None))
+        if turning and self._is_cosine(q):
+            raise NoNormalModes(q, guess, turning, DISPLACED, LARGER)
+        if turning or (own and self._too_near(q, own)):
+            raise NoNormalModes(q, guess, own, TURNING, AWAY)
+        raise NoNormalModes(q, guess, nearest[0] if nearest else None)
 
     def _require_told(self, found: NormalMode) -> None:
         """NoNormalModes for a mode that was lost on the way, if its main coefficient is small."""
@@ -275,8 +288,7 @@ class _Search:
         cosine, are one to more digits than a double root has.
         """
         torus, sigma = self._torus, complex(found.sigma)
-        standing = isinstance(torus, RingTorus) and is_standing(torus)
-        cosine = standing and not is_sine(torus.chain, found.mode)
+        cosine = self._is_cosine(found.mode)
         if not cosine and abs(found.action) > STILL * abs(sigma):
             return None
         unresolved = UNRESOLVED if cosine else max(UNRESOLVED, SPREAD * found.rounding)
@@ -293,29 +305,44 @@ class _Search:
     def _beside(
         self, q: int, own: ParametricResonance, others: dict[int, NormalMode]
     ) -> NormalMode | None:
-        """A hyperbolic direction that is locked to a frequency of the torus: sigma = nu.omega."""
-        omega = np.array([float(w) for w in self._torus.frequencies])
-        rate = float(np.array(own.harmonic) @ omega)
-        for growth in GROWTHS:
-            sigma = complex(rate, growth * rate)
-            found = self._sought(q, partial(self._hyperbolic, q=q, sigma=sigma))
-            if found and self._locked(found, rate, others):
-                return found
-        return None
+        """A direction that turns nearly as the torus does, or grows there: sigma = nu.omega +- ."""
+        rate = self._rate(own)
+        shifts = self._shifts(q)
+        found = self._sought(q, partial(beside, q=q, rate=rate, shifts=shifts))
+        return found if found and self._apart(found, rate, others) else None
 
-    @staticmethod
-    def _locked(found: NormalMode, rate: float, others: dict[int, NormalMode]) -> bool:
-        """Whether a direction is hyperbolic about a frequency, and none of the others."""
+    def _too_near(self, q: int, own: ParametricResonance) -> bool:
+        """Whether there is one, but too near for Newton's method in doubles."""
+        *_, finest = self._flows
+        shifts = self._shifts(q)
+        return nearness(finest.of(q), q, self._rate(own), shifts) < TOO_NEAR
+
+    def _rate(self, own: ParametricResonance) -> float:
+        """nu.omega."""
+        omega = np.array([float(w) for w in self._torus.frequencies])
+        return float(np.array(own.harmonic) @ omega)
+
+    def _shifts(self, q: int) -> int:
+        """How many solutions in the symmetry of a mode are shifts of the angles."""
+        return 0 if self._is_cosine(q) else len(self._torus.seeds)
+
+    def _is_cosine(self, q: int) -> bool:
+        """Whether a mode is a cosine about standing waves, which no shift of the angles is."""
+        torus = self._torus
+        standing = isinstance(torus, RingTorus) and is_standing(torus)
+        return standing and not is_sine(torus.chain, q)
+
+    def _apart(self, found: NormalMode, rate: float, others: dict[int, NormalMode]) -> bool:
+        """Whether a direction beside a frequency is no shift, and none of the others."""
+        if found.residual > RESOLVED or self._turning(found):
+            return False
+        if not found.growth:
+            return not self._names.twin(found, others.values())
         known = [other.growth for other in others.values() if other.growth]
         alone = all(abs(found.growth / growth - 1) > UNRESOLVED for growth in known)
         near = abs(found.sigma.real - rate) < UNRESOLVED
         grows = found.growth > max(found.rounding, UNRESOLVED)
-        return near and alone and grows and found.residual < RESOLVED
-
-    def _hyperbolic(self, flow: Linearised, q: int, sigma: complex) -> Reduced | None:
-        known = self._before.modes.get(q)
-        like = None if known is None else flow.table(at_harmonics(known, flow.harmonics))
-        return hyperbolic(flow, q, sigma, like)
+        return near and alone and grows
 
     def mode(
         self, q: int, guess: float, others: dict[int, NormalMode]
@@ -380,13 +407,22 @@ class _Search:
             return None
         found = self._sought(q, partial(self._nearby, q=q), patient=False)
         turning = found and self._turning(found)
-        if turning:
-            found = self._beside(q, turning, {})
+        if turning or found is None or not self._continues(found):
+            own = turning or self._turned_before(q)
+            found = self._beside(q, own, {}) if own else None
         if found is None or not self._continues(found):
             return self._by_halves(q)
         if bool(found.growth) == bool(self._before.modes[q].growth):
             return found
         return self._by_halves(q) or found
+
+    def _turned_before(self, q: int) -> ParametricResonance | None:
+        """The frequency of the torus beside which the mode turned on the torus before."""
+        sigma = complex(self._before.modes[q].sigma).real
+        for one in resonances_near(self._torus, {q: sigma}, self._length):
+            if one.kind == OWN and abs(one.distance) < NEARLY_TURNING * abs(sigma):
+                return one
+        return None
 
     def _continues(self, found: NormalMode) -> bool:
         """Whether it is like the eigenfunction on the torus before."""

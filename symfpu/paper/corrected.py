@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -23,12 +24,12 @@ from symfpu.tori.quasiperiodic import QuasiPeriodic
 # of two refinements with different harmonics: the digits in which they agree are converged
 TOLERANCES = (1e-10, 1e-13)
 GUESS_ORDER = 8  # of the series from which Newton's method starts
-# shown of an amplitude, at most and where only the first refinement succeeds
+# shown of an amplitude or energy, at most and where only the first refinement succeeds
 MOST_DIGITS, LEAST_DIGITS = 12, 8
-LEAST_CHANGE = 1e-15  # of an amplitude, relative, from which digits are counted
+LEAST_CHANGE = 1e-15  # relative, from which digits are counted
 # seconds for the refinement of one row, looked at between the steps of Newton's method
 LIMIT, HEAVY_LIMIT = 420.0, 3600.0
-# rows that take minutes, with --full only: their own tolerances and guess order
+# rows that take half a minute, with --full only: their own tolerances and guess order
 HEAVY_ROWS: dict[str, tuple[tuple[float, ...], int]] = {
     "Fig. 5d": ((1e-9, 1e-11), 4),
 }
@@ -46,8 +47,8 @@ class TimeIsUp(SymfpuError):
 class CorrectedRow:
     """One printed torus beside the exact one of the same frequencies.
 
-    torus : by Newton's method, or None with the reason. digits : of the amplitudes that are
-    converged, at most MOST_DIGITS.
+    torus : by Newton's method, or None with the reason. digits, energy_digits : of the amplitudes
+    and of the energies that are converged, at most MOST_DIGITS.
     deviations : printed / exact - 1, of each amplitude. energies : by name, as in the table of
     the series.
     """
@@ -56,6 +57,7 @@ class CorrectedRow:
     torus: RefinedTorus | None = field(repr=False)
     reason: str
     digits: int
+    energy_digits: int
     deviations: Mapping[int, float]
     energies: Mapping[str, float]
     residual: float
@@ -101,7 +103,7 @@ def corrected_rows(
     """The corrected row of each printed torus with its series; those of HEAVY_ROWS only if full."""
     for printed, series in known.items():
         if printed.label in HEAVY_ROWS and not full:
-            yield left_out(printed, "takes minutes; computed with --full")
+            yield left_out(printed, "takes half a minute; computed with --full")
         else:
             yield corrected_row(printed, progress, series=series)
 
@@ -119,21 +121,38 @@ def corrected_row(
     and says why.
     """
     tell = labelled(progress, f"corrected: {printed.label}")
-    torus, digits, reason = _refined(printed, tell)
-    if torus is None:
+    found, reason = _refined(printed, tell)
+    if not found:
         return left_out(printed, reason)
+    torus = found[-1]
     if series is None:
         tell("series", NO_FRACTION)
         series = lindstedt(printed.chain, printed.seeds, printed.frequencies, printed.order)
     deviations = {}
     for q, a in zip(printed.seeds, printed.amplitudes, strict=True):
         deviations[q] = float(a) / torus.amplitudes[q] - 1
-    energies = _energies(torus)
-    residual = torus.residual()
-    errors = series_errors(series, torus, tell)
+    # where one refinement failed nothing says what is converged
+    pair = (found[0], torus) if not reason else ()
     return CorrectedRow(
-        printed, torus, reason, digits, deviations, energies, residual, errors
+        printed=printed,
+        torus=torus,
+        reason=reason,
+        digits=_common_digits([each.amplitudes for each in pair]),
+        energy_digits=_common_digits([_energies(each) for each in pair]),
+        deviations=deviations,
+        energies=_energies(torus),
+        residual=torus.residual(),
+        errors=series_errors(series, torus, tell),
     )
+
+
+def _common_digits(values: Sequence[Mapping[Any, float]]) -> int:
+    """In which the values of two refinements agree, the worst of them; few without two."""
+    if not values:
+        return LEAST_DIGITS
+    first, last = values
+    change = max(abs(first[key] / value - 1) for key, value in last.items())
+    return min(MOST_DIGITS, int(-np.log10(max(change, LEAST_CHANGE))))
 
 
 def _energies(torus: RefinedTorus) -> dict[str, float]:
@@ -147,11 +166,11 @@ def _energies(torus: RefinedTorus) -> dict[str, float]:
 
 def left_out(printed: PrintedTorus, reason: str) -> CorrectedRow:
     """A row that is not refined."""
-    return CorrectedRow(printed, None, reason, 0, {}, {}, np.nan, None)
+    return CorrectedRow(printed, None, reason, 0, 0, {}, {}, np.nan, None)
 
 
-def _refined(printed: PrintedTorus, tell: Progress) -> tuple[RefinedTorus | None, int, str]:
-    """The exact torus, the converged digits of its amplitudes, and what went wrong."""
+def _refined(printed: PrintedTorus, tell: Progress) -> tuple[list[RefinedTorus], str]:
+    """Exact tori with ever more harmonics, and what went wrong."""
     started = time.monotonic()
     limit = HEAVY_LIMIT if printed.label in HEAVY_ROWS else LIMIT
 
@@ -161,16 +180,10 @@ def _refined(printed: PrintedTorus, tell: Progress) -> tuple[RefinedTorus | None
             raise TimeIsUp(limit, label)
 
     found, failed = _refinements(printed, timed)
-    if not found:
-        return None, 0, failed
-    last = found[-1]
-    if failed:
-        reached = f"to a residual of {last.residual():.0e} only"
-        return last, LEAST_DIGITS, f"{reached}: {failed}"
-    first = found[0].amplitudes
-    change = max(abs(first[q] / a - 1) for q, a in last.amplitudes.items())
-    digits = int(-np.log10(max(change, LEAST_CHANGE)))
-    return last, min(MOST_DIGITS, digits), ""
+    if not (found and failed):
+        return found, failed
+    reached = f"to a residual of {found[-1].residual():.0e} only"
+    return found, f"{reached}: {failed}"
 
 
 def _refinements(

@@ -28,9 +28,10 @@ ERRORS_BOTTOM = 1e-16
 HEADING = "## Appendix F and Fig. 1 corrected: exact tori of the printed frequencies"
 WHAT = (
     "Newton's method on the invariance equation, at the printed frequencies. Amplitudes have the "
-    "digits, at most 12, in which two refinements with different sets of harmonics agree. H and "
-    "the harmonic energies are at the angles zero; the residual is the largest of the equations "
-    "of motion, between the grid points, relative to the largest acceleration. A row that takes "
+    "digits, at most 12, in which two refinements with different sets of harmonics agree, and so "
+    "have energies. H and the harmonic energies are at the angles zero; the residual is the "
+    "largest of the equations of motion, between the grid points, relative to the largest "
+    "acceleration. A row that takes "
     f"more than {LIMIT:.0f} s is not refined."
 )
 ERRORS = (
@@ -99,6 +100,12 @@ def amplitude_text(row: CorrectedRow, value: float) -> str:
     return f"{value:#.{digits}g}"
 
 
+def energy_text(row: CorrectedRow, value: float) -> str:
+    """An energy to its converged digits, the last zeros kept."""
+    digits = max(row.energy_digits, LEAST_DIGITS)
+    return f"{value:#.{digits}g}"
+
+
 def _amplitude_lines(row: CorrectedRow, torus: RefinedTorus) -> list[list[str]]:
     printed = dict(zip(row.printed.seeds, row.printed.amplitudes, strict=True))
     lines = []
@@ -116,7 +123,7 @@ def _energy_line(row: CorrectedRow, torus: RefinedTorus) -> list[str]:
     deviations = row.energy_deviations
     nearest = min(deviations, key=lambda name: abs(deviations[name]))
     said = " and ".join(met) or f"none; {nearest} {deviations[nearest]:+.1e}"
-    values = [f"{value:.12g}" for value in row.energies.values()]
+    values = [energy_text(row, value) for value in row.energies.values()]
     residual = f"{row.residual:.0e}"
     return [row.printed.label, printed, *values, said, residual, str(len(torus.harmonics))]
 
@@ -154,6 +161,7 @@ def corrected_record(
     record: dict[str, Any] = {"refined": True}
     record["amplitudes"] = {str(q): amplitude_text(row, a) for q, a in amplitudes.items()}
     record["converged_digits"] = row.digits
+    record["converged_energy_digits"] = row.energy_digits
     record["amplitude_deviations"] = _rounded(row.deviations)
     record["energies"] = {name: repr(value) for name, value in row.energies.items()}
     record["energy_deviations"] = {
@@ -209,7 +217,8 @@ def corrected_line(row: CorrectedRow) -> str:
         return f"  corrected: {row.verdict}"
     found = row.torus.amplitudes
     amplitudes = [f"A_{q} = {amplitude_text(row, a)}" for q, a in found.items()]
-    exact = f"{', '.join(amplitudes)}, H = {row.energies['H']:.12g}, residual {row.residual:.0e}"
+    H = energy_text(row, row.energies["H"])
+    exact = f"{', '.join(amplitudes)}, H = {H}, residual {row.residual:.0e}"
     return f"  exact torus: {exact}\n  {row.verdict}"
 
 

@@ -22,7 +22,8 @@ APART = 3  # times as many harmonics of the largest forces are told apart
 # and candidates that are weighed at once
 MOST_STEPS, MOST_COEFFICIENTS, PORTION = 40, 10_000_000, 1000
 # of divisors, in squares of linear frequencies, above which force / divisor is a guess of a
-# coefficient, and below which a harmonic weighs no more
+# coefficient. Nearer to a resonance a harmonic weighs its force alone: taken for what it might
+# move it comes into choices that are too coarse to hold it, and carries the torus away
 RESONANT = 1e-3
 
 
@@ -114,10 +115,8 @@ def _weights(
     for first in range(0, len(candidates), PORTION):
         part = slice(first, first + PORTION)
         squares = equation.linear_at(candidates[part]).astype(float) ** 2
-        divisors = (candidates[part] @ omega).astype(float)[:, None] ** 2 - squares
-        nearest = np.maximum(np.abs(divisors), RESONANT * squares)
-        moved = np.divide(squares, nearest, out=np.zeros_like(nearest), where=nearest > 0)
-        missed = np.abs(forces[part]) * np.maximum(1, coupling * moved)
+        moved = squares * np.abs(_driven(equation, candidates[part], forces[part], omega))
+        missed = np.maximum(np.abs(forces[part]), coupling * moved.astype(float))
         weights[part] = missed.max(axis=1) / largest
     return weights
 

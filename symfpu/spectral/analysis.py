@@ -29,8 +29,10 @@ Floats = NDArray[np.float64]
 Numbers = NDArray[Any]
 
 SHORT = 2**13  # samples that are analysed as they are
+WHOLE = 2**25  # numbers, of all modes, that may be
 FIRST = 2**13  # samples in which the channels of a longer orbit are looked for
 VALUES = 2048  # of a channel, at most
+LEAST_VALUES = 16  # of a channel
 MIRROR = 12  # turns over a channel's window between a line and its mirror image, at least
 ROUNDING = 16 * float(np.finfo(float).eps)  # of a mode's coordinate along an orbit
 EPS = float(np.finfo(float).eps)
@@ -176,7 +178,8 @@ def frequency_analysis(
     A line is a combination of stronger ones if one meets it within the errors and fewer than a
     hundredth would by accident; else it is an independent frequency, where combinations to order
     3 at least could have been told. Ours; the paper has alignment indices for it.
-    Raises InputError.
+    Raises InputError, also for an orbit that is shorter than 5.3 turns of its slowest mode: of the
+    lowest that has a thousandth of the energy at the first sample.
 
     >>> from symfpu import Chain, integrate
     >>> found = frequency_analysis(integrate(Chain(N=2, beta=1), [0.2], [0.0], 200, step=0.1))
@@ -325,7 +328,7 @@ def _bands(
     samples: Samples, most: int, level: float, progress: Progress
 ) -> Iterator[_Band]:
     blocks = samples.blocks(progress)
-    if samples.count <= SHORT:
+    if _is_short(samples):
         whole = np.concatenate(list(blocks))
         for mode in range(whole.shape[1]):
             yield _Band(mode, Record(whole[:, mode], samples.interval), 0.0, 0.0, None)
@@ -342,6 +345,23 @@ def _bands(
         others = [bank.channels[i] for i in bank.by_mode[channel.mode] if i != place]
         band.rivals = [other.frequency for other in others]
         yield band
+
+
+def _is_short(samples: Samples) -> bool:
+    """Whether it is analysed as it is: channels of slow chains want many samples for a value.
+
+    InputError for one that is neither short nor has enough of them.
+    """
+    least = (SPAN + LEAST_VALUES) * _hop(samples)
+    if samples.count <= SHORT:
+        return True
+    if samples.count >= least:
+        return False
+    if samples.count * (samples.orbit.chain.N - 1) <= WHOLE:
+        return True
+    given, allowed = f"T = {samples.T:.6g}", f"at least {least * samples.interval:.6g}"
+    advice = "integrate a longer one: the channels of a chain so slow want more samples"
+    raise InputError("orbit", given, allowed, advice)
 
 
 def _bank(

@@ -27,6 +27,7 @@ from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
 from symfpu.numbers.typed import Number, decimal, double, exact, integer, part, seed_modes
 from symfpu.spectral.one_energy import Row, kept_row, orbit_frequencies, require_analysable
+from symfpu.spectral.samples import require_turns
 from symfpu.sweeps.rows import SweepFailure, SweepRows
 from symfpu.sweeps.sweep import sweep
 from symfpu.sweeps.this_process import ThisProcess
@@ -171,6 +172,7 @@ def frequency_map(
     part(level, "level")
     asked = _energies(energies)
     orbits = _orbits(chain, T, step, scheme, lines)
+    require_turns(chain, min(modes), orbits["T"])
     told = _Told(progress or unheard, len(asked))
     swept = sweep(
         orbit_frequencies,

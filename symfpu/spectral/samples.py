@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.chain.chain import Chain
 from symfpu.dynamics.averages import steps_between_looks
 from symfpu.dynamics.motion import Motion
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
+from symfpu.spectral.record import LINE_WIDTH
 
 Numbers = NDArray[Any]
 
 BLOCK = 8192  # samples held at once
 FEWEST = 256  # samples
+MOVING = (
+    1e-3  # of the harmonic energy at the first sample: a mode whose frequency is looked for
+)
+# of the slowest one, at least: the windows of three quarters, whose difference is the error, have
+# the half width of a line, from which on it is apart from its mirror image at -f
+FEWEST_TURNS = LINE_WIDTH / 0.75
 NO_BOUNDS = np.array([[-np.inf, np.inf]])  # the orbit has been here: it stays within them
 
 
@@ -29,6 +38,25 @@ def require_samples(T: float, step: float) -> int:
         least = f"at least {FEWEST * abs(interval):.6g}"
         raise InputError("orbit", f"T = {T:.6g}", least, "integrate a longer one")
     return count
+
+
+def require_turns(chain: Chain, mode: int, T: float) -> None:
+    """InputError for an orbit that is too short for the linear frequency of its slowest mode."""
+    period = 2 * math.pi / float(chain.frequencies()[mode - 1])
+    turns = T / period
+    if turns < FEWEST_TURNS:
+        given = f"T = {T:.6g}, {turns:.2g} turns of mode {mode}"
+        least = (
+            f"at least {math.ceil(FEWEST_TURNS * period)}, {FEWEST_TURNS:.2g} turns of it"
+        )
+        raise InputError("orbit", given, least, "integrate a longer one")
+
+
+def _slowest(orbit: Orbit) -> int:
+    """The lowest mode that moves."""
+    energies = orbit.chain.harmonic_energies(orbit.Q[0], orbit.P[0])
+    moving = energies > MOVING * energies.sum()
+    return int(np.argmax(moving)) + 1
 
 
 class Samples:
@@ -44,6 +72,7 @@ class Samples:
         self.interval = orbit.step * self.stride
         self.T = float(orbit.times[-1])
         self.count = require_samples(self.T, orbit.step)
+        require_turns(orbit.chain, _slowest(orbit), self.T)
 
     def blocks(self, progress: Progress) -> Iterator[Numbers]:
         """Arrays (n, N-1), one after the other; after the first each begins after the last."""

@@ -297,7 +297,7 @@ def test_reproduce_writes_the_report(capsys, monkeypatch, tmp_path):
     pictures = {f"corrected-{panel}.{suffix}" for panel in "ab" for suffix in ("png", "pdf", "csv")}
     assert {path.name for path in folder.iterdir()} == {"report.json", "report.md"} | pictures
     assert "Fig. 8" in out
-    assert "not refined: takes minutes; computed with --full" in out
+    assert "not refined: takes half a minute; computed with --full" in out
     assert "exact torus: A_25 = 0.0512121591740, H = 0.00464999936113, residual" in out
     assert "corrected-a..b as PNG, PDF and CSV" in out
     assert "amplitudes met at frequency order 22" in out

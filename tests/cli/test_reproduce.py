@@ -197,7 +197,7 @@ def test_the_estimate_names_what_takes_long(monkeypatch, tmp_path):
     assert targets.full_estimate(targets.full_seconds_of(["fig2", "fig3", "fig9"]), tmp_path).startswith(
         "--full, about: fig2 2.0 h, fig9 2.5 h; stopped"
     )
-    assert targets.full_estimate(targets.full_seconds_of(["table"]), tmp_path) == "--full, about: table 10 minutes"
+    assert targets.full_estimate(targets.full_seconds_of(["table"]), tmp_path) == "--full, about: table 25 s"
     assert set(targets.LONG_TARGETS) == {"table", *dimensions.VECTORS}
 
 

@@ -24,9 +24,11 @@ from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.tolerances import (
     GROWTH_OF_ORBIT,
+    LAST_DIGIT,
     NORMAL_CONVERGED,
     NORMAL_MULTIPLIER,
     NORMAL_PRINTED,
+    NORMAL_PROMISED,
     NORMAL_VARIATION,
     OBSERVED_ORDER,
     ROUNDING,
@@ -232,6 +234,18 @@ def test_two_particles_have_one_and_one_has_none():
     assert alone.frequencies == {}
     assert alone.stable
     assert alone.residual == 0
+
+
+@pytest.mark.long
+def test_frequencies_of_fig1_are_good_to_1e_12():
+    """Of doubles against 20 digits: residuals of 4e-11 leave errors of about their square. Mode 3 has the smallest divisor."""
+    torus = refine(printed_torus(printed_row("Fig. 1")))
+    modes = [3, 4, 14]
+    doubles, precise = (normal_modes(each, modes=modes) for each in (torus, refine(torus, digits=20)))
+    for q in modes:
+        mode = precise.mode(q)
+        assert mode.error < LAST_DIGIT
+        assert abs(float(doubles.frequencies[q] / mode.sigma - 1)) < NORMAL_PROMISED
 
 
 @pytest.mark.long

@@ -60,6 +60,17 @@ def test_a_breather_is_the_periodic_orbit(label):
         assert amplitude == pytest.approx(1.27153895251, rel=TWELVE_DIGITS)
 
 
+def test_energies_have_the_digits_in_which_two_refinements_agree(monkeypatch):
+    """N = 32, s = 1: a second torus whose energies are moved by 3e-10 leaves nine; their amplitude keeps its twelve."""
+    exact = corrected._energies
+    moved = iter([1 + 3e-10])
+    monkeypatch.setattr(corrected, "_energies", lambda torus: {name: E * next(moved, 1) for name, E in exact(torus).items()})
+    row = corrected_row(SMALL)
+    assert (row.digits, row.energy_digits) == (12, 9)
+    assert "H = 0.000170128387, residual" in corrected_line(row)
+    assert "| 0.00016635 | 0.000170128387 |" in "\n".join(corrected_text([row], []))
+
+
 def test_the_amplitudes_of_fig_1_do_not_depend_on_the_guess(pair):
     """12 digits: another series as the guess, and another choice of harmonics."""
     series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies, 12)
@@ -248,7 +259,7 @@ def test_the_page_has_printed_and_exact_numbers(two_rows, study):
     page = figure_markdown(figure_of(two_rows, study))
     row = two_rows[0]
     assert "| Fig. 7 | 1 | 0.18574105489382606 | 0.185736029576 | +2.7e-05 |" in page
-    assert f"| Fig. 7 | 0.00016635 | {row.energies['H']:.12g} |" in page
+    assert f"| Fig. 7 | 0.00016635 | {row.energies['H']:#.12g} |" in page
     assert "- Fig. 5b: not refined: more than 5 s." in page
     assert f"- Fig. 7: {row.verdict}." in page
     assert f"| Fig. 7 | 2 | {study.rates[2][0]:.3f} | 3 | {study.rates[2][1]:.3f} | 2 |" in page

@@ -12,6 +12,7 @@ from symfpu import (
     frequency_analysis,
     integrate,
     lindstedt,
+    packet_state,
     plots,
     refine,
     solve_amplitudes,
@@ -156,6 +157,30 @@ def test_orbits_that_cannot_be_analysed_are_refused():
     Q = np.array([0.1, 0.1, 0.0], complex)
     with pytest.raises(InputError, match="fixed"):
         frequency_analysis(integrate(ring, Q, 0 * Q, 300, step=0.1))
+
+
+def test_an_orbit_shorter_than_its_slowest_mode_is_refused():
+    """5.3 turns: with fewer a line and its mirror image at -f are one, and errors of 1e-17 were claimed of numbers 24 % off."""
+    chain = Chain(N=64, alpha="0.3")
+    for modes, T, words in (
+        ((1,), 300, "2.3 turns of mode 1.* at least 683, 5.3 turns"),
+        ((3, 1), 682, "turns of mode 1"),
+        ((2,), 300, "mode 2"),
+    ):
+        Q, P = packet_state(chain, modes, "1e-6")
+        with pytest.raises(InputError, match=words):
+            frequency_analysis(integrate(chain, Q, P, T, step=0.5))
+
+
+def test_a_slow_chain_is_analysed_whole_where_channels_have_no_values(monkeypatch):
+    """N = 256 to 8.8 turns of mode 1: 9000 samples, where sixteen values of a channel want 12,320."""
+    chain = Chain(N=256, alpha="0.3")
+    orbit = integrate(chain, *packet_state(chain, (1,), "1e-14"), 4500, step=0.5)
+    found = frequency_analysis(orbit, lines=1)
+    assert abs(found.omega[1] - chain.frequencies()[0]) < found.errors[0] < CHANNEL_LINE
+    monkeypatch.setattr("symfpu.spectral.analysis.WHOLE", 1000)
+    with pytest.raises(InputError, match=r"T = 4500.*at least 6160.*so slow"):
+        frequency_analysis(orbit, lines=1)
 
 
 def test_the_picture_takes_an_analysis_only():

@@ -120,6 +120,11 @@ def test_what_is_no_map_is_refused(energies, options, words):
         frequency_map(CHAIN, energies, **SHORT | options)
 
 
+def test_orbits_shorter_than_the_lowest_seed_are_refused_before_any_runs():
+    with pytest.raises(InputError, match=r"T = 600, 4\.7 turns of mode 1"):
+        frequency_map(Chain(64, alpha="0.3"), ("0.001",), T=600, step=0.1)
+
+
 def test_a_ring_is_refused_by_name():
     with pytest.raises(InputError, match="periodic"):
         frequency_map(Chain(8, beta=1, ends="periodic"), ("0.1",), **SHORT)
