@@ -412,16 +412,22 @@ class DenseRing(ABC, Generic[Bonds]):
         self._store(self._powers[power], degree, np.arange(len(values)), values)
 
     def secular(self, degree: int, modes: NDArray[Any]) -> NDArray[Any]:
+        seeds = zip(self.space.seeds, self.secular_rows(degree), strict=True)
+        return np.stack([modes[at, q - 1] for q, at in seeds], axis=1)
+
+    def secular_rows(self, degree: int) -> list[Ints]:
+        """For each seed which canonical monomials have its harmonic nu = e_q, one a row of
+        `grading.diagonal(degree - 1)`.
+        """
         canonical = self.grading.canonical(degree)
         diagonal = self.grading.diagonal(degree - 1)
-        columns = []
-        for i, q in enumerate(self.space.seeds):
+        found = []
+        for i in range(len(self.space.seeds)):
             exponents = np.repeat(diagonal, 2, axis=1)
             exponents[:, 2 * i] += 1
             rows = self.grading.rows(exponents)
-            at = np.searchsorted(canonical, rows)
-            columns.append(modes[at, q - 1])
-        return np.stack(columns, axis=1)
+            found.append(np.searchsorted(canonical, rows))
+        return found
 
     def correct(self, degree: int, corrections: Floats) -> None:
         self._correction_degrees.append(degree)

@@ -452,10 +452,10 @@ def _taken(residues, places, own):  # type: ignore[no-untyped-def]
 
 
 @compiled(fastmath={"contract"})
-def _shares(own, n, basis, shares, turns):  # type: ignore[no-untyped-def]
+def _shares(own, n, basis, shares, turns, sizes):  # type: ignore[no-untyped-def]
     """Residues over the cofactors, (primes, n), and the multiple of all primes that they exceed.
 
-    Returns the largest distance of a sum of shares from that whole number.
+    Fills the distances of the sums of shares from that whole number; returns the largest.
     """
     turns[:n] = 0.0
     for i in range(len(shares)):
@@ -469,7 +469,8 @@ def _shares(own, n, basis, shares, turns):  # type: ignore[no-untyped-def]
     farthest = 0.0
     for b in range(n):
         whole = np.rint(turns[b])
-        farthest = max(farthest, abs(turns[b] - whole))
+        sizes[b] = abs(turns[b] - whole)
+        farthest = max(farthest, sizes[b])
         turns[b] = whole
     return farthest
 
@@ -555,7 +556,9 @@ def _add_words(limbs, n, first, words):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def round_columns(residues, wanted, basis, limb, scale, rounded, words):  # type: ignore[no-untyped-def]
+def round_columns(  # type: ignore[no-untyped-def]
+    residues, wanted, basis, limb, scale, rounded, words, sizes
+):
     """Integers of which residues are given, / 2^bits, rounded to the nearest, in their place.
 
     Zero where they are not wanted. Returns the largest distance of a sum of shares from a whole
@@ -564,27 +567,35 @@ def round_columns(residues, wanted, basis, limb, scale, rounded, words):  # type
     residues : (primes, count), overwritten. wanted : (count,). basis : a `words.Rounding` of small
     primes. limb : 2^20. scale : a `words.Scale` of these bits. words : None, or (wanted, n) int64
     of three limbs each, zeros, filled; rounded : the `words.Rounding` of the first primes, as many
-    as hold what is rounded.
+    as hold what is rounded. sizes : None, or (count,), filled with the distances; zero where they
+    are not wanted.
     """
     primes, count = len(residues), scale.lowest.shape[1]
     own, shares = np.empty((primes, COLUMNS)), np.empty((primes, COLUMNS))
     limbs = np.empty((max(count, len(rounded.modulus_limbs)), COLUMNS))
-    turns = np.empty(COLUMNS)
+    turns, distances = np.empty(COLUMNS), np.empty(COLUMNS)
+    if sizes is not None:
+        sizes[:] = 0.0
     places = np.empty(COLUMNS, dtype=np.int64)
     done, at, farthest, farther = 0, 0, 0.0, 0.0
     while at < residues.shape[1]:
         n, at = _next_columns(residues, wanted, at, places)
         near = _taken(residues, places[:n], own)
-        farthest = max(farthest, _shares(own, n, basis, shares, turns))
+        farthest = max(farthest, _shares(own, n, basis, shares, turns, distances))
+        if sizes is not None:
+            for b in range(n):
+                sizes[places[b]] = distances[b]
         _limbs_of(shares, turns, n, basis, limb, limbs[:count])
         _reduce_row(limbs[count - 1], n, scale.top)
         _without_lowest(own, limbs, n, basis, scale)
         _put_back(own, places[:n], near, residues)
         if words is not None:
             first = shares[: len(rounded.moduli)]
-            farther = max(farther, _shares(own, n, rounded, first, turns))
-            _limbs_of(first, turns, n, rounded, limb, limbs[: len(rounded.modulus_limbs)])
-            _add_words(limbs[: len(rounded.modulus_limbs)], n, done, words)
+            farther = max(farther, _shares(own, n, rounded, first, turns, distances))
+            own_limbs = limbs[: min(len(rounded.modulus_limbs), 3 * words.shape[1])]
+            _limbs_of(first, turns, n, rounded, limb, own_limbs)
+            _reduce_row(own_limbs[-1], n, limb)  # what words hold has no limbs above it
+            _add_words(own_limbs, n, done, words)
         done += n
     return farthest, farther
 
@@ -604,37 +615,61 @@ def multiply_places(values, wanted, factors, places, moduli):  # type: ignore[no
 
 
 @compiled()
-def to_lanes(values, target, rows):  # type: ignore[no-untyped-def]
-    """target[slice, rows[r]] = values[., r, .], lanes counted through the slices.
+def _runs(primes, half, width):  # type: ignore[no-untyped-def]
+    """Where (prime, bond) and (slice, lane) go on together, lanes counted through the slices.
+
+    Rows of five: prime, bond, slice, lane, and for how long.
+    """
+    runs = np.empty((primes * (2 + half // width), 5), dtype=np.int64)
+    count = 0
+    for prime in range(primes):
+        bond = 0
+        while bond < half:
+            part, lane = divmod(prime * half + bond, width)
+            length = min(half - bond, width - lane)
+            runs[count] = prime, bond, part, lane, length
+            bond, count = bond + length, count + 1
+    return runs[:count]
+
+
+@compiled()
+def to_lanes(values, target, rows, conjugates):  # type: ignore[no-untyped-def]
+    """target[slice, r, lane] = values[prime, ., bond] for r of rows, and of their conjugates.
 
     values : (primes, rows, half). target : (slices, all rows, lanes); the last lanes may be over.
     """
-    width = target.shape[2]
     primes, count, half = values.shape
-    for i in range(primes):
+    runs = _runs(primes, half, target.shape[2])
+    for run in range(len(runs)):
+        prime, bond, part, lane, length = (
+            runs[run, 0],
+            runs[run, 1],
+            runs[run, 2],
+            runs[run, 3],
+            runs[run, 4],
+        )
         for r in range(count):
-            part, lane = divmod(i * half, width)
-            done = 0
-            while done < half:
-                run = min(half - done, width - lane)
-                row = target[part, rows[r]]
-                for j in range(run):
-                    row[lane + j] = values[i, r, done + j]
-                part, lane, done = part + 1, 0, done + run
+            own = values[prime, r, bond : bond + length]
+            row, conjugate = target[part, rows[r]], target[part, conjugates[r]]
+            for j in range(length):
+                row[lane + j] = own[j]
+                conjugate[lane + j] = own[j]
 
 
 @compiled()
 def from_lanes(source, values, rows, factor):  # type: ignore[no-untyped-def]
-    """The way back: values[., r, .] = factor source[slice, rows[r]]."""
-    width = source.shape[2]
+    """The way back: values[prime, ., bond] = factor source[slice, r, lane] for r of rows."""
     primes, count, half = values.shape
-    for i in range(primes):
+    runs = _runs(primes, half, source.shape[2])
+    for run in range(len(runs)):
+        prime, bond, part, lane, length = (
+            runs[run, 0],
+            runs[run, 1],
+            runs[run, 2],
+            runs[run, 3],
+            runs[run, 4],
+        )
         for r in range(count):
-            part, lane = divmod(i * half, width)
-            done = 0
-            while done < half:
-                run = min(half - done, width - lane)
-                row = source[part, rows[r]]
-                for j in range(run):
-                    values[i, r, done + j] = factor * row[lane + j]
-                part, lane, done = part + 1, 0, done + run
+            own, row = values[prime, r, bond : bond + length], source[part, rows[r]]
+            for j in range(length):
+                own[j] = factor * row[lane + j]

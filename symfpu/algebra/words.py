@@ -26,6 +26,7 @@ LARGEST_DIVISOR = 2**42
 LEAST_TOP = 8  # bits of the highest of the limbs that are rounded away
 EXACT = 2.0**52  # integers below it are exact in doubles
 WORD_BITS = LIMB_BITS * LIMBS_PER_WORD
+SIZE_ERROR = 2.0**-40  # of a sum of shares, one a prime, modulo one
 
 
 class TooFewPrimes(ArithmeticError):
@@ -128,10 +129,13 @@ class ResidueBasis:
 
         self._kernels = kernels
         self._largest, self._divisor = largest, divisor
+        self.longest_word = -(
+            -(bits + 2) // WORD_BITS
+        )  # words that its integers have at most
         # an overflow of the promised bits by a factor of eight is still seen
         self.primes = _primes(bits + 4, largest, divisor)
         self.moduli = np.array(self.primes, dtype=np.float64)
-        modulus = prod(self.primes)
+        modulus = self.modulus = prod(self.primes)
         spare = modulus.bit_length() - bits - 1
         self._limit = 2.0**-spare
         count = -(-modulus.bit_length() // LIMB_BITS) + 2
@@ -206,14 +210,19 @@ class ResidueBasis:
         return self._scales[bits]
 
     def round_in_place(
-        self, residues: Floats, wanted: NDArray[np.bool_], bits: int
+        self,
+        residues: Floats,
+        wanted: NDArray[np.bool_],
+        bits: int,
+        sizes: Floats | None = None,
     ) -> None:
         """The wanted integers / 2^bits, rounded to the nearest; zeros where not wanted.
 
         residues : (primes, count), below a prime in size, overwritten. bits : as `whole_places`
-        gives them. Raises OverflowError as `limbs` does.
+        gives them. sizes : (count,), filled with the moduli of the integers over the product of
+        all primes, off by less than SIZE_ERROR. Raises OverflowError as `limbs` does.
         """
-        self._round(residues, wanted, bits, self, None)
+        self._round(residues, wanted, bits, self, None, sizes)
 
     def rounded_words(
         self, residues: Floats, wanted: NDArray[np.bool_], bits: int, first: ResidueBasis
@@ -223,11 +232,12 @@ class ResidueBasis:
         first : the basis of the first primes, as many as hold what is rounded.
         """
         count = int(np.count_nonzero(wanted))
-        longest = -(-len(first._modulus_limbs) // LIMBS_PER_WORD)
-        words = np.zeros((count, longest), dtype=np.int64)
-        self._round(residues, wanted, bits, first, words)
-        used = np.flatnonzero(words.any(axis=0))
-        return words[:, : used[-1] + 1 if len(used) else 1]
+        words = np.zeros((count, first.longest_word), dtype=np.int64)
+        self._round(residues, wanted, bits, first, words, None)
+        used = first.longest_word
+        while used > 1 and not words[:, used - 1].any():
+            used -= 1
+        return words[:, :used]
 
     def _round(
         self,
@@ -236,10 +246,15 @@ class ResidueBasis:
         bits: int,
         first: ResidueBasis,
         words: Words | None,
+        sizes: Floats | None,
     ) -> None:
         scale = self._scale(bits)
         if not self.small:
-            own = self._divided(residues[:, wanted], scale)
+            own = residues[:, wanted]
+            if sizes is not None:
+                sizes[:] = 0.0
+                sizes[wanted] = self._sizes(own)
+            own = self._divided(own, scale)
             residues[:] = 0.0
             residues[:, wanted] = own
             if words is not None:
@@ -247,10 +262,17 @@ class ResidueBasis:
                 words[:, : found.shape[1]] = found
             return
         farthest, farther = self._kernels.round_columns(
-            residues, wanted, self._rounding, LIMB, scale, first._rounding, words
+            residues, wanted, self._rounding, LIMB, scale, first._rounding, words, sizes
         )
         self._check(farthest, self._limit)
         self._check(farther, first._limit)
+
+    def _sizes(self, residues: Floats) -> Floats:
+        """Moduli of integers over the product of all primes."""
+        shares = residues.copy()
+        self._kernels.multiply_rows(shares, self._inverses, self.moduli)
+        total = (1 / self.moduli) @ shares
+        return np.asarray(np.abs(total - np.rint(total)))
 
     def _divided(self, residues: Floats, scale: Scale) -> Floats:
         """Residues of the rounded integers, of primes of any size; overwrites them."""
@@ -263,7 +285,7 @@ class ResidueBasis:
 
     def _check(self, farthest: float, limit: float) -> None:
         """OverflowError where a sum of shares is too far from a whole number."""
-        if farthest > limit + 2.0**-40:
+        if farthest > limit + SIZE_ERROR:
             raise OverflowError("an integer exceeds the range of the residues")
 
     def residues(self, limbs: Floats) -> Floats:
