@@ -93,7 +93,7 @@ class SeveralPrimesRing(ValuesRing):
         columns = np.repeat(basis.moduli, seeds)
         self._seed_moduli = self._by_slice(columns, 8)
         rows = self._seed_modes.shape[1]
-        self._seed_modes = aligned_zeros((len(self._seed_moduli), rows, 8))
+        self._seed_modes = aligned_zeros((len(self._seed_moduli), rows, 8), self.kind)
         self._corrections = aligned_zeros(self._seed_modes.shape)
         if self._at_points:
             there, back = self._at_points.powers, self._at_points.inverse_powers
@@ -181,6 +181,8 @@ class SeveralPrimesRing(ValuesRing):
     def store_seeds(self, degree: int, modes: Floats) -> None:
         """The same by the modes of the seeds alone, (primes, monomials, s)."""
         self._degrees.append(degree)
+        if degree == self.grading.degree:
+            return  # it is a factor of nothing
         first = int(self.grading.first_row[degree])
         rows, conjugates = self._ordered(degree, slice(None))
         self._kernels.to_lanes(modes, self._seed_modes, first + rows, first + conjugates)
