@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.dense import Floats, threads_of_a_computation
-from symfpu.algebra.grading import Ints
+from symfpu.algebra.grading import HarmonicRows, Ints, extended
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.several_primes import (
     Portions,
@@ -127,6 +127,7 @@ class FixedPointRing:
         to_bonds = self._cosines(np.ones(space.half))
         self._to_bonds = self._by_parity(to_bonds, axis=1)
         self._back: dict[Fraction, ByParity] = {}
+        self._factors = _Factors(self.basis, precision.bits, space.N - 1)
         self._stored: set[tuple[int, int]] = set()  # powers of the bonds, and their degrees
         rows = len(space.grading.canonical(space.grading.degree))
         size = len(self.basis) * rows * space.half
@@ -360,11 +361,9 @@ class FixedPointRing:
         force: Force,
         multipliers: NDArray[np.object_],
     ) -> Coordinates:
-        residues = self._room_for(degree)
-        carried = multipliers != 0
-        factors = self.basis.of_integers(multipliers[carried])
-        numbers = np.cumsum(carried).reshape(carried.shape) - 1
-        largest = np.abs((multipliers / 2**self.precision.bits).astype(float))
+        residues, factors = self._room_for(degree), self._factors
+        numbers = factors.numbers(self.grading.harmonics(degree)[0], multipliers)
+        carried, sizes_of = numbers > 0, factors.sizes[numbers]
         _, index = self.grading.harmonics(degree)
         order, _ = self.space.even_first(degree)
         integers = _Words(order, self.space.N, self._rounded_basis)
@@ -373,9 +372,11 @@ class FixedPointRing:
             parity, some, own = piece
             modes, harmonics = self.space.modes(parity), index[order[some]]
             bracket, sizes = self._bracket(corrected, force, piece)
-            self._check_range(bracket, sizes, largest[harmonics, modes])
+            self._check_range(bracket, sizes, sizes_of[harmonics, modes])
             flat, wanted = bracket.reshape(len(bracket), -1), carried[harmonics, modes]
-            self.basis.multiply_places(flat, wanted, factors, numbers[harmonics, modes])
+            self.basis.multiply_places(
+                flat, wanted, factors.residues, numbers[harmonics, modes]
+            )
             words = self.basis.rounded_words(
                 flat, wanted.ravel(), self.precision.bits, self._rounded_basis
             )
@@ -433,6 +434,35 @@ def whole_growth(
 def place(mode: int) -> int:
     """Where a mode stands among those of its parity."""
     return (mode - 1) // 2
+
+
+class _Factors:
+    """The multipliers L_q(nu) of all orders so far: what one had, the others do not change.
+
+    residues : (primes, count), of the first, which is zero, and of those that were met. sizes :
+    (count,) their moduli.
+    """
+
+    def __init__(self, basis: ResidueBasis, bits: int, modes: int) -> None:
+        self._basis, self._bits = basis, bits
+        self._rows = HarmonicRows()
+        self._numbers = np.zeros((0, modes), dtype=np.int64)
+        self.residues, self.sizes = np.zeros((len(basis), 1)), np.zeros(1)
+
+    def numbers(self, harmonics: Ints, multipliers: NDArray[np.object_]) -> Ints:
+        """Which of them a table of multipliers has, (harmonics, modes)."""
+        rows, carried = self._rows.of(harmonics), multipliers != 0
+        self._numbers = extended(self._numbers, len(self._rows), 0)
+        places, columns = np.nonzero(carried & (self._numbers[rows] == 0))
+        self._numbers[rows[places], columns] = len(self.sizes) + np.arange(len(places))
+        self._append(multipliers[places, columns])
+        return np.where(carried, self._numbers[rows], 0)
+
+    def _append(self, multipliers: NDArray[np.object_]) -> None:
+        residues = self._basis.of_integers(multipliers)
+        sizes = np.abs((multipliers / 2**self._bits).astype(np.float64))
+        self.residues = np.concatenate([self.residues, residues], axis=1)
+        self.sizes = np.concatenate([self.sizes, sizes])
 
 
 class _Words:

@@ -55,6 +55,29 @@ def compositions(total: int, parts: int) -> Ints:
     return np.asarray(gaps - 1)
 
 
+class HarmonicRows:
+    """A row for each harmonic, as they come: the same one whenever it is asked for again."""
+
+    def __init__(self) -> None:
+        self._rows: dict[tuple[int, ...], int] = {}
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def of(self, harmonics: Ints) -> Ints:
+        """The rows of harmonics (count, s)."""
+        rows = self._rows
+        found = [rows.setdefault(tuple(nu), len(rows)) for nu in harmonics.tolist()]
+        return np.array(found, dtype=np.int64)
+
+
+def extended(table: NDArray[Any], rows: int, empty: Any) -> NDArray[Any]:
+    """A table of at least so many rows; what is new is empty."""
+    more = max(0, rows - len(table))
+    new = np.full((more, *table.shape[1:]), empty, dtype=table.dtype)
+    return np.concatenate([table, new]) if more else table
+
+
 class Group:
     """The monomials of some seeds, for every degree up to `degree`, sorted by additive keys."""
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from math import prod
 from typing import Any, NamedTuple
 
@@ -330,7 +331,7 @@ class ResidueBasis:
 
     def of_integers(self, integers: NDArray[np.object_]) -> Floats:
         """Residues (primes, ...) of Python's integers, of any size."""
-        flat = [int(x) for x in np.asarray(integers, dtype=object).ravel()]
+        flat = list(map(int, np.asarray(integers, dtype=object).ravel().tolist()))
         limbs = limbs_of(flat)
         total = np.zeros((len(self), len(flat)))
         step = self._powers.shape[1]
@@ -357,17 +358,20 @@ def limbs_of(integers: Sequence[int]) -> Floats:
     >>> limbs_of([-1, 2**20 + 3]).tolist()
     [[1048575.0, 3.0], [-1.0, 1.0]]
     """
-    longest = max((x.bit_length() for x in integers), default=0) + 1
+    longest = max(map(int.bit_length, integers), default=0) + 1
     pairs = -(-longest // (2 * LIMB_BITS))
     size = 2 * LIMB_BITS // 8 * pairs
-    joined = b"".join(x.to_bytes(size, "little", signed=True) for x in integers)
+    # shifted to be positive, which turns the sign, the highest bit
+    shifted = map((1 << (8 * size - 1)).__add__, integers)
+    as_bytes: Any = int.to_bytes
+    joined = b"".join(map(as_bytes, shifted, repeat(size), repeat("little")))
     bytes_of = np.frombuffer(joined, dtype=np.uint8).reshape(len(integers), pairs, 5)
     weights = 256.0 ** np.arange(3)
     limbs = np.empty((pairs, 2, len(integers)))
     low, middle, high = bytes_of[..., :2], bytes_of[..., 2], bytes_of[..., 3:]
     limbs[:, 0] = (low @ weights[:2] + (middle & 15) * weights[2]).T
     limbs[:, 1] = ((middle >> 4) + high @ (16 * weights[:2])).T
-    limbs[-1, 1] -= 2.0**LIMB_BITS * (limbs[-1, 1] >= 2.0 ** (LIMB_BITS - 1))
+    limbs[-1, 1] -= 2.0 ** (LIMB_BITS - 1)
     return limbs.reshape(2 * pairs, len(integers))
 
 
