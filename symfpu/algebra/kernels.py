@@ -24,6 +24,8 @@ from symfpu.compiled import JIT, compiled
 
 INT64 = ir.IntType(64)
 COLUMNS = 64  # integers rounded at once, so that they stay in the cache
+# columns and rows of a product of matrices whose sums stay in registers
+SPAN, BLOCK, SINGLE = (0.0,) * 8, (0.0,) * 4, (0.0,)
 Float64 = types.float64
 
 
@@ -166,6 +168,73 @@ def _row_code(
     return signature, generate
 
 
+@intrinsic
+def _matrix_code(
+    _context: Any,
+    lanes: Any,
+    rows: Any,
+    matrix: Any,
+    k: Any,
+    columns: Any,
+    count: Any,
+    b: Any,
+    out: Any,
+) -> Any:
+    """out[k + r, b + l] += sum of matrix[k + r, i] columns[i, b + l] over i < count.
+
+    lanes, rows : tuples with as many entries as there are l and r; all sums stay in registers.
+    """
+    integer = types.intp
+    signature = types.void(lanes, rows, matrix, integer, columns, integer, integer, out)
+
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        vector = ir.VectorType(ir.DoubleType(), lanes.count)
+        made = {
+            position: context.make_array(sig.args[position])(
+                context, builder, args[position]
+            )
+            for position in (2, 4, 7)
+        }
+        widths = {n: builder.extract_value(made[n].shape, 1) for n in made}
+
+        def place(position: int, row: Any, column: Any) -> Any:
+            at = builder.add(builder.mul(row, widths[position]), column)
+            return builder.gep(made[position].data, [at])
+
+        def as_vector(pointer: Any) -> Any:
+            return builder.bitcast(pointer, vector.as_pointer())
+
+        def spread(value: Any) -> Any:
+            undefined = ir.Constant(vector, ir.Undefined)
+            first = builder.insert_element(undefined, value, ir.IntType(32)(0))
+            zeros = ir.Constant(
+                ir.VectorType(ir.IntType(32), lanes.count), [0] * lanes.count
+            )
+            return builder.shuffle_vector(first, undefined, zeros)
+
+        own = [builder.add(args[3], INT64(r)) for r in range(rows.count)]
+        targets = [as_vector(place(7, row, args[6])) for row in own]
+        declared: Any = cgutils
+        totals = [declared.alloca_once(builder, vector) for _ in own]
+        for total, target in zip(totals, targets, strict=True):
+            builder.store(builder.load(target, align=8), total, align=8)
+        turns = cgutils.for_range_slice(builder, INT64(0), args[5], INT64(1), inc=True)
+        with turns as (i, _):
+            column = builder.load(as_vector(place(4, i, args[6])), align=8)
+            for total, row in zip(totals, own, strict=True):
+                factor = spread(builder.load(place(2, row, i)))
+                product = builder.fmul(factor, column, flags=("contract",))
+                known = builder.load(total, align=8)
+                added = builder.fadd(known, product, flags=("contract",))
+                builder.store(added, total, align=8)
+        for total, target in zip(totals, targets, strict=True):
+            builder.store(builder.load(total, align=8), target, align=8)
+        return context.get_dummy_value()
+
+    return signature, generate
+
+
+add_matrix_product: Any = _matrix_code if JIT else uncompiled.add_matrix_product
 modular_product: Any = _modular_product_code if JIT else uncompiled.modular_product
 multiply_row: Any = _row_code if JIT else uncompiled.multiply_row
 
@@ -475,19 +544,20 @@ def _shares(own, n, basis, shares, turns, sizes):  # type: ignore[no-untyped-def
     return farthest
 
 
-@compiled(fastmath={"contract"})
-def _add_product(matrix, columns, n, total):  # type: ignore[no-untyped-def]
-    """total[:n] += matrix columns[:, :n]; matrix (count,). Four rows a pass over the total."""
-    whole = len(matrix) - len(matrix) % 4
-    for i in range(0, whole, 4):
-        f0, f1, f2, f3 = matrix[i], matrix[i + 1], matrix[i + 2], matrix[i + 3]
-        c0, c1, c2, c3 = columns[i], columns[i + 1], columns[i + 2], columns[i + 3]
-        for b in range(n):
-            total[b] += f0 * c0[b] + f1 * c1[b] + f2 * c2[b] + f3 * c3[b]
-    for i in range(whole, len(matrix)):
-        factor, column = matrix[i], columns[i]
-        for b in range(n):
-            total[b] += factor * column[b]
+@compiled()
+def _add_product(matrix, columns, n, out):  # type: ignore[no-untyped-def]
+    """out[:, :n] += matrix columns[:, :n]; of columns beyond n anything may become.
+
+    matrix : (rows, count). columns : (count, COLUMNS). out : (rows, COLUMNS).
+    """
+    count, rows = len(columns), len(out)
+    whole = rows - rows % len(BLOCK)
+    for k in range(0, whole, len(BLOCK)):
+        for b in range(0, n, len(SPAN)):
+            add_matrix_product(SPAN, BLOCK, matrix, k, columns, count, b, out)
+    for k in range(whole, rows):
+        for b in range(0, n, len(SPAN)):
+            add_matrix_product(SPAN, SINGLE, matrix, k, columns, count, b, out)
 
 
 @compiled(fastmath={"contract"})
@@ -507,8 +577,9 @@ def _without_lowest(own, limbs, n, basis, scale):  # type: ignore[no-untyped-def
         total, share = own[i], scale.share[i]
         for b in range(n):
             total[b] *= share
-        _add_product(scale.lowest[i], limbs, n, total)
-        _reduce_row(total, n, basis.moduli[i])
+    _add_product(scale.lowest, limbs, n, own)
+    for i in range(len(own)):
+        _reduce_row(own[i], n, basis.moduli[i])
 
 
 @compiled(fastmath={"contract"})
@@ -541,9 +612,9 @@ def _limbs_of(shares, turns, n, basis, limb, limbs):  # type: ignore[no-untyped-
         row, multiple = limbs[k], basis.modulus_limbs[k]
         for b in range(n):
             row[b] = -multiple * turns[b]
-        _add_product(basis.cofactor_limbs[k], shares, n, row)
-        if k > 0:
-            _carry(limbs[k - 1], row, n, limb)
+    _add_product(basis.cofactor_limbs, shares, n, limbs)
+    for k in range(1, len(limbs)):
+        _carry(limbs[k - 1], limbs[k], n, limb)
 
 
 @compiled()
@@ -571,9 +642,9 @@ def round_columns(  # type: ignore[no-untyped-def]
     are not wanted.
     """
     primes, count = len(residues), scale.lowest.shape[1]
-    own, shares = np.empty((primes, COLUMNS)), np.empty((primes, COLUMNS))
-    limbs = np.empty((max(count, len(rounded.modulus_limbs)), COLUMNS))
-    turns, distances = np.empty(COLUMNS), np.empty(COLUMNS)
+    own, shares = np.zeros((primes, COLUMNS)), np.zeros((primes, COLUMNS))
+    limbs = np.zeros((max(count, len(rounded.modulus_limbs)), COLUMNS))
+    turns, distances = np.zeros(COLUMNS), np.zeros(COLUMNS)
     if sizes is not None:
         sizes[:] = 0.0
     places = np.empty(COLUMNS, dtype=np.int64)
@@ -587,7 +658,7 @@ def round_columns(  # type: ignore[no-untyped-def]
                 sizes[places[b]] = distances[b]
         _limbs_of(shares, turns, n, basis, limb, limbs[:count])
         _reduce_row(limbs[count - 1], n, scale.top)
-        _without_lowest(own, limbs, n, basis, scale)
+        _without_lowest(own, limbs[:count], n, basis, scale)
         _put_back(own, places[:n], near, residues)
         if words is not None:
             first = shares[: len(rounded.moduli)]
