@@ -284,12 +284,14 @@ class DenseRing(ABC, Generic[Bonds]):
         """
         rows = self._rows(degree)
         slices, _, width = left.shape
-        out = aligned_zeros((slices, rows.stop - rows.start, width))
+        shape = (slices, rows.stop - rows.start, width)
         if not splits:
-            return out
+            return aligned_zeros(shape)
         if self._convolves and not sparse:
+            out = aligned_zeros(shape)
             self._convolve(left, right, out, splits, symmetric)
             return out
+        out = self._place(shape)
         blocks = self.grading.wanted_blocks(degree)
         lanes = (0.0,) * width
         active = self._active if sparse else self._active[:0]
@@ -322,6 +324,10 @@ class DenseRing(ABC, Generic[Bonds]):
         if not sparse:
             self.multiply_adds += count
         return out if self.reduces else self._reduced(out)
+
+    def _place(self, shape: tuple[int, ...]) -> Floats:
+        """Where a product comes; rows of canonical monomials are all that need not be zeros."""
+        return aligned_zeros(shape)
 
     def _convolve(
         self,
@@ -464,7 +470,7 @@ class DenseRing(ABC, Generic[Bonds]):
         """The same sum by its few factors, as the kernel leaves it: (slices, rows, 8)."""
         there = degrees_of(self._correction_splits(degree), degree)
         rows = self._rows(degree)
-        out = aligned_zeros((len(seed_modes), rows.stop - rows.start, 8))
+        out = self._place((len(seed_modes), rows.stop - rows.start, 8))
         self._kernels.multiply_diagonal(
             (0.0,) * 8,
             corrections,

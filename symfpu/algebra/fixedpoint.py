@@ -127,7 +127,7 @@ class FixedPointRing:
         to_bonds = self._cosines(np.ones(space.half))
         self._to_bonds = self._by_parity(to_bonds, axis=1)
         self._back: dict[Fraction, ByParity] = {}
-        self._factors = _Factors(self.basis, precision.bits, space.N - 1)
+        self._factors = _Factors(self.basis, precision.bits, space.N - 1, self._image.kind)
         self._stored: set[tuple[int, int]] = set()  # powers of the bonds, and their degrees
         rows = len(space.grading.canonical(space.grading.degree))
         size = len(self.basis) * rows * space.half
@@ -443,11 +443,12 @@ class _Factors:
     (count,) their moduli.
     """
 
-    def __init__(self, basis: ResidueBasis, bits: int, modes: int) -> None:
+    def __init__(self, basis: ResidueBasis, bits: int, modes: int, kind: Any) -> None:
         self._basis, self._bits = basis, bits
         self._rows = HarmonicRows()
         self._numbers = np.zeros((0, modes), dtype=np.int64)
-        self.residues, self.sizes = np.zeros((len(basis), 1)), np.zeros(1)
+        self.residues = np.zeros((len(basis), 1), dtype=kind)
+        self.sizes = np.zeros(1)
 
     def numbers(self, harmonics: Ints, multipliers: NDArray[np.object_]) -> Ints:
         """Which of them a table of multipliers has, (harmonics, modes)."""
@@ -459,7 +460,7 @@ class _Factors:
         return np.where(carried, self._numbers[rows], 0)
 
     def _append(self, multipliers: NDArray[np.object_]) -> None:
-        residues = self._basis.of_integers(multipliers)
+        residues = self._basis.of_integers(multipliers).astype(self.residues.dtype)
         sizes = np.abs((multipliers / 2**self._bits).astype(np.float64))
         self.residues = np.concatenate([self.residues, residues], axis=1)
         self.sizes = np.concatenate([self.sizes, sizes])

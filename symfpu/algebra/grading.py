@@ -59,15 +59,16 @@ class HarmonicRows:
     """A row for each harmonic, as they come: the same one whenever it is asked for again."""
 
     def __init__(self) -> None:
-        self._rows: dict[tuple[int, ...], int] = {}
+        self._rows: dict[bytes, int] = {}
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def of(self, harmonics: Ints) -> Ints:
         """The rows of harmonics (count, s)."""
-        rows = self._rows
-        found = [rows.setdefault(tuple(nu), len(rows)) for nu in harmonics.tolist()]
+        rows, whole = self._rows, np.ascontiguousarray(harmonics)
+        names = whole.view(f"V{whole.itemsize * whole.shape[1]}").ravel().tolist()
+        found = [rows.setdefault(name, len(rows)) for name in names]
         return np.array(found, dtype=np.int64)
 
 

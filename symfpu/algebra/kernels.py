@@ -281,13 +281,13 @@ def multiply(
     moduli: Any = None,
     limit: int = 0,
 ) -> int:
-    """Add the products of all `splits` of a degree into out, canonical rows only.
+    """The products of all `splits` of a degree, summed; canonical rows only, others as they are.
 
     Returns the number of multiply-adds.
 
     lanes : tuple of 8 or 16 zeros; its length is the row length of left, right and out.
     left, right : (rows of all degrees, lanes). out : (rows of this degree, lanes), counted from
-    first_row.
+    first_row, filled.
     splits : (count, 2) degrees of the factors. symmetric : left is right, splits have d1 <= d2,
     and each unordered pair is multiplied once and added with weight two (a square once). active :
     for a sparse left factor, which of its rows are not zero; else empty. blocks : outer monomials
@@ -315,6 +315,7 @@ def multiply(
         target = block[degree, outer] - first_row
         wanted = first_canonical[degree - x] if inner_start[outer] else 0
         rows = (target + wanted, target + inner_count[degree - x])
+        out[rows[0] : rows[1]] = 0.0
         pending = 1.0
         for split in range(len(splits)):
             d1, d2 = splits[split, 0], splits[split, 1]
@@ -404,12 +405,12 @@ def multiply_diagonal(  # type: ignore[no-untyped-def]
     moduli,
     limit,
 ):
-    """Add the products of a series in the monomials |z|^(2e) and another one, of a degree.
+    """The products of a series in the monomials |z|^(2e) and another one, of a degree.
 
-    Canonical rows only. lanes, blocks, tables, limit : as of
+    Canonical rows only, others as they are. lanes, blocks, tables, limit : as of
     `multiply`. left, right : (slices, rows of all degrees, lanes). out : (slices, rows of this
-    degree, lanes). has_left, has_right : (degrees,) which degrees the factors have. diagonal :
-    algebra.grading.DiagonalTables. moduli : None, or (slices, lanes), of each lane.
+    degree, lanes), filled. has_left, has_right : (degrees,) which degrees the factors have.
+    diagonal : algebra.grading.DiagonalTables. moduli : None, or (slices, lanes), of each lane.
     """
     block, counts, table = tables.block, tables.inner_count, tables.inner_table
     for outer in blocks:
@@ -417,6 +418,7 @@ def multiply_diagonal(  # type: ignore[no-untyped-def]
         target = block[degree, outer] - block[degree, 0]
         wanted = tables.first_canonical[inner] if tables.inner_start[outer] else 0
         rows = (target + wanted, target + counts[inner])
+        out[:, rows[0] : rows[1]] = 0.0
         pending = 1.0
         for pair in range(diagonal.pair_start[outer], diagonal.pair_start[outer + 1]):
             l, r = diagonal.pair_left[pair], diagonal.pair_right[pair]
@@ -687,20 +689,29 @@ def multiply_places(values, wanted, factors, places, moduli):  # type: ignore[no
 
 @compiled()
 def _runs(primes, half, width):  # type: ignore[no-untyped-def]
-    """Where (prime, bond) and (slice, lane) go on together, lanes counted through the slices.
-
-    Rows of five: prime, bond, slice, lane, and for how long.
+    """Where (prime, bond) and (slice, lane) go on together, lanes counted through the slices:
+    prime, bond, slice, lane, and for how long.
     """
-    runs = np.empty((primes * (2 + half // width), 5), dtype=np.int64)
-    count = 0
+    runs = []
     for prime in range(primes):
         bond = 0
         while bond < half:
             part, lane = divmod(prime * half + bond, width)
             length = min(half - bond, width - lane)
-            runs[count] = prime, bond, part, lane, length
-            bond, count = bond + length, count + 1
-    return runs[:count]
+            runs.append((prime, bond, part, lane, length))
+            bond += length
+    return runs
+
+
+@compiled()
+def _copied(source, i, target, j, count, factor):  # type: ignore[no-untyped-def]
+    """target[j : j + count] = factor source[i : i + count]; registers where there are enough."""
+    whole = count - count % 8
+    for n in range(0, whole, 8):
+        for lane in range(8):
+            target[j + n + lane] = factor * source[i + n + lane]
+    for n in range(whole, count):
+        target[j + n] = factor * source[i + n]
 
 
 @compiled()
@@ -711,20 +722,12 @@ def to_lanes(values, target, rows, conjugates):  # type: ignore[no-untyped-def]
     """
     primes, count, half = values.shape
     runs = _runs(primes, half, target.shape[2])
-    for run in range(len(runs)):
-        prime, bond, part, lane, length = (
-            runs[run, 0],
-            runs[run, 1],
-            runs[run, 2],
-            runs[run, 3],
-            runs[run, 4],
-        )
+    for n in range(len(runs)):
+        prime, bond, part, lane, length = runs[n]
         for r in range(count):
-            own = values[prime, r, bond : bond + length]
-            row, conjugate = target[part, rows[r]], target[part, conjugates[r]]
-            for j in range(length):
-                row[lane + j] = own[j]
-                conjugate[lane + j] = own[j]
+            own = values[prime, r]
+            _copied(own, bond, target[part, rows[r]], lane, length, 1.0)
+            _copied(own, bond, target[part, conjugates[r]], lane, length, 1.0)
 
 
 @compiled()
@@ -732,15 +735,7 @@ def from_lanes(source, values, rows, factor):  # type: ignore[no-untyped-def]
     """The way back: values[prime, ., bond] = factor source[slice, r, lane] for r of rows."""
     primes, count, half = values.shape
     runs = _runs(primes, half, source.shape[2])
-    for run in range(len(runs)):
-        prime, bond, part, lane, length = (
-            runs[run, 0],
-            runs[run, 1],
-            runs[run, 2],
-            runs[run, 3],
-            runs[run, 4],
-        )
+    for n in range(len(runs)):
+        prime, bond, part, lane, length = runs[n]
         for r in range(count):
-            own, row = values[prime, r, bond : bond + length], source[part, rows[r]]
-            for j in range(length):
-                own[j] = factor * row[lane + j]
+            _copied(source[part, rows[r]], lane, values[prime, r], bond, length, factor)

@@ -149,8 +149,8 @@ class MajorantRing(DoublesRing[Bounds]):
         if degree == self.grading.degree:
             return  # it is a factor of nothing
         self._store_bonds(degree, modes, sizes)
-        self._store_seed_modes(degree, known)
-        self._store_seed_radii(degree, modes)
+        self._store_of_seeds(self._seed_modes, degree, known)
+        self._store_of_seeds(self._seed_radii, degree, modes)
 
     def _store_bonds(self, degree: int, modes: Floats, sizes: Floats) -> None:
         """Moduli and radii on the bonds, and what products take of both."""
@@ -167,16 +167,15 @@ class MajorantRing(DoublesRing[Bounds]):
             self._store(self._radii, degree, rows, radii)
             self._store(self._sums, degree, rows, reached)
 
-    def _store_seed_radii(self, degree: int, modes: Floats) -> None:
-        base = int(self.grading.first_row[degree])
-        canonical, conjugate = (
-            self.grading.canonical(degree),
-            self.grading.conjugate(degree),
-        )
-        for i, q in enumerate(self.space.seeds):
-            slice_, lane = divmod(i, 8)
-            for rows in (canonical, conjugate):
-                self._seed_radii[slice_, base + rows, lane] = modes[:, q - 1]
+    def _store(self, target: Floats, degree: int, rows: Ints, values: Floats) -> None:
+        first = int(self.grading.first_row[degree])
+        canonical = first + self.grading.canonical(degree)[rows]
+        conjugate = first + self.grading.conjugate(degree)[rows]
+        self._kernels.to_lanes(values[None], target, canonical, conjugate)
+
+    def _store_of_seeds(self, target: Floats, degree: int, modes: Floats) -> None:
+        columns = modes[:, np.array(self.space.seeds) - 1]
+        self._store(target, degree, np.arange(len(modes)), columns)
 
     def _bounds(self, degree: int, radii: Floats, power: int) -> Bounds:
         """What the kernel gave, f o g = 2 f g, with the rounding on the bonds added."""

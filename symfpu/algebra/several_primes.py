@@ -23,6 +23,7 @@ import numpy as np
 from symfpu.algebra.at_points import AtPoints
 from symfpu.algebra.dense import Floats, ValuesRing, aligned_zeros, degrees_of
 from symfpu.algebra.grading import Grading, Ints
+from symfpu.algebra.rooms import Rooms
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.words import ResidueBasis, TooFewPrimes
 
@@ -92,9 +93,12 @@ class SeveralPrimesRing(ValuesRing):
         self._moduli = self._by_slice(np.repeat(basis.moduli, space.half), self._lanes)
         columns = np.repeat(basis.moduli, seeds)
         self._seed_moduli = self._by_slice(columns, 8)
-        rows = self._seed_modes.shape[1]
-        self._seed_modes = aligned_zeros((len(self._seed_moduli), rows, 8), self.kind)
-        self._corrections = aligned_zeros(self._seed_modes.shape)
+        last = self._rows(space.grading.degree)
+        of_factors = (len(self._seed_moduli), last.start, 8)
+        self._seed_modes = aligned_zeros(of_factors, self.kind)
+        self._corrections = aligned_zeros(of_factors, self.kind)
+        widest = max(self._moduli.size, self._seed_moduli.size)
+        self._rooms = Rooms((last.stop - last.start) * widest)
         if self._at_points:
             there, back = self._at_points.powers, self._at_points.inverse_powers
             self._there, self._back = (
@@ -118,6 +122,9 @@ class SeveralPrimesRing(ValuesRing):
 
     def _lane_width(self) -> int:
         return LANES
+
+    def _place(self, shape: tuple[int, ...]) -> Floats:
+        return self._rooms.take(shape)
 
     def _kept_count(self) -> int:
         points = self._at_points
@@ -273,7 +280,7 @@ class SeveralPrimesRing(ValuesRing):
                 left, right, degree, splits, symmetric=symmetric, sparse=sparse
             )
         rows = self._rows(degree)
-        out = aligned_zeros((self._slices, rows.stop - rows.start, self._lanes))
+        out = self._place((self._slices, rows.stop - rows.start, self._lanes))
         both = [(e, d) for d, e in splits] if symmetric else []
         early = symmetric and self._at_points.alone
         since, sums = self._early_squares(degree) if early else (0, None)
