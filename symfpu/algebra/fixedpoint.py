@@ -157,9 +157,9 @@ class FixedPointRing:
         with mpmath.workprec(bits + math.ceil(math.log2(largest)) + 32):
             cosines = [mpmath.cospi(mpmath.mpf(n) / (2 * N)) for n in range(2 * N + 1)]
             table = [mpmath.ldexp(cosine, bits) for cosine in cosines]
+            own = {weight: _weighted(table, Fraction(weight)) for weight in set(weights)}
             for j, weight in enumerate(weights):
-                column = _weighted(table, Fraction(weight))
-                whole[:, j] = column[angles[:, j]]
+                whole[:, j] = own[weight][angles[:, j]]
         return self.basis.of_integers(whole)
 
     def _by_parity(self, of_modes: Floats, axis: int) -> ByParity:
@@ -470,6 +470,10 @@ class _Words:
     """The words of all coefficients of a degree, as its pieces give them."""
 
     def __init__(self, order: Ints, N: int, basis: ResidueBasis) -> None:
+        # lazy: numba takes longer to import than all the rest
+        from symfpu.algebra.kernels import put_words
+
+        self._put = put_words
         self._order, self._used = order, 1
         self._words = np.zeros((len(order), N - 1, basis.longest_word), dtype=np.int64)
 
@@ -481,9 +485,8 @@ class _Words:
         words: NDArray[np.int64],
     ) -> None:
         """Words (wanted, n) of some monomials."""
-        block = np.zeros((*wanted.shape, words.shape[1]), dtype=np.int64)
-        block[wanted] = words
-        self._words[self._order[some], modes, : words.shape[1]] = block
+        columns = np.arange(self._words.shape[1])[modes]
+        self._put(words, wanted, self._order[some], columns, self._words)
         self._used = max(self._used, words.shape[1])
 
     def table(self) -> IntegerTable:

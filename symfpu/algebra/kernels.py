@@ -705,10 +705,10 @@ def _runs(primes, half, width):  # type: ignore[no-untyped-def]
 
 @compiled()
 def _copied(source, i, target, j, count, factor):  # type: ignore[no-untyped-def]
-    """target[j : j + count] = factor source[i : i + count]; registers where there are enough."""
-    whole = count - count % 8
-    for n in range(0, whole, 8):
-        for lane in range(8):
+    """target[j : j + count] = factor source[i : i + count], by fours where there are enough."""
+    whole = count - count % 4
+    for n in range(0, whole, 4):
+        for lane in range(4):
             target[j + n + lane] = factor * source[i + n + lane]
     for n in range(whole, count):
         target[j + n] = factor * source[i + n]
@@ -739,3 +739,19 @@ def from_lanes(source, values, rows, factor):  # type: ignore[no-untyped-def]
         prime, bond, part, lane, length = runs[n]
         for r in range(count):
             _copied(source[part, rows[r]], lane, values[prime, r], bond, length, factor)
+
+
+@compiled()
+def put_words(words, wanted, rows, columns, table):  # type: ignore[no-untyped-def]
+    """table[rows[r], columns[c], :n] = the words of the next entry, where it is wanted.
+
+    words : (wanted, n). wanted : (rows, columns). table : (all rows, all columns, at least n).
+    """
+    at, length = 0, words.shape[1]
+    for r in range(len(rows)):
+        for c in range(len(columns)):
+            if wanted[r, c]:
+                target = table[rows[r], columns[c]]
+                for n in range(length):
+                    target[n] = words[at, n]
+                at += 1

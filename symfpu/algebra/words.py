@@ -157,6 +157,10 @@ class ResidueBasis:
             self._modulus_limbs[:, 0].copy(),
         )
         self._scales: dict[int, Scale] = {}
+        # whether sums over all primes of residues times limbs are exact in doubles
+        widest = float(self.moduli.max(initial=0.0))
+        sums = len(self) * widest * LIMB / 4
+        self.small = sums <= EXACT and widest**2 / 4 <= EXACT
 
     def beginning(self, bits: int) -> ResidueBasis:
         """The basis of the first of these primes, as many as integers of so many bits need."""
@@ -190,12 +194,6 @@ class ResidueBasis:
             limbs[n] -= carry * LIMB
             limbs[n + 1] += carry
         return np.asarray(limbs[drop:])
-
-    @property
-    def small(self) -> bool:
-        """Whether sums over all primes of residues times limbs are exact in doubles."""
-        largest = float(self.moduli.max(initial=0.0))
-        return len(self) * largest * LIMB / 4 <= EXACT and largest**2 / 4 <= EXACT
 
     def _scale(self, bits: int) -> Scale:
         if bits not in self._scales:
