@@ -688,57 +688,43 @@ def multiply_places(values, wanted, factors, places, moduli):  # type: ignore[no
 
 
 @compiled()
-def _runs(primes, half, width):  # type: ignore[no-untyped-def]
-    """Where (prime, bond) and (slice, lane) go on together, lanes counted through the slices:
-    prime, bond, slice, lane, and for how long.
-    """
-    runs = []
-    for prime in range(primes):
-        bond = 0
-        while bond < half:
-            part, lane = divmod(prime * half + bond, width)
-            length = min(half - bond, width - lane)
-            runs.append((prime, bond, part, lane, length))
-            bond += length
-    return runs
-
-
-@compiled()
-def _copied(source, i, target, j, count, factor):  # type: ignore[no-untyped-def]
-    """target[j : j + count] = factor source[i : i + count], by fours where there are enough."""
-    whole = count - count % 4
-    for n in range(0, whole, 4):
-        for lane in range(4):
-            target[j + n + lane] = factor * source[i + n + lane]
-    for n in range(whole, count):
-        target[j + n] = factor * source[i + n]
-
-
-@compiled()
 def to_lanes(values, target, rows, conjugates):  # type: ignore[no-untyped-def]
     """target[slice, r, lane] = values[prime, ., bond] for r of rows, and of their conjugates.
 
-    values : (primes, rows, half). target : (slices, all rows, lanes); the last lanes may be over.
+    values : (primes, rows, half). target : (slices, all rows, lanes), lanes counted through the
+    slices; the last ones may be over.
     """
     primes, count, half = values.shape
-    runs = _runs(primes, half, target.shape[2])
-    for n in range(len(runs)):
-        prime, bond, part, lane, length = runs[n]
+    width = target.shape[2]
+    for part in range(len(target)):
         for r in range(count):
-            own = values[prime, r]
-            _copied(own, bond, target[part, rows[r]], lane, length, 1.0)
-            _copied(own, bond, target[part, conjugates[r]], lane, length, 1.0)
+            row, conjugate = rows[r], conjugates[r]
+            prime, bond = divmod(part * width, half)
+            lane = 0
+            while lane < width and prime < primes:
+                run = min(half - bond, width - lane)
+                for n in range(run):
+                    value = values[prime, r, bond + n]
+                    target[part, row, lane + n] = value
+                    target[part, conjugate, lane + n] = value
+                prime, bond, lane = prime + 1, 0, lane + run
 
 
 @compiled()
 def from_lanes(source, values, rows, factor):  # type: ignore[no-untyped-def]
     """The way back: values[prime, ., bond] = factor source[slice, r, lane] for r of rows."""
     primes, count, half = values.shape
-    runs = _runs(primes, half, source.shape[2])
-    for n in range(len(runs)):
-        prime, bond, part, lane, length = runs[n]
+    width = source.shape[2]
+    for part in range(len(source)):
         for r in range(count):
-            _copied(source[part, rows[r]], lane, values[prime, r], bond, length, factor)
+            row = rows[r]
+            prime, bond = divmod(part * width, half)
+            lane = 0
+            while lane < width and prime < primes:
+                run = min(half - bond, width - lane)
+                for n in range(run):
+                    values[prime, r, bond + n] = factor * source[part, row, lane + n]
+                prime, bond, lane = prime + 1, 0, lane + run
 
 
 @compiled()
@@ -751,7 +737,6 @@ def put_words(words, wanted, rows, columns, table):  # type: ignore[no-untyped-d
     for r in range(len(rows)):
         for c in range(len(columns)):
             if wanted[r, c]:
-                target = table[rows[r], columns[c]]
                 for n in range(length):
-                    target[n] = words[at, n]
+                    table[rows[r], columns[c], n] = words[at, n]
                 at += 1
