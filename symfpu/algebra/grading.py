@@ -65,11 +65,12 @@ class HarmonicRows:
         return len(self._rows)
 
     def of(self, harmonics: Ints) -> Ints:
-        """The rows of harmonics (count, s)."""
+        """The rows of harmonics (count, s), each of which is there once."""
         rows, whole = self._rows, np.ascontiguousarray(harmonics)
         names = whole.view(f"V{whole.itemsize * whole.shape[1]}").ravel().tolist()
-        found = [rows.setdefault(name, len(rows)) for name in names]
-        return np.array(found, dtype=np.int64)
+        fresh = [name for name in names if name not in rows]
+        rows.update(zip(fresh, range(len(rows), len(rows) + len(fresh)), strict=True))
+        return np.array([rows[name] for name in names], dtype=np.int64)
 
 
 def extended(table: NDArray[Any], rows: int, empty: Any) -> NDArray[Any]:

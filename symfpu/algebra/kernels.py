@@ -23,6 +23,7 @@ from symfpu.algebra import uncompiled
 from symfpu.compiled import JIT, compiled
 
 INT64 = ir.IntType(64)
+NEVER = 2**62  # more products than a sum has
 COLUMNS = 64  # integers rounded at once, so that they stay in the cache
 # columns and rows of a product of matrices whose sums stay in registers
 SPAN, BLOCK, SINGLE = (0.0,) * 8, (0.0,) * 4, (0.0,)
@@ -253,15 +254,18 @@ def reduce_lanes(rows, first, last, moduli, inverses):  # type: ignore[no-untype
 
 
 @compiled()
-def _with_room(pending, weight, limit, out, rows, moduli):  # type: ignore[no-untyped-def]
-    """How many products the sums have after the next; sums are reduced first where need be.
+def _reduce_block(out, rows, moduli):  # type: ignore[no-untyped-def]
+    """These rows modulo the modulus of each lane; without moduli nothing."""
+    if moduli is not None:
+        reduce_lanes(out, rows[0], rows[1], moduli, 1.0 / moduli)
 
-    Without moduli nothing is reduced.
-    """
-    if moduli is None or pending <= limit:
-        return pending
-    reduce_lanes(out, rows[0], rows[1], moduli, 1.0 / moduli)
-    return 1.0 + weight
+
+@compiled()
+def _first_wanted(table, t, start, wanted):  # type: ignore[no-untyped-def]
+    """The first entry from t on, before t + start, whose rank is a wanted one; ranks ascend."""
+    while start > 0 and table[t + start - 1] >= wanted:
+        start -= 1
+    return start
 
 
 @compiled()
@@ -279,7 +283,7 @@ def multiply(
     tables: Any,
     modulus: Any,
     moduli: Any = None,
-    limit: int = 0,
+    limit: int = NEVER,
 ) -> int:
     """The products of all `splits` of a degree, summed; canonical rows only, others as they are.
 
@@ -337,13 +341,13 @@ def multiply(
                     start = length if wanted > 0 else 0
                     for i in range(inner_count[y1]):
                         t = places + i * step
-                        while start > 0 and table[t + start - 1] >= wanted:
-                            start -= 1
+                        start = _first_wanted(table, t, start, wanted)
                         if sparse and not active[i0 + i]:
                             continue
-                        pending = _with_room(
-                            pending + weight, weight, limit, out, rows, moduli
-                        )
+                        pending += weight
+                        if pending > limit:
+                            _reduce_block(out, rows, moduli)
+                            pending = 1.0 + weight
                         if swap:
                             multiply_row(
                                 lanes,
@@ -377,7 +381,7 @@ def multiply(
                                 modulus,
                             )
                         count += length - start
-        _with_room(2.0, 1.0, 1, out, rows, moduli)
+        _reduce_block(out, rows, moduli)
     return count * len(lanes)
 
 
@@ -434,8 +438,7 @@ def multiply_diagonal(  # type: ignore[no-untyped-def]
                         + i * tables.table_stride[y, inner - y]
                     )
                     start = length if wanted > 0 else 0
-                    while start > 0 and table[t + start - 1] >= wanted:
-                        start -= 1
+                    start = _first_wanted(table, t, start, wanted)
                     pending += 1.0
                     if pending > limit:
                         _reduce_slices(out, rows, moduli)

@@ -158,7 +158,7 @@ class ResidueBasis:
         )
         self._scales: dict[int, Scale] = {}
         # whether sums over all primes of residues times limbs are exact in doubles
-        widest = float(self.moduli.max(initial=0.0))
+        widest = self._widest = float(self.moduli.max(initial=0.0))
         sums = len(self) * widest * LIMB / 4
         self.small = sums <= EXACT and widest**2 / 4 <= EXACT
 
@@ -290,6 +290,10 @@ class ResidueBasis:
     def residues(self, limbs: Floats) -> Floats:
         """Residues (primes, count) of the integers given by balanced limbs (limbs, count)."""
         powers = self._powers[:, : len(limbs)]
+        if len(limbs) * self._widest * LIMB / 2 <= EXACT:
+            whole = np.asarray(powers @ limbs)
+            self._kernels.reduce_rows(whole, self.moduli)
+            return whole
         high = np.rint(powers / LIMB)
         low = powers - high * LIMB
         top = high @ limbs
