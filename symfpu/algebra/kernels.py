@@ -23,7 +23,6 @@ from symfpu.algebra import uncompiled
 from symfpu.compiled import JIT, compiled
 
 INT64 = ir.IntType(64)
-NEVER = 2**62  # more products than a sum has
 COLUMNS = 64  # integers rounded at once, so that they stay in the cache
 # columns and rows of a product of matrices whose sums stay in registers
 SPAN, BLOCK, SINGLE = (0.0,) * 8, (0.0,) * 4, (0.0,)
@@ -283,7 +282,7 @@ def multiply(
     tables: Any,
     modulus: Any,
     moduli: Any = None,
-    limit: int = NEVER,
+    limit: int = 0,
 ) -> int:
     """The products of all `splits` of a degree, summed; canonical rows only, others as they are.
 
