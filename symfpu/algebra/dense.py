@@ -287,10 +287,9 @@ class DenseRing(ABC, Generic[Bonds]):
         shape = (slices, rows.stop - rows.start, width)
         if not splits:
             return aligned_zeros(shape)
-        if self._convolves and not sparse:
-            out = aligned_zeros(shape)
-            self._convolve(left, right, out, splits, symmetric)
-            return out
+        other = None if sparse else self._special(left, right, degree, splits, symmetric)
+        if other is not None:
+            return other
         out = self._place(shape)
         blocks = self.grading.wanted_blocks(degree)
         lanes = (0.0,) * width
@@ -324,6 +323,22 @@ class DenseRing(ABC, Generic[Bonds]):
         if not sparse:
             self.multiply_adds += count
         return out if self.reduces else self._reduced(out)
+
+    def _special(
+        self,
+        left: Floats,
+        right: Floats,
+        degree: int,
+        splits: list[tuple[int, int]],
+        symmetric: bool,
+    ) -> Floats | None:
+        """The product where there is a faster way than by tables: of one seed by convolution."""
+        if not self._convolves:
+            return None
+        rows = self._rows(degree)
+        out = aligned_zeros((len(left), rows.stop - rows.start, left.shape[2]))
+        self._convolve(left, right, out, splits, symmetric)
+        return out
 
     def _place(self, shape: tuple[int, ...]) -> Floats:
         """Where a product comes; rows of canonical monomials are all that need not be zeros."""

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.dense import Floats, threads_of_a_computation
-from symfpu.algebra.grading import HarmonicRows, Ints, extended
+from symfpu.algebra.fixedpoint_tables import CollectedWords, Factors
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.several_primes import (
     Portions,
@@ -35,7 +35,6 @@ from symfpu.algebra.words import (
     LIMB_BITS,
     SIZE_ERROR,
     IntegerTable,
-    ResidueBasis,
     divided,
     words_of,
 )
@@ -127,7 +126,7 @@ class FixedPointRing:
         to_bonds = self._cosines(np.ones(space.half))
         self._to_bonds = self._by_parity(to_bonds, axis=1)
         self._back: dict[Fraction, ByParity] = {}
-        self._factors = _Factors(self.basis, precision.bits, space.N - 1, self._image.kind)
+        self._factors = Factors(self.basis, precision.bits, space.N - 1, self._image.kind)
         self._stored: set[tuple[int, int]] = set()  # powers of the bonds, and their degrees
         rows = len(space.grading.canonical(space.grading.degree))
         size = len(self.basis) * rows * space.half
@@ -366,7 +365,7 @@ class FixedPointRing:
         carried, sizes_of = numbers > 0, factors.sizes[numbers]
         _, index = self.grading.harmonics(degree)
         order, _ = self.space.even_first(degree)
-        integers = _Words(order, self.space.N, self._rounded_basis)
+        integers = CollectedWords(order, self.space.N, self._rounded_basis)
 
         def convert(piece: Piece) -> None:
             parity, some, own = piece
@@ -434,63 +433,6 @@ def whole_growth(
 def place(mode: int) -> int:
     """Where a mode stands among those of its parity."""
     return (mode - 1) // 2
-
-
-class _Factors:
-    """The multipliers L_q(nu) of all orders so far: what one had, the others do not change.
-
-    residues : (primes, count), of the first, which is zero, and of those that were met. sizes :
-    (count,) their moduli.
-    """
-
-    def __init__(self, basis: ResidueBasis, bits: int, modes: int, kind: Any) -> None:
-        self._basis, self._bits = basis, bits
-        self._rows = HarmonicRows()
-        self._numbers = np.zeros((0, modes), dtype=np.int64)
-        self.residues = np.zeros((len(basis), 1), dtype=kind)
-        self.sizes = np.zeros(1)
-
-    def numbers(self, harmonics: Ints, multipliers: NDArray[np.object_]) -> Ints:
-        """Which of them a table of multipliers has, (harmonics, modes)."""
-        rows, carried = self._rows.of(harmonics), multipliers != 0
-        self._numbers = extended(self._numbers, len(self._rows), 0)
-        places, columns = np.nonzero(carried & (self._numbers[rows] == 0))
-        self._numbers[rows[places], columns] = len(self.sizes) + np.arange(len(places))
-        self._append(multipliers[places, columns])
-        return np.where(carried, self._numbers[rows], 0)
-
-    def _append(self, multipliers: NDArray[np.object_]) -> None:
-        residues = self._basis.of_integers(multipliers).astype(self.residues.dtype)
-        sizes = np.abs((multipliers / 2**self._bits).astype(np.float64))
-        self.residues = np.concatenate([self.residues, residues], axis=1)
-        self.sizes = np.concatenate([self.sizes, sizes])
-
-
-class _Words:
-    """The words of all coefficients of a degree, as its pieces give them."""
-
-    def __init__(self, order: Ints, N: int, basis: ResidueBasis) -> None:
-        # lazy: numba takes longer to import than all the rest
-        from symfpu.algebra.kernels import put_words
-
-        self._put = put_words
-        self._order, self._used = order, 1
-        self._words = np.zeros((len(order), N - 1, basis.longest_word), dtype=np.int64)
-
-    def put(
-        self,
-        some: slice,
-        modes: slice,
-        wanted: NDArray[np.bool_],
-        words: NDArray[np.int64],
-    ) -> None:
-        """Words (wanted, n) of some monomials."""
-        columns = np.arange(self._words.shape[1])[modes]
-        self._put(words, wanted, self._order[some], columns, self._words)
-        self._used = max(self._used, words.shape[1])
-
-    def table(self) -> IntegerTable:
-        return IntegerTable(np.ascontiguousarray(self._words[:, :, : self._used]))
 
 
 def _weighted(table: Sequence[Any], weight: Fraction) -> NDArray[np.object_]:

@@ -265,20 +265,19 @@ class SeveralPrimesRing(ValuesRing):
 
         list(self._pool.map(work, self.pieces(degree)))
 
-    def _product(
+    def _special(self, *product: Any) -> Floats | None:
+        """At points, where there are any."""
+        return self._of_points(*product) if self._at_points else super()._special(*product)
+
+    def _of_points(
         self,
         left: Floats,
         right: Floats,
         degree: int,
         splits: list[tuple[int, int]],
-        *,
-        symmetric: bool = False,
-        sparse: bool = False,
+        symmetric: bool,
     ) -> Floats:
-        if sparse or not self._at_points:
-            return super()._product(
-                left, right, degree, splits, symmetric=symmetric, sparse=sparse
-            )
+        assert self._at_points is not None
         rows = self._rows(degree)
         out = self._place((self._slices, rows.stop - rows.start, self._lanes))
         both = [(e, d) for d, e in splits] if symmetric else []

@@ -95,8 +95,8 @@ class IntegerTable:
 
 
 class Rounding(NamedTuple):
-    """Tables of `kernels.round_columns`: moduli, inverses of cofactors, limbs of the cofactors
-    (limbs, primes) and of the product of all primes (limbs,).
+    """Tables of `rounding_loops.round_columns`: moduli, inverses of cofactors, limbs of the
+    cofactors (limbs, primes) and of the product of all primes (limbs,).
     """
 
     moduli: Floats
@@ -124,11 +124,10 @@ class ResidueBasis:
     """
 
     def __init__(self, bits: int, largest: int, divisor: int = 2) -> None:
-        from symfpu.algebra import (
-            kernels,
-        )  # lazy: numba takes longer to import than all the rest
+        # lazy: numba takes longer to import than all the rest
+        from symfpu.algebra import kernels, rounding_loops
 
-        self._kernels = kernels
+        self._kernels, self._loops = kernels, rounding_loops
         self._largest, self._divisor = largest, divisor
         self.longest_word = -(
             -(bits + 2) // WORD_BITS
@@ -260,7 +259,7 @@ class ResidueBasis:
                 found = words_of(first.limbs(own[: len(first)].copy()))
                 words[:, : found.shape[1]] = found
             return
-        farthest, farther = self._kernels.round_columns(
+        farthest, farther = self._loops.round_columns(
             residues, wanted, self._rounding, LIMB, scale, first._rounding, words, sizes
         )
         self._check(farthest, self._limit)
