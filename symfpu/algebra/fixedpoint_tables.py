@@ -49,7 +49,8 @@ class CollectedWords:
         from symfpu.algebra.rounding_loops import put_words
 
         self._put = put_words
-        self._order, self._used = order, 1
+        self._order = order
+        self._lengths = [1]  # of the words of pieces, which come from several threads
         self._words = np.zeros((len(order), N - 1, basis.longest_word), dtype=np.int64)
 
     def put(
@@ -62,7 +63,8 @@ class CollectedWords:
         """Words (wanted, n) of some monomials."""
         columns = np.arange(self._words.shape[1])[modes]
         self._put(words, wanted, self._order[some], columns, self._words)
-        self._used = max(self._used, words.shape[1])
+        self._lengths.append(words.shape[1])
 
     def table(self) -> IntegerTable:
-        return IntegerTable(np.ascontiguousarray(self._words[:, :, : self._used]))
+        used = self._words[:, :, : max(self._lengths)]
+        return IntegerTable(np.ascontiguousarray(used))
