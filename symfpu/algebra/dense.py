@@ -284,12 +284,13 @@ class DenseRing(ABC, Generic[Bonds]):
         """
         rows = self._rows(degree)
         slices, _, width = left.shape
-        out = aligned_zeros((slices, rows.stop - rows.start, width))
+        shape = (slices, rows.stop - rows.start, width)
         if not splits:
-            return out
-        if self._convolves and not sparse:
-            self._convolve(left, right, out, splits, symmetric)
-            return out
+            return aligned_zeros(shape)
+        other = None if sparse else self._special(left, right, degree, splits, symmetric)
+        if other is not None:
+            return other
+        out = self._place(shape)
         blocks = self.grading.wanted_blocks(degree)
         lanes = (0.0,) * width
         active = self._active if sparse else self._active[:0]
@@ -322,6 +323,26 @@ class DenseRing(ABC, Generic[Bonds]):
         if not sparse:
             self.multiply_adds += count
         return out if self.reduces else self._reduced(out)
+
+    def _special(
+        self,
+        left: Floats,
+        right: Floats,
+        degree: int,
+        splits: list[tuple[int, int]],
+        symmetric: bool,
+    ) -> Floats | None:
+        """The product where there is a faster way than by tables: of one seed by convolution."""
+        if not self._convolves:
+            return None
+        rows = self._rows(degree)
+        out = aligned_zeros((len(left), rows.stop - rows.start, left.shape[2]))
+        self._convolve(left, right, out, splits, symmetric)
+        return out
+
+    def _place(self, shape: tuple[int, ...]) -> Floats:
+        """Where a product comes; rows of canonical monomials are all that need not be zeros."""
+        return aligned_zeros(shape)
 
     def _convolve(
         self,
@@ -412,16 +433,22 @@ class DenseRing(ABC, Generic[Bonds]):
         self._store(self._powers[power], degree, np.arange(len(values)), values)
 
     def secular(self, degree: int, modes: NDArray[Any]) -> NDArray[Any]:
+        seeds = zip(self.space.seeds, self.secular_rows(degree), strict=True)
+        return np.stack([modes[at, q - 1] for q, at in seeds], axis=1)
+
+    def secular_rows(self, degree: int) -> list[Ints]:
+        """For each seed which canonical monomials have its harmonic nu = e_q, one a row of
+        `grading.diagonal(degree - 1)`.
+        """
         canonical = self.grading.canonical(degree)
         diagonal = self.grading.diagonal(degree - 1)
-        columns = []
-        for i, q in enumerate(self.space.seeds):
+        found = []
+        for i in range(len(self.space.seeds)):
             exponents = np.repeat(diagonal, 2, axis=1)
             exponents[:, 2 * i] += 1
             rows = self.grading.rows(exponents)
-            at = np.searchsorted(canonical, rows)
-            columns.append(modes[at, q - 1])
-        return np.stack(columns, axis=1)
+            found.append(np.searchsorted(canonical, rows))
+        return found
 
     def correct(self, degree: int, corrections: Floats) -> None:
         self._correction_degrees.append(degree)
@@ -458,7 +485,7 @@ class DenseRing(ABC, Generic[Bonds]):
         """The same sum by its few factors, as the kernel leaves it: (slices, rows, 8)."""
         there = degrees_of(self._correction_splits(degree), degree)
         rows = self._rows(degree)
-        out = aligned_zeros((len(seed_modes), rows.stop - rows.start, 8))
+        out = self._place((len(seed_modes), rows.stop - rows.start, 8))
         self._kernels.multiply_diagonal(
             (0.0,) * 8,
             corrections,

@@ -24,14 +24,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.dense import Floats, threads_of_a_computation
-from symfpu.algebra.grading import Ints
+from symfpu.algebra.fixedpoint_tables import CollectedWords, Factors
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.several_primes import (
     Portions,
     SeveralPrimesRing,
     residue_basis,
 )
-from symfpu.algebra.words import LIMB_BITS, IntegerTable, divided
+from symfpu.algebra.words import (
+    LIMB_BITS,
+    SIZE_ERROR,
+    IntegerTable,
+    divided,
+    words_of,
+)
 
 
 class Precision(NamedTuple):
@@ -46,13 +52,51 @@ class Precision(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """Coefficients of one degree: residues (primes, canonical, N-1), and the integers as words.
-
-    Residues are singles where there are many of them.
-    """
+    """Integers: residues (primes, rows, columns), and the same as words."""
 
     residues: Floats
     table: IntegerTable
+
+
+# of the even monomials of a degree and of the odd ones, with the modes of their parity
+ByParity = tuple[Any, Any]
+
+
+class Coordinates(NamedTuple):
+    """Coefficients of one degree: residues (primes, monomials, modes), and the integers as words.
+
+    Residues are singles where there are many of them. table : (canonical, N-1).
+    """
+
+    residues: ByParity
+    table: IntegerTable
+
+
+class Force(NamedTuple):
+    """Residues of one degree, (primes, monomials, modes), and sizes (monomials, modes).
+
+    sizes : of the integers before they were rounded, as `ResidueBasis.round_in_place` gives them.
+    """
+
+    residues: ByParity
+    sizes: ByParity
+
+
+class Corrected(NamedTuple):
+    """The same of sum W u: residues (primes, monomials, s), even monomials first."""
+
+    residues: Floats
+    sizes: Floats
+
+
+class Piece(NamedTuple):
+    """Neighbouring monomials of one parity: their places among all of a degree, even ones first,
+    and among those of that parity.
+    """
+
+    parity: int
+    some: slice
+    own: slice
 
 
 class Bonds(NamedTuple):
@@ -79,11 +123,13 @@ class FixedPointRing:
         self._image = SeveralPrimesRing(space, self.basis)
         self._threads = threads_of_a_computation()
         self._pool = ThreadPoolExecutor(self._threads)
-        self._to_bonds = self._cosines(np.ones(space.half))
-        self._back: dict[Fraction, Floats] = {}
+        to_bonds = self._cosines(np.ones(space.half))
+        self._to_bonds = self._by_parity(to_bonds, axis=1)
+        self._back: dict[Fraction, ByParity] = {}
+        self._factors = Factors(self.basis, precision.bits, space.N - 1, self._image.kind)
         self._stored: set[tuple[int, int]] = set()  # powers of the bonds, and their degrees
         rows = len(space.grading.canonical(space.grading.degree))
-        size = len(self.basis) * rows * (space.N - 1)
+        size = len(self.basis) * rows * space.half
         self._room = np.empty(size, dtype=np.float32)  # of the residues of one degree
         self._modes: list[IntegerTable] = []
         self._corrections: list[IntegerTable] = []
@@ -110,13 +156,19 @@ class FixedPointRing:
         with mpmath.workprec(bits + math.ceil(math.log2(largest)) + 32):
             cosines = [mpmath.cospi(mpmath.mpf(n) / (2 * N)) for n in range(2 * N + 1)]
             table = [mpmath.ldexp(cosine, bits) for cosine in cosines]
+            own = {weight: _weighted(table, Fraction(weight)) for weight in set(weights)}
             for j, weight in enumerate(weights):
-                column = _weighted(table, Fraction(weight))
-                whole[:, j] = column[angles[:, j]]
+                whole[:, j] = own[weight][angles[:, j]]
         return self.basis.of_integers(whole)
 
-    def _to_modes(self, coefficient: Fraction) -> Floats:
-        """The way back, times a coefficient.
+    def _by_parity(self, of_modes: Floats, axis: int) -> ByParity:
+        """What is given for all modes, on an axis, for the even and for the odd ones."""
+        before = (slice(None),) * axis
+        even, odd = (of_modes[*before, self.space.modes(parity)] for parity in (0, 1))
+        return np.ascontiguousarray(even), np.ascontiguousarray(odd)
+
+    def _to_modes(self, coefficient: Fraction) -> ByParity:
+        """The way back, times a coefficient; (primes, points, modes).
 
         Weights 4/N, and half of it for a bond that is its own mirror image.
         """
@@ -125,7 +177,8 @@ class FixedPointRing:
             weights = [coefficient * Fraction(4, N)] * half
             if N % 2:
                 weights[-1] = coefficient * Fraction(2, N)
-            self._back[coefficient] = self._cosines(np.array(weights, dtype=object))
+            cosines = self._cosines(np.array(weights, dtype=object))
+            self._back[coefficient] = self._by_parity(np.moveaxis(cosines, 1, 2), axis=2)
         return self._back[coefficient]
 
     def _rounded(self, residues: Floats, divisor: int = 1) -> Floats:
@@ -139,56 +192,70 @@ class FixedPointRing:
             flat[:] = self.basis.residues(divided(limbs, divisor))
         return residues
 
-    def _rounded_words(
-        self, residues: Floats, wanted: NDArray[np.bool_]
-    ) -> NDArray[np.int64]:
-        """The wanted entries of (primes, rows, columns), rounded; the others are exactly zero.
+    def _pieces(self, degree: int) -> list[Piece]:
+        return [self._piece(degree, some) for some in self._image.pieces(degree)]
 
-        residues : overwritten. Returns the words of the wanted ones.
+    def _piece(self, degree: int, some: slice) -> Piece:
+        _, even = self.space.even_first(degree)
+        parity = int(some.start >= even)
+        first = even * parity
+        return Piece(parity, some, slice(some.start - first, some.stop - first))
+
+    def _of_monomials(self, degree: int, of_canonical: NDArray[Any]) -> ByParity:
+        """What is given for each canonical monomial and mode, for those of one parity."""
+        order, even = self.space.even_first(degree)
+        parts = order[:even], order[even:]
+        even_part, odd_part = (
+            np.ascontiguousarray(of_canonical[rows, self.space.modes(parity)])
+            for parity, rows in enumerate(parts)
+        )
+        return even_part, odd_part
+
+    def _room_for(self, degree: int) -> ByParity:
+        """Place for the residues of a degree, where those of the last one lay.
+
+        They may be read, portion by portion, until they are replaced: fresh memory of that size
+        takes longer than the work.
         """
-        flat, bits = residues.reshape(len(self.basis), -1), self.precision.bits
-        return self.basis.rounded_words(flat, wanted.ravel(), bits, self._rounded_basis)
+        order, even = self.space.even_first(degree)
+        counts, primes, parts = (even, len(order) - even), len(self.basis), []
+        start = 0
+        for parity, count in enumerate(counts):
+            shape = (primes, count, self._to_bonds[parity].shape[1])
+            end = start + math.prod(shape)
+            parts.append(self._room[start:end].reshape(shape))
+            start = end
+        return parts[0], parts[1]
 
-    def _modes_of(self, degree: int, wanted: NDArray[np.bool_], values: Portions) -> Modes:
-        """The wanted entries of portions (primes, some, N-1), rounded.
-
-        Their residues lie where those of the last call lay, whose portions may be read until they
-        are replaced: fresh memory of that size takes longer than the work.
-        """
-        shape = (len(self.basis), *wanted.shape)
-        residues = self._room[: math.prod(shape)].reshape(shape)
-
-        def convert(some: slice) -> NDArray[np.int64]:
-            own = values(some)
-            words = self._rounded_words(own, wanted[some])
-            residues[:, some] = own
-            return words
-
-        words = _joined(list(self._pool.map(convert, self._image.pieces(degree))))
-        return Modes(residues, _table(words, wanted))
-
-    def seed_terms(self) -> Modes:
+    def seed_terms(self) -> Coordinates:
         seeds, one = self.space.seeds, 1 << self.precision.bits
         whole = np.zeros((len(seeds), self.space.N - 1), dtype=object)
         for row, power in enumerate(self.grading.powers(1)):
             seed = seeds[int(np.argmax(power))]
             whole[row, seed - 1] = one
-        return Modes(self.basis.of_integers(whole), IntegerTable.of(whole))
+        even, odd = (self.basis.of_integers(part) for part in self._of_monomials(1, whole))
+        return Coordinates((even, odd), IntegerTable.of(whole))
 
-    def put(self, degree: int, modes: Modes) -> None:
+    def put(self, degree: int, modes: Coordinates) -> None:
         self._modes.append(modes.table)
-        self._image.store(degree, modes.residues)
-        parity = self.space.parity(degree)
+        self._image.store_seeds(degree, self._of_seeds(degree, modes.residues))
 
         def values(some: slice) -> Floats:
-            own = modes.residues[:, some].astype(np.float64)
-            bonds = np.zeros((*own.shape[:2], self.space.half))
-            for rows, columns in _parts(parity[some]):
-                left, right = own[:, rows, columns], self._to_bonds[:, columns]
-                bonds[:, rows] = self._image.add_matrix_product(bonds[:, rows], left, right)
-            return self._rounded(bonds)
+            parity, _, own = self._piece(degree, some)
+            residues = modes.residues[parity][:, own].astype(np.float64)
+            cosines = self._to_bonds[parity]
+            return self._rounded(self._image.matrix_product(residues, cosines))
 
         self._image.store_bonds(degree, values)
+
+    def _of_seeds(self, degree: int, residues: ByParity) -> Floats:
+        """Residues of the modes of the seeds; (primes, monomials, s), even ones first."""
+        order, even = self.space.even_first(degree)
+        columns = np.zeros((len(self.basis), len(order), len(self.space.seeds)))
+        for i, q in enumerate(self.space.seeds):
+            rows = slice(even, None) if q % 2 else slice(even)
+            columns[:, rows, i] = residues[q % 2][:, :, place(q)]
+        return columns
 
     def _bonds(self, rows: Floats, power: int, degree: int) -> Bonds:
         """A power of the bonds, from half of it by the kernel's rows."""
@@ -228,71 +295,120 @@ class FixedPointRing:
         self._image.store_power(name, degree, values)
         return Bonds(values, 0, 2 * rate)
 
-    def project(self, degree: int, parts: Sequence[tuple[Fraction, Bonds]]) -> Modes:
-        parity = self.space.parity(degree)
+    def project(self, degree: int, parts: Sequence[tuple[Fraction, Bonds]]) -> Force:
         sources = []
         for coefficient, bonds in parts:
             scale = bonds.factor / self.precision.unit**bonds.power
-            back = np.moveaxis(self._to_modes(coefficient * scale), 1, 2)
-            sources.append((bonds.values, back))
+            sources.append((bonds.values, self._to_modes(coefficient * scale)))
+        residues = self._room_for(degree)
+        wanted = self._of_monomials(degree, self.space.mask(degree))
+        sizes = np.empty(wanted[0].shape), np.empty(wanted[1].shape)
 
-        def values(some: slice) -> Floats:
-            modes = np.zeros((len(self.basis), len(parity[some]), self.space.N - 1))
-            for on_bonds, back in sources:
-                own = on_bonds(some)
-                for rows, columns in _parts(parity[some]):
-                    before, right = modes[:, rows, columns], back[:, :, columns]
-                    product = self._image.add_matrix_product(before, own[:, rows], right)
-                    modes[:, rows, columns] = product
-            return modes
+        def convert(piece: Piece) -> None:
+            parity, some, own = piece
+            products = [
+                self._image.matrix_product(values(some), back[parity])
+                for values, back in sources
+            ]
+            total = products[0]
+            for other in products[1:]:
+                total += other
+                self.basis.reduce(total)
+            flat, sizes_of = total.reshape(len(total), -1), sizes[parity][own]
+            some_wanted = wanted[parity][own].ravel()
+            self.basis.round_in_place(
+                flat, some_wanted, self.precision.bits, sizes_of.reshape(-1)
+            )
+            residues[parity][:, own] = total
 
-        return self._modes_of(degree, self.space.mask(degree), values)
+        list(self._pool.map(convert, self._pieces(degree)))
+        return Force(residues, sizes)
 
-    def secular(self, degree: int, modes: Modes) -> Modes:
-        # the image only picks entries
-        residues = self._image.secular(degree, np.moveaxis(modes.residues, 0, 2))
-        words = self._image.secular(degree, modes.table.words)
-        return Modes(np.moveaxis(residues, 2, 0), IntegerTable(words))
+    def secular(self, degree: int, modes: Force) -> Modes:
+        order, even = self.space.even_first(degree)
+        places = np.argsort(order)
+        columns = []
+        for q, at in zip(self.space.seeds, self._image.secular_rows(degree), strict=True):
+            first = even if q % 2 else 0
+            columns.append(modes.residues[q % 2][:, places[at] - first, place(q)])
+        residues = np.stack(columns, axis=2)
+        return Modes(residues, self._table(residues))
+
+    def _table(self, residues: Floats) -> IntegerTable:
+        """Words of rounded integers, (primes, rows, columns)."""
+        first = self._rounded_basis
+        flat = residues[: len(first)].reshape(len(first), -1).astype(np.float64)
+        words = words_of(first.limbs(flat))
+        return IntegerTable(words.reshape(*residues.shape[1:], words.shape[1]))
 
     def correct(self, degree: int, corrections: Modes) -> None:
         self._corrections.append(corrections.table)
         self._image.correct_by(degree, corrections.residues)
 
-    def corrected(self, degree: int) -> Modes:
-        residues = np.ascontiguousarray(self._image.corrected_residues(degree))
-        every = np.ones(residues.shape[1:], dtype=np.bool_)
-        words = self._rounded_words(residues, every)
-        return Modes(residues, _table(words, every))
+    def corrected(self, degree: int) -> Corrected:
+        residues = self._image.corrected_residues(degree)
+        sizes = np.empty(residues.shape[1:])
+        every = np.ones(sizes.size, dtype=np.bool_)
+        flat = residues.reshape(len(residues), -1)
+        self.basis.round_in_place(flat, every, self.precision.bits, sizes.reshape(-1))
+        return Corrected(residues, sizes)
 
     def solve(
-        self, degree: int, corrected: Modes, force: Modes, multipliers: NDArray[np.object_]
-    ) -> Modes:
+        self,
+        degree: int,
+        corrected: Corrected,
+        force: Force,
+        multipliers: NDArray[np.object_],
+    ) -> Coordinates:
+        residues, factors = self._room_for(degree), self._factors
+        numbers = factors.numbers(self.grading.harmonics(degree)[0], multipliers)
+        carried, sizes_of = numbers > 0, factors.sizes[numbers]
         _, index = self.grading.harmonics(degree)
-        seeds = np.array(self.space.seeds) - 1
-        sizes = np.abs((multipliers / 2**self.precision.bits).astype(float))
-        carried = multipliers != 0
-        places = np.cumsum(carried).reshape(carried.shape) - 1
-        factors = self.basis.of_integers(multipliers[carried])
+        order, _ = self.space.even_first(degree)
+        integers = CollectedWords(order, self.space.N, self._rounded_basis)
 
-        def values(some: slice) -> Floats:
-            own = index[some]
-            self._check_range(corrected.table, force.table, sizes[own], some)
-            bracket = -force.residues[:, some].astype(np.float64)
-            bracket[:, :, seeds] += corrected.residues[:, some]
-            flat = bracket.reshape(len(bracket), -1)
-            self.basis.multiply_places(flat, carried[own], factors, places[own])
-            return bracket
+        def convert(piece: Piece) -> None:
+            parity, some, own = piece
+            modes, harmonics = self.space.modes(parity), index[order[some]]
+            bracket, sizes = self._bracket(corrected, force, piece)
+            self._check_range(bracket, sizes, sizes_of[harmonics, modes])
+            flat, wanted = bracket.reshape(len(bracket), -1), carried[harmonics, modes]
+            self.basis.multiply_places(
+                flat, wanted, factors.residues, numbers[harmonics, modes]
+            )
+            words = self.basis.rounded_words(
+                flat, wanted.ravel(), self.precision.bits, self._rounded_basis
+            )
+            integers.put(some, modes, wanted, words)
+            residues[parity][:, own] = bracket
 
-        return self._modes_of(degree, carried[index], values)
+        list(self._pool.map(convert, self._pieces(degree)))
+        return Coordinates(residues, integers.table())
 
-    def _check_range(
-        self, corrected: IntegerTable, force: IntegerTable, factors: Floats, some: slice
-    ) -> None:
-        """Refuse the last products beyond the range of the residues: they have no bound before."""
-        below, seeds = -self.precision.bits, np.array(self.space.seeds) - 1
-        sizes = np.abs(IntegerTable(force.words[some]).floats(below))
-        sizes[:, seeds] += np.abs(IntegerTable(corrected.words[some]).floats(below))
-        if np.any(sizes * factors > 2.0**self.precision.headroom):
+    def _bracket(
+        self, corrected: Corrected, force: Force, piece: Piece
+    ) -> tuple[Floats, Floats]:
+        """Residues of sum W u - force, (primes, monomials, modes), and sizes above its own."""
+        parity, some, own = piece
+        bracket = -force.residues[parity][:, own].astype(np.float64)
+        sizes = force.sizes[parity][own].copy()
+        for i, q in enumerate(self.space.seeds):
+            if q % 2 == parity:
+                bracket[:, :, place(q)] += corrected.residues[:, some, i]
+                sizes[:, place(q)] += corrected.sizes[some, i]
+        return bracket, sizes
+
+    def _check_range(self, bracket: Floats, sizes: Floats, factors: Floats) -> None:
+        """Refuse the last products beyond the range of the residues: they have no bound before.
+
+        bracket : residues. sizes : of it before it was rounded. factors : moduli of multipliers.
+        """
+        bits, headroom = self.precision.bits, self.precision.headroom
+        unit = float(Fraction(self.basis.modulus, 2 ** (2 * bits + headroom)))
+        if np.all((sizes + 2 * SIZE_ERROR) * unit * factors <= 1):
+            return
+        exact = np.abs(self._table(bracket).floats(-bits))
+        if np.any(exact * factors > 2.0**headroom):
             what = "a product of a force with its multiplier"
             raise OverflowError(f"{what} exceeds the range of the residues")
 
@@ -314,24 +430,9 @@ def whole_growth(
     return (slope * common, rate * common), share / common
 
 
-def _parts(parity: Ints) -> list[tuple[Ints, slice]]:
-    """Monomials of each parity with the modes of that parity."""
-    even, odd = (np.flatnonzero(parity == p) for p in (0, 1))
-    return [(even, slice(1, None, 2)), (odd, slice(0, None, 2))]
-
-
-def _joined(words: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
-    """Words (count, n) of several parts as one array, of as many words as the longest."""
-    longest = max(part.shape[1] for part in words)
-    padded = [np.pad(part, ((0, 0), (0, longest - part.shape[1]))) for part in words]
-    return np.concatenate(padded)
-
-
-def _table(words: NDArray[np.int64], wanted: NDArray[np.bool_]) -> IntegerTable:
-    """Words (count, n) in their places of a table; the other entries are zero."""
-    table = np.zeros((*wanted.shape, words.shape[1]), dtype=np.int64)
-    table[wanted] = words
-    return IntegerTable(table)
+def place(mode: int) -> int:
+    """Where a mode stands among those of its parity."""
+    return (mode - 1) // 2
 
 
 def _weighted(table: Sequence[Any], weight: Fraction) -> NDArray[np.object_]:

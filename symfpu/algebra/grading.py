@@ -55,6 +55,31 @@ def compositions(total: int, parts: int) -> Ints:
     return np.asarray(gaps - 1)
 
 
+class HarmonicRows:
+    """A row for each harmonic, as they come: the same one whenever it is asked for again."""
+
+    def __init__(self) -> None:
+        self._rows: dict[bytes, int] = {}
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def of(self, harmonics: Ints) -> Ints:
+        """The rows of harmonics (count, s), each of which is there once."""
+        rows, whole = self._rows, np.ascontiguousarray(harmonics)
+        names = whole.view(f"V{whole.itemsize * whole.shape[1]}").ravel().tolist()
+        fresh = [name for name in names if name not in rows]
+        rows.update(zip(fresh, range(len(rows), len(rows) + len(fresh)), strict=True))
+        return np.array([rows[name] for name in names], dtype=np.int64)
+
+
+def extended(table: NDArray[Any], rows: int, empty: Any) -> NDArray[Any]:
+    """A table of at least so many rows; what is new is empty."""
+    more = max(0, rows - len(table))
+    new = np.full((more, *table.shape[1:]), empty, dtype=table.dtype)
+    return np.concatenate([table, new]) if more else table
+
+
 class Group:
     """The monomials of some seeds, for every degree up to `degree`, sorted by additive keys."""
 

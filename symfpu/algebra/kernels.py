@@ -23,7 +23,6 @@ from symfpu.algebra import uncompiled
 from symfpu.compiled import JIT, compiled
 
 INT64 = ir.IntType(64)
-COLUMNS = 64  # integers rounded at once, so that they stay in the cache
 Float64 = types.float64
 
 
@@ -42,6 +41,14 @@ def _emit(builder: Any, name: str, *operands: Any) -> Any:
 def as_doubles(builder: Any, values: Any, vector: Any) -> Any:
     """A vector of doubles as it is, one of singles converted."""
     return values if values.type == vector else builder.fpext(values, vector)
+
+
+def spread_value(builder: Any, value: Any, width: int) -> Any:
+    """A number in all lanes of a vector."""
+    undefined = ir.Constant(ir.VectorType(value.type, width), ir.Undefined)
+    first = builder.insert_element(undefined, value, ir.IntType(32)(0))
+    zeros = ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width)
+    return builder.shuffle_vector(first, undefined, zeros)
 
 
 def _modular_product(builder: Any, a: Any, b: Any, modulus: Any, inverse: Any) -> Any:
@@ -126,13 +133,7 @@ def _row_code(
             return as_doubles(builder, builder.load(place, align=4), vector)
 
         def spread(value: Any) -> Any:
-            undefined = ir.Constant(vector, ir.Undefined)
-            first = builder.insert_element(undefined, value, ir.IntType(32)(0))
-            return builder.shuffle_vector(
-                first,
-                undefined,
-                ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width),
-            )
+            return spread_value(builder, value, width)
 
         factor = builder.fmul(load(row(pointer(1), args[2])), spread(args[3]))
         right_rows, out_rows = row(pointer(4), args[5]), row(pointer(6), args[7])
@@ -184,15 +185,18 @@ def reduce_lanes(rows, first, last, moduli, inverses):  # type: ignore[no-untype
 
 
 @compiled()
-def _with_room(pending, weight, limit, out, rows, moduli):  # type: ignore[no-untyped-def]
-    """How many products the sums have after the next; sums are reduced first where need be.
+def _reduce_block(out, rows, moduli):  # type: ignore[no-untyped-def]
+    """These rows modulo the modulus of each lane; without moduli nothing."""
+    if moduli is not None:
+        reduce_lanes(out, rows[0], rows[1], moduli, 1.0 / moduli)
 
-    Without moduli nothing is reduced.
-    """
-    if moduli is None or pending <= limit:
-        return pending
-    reduce_lanes(out, rows[0], rows[1], moduli, 1.0 / moduli)
-    return 1.0 + weight
+
+@compiled()
+def _first_wanted(table, t, start, wanted):  # type: ignore[no-untyped-def]
+    """The first entry from t on, before t + start, whose rank is a wanted one; ranks ascend."""
+    while start > 0 and table[t + start - 1] >= wanted:
+        start -= 1
+    return start
 
 
 @compiled()
@@ -212,13 +216,13 @@ def multiply(
     moduli: Any = None,
     limit: int = 0,
 ) -> int:
-    """Add the products of all `splits` of a degree into out, canonical rows only.
+    """The products of all `splits` of a degree, summed; canonical rows only, others as they are.
 
     Returns the number of multiply-adds.
 
     lanes : tuple of 8 or 16 zeros; its length is the row length of left, right and out.
     left, right : (rows of all degrees, lanes). out : (rows of this degree, lanes), counted from
-    first_row.
+    first_row, filled.
     splits : (count, 2) degrees of the factors. symmetric : left is right, splits have d1 <= d2,
     and each unordered pair is multiplied once and added with weight two (a square once). active :
     for a sparse left factor, which of its rows are not zero; else empty. blocks : outer monomials
@@ -246,6 +250,7 @@ def multiply(
         target = block[degree, outer] - first_row
         wanted = first_canonical[degree - x] if inner_start[outer] else 0
         rows = (target + wanted, target + inner_count[degree - x])
+        out[rows[0] : rows[1]] = 0.0
         pending = 1.0
         for split in range(len(splits)):
             d1, d2 = splits[split, 0], splits[split, 1]
@@ -267,13 +272,13 @@ def multiply(
                     start = length if wanted > 0 else 0
                     for i in range(inner_count[y1]):
                         t = places + i * step
-                        while start > 0 and table[t + start - 1] >= wanted:
-                            start -= 1
+                        start = _first_wanted(table, t, start, wanted)
                         if sparse and not active[i0 + i]:
                             continue
-                        pending = _with_room(
-                            pending + weight, weight, limit, out, rows, moduli
-                        )
+                        pending += weight
+                        if pending > limit:
+                            _reduce_block(out, rows, moduli)
+                            pending = 1.0 + weight
                         if swap:
                             multiply_row(
                                 lanes,
@@ -307,7 +312,7 @@ def multiply(
                                 modulus,
                             )
                         count += length - start
-        _with_room(2.0, 1.0, 1, out, rows, moduli)
+        _reduce_block(out, rows, moduli)
     return count * len(lanes)
 
 
@@ -335,12 +340,12 @@ def multiply_diagonal(  # type: ignore[no-untyped-def]
     moduli,
     limit,
 ):
-    """Add the products of a series in the monomials |z|^(2e) and another one, of a degree.
+    """The products of a series in the monomials |z|^(2e) and another one, of a degree.
 
-    Canonical rows only. lanes, blocks, tables, limit : as of
+    Canonical rows only, others as they are. lanes, blocks, tables, limit : as of
     `multiply`. left, right : (slices, rows of all degrees, lanes). out : (slices, rows of this
-    degree, lanes). has_left, has_right : (degrees,) which degrees the factors have. diagonal :
-    algebra.grading.DiagonalTables. moduli : None, or (slices, lanes), of each lane.
+    degree, lanes), filled. has_left, has_right : (degrees,) which degrees the factors have.
+    diagonal : algebra.grading.DiagonalTables. moduli : None, or (slices, lanes), of each lane.
     """
     block, counts, table = tables.block, tables.inner_count, tables.inner_table
     for outer in blocks:
@@ -348,6 +353,7 @@ def multiply_diagonal(  # type: ignore[no-untyped-def]
         target = block[degree, outer] - block[degree, 0]
         wanted = tables.first_canonical[inner] if tables.inner_start[outer] else 0
         rows = (target + wanted, target + counts[inner])
+        out[:, rows[0] : rows[1]] = 0.0
         pending = 1.0
         for pair in range(diagonal.pair_start[outer], diagonal.pair_start[outer + 1]):
             l, r = diagonal.pair_left[pair], diagonal.pair_right[pair]
@@ -363,8 +369,7 @@ def multiply_diagonal(  # type: ignore[no-untyped-def]
                         + i * tables.table_stride[y, inner - y]
                     )
                     start = length if wanted > 0 else 0
-                    while start > 0 and table[t + start - 1] >= wanted:
-                        start -= 1
+                    start = _first_wanted(table, t, start, wanted)
                     pending += 1.0
                     if pending > limit:
                         _reduce_slices(out, rows, moduli)
@@ -417,178 +422,6 @@ def reduce_rows(values, moduli):  # type: ignore[no-untyped-def]
             values[i, n] -= modulus * np.rint(values[i, n] * inverse)
 
 
-@compiled()
-def _next_columns(residues, wanted, first, places):  # type: ignore[no-untyped-def]
-    """The next wanted columns from `first` on, into places; those between are set to zero.
-
-    Returns how many they are, and where to go on.
-    """
-    n, at = 0, first
-    while at < residues.shape[1] and n < len(places):
-        if wanted[at]:
-            places[n] = at
-            n += 1
-        else:
-            residues[:, at] = 0.0
-        at += 1
-    return n, at
-
-
-@compiled()
-def _taken(residues, places, own):  # type: ignore[no-untyped-def]
-    """own[:, b] = residues[:, places[b]]; whether the places are neighbours."""
-    n = len(places)
-    near = n > 0 and places[n - 1] - places[0] == n - 1
-    for i in range(len(residues)):
-        row, values = residues[i], own[i]
-        if near:
-            first = places[0]
-            for b in range(n):
-                values[b] = row[first + b]
-        else:
-            for b in range(n):
-                values[b] = row[places[b]]
-    return near
-
-
-@compiled(fastmath={"contract"})
-def _shares(own, n, basis, shares, turns):  # type: ignore[no-untyped-def]
-    """Residues over the cofactors, (primes, n), and the multiple of all primes that they exceed.
-
-    Returns the largest distance of a sum of shares from that whole number.
-    """
-    turns[:n] = 0.0
-    for i in range(len(shares)):
-        modulus, factor = basis.moduli[i], basis.inverses[i]
-        inverse = 1.0 / modulus
-        for b in range(n):
-            value = own[i, b] * factor
-            value -= modulus * np.rint(value * inverse)
-            shares[i, b] = value
-            turns[b] += value * inverse
-    farthest = 0.0
-    for b in range(n):
-        whole = np.rint(turns[b])
-        farthest = max(farthest, abs(turns[b] - whole))
-        turns[b] = whole
-    return farthest
-
-
-@compiled(fastmath={"contract"})
-def _add_product(matrix, columns, n, total):  # type: ignore[no-untyped-def]
-    """total[:n] += matrix columns[:, :n]; matrix (count,). Four rows a pass over the total."""
-    whole = len(matrix) - len(matrix) % 4
-    for i in range(0, whole, 4):
-        f0, f1, f2, f3 = matrix[i], matrix[i + 1], matrix[i + 2], matrix[i + 3]
-        c0, c1, c2, c3 = columns[i], columns[i + 1], columns[i + 2], columns[i + 3]
-        for b in range(n):
-            total[b] += f0 * c0[b] + f1 * c1[b] + f2 * c2[b] + f3 * c3[b]
-    for i in range(whole, len(matrix)):
-        factor, column = matrix[i], columns[i]
-        for b in range(n):
-            total[b] += factor * column[b]
-
-
-@compiled(fastmath={"contract"})
-def _carry(low, high, n, limb):  # type: ignore[no-untyped-def]
-    """Balances low limbs; what is over goes to the high ones. limb : a power of two."""
-    inverse = 1.0 / limb
-    for b in range(n):
-        carry = np.rint(low[b] * inverse)
-        low[b] -= carry * limb
-        high[b] += carry
-
-
-@compiled(fastmath={"contract"})
-def _without_lowest(own, limbs, n, basis, scale):  # type: ignore[no-untyped-def]
-    """Residues (primes, n) of integers without these limbs, over 2^bits, in their place."""
-    for i in range(len(own)):
-        total, share = own[i], scale.share[i]
-        for b in range(n):
-            total[b] *= share
-        _add_product(scale.lowest[i], limbs, n, total)
-        _reduce_row(total, n, basis.moduli[i])
-
-
-@compiled(fastmath={"contract"})
-def _reduce_row(row, n, modulus):  # type: ignore[no-untyped-def]
-    """row[:n] modulo a modulus, integers below 2^52 in size."""
-    inverse = 1.0 / modulus
-    for b in range(n):
-        row[b] -= modulus * np.rint(row[b] * inverse)
-
-
-@compiled()
-def _put_back(own, places, near, residues):  # type: ignore[no-untyped-def]
-    """residues[:, places] = own. near : whether the places are neighbours."""
-    n = len(places)
-    for i in range(len(residues)):
-        row, values = residues[i], own[i]
-        if near:
-            first = places[0]
-            for b in range(n):
-                row[first + b] = values[b]
-        else:
-            for b in range(n):
-                row[places[b]] = values[b]
-
-
-@compiled()
-def _limbs_of(shares, turns, n, basis, limb, limbs):  # type: ignore[no-untyped-def]
-    """The lowest limbs (limbs, n), balanced but for the last, of the integers of these shares."""
-    for k in range(len(limbs)):
-        row, multiple = limbs[k], basis.modulus_limbs[k]
-        for b in range(n):
-            row[b] = -multiple * turns[b]
-        _add_product(basis.cofactor_limbs[k], shares, n, row)
-        if k > 0:
-            _carry(limbs[k - 1], row, n, limb)
-
-
-@compiled()
-def _add_words(limbs, n, first, words):  # type: ignore[no-untyped-def]
-    """Adds limbs (limbs, n) to words, three each, from a row on."""
-    for k in range(len(limbs)):
-        word, place = divmod(k, 3)
-        for b in range(n):
-            words[first + b, word] += np.int64(limbs[k, b]) << (20 * place)
-
-
-@compiled()
-def round_columns(residues, wanted, basis, limb, scale, rounded, words):  # type: ignore[no-untyped-def]
-    """Integers of which residues are given, / 2^bits, rounded to the nearest, in their place.
-
-    Zero where they are not wanted. Returns the largest distance of a sum of shares from a whole
-    number, which is small unless an integer exceeds the range; and that of what is rounded.
-
-    residues : (primes, count), overwritten. wanted : (count,). basis : a `words.Rounding` of small
-    primes. limb : 2^20. scale : a `words.Scale` of these bits. words : None, or (wanted, n) int64
-    of three limbs each, zeros, filled; rounded : the `words.Rounding` of the first primes, as many
-    as hold what is rounded.
-    """
-    primes, count = len(residues), scale.lowest.shape[1]
-    own, shares = np.empty((primes, COLUMNS)), np.empty((primes, COLUMNS))
-    limbs = np.empty((max(count, len(rounded.modulus_limbs)), COLUMNS))
-    turns = np.empty(COLUMNS)
-    places = np.empty(COLUMNS, dtype=np.int64)
-    done, at, farthest, farther = 0, 0, 0.0, 0.0
-    while at < residues.shape[1]:
-        n, at = _next_columns(residues, wanted, at, places)
-        near = _taken(residues, places[:n], own)
-        farthest = max(farthest, _shares(own, n, basis, shares, turns))
-        _limbs_of(shares, turns, n, basis, limb, limbs[:count])
-        _reduce_row(limbs[count - 1], n, scale.top)
-        _without_lowest(own, limbs, n, basis, scale)
-        _put_back(own, places[:n], near, residues)
-        if words is not None:
-            first = shares[: len(rounded.moduli)]
-            farther = max(farther, _shares(own, n, rounded, first, turns))
-            _limbs_of(first, turns, n, rounded, limb, limbs[: len(rounded.modulus_limbs)])
-            _add_words(limbs[: len(rounded.modulus_limbs)], n, done, words)
-        done += n
-    return farthest, farther
-
-
 @compiled(fastmath={"contract"})
 def multiply_places(values, wanted, factors, places, moduli):  # type: ignore[no-untyped-def]
     """values[i, n] *= factors[i, places[n]] modulo moduli[i] where wanted; else zero.
@@ -604,37 +437,40 @@ def multiply_places(values, wanted, factors, places, moduli):  # type: ignore[no
 
 
 @compiled()
-def to_lanes(values, target, rows):  # type: ignore[no-untyped-def]
-    """target[slice, rows[r]] = values[., r, .], lanes counted through the slices.
+def to_lanes(values, target, rows, conjugates):  # type: ignore[no-untyped-def]
+    """target[slice, r, lane] = values[prime, ., bond] for r of rows, and of their conjugates.
 
-    values : (primes, rows, half). target : (slices, all rows, lanes); the last lanes may be over.
+    values : (primes, rows, half). target : (slices, all rows, lanes), lanes counted through the
+    slices; the last ones may be over.
     """
-    width = target.shape[2]
     primes, count, half = values.shape
-    for i in range(primes):
+    width = target.shape[2]
+    for part in range(len(target)):
         for r in range(count):
-            part, lane = divmod(i * half, width)
-            done = 0
-            while done < half:
-                run = min(half - done, width - lane)
-                row = target[part, rows[r]]
-                for j in range(run):
-                    row[lane + j] = values[i, r, done + j]
-                part, lane, done = part + 1, 0, done + run
+            row, conjugate = rows[r], conjugates[r]
+            prime, bond = divmod(part * width, half)
+            lane = 0
+            while lane < width and prime < primes:
+                run = min(half - bond, width - lane)
+                for n in range(run):
+                    value = values[prime, r, bond + n]
+                    target[part, row, lane + n] = value
+                    target[part, conjugate, lane + n] = value
+                prime, bond, lane = prime + 1, 0, lane + run
 
 
 @compiled()
 def from_lanes(source, values, rows, factor):  # type: ignore[no-untyped-def]
-    """The way back: values[., r, .] = factor source[slice, rows[r]]."""
-    width = source.shape[2]
+    """The way back: values[prime, ., bond] = factor source[slice, r, lane] for r of rows."""
     primes, count, half = values.shape
-    for i in range(primes):
+    width = source.shape[2]
+    for part in range(len(source)):
         for r in range(count):
-            part, lane = divmod(i * half, width)
-            done = 0
-            while done < half:
-                run = min(half - done, width - lane)
-                row = source[part, rows[r]]
-                for j in range(run):
-                    values[i, r, done + j] = factor * row[lane + j]
-                part, lane, done = part + 1, 0, done + run
+            row = rows[r]
+            prime, bond = divmod(part * width, half)
+            lane = 0
+            while lane < width and prime < primes:
+                run = min(half - bond, width - lane)
+                for n in range(run):
+                    values[prime, r, bond + n] = factor * source[part, row, lane + n]
+                prime, bond, lane = prime + 1, 0, lane + run

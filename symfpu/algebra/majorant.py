@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symfpu.algebra.dense import Floats
+from symfpu.algebra.dense import Floats, aligned_zeros
 from symfpu.algebra.fixedpoint import whole_growth
 from symfpu.algebra.float64 import DoublesRing
 from symfpu.algebra.grading import Ints
@@ -31,6 +31,7 @@ NEAREST_ROUNDING = 0.51  # units: nearest, by balanced limbs
 COSINE = 0.51  # units: cosines, times weights and couplings, are rounded to the nearest
 MULTIPLIER = 1.01  # units: rounded down
 SLACK = 1 + 1e-9
+LANES = 8
 
 
 class Bounds(NamedTuple):
@@ -87,13 +88,13 @@ class MajorantRing(DoublesRing[Bounds]):
         self._tables, self._known = tables, corrections
         self._exact_unit = unit
         self._unit, self._epsilon = float(unit), epsilon
-        self._radii = np.zeros_like(self._bonds)
-        self._sums = np.zeros_like(self._bonds)  # 2 |u| + epsilon r
+        self._radii = aligned_zeros(self._bonds.shape)
+        self._sums = aligned_zeros(self._bonds.shape)  # 2 |u| + epsilon r
         self._power_radii: dict[int, Floats] = {}
         self._positive = positive
         self._growths: dict[int, Growth] = {}
-        self._seed_radii = np.zeros_like(self._seed_modes)
-        self._correction_radii = np.zeros_like(self._corrections)
+        self._seed_radii = aligned_zeros(self._seed_modes.shape)
+        self._correction_radii = aligned_zeros(self._corrections.shape)
         self.largest = 1.0
         factor_pairs = longest_sum(len(space.seeds), space.grading.degree)
         sums = 4 * space.N + 2 * factor_pairs + 64
@@ -104,6 +105,11 @@ class MajorantRing(DoublesRing[Bounds]):
         for parity in (0, 1):
             table = self._table(np.arange(parity, space.N, 2))
             self._noise[parity, : self._of_sizes] = 2 * table.sum(axis=0)
+
+    def _lane_width(self) -> int:
+        """A register, or two where they are not less full: the largest rows are shorter here."""
+        registers = -(-self._points // LANES)
+        return LANES if registers % 2 else 2 * LANES
 
     def coupling(self, power: int, value: Fraction) -> float:
         return abs(float(value))
@@ -140,6 +146,15 @@ class MajorantRing(DoublesRing[Bounds]):
         known = self._tables[degree]
         sizes = known.sum(axis=1)
         self._note(sizes)
+        if degree == self.grading.degree:
+            return  # it is a factor of nothing
+        self._store_bonds(degree, modes, sizes)
+        self._store_of_seeds(self._seed_modes, degree, known)
+        self._store_of_seeds(self._seed_radii, degree, modes)
+
+    def _store_bonds(self, degree: int, modes: Floats, sizes: Floats) -> None:
+        """Moduli and radii on the bonds, and what products take of both."""
+        known = self._tables[degree]
         for parity, (rows, columns) in enumerate(self._parts(degree)):
             to_bonds = self._to_bonds[columns]
             values = known[rows, columns] @ to_bonds
@@ -151,19 +166,16 @@ class MajorantRing(DoublesRing[Bounds]):
             self._store(self._bonds, degree, rows, values)
             self._store(self._radii, degree, rows, radii)
             self._store(self._sums, degree, rows, reached)
-        self._store_seed_modes(degree, known)
-        self._store_seed_radii(degree, modes)
 
-    def _store_seed_radii(self, degree: int, modes: Floats) -> None:
-        base = int(self.grading.first_row[degree])
-        canonical, conjugate = (
-            self.grading.canonical(degree),
-            self.grading.conjugate(degree),
-        )
-        for i, q in enumerate(self.space.seeds):
-            slice_, lane = divmod(i, 8)
-            for rows in (canonical, conjugate):
-                self._seed_radii[slice_, base + rows, lane] = modes[:, q - 1]
+    def _store(self, target: Floats, degree: int, rows: Ints, values: Floats) -> None:
+        first = int(self.grading.first_row[degree])
+        canonical = first + self.grading.canonical(degree)[rows]
+        conjugate = first + self.grading.conjugate(degree)[rows]
+        self._kernels.to_lanes(values[None], target, canonical, conjugate)
+
+    def _store_of_seeds(self, target: Floats, degree: int, modes: Floats) -> None:
+        columns = modes[:, np.array(self.space.seeds) - 1]
+        self._store(target, degree, np.arange(len(modes)), columns)
 
     def _bounds(self, degree: int, radii: Floats, power: int) -> Bounds:
         """What the kernel gave, f o g = 2 f g, with the rounding on the bonds added."""
@@ -200,7 +212,7 @@ class MajorantRing(DoublesRing[Bounds]):
         sizes = self._canonical_points(degree, self._sizes(power, degree))
         self._store_power(power, degree, 2 * sizes)
         if power not in self._power_radii:
-            self._power_radii[power] = np.zeros_like(self._bonds)
+            self._power_radii[power] = aligned_zeros(self._bonds.shape)
         self._store(self._power_radii[power], degree, np.arange(len(radii)), radii)
 
     def number(self, value: Fraction) -> float:
@@ -227,7 +239,8 @@ class MajorantRing(DoublesRing[Bounds]):
     def _growth(self, number: int) -> Growth:
         """A function complete to the degrees that are stored: h_d has c_d among its terms."""
         if number not in self._growths:
-            self._growths[number] = Growth(*(np.zeros_like(self._bonds) for _ in range(3)))
+            shape = self._bonds.shape
+            self._growths[number] = Growth(*(aligned_zeros(shape) for _ in range(3)))
         grown, name = self._growths[number], -1 - number
         done = self._completed.setdefault(name, set())
         for degree in set(self._degrees) - done:
@@ -301,7 +314,9 @@ class MajorantRing(DoublesRing[Bounds]):
             self._correction_radii[slice_, rows, lane] = corrections[:, i]
 
     def corrected(self, degree: int) -> Floats:
-        shifted = self._seed_modes + self._epsilon * self._seed_radii
+        lower = slice(int(self.grading.first_row[degree]))
+        shifted = self._seed_radii[:, lower] * self._epsilon
+        shifted += self._seed_modes[:, lower]
         first = self._seed_product(degree, self._corrections, self._seed_radii)
         second = self._seed_product(degree, self._correction_radii, shifted)
         sizes = self._seed_product(degree, self._corrections, self._seed_modes)

@@ -201,8 +201,8 @@ def multiply(  # type: ignore[no-untyped-def]
 ):  # fmt: skip
     """The products of all pairs of factors of a degree, interpolated; canonical rows only.
 
-    left, right : (slices, point rows, lanes). out : (slices, rows of this degree, lanes), zeros,
-    filled. there : (2, degrees) which degrees the left and the right factors have. symmetric :
+    left, right : (slices, point rows, lanes). out : (slices, rows of this degree, lanes), filled.
+    there : (2, degrees) which degrees the left and the right factors have. symmetric :
     left is right. since : 0, or a degree that one of two factors has at least; early : None, or
     what the others give, (slices, points, lanes), as of `square_early`. blocks : outer monomials
     to fill. powers : what values are times to give coefficients. Other arguments, and what is
@@ -269,6 +269,7 @@ def _multiply(  # type: ignore[no-untyped-def]
         for p in range(skip, inner + 1):
             at = places.start[inner] + (p - skip) * points
             entries = places.flat[at : at + points]
+            out[first + p] = 0.0
             _reduced_sum(
                 lanes, totals, every, 0, powers, entries, 0, points,
                 out, first + p, moduli, inverses, limit,

@@ -119,11 +119,24 @@ class CosineModes:
         self.grading, self.product_degree = grading, product_degree
         self.half = (N + 1) // 2
         self._table = PowerTable(N, seeds, grading.degree)
+        self._orders: dict[int, tuple[Ints, int]] = {}
 
     def parity(self, degree: int) -> Ints:
         """0 or 1 for each canonical monomial of a degree."""
         sums = self.grading.powers(degree) @ np.array(self.seeds)
         return np.asarray(sums % 2)
+
+    def even_first(self, degree: int) -> tuple[Ints, int]:
+        """The canonical monomials of a degree, even ones first, and how many these are."""
+        if degree not in self._orders:
+            parity = self.parity(degree)
+            order = np.argsort(parity, kind="stable")
+            self._orders[degree] = order, int(np.count_nonzero(parity == 0))
+        return self._orders[degree]
+
+    def modes(self, parity: int) -> slice:
+        """The columns of the modes of a parity, among N - 1."""
+        return slice(1 - parity, None, 2)
 
     def mask(self, degree: int) -> NDArray[np.bool_]:
         """Whether a canonical monomial of this degree can carry a mode.

@@ -5,7 +5,9 @@ double: a product costs one fused multiply-add, as of plain doubles, and sums ar
 then. The lanes of the kernels are the pairs of a prime and a bond, primes first, so one pass over
 the product tables serves several primes, and short rows of few bonds fill whole registers.
 
-Arrays of residues are (primes, ...), in -p/2 .. p/2.
+Arrays of residues are (primes, ...), in -p/2 .. p/2. Those of the canonical monomials of a degree
+are in the order of `CosineModes.even_first`: monomials of one parity, which have the same
+transforms, are neighbours.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ import numpy as np
 from symfpu.algebra.at_points import AtPoints
 from symfpu.algebra.dense import Floats, ValuesRing, aligned_zeros, degrees_of
 from symfpu.algebra.grading import Grading, Ints
+from symfpu.algebra.rooms import Rooms
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.words import ResidueBasis, TooFewPrimes
 
@@ -88,11 +91,14 @@ class SeveralPrimesRing(ValuesRing):
         count, seeds = len(basis), len(space.seeds)
         super().__init__(space, points=count * space.half)
         self._moduli = self._by_slice(np.repeat(basis.moduli, space.half), self._lanes)
-        columns = np.tile(basis.moduli, seeds)
+        columns = np.repeat(basis.moduli, seeds)
         self._seed_moduli = self._by_slice(columns, 8)
-        rows = self._seed_modes.shape[1]
-        self._seed_modes = aligned_zeros((len(self._seed_moduli), rows, 8))
-        self._corrections = aligned_zeros(self._seed_modes.shape)
+        last = self._rows(space.grading.degree)
+        of_factors = (len(self._seed_moduli), last.start, 8)
+        self._seed_modes = aligned_zeros(of_factors, self.kind)
+        self._corrections = aligned_zeros(of_factors, self.kind)
+        widest = max(self._moduli.size, self._seed_moduli.size)
+        self._rooms = Rooms((last.stop - last.start) * widest)
         if self._at_points:
             there, back = self._at_points.powers, self._at_points.inverse_powers
             self._there, self._back = (
@@ -116,6 +122,9 @@ class SeveralPrimesRing(ValuesRing):
 
     def _lane_width(self) -> int:
         return LANES
+
+    def _place(self, shape: tuple[int, ...]) -> Floats:
+        return self._rooms.take(shape)
 
     def _kept_count(self) -> int:
         points = self._at_points
@@ -172,22 +181,34 @@ class SeveralPrimesRing(ValuesRing):
     # what the kernels take and give, as residues (primes, ...)
 
     def store(self, degree: int, modes: Floats) -> None:
-        """Register a degree, (primes, canonical, N-1); its bonds are stored apart."""
-        self._degrees.append(degree)
+        """Register a degree, (primes, monomials, N-1); its bonds are stored apart."""
         seeds = np.array(self.space.seeds) - 1
-        columns = np.moveaxis(modes[:, :, seeds], 0, 2)
-        self._store_columns(self._seed_modes, degree, columns)
+        self.store_seeds(degree, modes[:, :, seeds])
+
+    def store_seeds(self, degree: int, modes: Floats) -> None:
+        """The same by the modes of the seeds alone, (primes, monomials, s)."""
+        self._degrees.append(degree)
+        if degree == self.grading.degree:
+            return  # it is a factor of nothing
+        first = int(self.grading.first_row[degree])
+        rows, conjugates = self._ordered(degree, slice(None))
+        self._kernels.to_lanes(modes, self._seed_modes, first + rows, first + conjugates)
+
+    def _ordered(self, degree: int, some: slice) -> tuple[Ints, Ints]:
+        """Rows of some monomials and of their conjugates, from the first of the degree on."""
+        order, _ = self.space.even_first(degree)
+        own = order[some]
+        return self.grading.canonical(degree)[own], self.grading.conjugate(degree)[own]
 
     def pieces(self, degree: int) -> list[slice]:
-        """Canonical monomials in portions that stay in the cache of one core."""
-        count = len(self.grading.canonical(degree))
+        """Monomials of one parity in portions that stay in the cache of one core."""
+        order, even = self.space.even_first(degree)
         step = max(1, PORTION // self.space.N)
-        return [slice(start, min(start + step, count)) for start in range(0, count, step)]
-
-    def _store_columns(self, target: Floats, degree: int, columns: Floats) -> None:
-        """(canonical, s, primes) for the rows of monomials and of their conjugates."""
-        rows = np.arange(len(columns))
-        self._store(target, degree, rows, _padded(columns, target))
+        return [
+            slice(start, min(start + step, end))
+            for first, end in ((0, even), (even, len(order)))
+            for start in range(first, end, step)
+        ]
 
     def store_bonds(self, degree: int, values: Portions) -> None:
         """Values on bonds of all monomials."""
@@ -237,34 +258,28 @@ class SeveralPrimesRing(ValuesRing):
 
     def _put_lanes(self, target: Floats, degree: int, first: int, values: Portions) -> None:
         """All monomials and their conjugates, from a row on."""
-        canonical, conjugate = (
-            self.grading.canonical(degree),
-            self.grading.conjugate(degree),
-        )
 
         def work(some: slice) -> None:
-            own = values(some)
-            self._kernels.to_lanes(own, target, first + canonical[some])
-            self._kernels.to_lanes(own, target, first + conjugate[some])
+            rows, conjugates = self._ordered(degree, some)
+            self._kernels.to_lanes(values(some), target, first + rows, first + conjugates)
 
         list(self._pool.map(work, self.pieces(degree)))
 
-    def _product(
+    def _special(self, *product: Any) -> Floats | None:
+        """At points, where there are any."""
+        return self._of_points(*product) if self._at_points else super()._special(*product)
+
+    def _of_points(
         self,
         left: Floats,
         right: Floats,
         degree: int,
         splits: list[tuple[int, int]],
-        *,
-        symmetric: bool = False,
-        sparse: bool = False,
+        symmetric: bool,
     ) -> Floats:
-        if sparse or not self._at_points:
-            return super()._product(
-                left, right, degree, splits, symmetric=symmetric, sparse=sparse
-            )
+        assert self._at_points is not None
         rows = self._rows(degree)
-        out = aligned_zeros((self._slices, rows.stop - rows.start, self._lanes))
+        out = self._place((self._slices, rows.stop - rows.start, self._lanes))
         both = [(e, d) for d, e in splits] if symmetric else []
         early = symmetric and self._at_points.alone
         since, sums = self._early_squares(degree) if early else (0, None)
@@ -347,10 +362,15 @@ class SeveralPrimesRing(ValuesRing):
         return self.residues(degree, values, slice(None), 1.0)
 
     def residues(self, degree: int, out: Floats, some: slice, factor: float) -> Floats:
-        """Some canonical monomials of the kernel's rows times a factor; (primes, some, half)."""
-        canonical = self.grading.canonical(degree)[some]
-        values = np.empty((len(self.basis), len(canonical), self.space.half))
-        self._kernels.from_lanes(out, values, canonical, factor)
+        """Some monomials of the kernel's rows times a factor; (primes, some, half)."""
+        return self._from_lanes(degree, out, some, self.space.half, factor)
+
+    def _from_lanes(
+        self, degree: int, out: Floats, some: slice, columns: int, factor: float
+    ) -> Floats:
+        rows, _ = self._ordered(degree, some)
+        values = np.empty((len(self.basis), len(rows), columns))
+        self._kernels.from_lanes(out, values, rows, factor)
         return values
 
     def _weighted_bonds(self, slope: Fraction, rate: Fraction, degree: int) -> Floats:
@@ -366,35 +386,24 @@ class SeveralPrimesRing(ValuesRing):
         """Register corrections, (primes, diagonal, s)."""
         self._correction_degrees.append(degree)
         rows = self._diagonal_rows(degree)
-        lanes = _padded(np.moveaxis(corrections, 0, 2), self._corrections)
-        slices = lanes.reshape(len(rows), len(self._corrections), 8)
-        self._corrections[:, rows] = np.moveaxis(slices, 1, 0)
+        self._kernels.to_lanes(corrections, self._corrections, rows, rows)
         self._active[rows] = True
 
     def corrected_residues(self, degree: int) -> Floats:
-        """Sum W_q u_q over all stored pairs of degrees; (primes, canonical, s)."""
+        """Sum W_q u_q over all stored pairs of degrees; (primes, monomials, s)."""
         reductions = (self._seed_moduli, self._limit)
         out = self._diagonal_product(
             degree, self._corrections, self._seed_modes, *reductions
         )
-        count, seeds = len(self.basis), len(self.space.seeds)
-        columns = self._canonical_points(degree, out)[:, : seeds * count]
-        return np.moveaxis(columns.reshape(len(columns), seeds, count), 2, 0)
+        return self._from_lanes(degree, out, slice(None), len(self.space.seeds), 1.0)
 
-    def add_matrix_product(self, total: Floats, left: Floats, right: Floats) -> Floats:
-        """total + left right modulo every prime; (primes, ., .), sums of any length."""
+    def matrix_product(self, left: Floats, right: Floats) -> Floats:
+        """left right modulo every prime; (primes, ., .), sums of any length."""
         step = self._limit - 1
-        for start in range(0, right.shape[1], step):
+        total: Floats = np.matmul(left[:, :, :step], right[:, :step])
+        self.basis.reduce(total)
+        for start in range(step, right.shape[1], step):
             some = slice(start, start + step)
-            total = total + np.matmul(left[:, :, some], right[:, some])
+            total += np.matmul(left[:, :, some], right[:, some])
             self.basis.reduce(total)
         return total
-
-
-def _padded(values: Floats, target: Floats) -> Floats:
-    """(rows, a, b) as the lanes of all slices of the target, (rows, slices lanes)."""
-    slices, _, width = target.shape
-    rows, a, b = values.shape
-    lanes = np.zeros((rows, slices * width))
-    lanes[:, : a * b] = values.reshape(rows, a * b)
-    return lanes

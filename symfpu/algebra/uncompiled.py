@@ -52,6 +52,21 @@ def multiply_row(
         out[o + table[t + n]] += product
 
 
+def add_matrix_product(
+    lanes: Any,
+    rows: Any,
+    matrix: Any,
+    k: int,
+    columns: Any,
+    count: int,
+    b: int,
+    out: Any,
+) -> None:
+    """out[k + r, b + l] += sum of matrix[k + r, i] columns[i, b + l] over i < count."""
+    own, some = slice(k, k + len(rows)), slice(b, b + len(lanes))
+    out[own, some] += matrix[own, :count] @ columns[:count, some]
+
+
 def convolution(tile: int) -> Any:
     """The function that sums a tile of so many rows."""
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from math import prod
 from typing import Any, NamedTuple
 
@@ -26,6 +27,7 @@ LARGEST_DIVISOR = 2**42
 LEAST_TOP = 8  # bits of the highest of the limbs that are rounded away
 EXACT = 2.0**52  # integers below it are exact in doubles
 WORD_BITS = LIMB_BITS * LIMBS_PER_WORD
+SIZE_ERROR = 2.0**-40  # of a sum of shares, one a prime, modulo one
 
 
 class TooFewPrimes(ArithmeticError):
@@ -93,8 +95,8 @@ class IntegerTable:
 
 
 class Rounding(NamedTuple):
-    """Tables of `kernels.round_columns`: moduli, inverses of cofactors, limbs of the cofactors
-    (limbs, primes) and of the product of all primes (limbs,).
+    """Tables of `rounding_loops.round_columns`: moduli, inverses of cofactors, limbs of the
+    cofactors (limbs, primes) and of the product of all primes (limbs,).
     """
 
     moduli: Floats
@@ -122,16 +124,18 @@ class ResidueBasis:
     """
 
     def __init__(self, bits: int, largest: int, divisor: int = 2) -> None:
-        from symfpu.algebra import (
-            kernels,
-        )  # lazy: numba takes longer to import than all the rest
+        # lazy: numba takes longer to import than all the rest
+        from symfpu.algebra import kernels, rounding_loops
 
-        self._kernels = kernels
+        self._kernels, self._loops = kernels, rounding_loops
         self._largest, self._divisor = largest, divisor
+        self.longest_word = -(
+            -(bits + 2) // WORD_BITS
+        )  # words that its integers have at most
         # an overflow of the promised bits by a factor of eight is still seen
         self.primes = _primes(bits + 4, largest, divisor)
         self.moduli = np.array(self.primes, dtype=np.float64)
-        modulus = prod(self.primes)
+        modulus = self.modulus = prod(self.primes)
         spare = modulus.bit_length() - bits - 1
         self._limit = 2.0**-spare
         count = -(-modulus.bit_length() // LIMB_BITS) + 2
@@ -152,6 +156,10 @@ class ResidueBasis:
             self._modulus_limbs[:, 0].copy(),
         )
         self._scales: dict[int, Scale] = {}
+        # whether sums over all primes of residues times limbs are exact in doubles
+        widest = self._widest = float(self.moduli.max(initial=0.0))
+        sums = len(self) * widest * LIMB / 4
+        self.small = sums <= EXACT and widest**2 / 4 <= EXACT
 
     def beginning(self, bits: int) -> ResidueBasis:
         """The basis of the first of these primes, as many as integers of so many bits need."""
@@ -186,12 +194,6 @@ class ResidueBasis:
             limbs[n + 1] += carry
         return np.asarray(limbs[drop:])
 
-    @property
-    def small(self) -> bool:
-        """Whether sums over all primes of residues times limbs are exact in doubles."""
-        largest = float(self.moduli.max(initial=0.0))
-        return len(self) * largest * LIMB / 4 <= EXACT and largest**2 / 4 <= EXACT
-
     def _scale(self, bits: int) -> Scale:
         if bits not in self._scales:
             count = max(1, -(-bits // LIMB_BITS))
@@ -206,14 +208,19 @@ class ResidueBasis:
         return self._scales[bits]
 
     def round_in_place(
-        self, residues: Floats, wanted: NDArray[np.bool_], bits: int
+        self,
+        residues: Floats,
+        wanted: NDArray[np.bool_],
+        bits: int,
+        sizes: Floats | None = None,
     ) -> None:
         """The wanted integers / 2^bits, rounded to the nearest; zeros where not wanted.
 
         residues : (primes, count), below a prime in size, overwritten. bits : as `whole_places`
-        gives them. Raises OverflowError as `limbs` does.
+        gives them. sizes : (count,), filled with the moduli of the integers over the product of
+        all primes, off by less than SIZE_ERROR. Raises OverflowError as `limbs` does.
         """
-        self._round(residues, wanted, bits, self, None)
+        self._round(residues, wanted, bits, self, None, sizes)
 
     def rounded_words(
         self, residues: Floats, wanted: NDArray[np.bool_], bits: int, first: ResidueBasis
@@ -223,11 +230,12 @@ class ResidueBasis:
         first : the basis of the first primes, as many as hold what is rounded.
         """
         count = int(np.count_nonzero(wanted))
-        longest = -(-len(first._modulus_limbs) // LIMBS_PER_WORD)
-        words = np.zeros((count, longest), dtype=np.int64)
-        self._round(residues, wanted, bits, first, words)
-        used = np.flatnonzero(words.any(axis=0))
-        return words[:, : used[-1] + 1 if len(used) else 1]
+        words = np.zeros((count, first.longest_word), dtype=np.int64)
+        self._round(residues, wanted, bits, first, words, None)
+        used = first.longest_word
+        while used > 1 and not words[:, used - 1].any():
+            used -= 1
+        return words[:, :used]
 
     def _round(
         self,
@@ -236,21 +244,33 @@ class ResidueBasis:
         bits: int,
         first: ResidueBasis,
         words: Words | None,
+        sizes: Floats | None,
     ) -> None:
         scale = self._scale(bits)
         if not self.small:
-            own = self._divided(residues[:, wanted], scale)
+            own = residues[:, wanted]
+            if sizes is not None:
+                sizes[:] = 0.0
+                sizes[wanted] = self._sizes(own)
+            own = self._divided(own, scale)
             residues[:] = 0.0
             residues[:, wanted] = own
             if words is not None:
                 found = words_of(first.limbs(own[: len(first)].copy()))
                 words[:, : found.shape[1]] = found
             return
-        farthest, farther = self._kernels.round_columns(
-            residues, wanted, self._rounding, LIMB, scale, first._rounding, words
+        farthest, farther = self._loops.round_columns(
+            residues, wanted, self._rounding, LIMB, scale, first._rounding, words, sizes
         )
         self._check(farthest, self._limit)
         self._check(farther, first._limit)
+
+    def _sizes(self, residues: Floats) -> Floats:
+        """Moduli of integers over the product of all primes."""
+        shares = residues.copy()
+        self._kernels.multiply_rows(shares, self._inverses, self.moduli)
+        total = (1 / self.moduli) @ shares
+        return np.asarray(np.abs(total - np.rint(total)))
 
     def _divided(self, residues: Floats, scale: Scale) -> Floats:
         """Residues of the rounded integers, of primes of any size; overwrites them."""
@@ -263,12 +283,16 @@ class ResidueBasis:
 
     def _check(self, farthest: float, limit: float) -> None:
         """OverflowError where a sum of shares is too far from a whole number."""
-        if farthest > limit + 2.0**-40:
+        if farthest > limit + SIZE_ERROR:
             raise OverflowError("an integer exceeds the range of the residues")
 
     def residues(self, limbs: Floats) -> Floats:
         """Residues (primes, count) of the integers given by balanced limbs (limbs, count)."""
         powers = self._powers[:, : len(limbs)]
+        if len(limbs) * self._widest * LIMB / 2 <= EXACT:
+            whole = np.asarray(powers @ limbs)
+            self._kernels.reduce_rows(whole, self.moduli)
+            return whole
         high = np.rint(powers / LIMB)
         low = powers - high * LIMB
         top = high @ limbs
@@ -308,7 +332,7 @@ class ResidueBasis:
 
     def of_integers(self, integers: NDArray[np.object_]) -> Floats:
         """Residues (primes, ...) of Python's integers, of any size."""
-        flat = [int(x) for x in np.asarray(integers, dtype=object).ravel()]
+        flat = list(map(int, np.asarray(integers, dtype=object).ravel().tolist()))
         limbs = limbs_of(flat)
         total = np.zeros((len(self), len(flat)))
         step = self._powers.shape[1]
@@ -335,17 +359,20 @@ def limbs_of(integers: Sequence[int]) -> Floats:
     >>> limbs_of([-1, 2**20 + 3]).tolist()
     [[1048575.0, 3.0], [-1.0, 1.0]]
     """
-    longest = max((x.bit_length() for x in integers), default=0) + 1
+    longest = max(map(int.bit_length, integers), default=0) + 1
     pairs = -(-longest // (2 * LIMB_BITS))
     size = 2 * LIMB_BITS // 8 * pairs
-    joined = b"".join(x.to_bytes(size, "little", signed=True) for x in integers)
+    # shifted to be positive, which turns the sign, the highest bit
+    shifted = map((1 << (8 * size - 1)).__add__, integers)
+    as_bytes: Any = int.to_bytes
+    joined = b"".join(map(as_bytes, shifted, repeat(size), repeat("little")))
     bytes_of = np.frombuffer(joined, dtype=np.uint8).reshape(len(integers), pairs, 5)
     weights = 256.0 ** np.arange(3)
     limbs = np.empty((pairs, 2, len(integers)))
     low, middle, high = bytes_of[..., :2], bytes_of[..., 2], bytes_of[..., 3:]
     limbs[:, 0] = (low @ weights[:2] + (middle & 15) * weights[2]).T
     limbs[:, 1] = ((middle >> 4) + high @ (16 * weights[:2])).T
-    limbs[-1, 1] -= 2.0**LIMB_BITS * (limbs[-1, 1] >= 2.0 ** (LIMB_BITS - 1))
+    limbs[-1, 1] -= 2.0 ** (LIMB_BITS - 1)
     return limbs.reshape(2 * pairs, len(integers))
 
 

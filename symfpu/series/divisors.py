@@ -19,7 +19,7 @@ import symengine as se
 from numpy.typing import NDArray
 
 from symfpu.algebra.formulas import multiplier_symbol
-from symfpu.algebra.grading import Ints
+from symfpu.algebra.grading import HarmonicRows, Ints, extended
 from symfpu.algebra.residue import ResidueRing, cosine_table
 from symfpu.chain.chain import Chain
 from symfpu.errors import ResonantDivisor, VanishingResidue
@@ -183,6 +183,11 @@ class FixedPointDivisors:
         self.frequencies = tuple(frequencies)
         self.bits = bits
         self.known: dict[int, Floats] = {}  # moduli of multipliers, by order
+        self._rows = HarmonicRows()  # of the two tables of multipliers found so far
+        self._found = np.zeros((0, chain.N - 1), dtype=object)
+        self._sizes = np.zeros(
+            (0, chain.N - 1)
+        )  # their moduli; zero where there is none yet
         self._depth = min(bits, 2 - frexp(least)[1]) if least else bits
         # a divisor is off by two units, and enters squared; numerators are at most 4
         self._places = bits + 2 * max(self._depth, 0) + 32
@@ -212,8 +217,20 @@ class FixedPointDivisors:
 
         Raises ResonantDivisor where a divisor is zero or below 2^-bits, or 2^-depth.
         """
-        gauge = gauge_terms(harmonics, self.seeds, self.chain.N)
-        rows, columns = np.nonzero(carried & ~gauge)
+        wanted = carried & ~gauge_terms(harmonics, self.seeds, self.chain.N)
+        rows = self._rows.of(harmonics)
+        self._found = extended(self._found, len(self._rows), 0)
+        self._sizes = extended(self._sizes, len(self._rows), 0.0)
+        missing = wanted & (self._sizes[rows] == 0)
+        self._find(harmonics, rows, missing, order)
+        self.known[order] = np.where(wanted, self._sizes[rows], 0.0)
+        return np.where(wanted, self._found[rows], 0)
+
+    def _find(
+        self, harmonics: Ints, own: Ints, missing: NDArray[np.bool_], order: int
+    ) -> None:
+        """Multipliers that no lower order had. own : the rows of the harmonics."""
+        rows, columns = np.nonzero(missing)
         drives = harmonics.astype(object) @ self._omega
         divisors = self._lambda[columns] - self._squared(drives)[rows]
         smallest_allowed = 1 << (self._places - self._depth)
@@ -222,11 +239,11 @@ class FixedPointDivisors:
             harmonic = tuple(map(int, harmonics[rows[at]]))
             exact = vanishes(self.chain.N, self.seeds, self.frequencies, mode, harmonic)
             raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
-        table = np.full(carried.shape, 0, dtype=object)
-        table[rows, columns] = self._numerators[columns] // divisors
-        moduli = np.abs((table / 2**self.bits).astype(np.float64))
-        self.known[order] = moduli * (1 + 1e-12)  # more than the rounding to a double
-        return table
+        multipliers = self._numerators[columns] // divisors
+        moduli = np.abs((multipliers / 2**self.bits).astype(np.float64))
+        self._found[own[rows], columns] = multipliers
+        # more than the rounding to a double
+        self._sizes[own[rows], columns] = moduli * (1 + 1e-12)
 
     def moduli(self) -> MultiplierModuli:
         """The same multipliers by their moduli, as doubles not below them."""

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import symengine as se
 
+from symfpu.algebra.fixedpoint import FixedPointRing, Precision
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.selection import CosineModes
 from symfpu.chain.chain import Chain
@@ -265,3 +266,17 @@ def test_multipliers_are_their_definition_rounded_down(N, seeds, frequencies, bi
                     assert -(mpmath.mpf(2) ** -20) <= exact - int(value) <= 1 + mpmath.mpf(2) ** -20
                     count += 1
     assert count > 20
+
+
+@pytest.mark.parametrize(("size", "factor", "within"), [(100, 1, True), (30, 2.0**55, True), (30, 2.0**85, False), (100, 2.0**15, False)])
+def test_products_with_multipliers_beyond_the_range_are_refused(size, factor, within):
+    """2^size over 2^bits times the factor, against 2^headroom: by sizes, which a large factor needs exactly."""
+    precision = Precision(100, 10, Fraction(1))
+    ring = FixedPointRing(CosineModes(4, (1,), Grading(1, 3)), precision)
+    bracket = ring.basis.of_integers(np.array([[1 << size]], dtype=object))
+    sizes = np.array([[float(Fraction(1 << (size + precision.bits), ring.basis.modulus))]])
+    if within:
+        ring._check_range(bracket, sizes, np.array([[factor]]))
+    else:
+        with pytest.raises(OverflowError, match="exceeds the range"):
+            ring._check_range(bracket, sizes, np.array([[factor]]))

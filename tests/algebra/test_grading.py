@@ -7,7 +7,7 @@ from math import comb
 import numpy as np
 import pytest
 
-from symfpu.algebra.grading import Grading, canonical_count, compositions, monomial_count
+from symfpu.algebra.grading import Grading, HarmonicRows, canonical_count, compositions, monomial_count
 
 SMALL = [(1, 7), (2, 6), (3, 5), (4, 4), (5, 3)]
 # Keys of the last two exceed 64 bits: 9^20 for the monomials of half of 20 seeds, 5^32 for the harmonics of 32.
@@ -170,3 +170,13 @@ def test_a_phantom_seed_keeps_what_is_linear_in_it(seeds, degree):
         assert set(map(tuple, grading.diagonal(d).tolist())) == {
             row for row in map(tuple, Grading(seeds, degree).diagonal(d).tolist()) if not row[0]
         }
+
+
+def test_a_harmonic_keeps_its_row():
+    grading, rows = Grading(seeds=2, degree=6), HarmonicRows()
+    found = {}
+    for degree in (2, 5, 4, 6):
+        harmonics, _ = grading.harmonics(degree)
+        for nu, own in zip(harmonics.tolist(), rows.of(harmonics).tolist(), strict=True):
+            assert found.setdefault(tuple(nu), own) == own
+    assert sorted(found.values()) == list(range(len(rows)))

@@ -67,3 +67,14 @@ def test_many_seeds_have_distinct_keys():
     for powers, carried in zip(grading.powers(2), space.mask(2), strict=True):
         expected = {fold(total, N) for total in sums_of_signs(powers, seeds)} - {0, N}
         assert {int(q) + 1 for q in np.flatnonzero(carried)} == expected
+
+
+@pytest.mark.parametrize(("N", "seeds"), [(5, (1, 2)), (8, (1, 3)), (9, (2, 4, 5))])
+def test_even_monomials_come_first_and_each_once(N, seeds):
+    space = CosineModes(N, seeds, Grading(len(seeds), 6))
+    for degree in range(1, 7):
+        order, even = space.even_first(degree)
+        assert sorted(order.tolist()) == list(range(len(space.parity(degree))))
+        assert (space.parity(degree)[order] == (np.arange(len(order)) >= even)).all()
+    for parity in (0, 1):
+        assert (np.arange(1, N)[space.modes(parity)] % 2 == parity).all()

@@ -92,3 +92,17 @@ def test_products_with_a_diagonal_series_are_those_of_all_its_rows(seeds, top, m
     assert theirs.any()
     assert not (difference % prime if modular else difference).any()
     assert not modular or np.abs(ours).max() <= prime / 2
+
+
+@pytest.mark.parametrize(("primes", "half", "width"), [(3, 16, 32), (5, 7, 8), (2, 3, 32), (4, 20, 8)])
+def test_rows_come_back_from_lanes(primes, half, width):
+    """Also those of the conjugates; lanes that are over, and other rows, stay as they are."""
+    rows, conjugates = np.array([4, 1]), np.array([0, 3])
+    values = np.random.default_rng(1).integers(1, 1000, (primes, 2, half)).astype(float)
+    target = np.zeros((-(-primes * half // width), 6, width), dtype=np.float32)
+    kernels.to_lanes(values, target, rows, conjugates)
+    assert np.count_nonzero(target) == 2 * values.size
+    for some in (rows, conjugates):
+        back = np.empty_like(values)
+        kernels.from_lanes(target, back, some, 2.0)
+        assert (back == 2 * values).all()

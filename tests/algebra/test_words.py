@@ -8,7 +8,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symfpu.algebra.words import LEAST_TOP, LIMB_BITS, WORD_BITS, IntegerTable, ResidueBasis, TooFewPrimes, whole_places, words_of
+from symfpu.algebra.words import (
+    LEAST_TOP,
+    LIMB_BITS,
+    SIZE_ERROR,
+    WORD_BITS,
+    IntegerTable,
+    ResidueBasis,
+    TooFewPrimes,
+    whole_places,
+    words_of,
+)
 from tests.tolerances import EPS, NEAREST
 
 BITS = 150
@@ -176,6 +186,18 @@ def test_rounding_in_place_is_that_by_limbs(basis, entries, drop):
     assert np.array_equal(residues, expected)
     assert np.array_equal(again, expected)
     assert of_words(words) == of_words(words_of(limbs))
+
+
+@pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
+@given(st.lists(st.tuples(within, st.booleans()), max_size=300))
+def test_sizes_are_moduli_over_the_product_of_all_primes(basis, entries):
+    """Those before rounding; zero where they are not wanted."""
+    integers, wanted = [x for x, _ in entries], np.array([kept for _, kept in entries], dtype=bool)
+    sizes = np.full(len(entries), np.nan)
+    basis.round_in_place(basis.of_integers(row(integers)), wanted, LIMB_BITS, sizes)
+    for x, kept, size in zip(integers, wanted, sizes, strict=True):
+        assert size == 0 or kept
+        assert abs(Fraction(abs(x) * int(kept), prod(basis.primes)) - Fraction(float(size))) < SIZE_ERROR
 
 
 @pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
