@@ -310,8 +310,9 @@ class FixedPointRing:
                 self._image.matrix_product(values(some), back[parity])
                 for values, back in sources
             ]
-            total = products[0]
-            for other in products[1:]:
+            nothing = np.zeros((len(self.basis), *wanted[parity][own].shape))
+            total, *others = products or [nothing]  # there are orders without a force
+            for other in others:
                 total += other
                 self.basis.reduce(total)
             flat, sizes_of = total.reshape(len(total), -1), sizes[parity][own]

@@ -521,7 +521,7 @@ print(peak() - before, _needed(chain, len(seeds), order, "fixedpoint", digits))
     [
         {"N": 16, "alpha": "0.33", "beta": "0", "seeds": (1, 2, 3), "order": 10, "digits": 60},
         {"N": 16, "alpha": "0.33", "beta": "0.1", "seeds": (1, 2, 3), "order": 12, "digits": 10},
-        {"N": 32, "alpha": "0.33", "beta": "0", "seeds": (1,), "order": 90, "digits": 10},
+        {"N": 32, "alpha": "0.33", "beta": "0", "seeds": (1,), "order": 120, "digits": 10},
         {"N": 16, "alpha": "0.33", "beta": "0", "seeds": (1, 2), "order": 24, "digits": 50},
     ],
     ids=lambda c: f"N={c['N']} order {c['order']} digits {c['digits']}",
