@@ -296,18 +296,27 @@ def _refined(
     tolerance: float = TOLERANCE,
 ) -> RefinedTorus:
     """The torus of a place; NoTorus also where Newton's method ended early."""
-    found = _at(ray, guess, place, tolerance=tolerance, most_harmonics=most)
+    found = _at(ray, guess, place, most, tolerance)
     if ended_early(found):
         raise NoTorus("; ".join(found.warnings), found, found.residual())
     return found
 
 
-def _at(ray: Ray, guess: QuasiPeriodic, place: float, **how: Any) -> RefinedTorus:
+def _at(
+    ray: Ray, guess: QuasiPeriodic, place: float, most: int, tolerance: float
+) -> RefinedTorus:
     name = f"{place:.8g}"
     if ray.by == ENERGY:
-        equal = dict.fromkeys(ray.seeds, 1)
-        return refine_at_energy(guess, name, harmonic=False, energy_ratio=equal, **how)
-    return refine_at_amplitudes(guess, dict.fromkeys(ray.seeds, name), **how)
+        return refine_at_energy(
+            guess,
+            name,
+            harmonic=False,
+            energy_ratio=dict.fromkeys(ray.seeds, 1),
+            tolerance=tolerance,
+            most_harmonics=most,
+        )
+    amplitudes = dict.fromkeys(ray.seeds, name)
+    return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance, most_harmonics=most)
 
 
 def _slopes(points: tuple[RefinedPoint, ...]) -> list[float]:
