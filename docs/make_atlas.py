@@ -457,6 +457,18 @@ def flach_table(found: Atlas) -> str:
     return rows_of(head, rows)
 
 
+def done(file: Path) -> list[SweepRow]:
+    """The rows of a file that have a result; SystemExit where one has none."""
+    rows = read_atlas(file).rows.rows
+    failed = [row for row in rows if row.failure is not None]
+    if failed:
+        reasons = "\n".join(f"{row.case}: {row.failure}" for row in failed)
+        sys.exit(
+            f"{file} has rows without a result; delete these lines and call again:\n{reasons}"
+        )
+    return list(rows)
+
+
 class NewtonColumn(NamedTuple):
     """A column of NEWTON_FILE: seeds 1 .. s of a chain, and H of the tori on the way."""
 
@@ -479,7 +491,7 @@ class NewtonColumn(NamedTuple):
 def newton_columns() -> list[NewtonColumn]:
     """All of them, by model, s and N."""
     columns = []
-    for row in read_atlas(NEWTON_FILE).rows.rows:
+    for row in done(NEWTON_FILE):
         chain, result = row.case["chain"], row.result
         model = "alpha=1" if chain["alpha"] != "0" else "beta=1"
         s, end = len(result["modes"]), result["borders"]["newton"]
@@ -558,7 +570,7 @@ def one_seed_table() -> str:
     head = ["model", "N", "H, last breather", "harmonics", "d ln A / d ln H there"]
     head += ["what ends the search"]
     rows = []
-    for row in read_atlas(ONE_SEED_FILE).rows.rows:
+    for row in done(ONE_SEED_FILE):
         end = row.result["borders"]["newton"]
         model = "alpha=1" if row.case["chain"]["alpha"] != "0" else "beta=1"
         harmonics = str(row.result["newton"][-1]["harmonics"])
