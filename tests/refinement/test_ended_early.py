@@ -132,9 +132,9 @@ def test_a_border_does_not_take_it_for_a_torus(solver, monkeypatch):
     """There a smaller step is tried."""
     ray, place = Ray(Chain(8, beta="0.3"), (1, 2), 2), 0.01
     first = ray.torus(place, None)
-    assert newton_end._refined(ray, first, place).warnings == ()
+    assert newton_end._refined(ray, first, place, newton_end.MOST_HARMONICS).warnings == ()
     solver(1, 1, 1, 0.0)
     early = refine_at_amplitudes(guess(), WANTED)
     monkeypatch.setattr(newton_end, "refine_at_energy", lambda *_, **__: early)
     with pytest.raises(NoTorus, match=ENDED_EARLY):
-        newton_end._refined(ray, first, place)
+        newton_end._refined(ray, first, place, newton_end.MOST_HARMONICS)
