@@ -50,7 +50,8 @@ def refine_at_start(
     if isinstance(torus, RingTorus):
         allowed = "a torus of a chain with fixed ends"
         advice = "on a ring give amplitudes to refine_at_amplitudes"
-        raise InputError("torus", type(torus).__name__, allowed, advice)
+        ring = f"{type(torus).__name__} of {torus.chain!r}"
+        raise InputError("torus", ring, allowed, advice)
     require_solution(torus, "torus")
     given = _coordinates(torus, coordinates)
     size = float(max(abs(x) for x in given.values()))
